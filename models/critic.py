@@ -1,0 +1,30 @@
+"""The paper's baseline: a network that predicts what the actor will reach."""
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+from models.config import NetworkConfig
+from models.encoders import AttentionEncoder, feedforward
+
+
+class Critic(nn.Module):
+    """Predicts the objective of the actor's tour from the cities and the preference."""
+
+    def __init__(self, config: NetworkConfig) -> None:
+        super().__init__()
+        self.encoder = AttentionEncoder(
+            config.width, config.heads, config.layers, config.feedforward
+        )
+        self.encode_preference = nn.Linear(2, config.width)
+        self.judge = feedforward(config.width, 1, hidden=config.width)
+
+    def forward(
+        self, cities: Float[Tensor, "b n 4"], preferences: Float[Tensor, "k 2"]
+    ) -> Float[Tensor, "b k"]:
+        """The prediction for each instance and preference."""
+        graph = self.encoder(cities).mean(dim=1)  # (b, d)
+        judged: Tensor = self.judge(
+            torch.relu(graph[:, None] + self.encode_preference(preferences))
+        )
+        return judged.squeeze(-1)

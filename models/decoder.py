@@ -1,0 +1,230 @@
+"""From features and preferences to the next city: the decoders of PA-AT and PA-One.
+
+Both share one key, value and pointer per city among all preferences, so that a decoding step for
+k preferences is a few products of a (k, d) with a (d, n) matrix. A *row* is one tour under
+construction, or one moment of it when finished tours are scored: the same method serves both.
+"""
+
+from typing import NamedTuple
+
+import torch
+from jaxtyping import Bool, Float, Int
+from torch import Tensor, nn
+from torch.nn.functional import scaled_dot_product_attention
+
+from models.encoders import feedforward
+from models.lagrangian import weights
+
+
+class Moment(NamedTuple):
+    """Where each row stands. Before the first choice, current and first may be index n."""
+
+    current: Int[Tensor, "b r"]
+    first: Int[Tensor, "b r"]
+    visited: Bool[Tensor, "b r n"]
+
+
+class AttentionMemory(NamedTuple):
+    """PA-AT's tables of the instances; the ends have one row more, for before the first choice."""
+
+    context: Float[Tensor, "b 1 d"]
+    current: Float[Tensor, "b n+1 d"]
+    first: Float[Tensor, "b n+1 d"]
+    keys: Float[Tensor, "b n d"]
+    values: Float[Tensor, "b n d"]
+    pointers: Float[Tensor, "b n d"]
+
+
+class AttentionConditioning(NamedTuple):
+    """What a preference adds to the projections of every city, and so to PA-AT's rows."""
+
+    context: Float[Tensor, "r d"]
+    ends: Float[Tensor, "r d"]
+    values: Float[Tensor, "r d"]
+    pointers: Float[Tensor, "r d"]
+
+
+class OneMemory(NamedTuple):
+    """PA-One's tables of the instances; distances in units of 1 / sqrt(n), also as log(1 + .)."""
+
+    current: Float[Tensor, "b n d"]
+    first: Float[Tensor, "b n d"]
+    keys: Float[Tensor, "b n d"]
+    values: Float[Tensor, "b n d"]
+    pointers: Float[Tensor, "b n d"]
+    distances: Float[Tensor, "b 2 n n"]
+    log_distances: Float[Tensor, "b 2 n n"]
+
+
+class OneConditioning(NamedTuple):
+    """What a preference does to PA-One's rows."""
+
+    scale: Float[Tensor, "r d"]
+    shift: Float[Tensor, "r d"]
+    weights: Float[Tensor, "r 2"]
+    slopes: Float[Tensor, "r 3"]
+
+
+class AttentionDecoder(nn.Module):
+    """Kool et al.'s decoder with the paper's preference encoder: one layer, added to the graph.
+
+    Adding the encoding e of a preference to the features of every city adds W e to every key,
+    value and pointer. The same addition to all keys leaves attention as it was; values and
+    pointers get theirs after the products, so that the tables stay shared. The actor chooses
+    the first city too, from a learned placeholder.
+    """
+
+    chooses_first = True
+
+    def __init__(self, width: int, heads: int, clip: float) -> None:
+        super().__init__()
+        self.heads, self.clip = heads, clip
+        self.encode_preference = nn.Linear(2, width)
+        self.placeholder = nn.Parameter(torch.empty(2, 1, 1, width).uniform_(-1, 1))
+        self.project_context = nn.Linear(width, width, bias=False)
+        self.project_ends = nn.Linear(width, 2 * width, bias=False)
+        self.project_city = nn.Linear(width, 3 * width, bias=False)
+        self.merge = nn.Linear(width, width, bias=False)
+
+    def remember(self, features: Float[Tensor, "b n d"]) -> AttentionMemory:
+        """The tables of the instances."""
+        current, first = (
+            torch.cat((table, opening.expand(len(table), -1, -1)), dim=1)
+            for table, opening in zip(
+                self.project_ends(features).chunk(2, dim=-1), self.placeholder, strict=True
+            )
+        )
+        context = self.project_context(features.mean(dim=1, keepdim=True))
+        return AttentionMemory(
+            context, current, first, *self.project_city(features).chunk(3, dim=-1)
+        )
+
+    def condition(self, preferences: Float[Tensor, "k 2"]) -> AttentionConditioning:
+        """The rows of the preferences."""
+        encoding = self.encode_preference(preferences)
+        current, first = self.project_ends(encoding).chunk(2, dim=-1)
+        _, values, pointers = self.project_city(encoding).chunk(3, dim=-1)
+        return AttentionConditioning(
+            self.project_context(encoding), current + first, values, pointers
+        )
+
+    def logits(
+        self, memory: AttentionMemory, rows: AttentionConditioning, moment: Moment
+    ) -> Float[Tensor, "b r n"]:
+        """Unnormalised log-probabilities of the next city; minus infinity where visited."""
+        begun = (moment.current < moment.visited.shape[-1])[..., None]
+        ends = _look_up(memory.current, moment.current) + _look_up(memory.first, moment.first)
+        query = memory.context + rows.context + ends + begun * rows.ends
+        glimpse = _glimpse(query, memory.keys, memory.values, ~moment.visited, self.heads)
+        glimpse = self.merge(glimpse + rows.values)
+        scores = glimpse @ memory.pointers.mT + (glimpse * rows.pointers).sum(-1, keepdim=True)
+        bounded = self.clip * torch.tanh(scores / query.shape[-1] ** 0.5)
+        return bounded.masked_fill(moment.visited, -torch.inf)
+
+
+class OneDecoder(nn.Module):
+    """PA-One's: queries modulated by the preference, pointers that fall off with distance.
+
+    Its logits start as those of the nearest neighbour under the preference's weights, softened:
+    minus a multiple of log(1 + distance); the pointer learns the rest. Half of the heads see the
+    cities that are left through the same fall-off, the other half see them all alike. Tours
+    start at a city that is given.
+    """
+
+    chooses_first = False
+
+    def __init__(self, width: int, heads: int, clip: float) -> None:
+        super().__init__()
+        self.heads, self.clip = heads, clip
+        self.encode_preference = feedforward(2, 2 * width + 3, hidden=width)
+        self.project_ends = nn.Linear(width, 2 * width, bias=False)
+        self.project_city = nn.Linear(width, 3 * width, bias=False)
+        self.merge = nn.Linear(width, width, bias=False)
+        self.norm = nn.LayerNorm(width)
+        self.think = feedforward(width, width, hidden=width)
+        last = self.encode_preference[-1]
+        nn.init.normal_(last.weight, std=0.02)
+        with torch.no_grad():
+            self.project_city.weight[-width:] *= 0.1  # so that pointers begin near zero
+            last.bias.copy_(torch.cat((torch.ones(width), torch.zeros(width), _FIRST_SLOPES)))
+
+    def remember(
+        self,
+        features: Float[Tensor, "b n d"],
+        distances: Float[Tensor, "b 2 n n"],
+        log_distances: Float[Tensor, "b 2 n n"],
+    ) -> OneMemory:
+        """The tables of the instances."""
+        return OneMemory(
+            *self.project_ends(features).chunk(2, dim=-1),
+            *self.project_city(features).chunk(3, dim=-1),
+            distances,
+            log_distances,
+        )
+
+    def condition(self, preferences: Float[Tensor, "k 2"]) -> OneConditioning:
+        """The rows of the preferences."""
+        width = self.merge.in_features
+        encoding = self.encode_preference(preferences)
+        scale, shift, slopes = encoding.split((width, width, 3), dim=-1)
+        return OneConditioning(scale, shift, weights(preferences), slopes)
+
+    def logits(
+        self, memory: OneMemory, rows: OneConditioning, moment: Moment
+    ) -> Float[Tensor, "b r n"]:
+        """Unnormalised log-probabilities of the next city; minus infinity where visited."""
+        ends = _look_up(memory.current, moment.current) + _look_up(memory.first, moment.first)
+        query = rows.scale * ends + rows.shift
+        pull = _pull(memory, rows, moment.current).masked_fill(moment.visited, -torch.inf)
+        glimpse = query + self.merge(self._glimpses(query, memory, pull.detach(), moment.visited))
+        glimpse = glimpse + self.think(self.norm(glimpse))
+        scores = glimpse @ memory.pointers.mT
+        return self.clip * torch.tanh(scores / query.shape[-1] ** 0.5) + pull
+
+    def _glimpses(
+        self, query: Tensor, memory: OneMemory, pull: Tensor, visited: Tensor
+    ) -> Float[Tensor, "b r d"]:
+        """Half of the heads through the pull, half without it; no gradient through the pull."""
+        halves = zip(
+            query.chunk(2, dim=-1),
+            memory.keys.chunk(2, dim=-1),
+            memory.values.chunk(2, dim=-1),
+            (pull, ~visited),
+            strict=True,
+        )
+        return torch.cat([_glimpse(*half, self.heads // 2) for half in halves], dim=-1)
+
+
+# Of log(1 + distance) under the weights, in plane 1, in plane 2.
+_FIRST_SLOPES = torch.tensor([4.0, 0.0, 0.0])
+
+
+def _pull(
+    memory: OneMemory, rows: OneConditioning, current: Int[Tensor, "b r"]
+) -> Float[Tensor, "b r n"]:
+    """How much each city draws a row that stands at its current city: minus a cost."""
+    first, second = (_look_up(memory.distances[:, m], current) for m in range(2))  # (b, r, n)
+    log_first, log_second = (_look_up(memory.log_distances[:, m], current) for m in range(2))
+    weighted = torch.log1p(rows.weights[:, :1] * first + rows.weights[:, 1:] * second)
+    slope, slope_first, slope_second = rows.slopes.split(1, dim=-1)  # (r, 1)
+    return -(slope * weighted + slope_first * log_first + slope_second * log_second)
+
+
+def _look_up(table: Float[Tensor, "b m d"], index: Int[Tensor, "b r"]) -> Float[Tensor, "b r d"]:
+    """For each instance, the rows of its table that the index names."""
+    return table.gather(1, index[..., None].expand(-1, -1, table.shape[-1]))
+
+
+def _glimpse(
+    query: Float[Tensor, "b r e"],
+    keys: Float[Tensor, "b n e"],
+    values: Float[Tensor, "b n e"],
+    mask: Tensor,
+    heads: int,
+) -> Float[Tensor, "b r e"]:
+    """Multi-head attention of rows to cities; the mask is added, or true where they may look."""
+    query, keys, values = (
+        part.unflatten(-1, (heads, -1)).transpose(1, 2) for part in (query, keys, values)
+    )
+    seen = scaled_dot_product_attention(query, keys, values, attn_mask=mask[:, None])
+    return seen.transpose(1, 2).flatten(2)

@@ -1,0 +1,123 @@
+"""From cities to features: the encoders of PA-AT and PA-One.
+
+PA-AT's is the encoder of Kool, van Hoof and Welling (2019), arXiv:1803.08475. PA-One's differs
+in two ways: it normalises before each layer rather than after, so that deeper stacks train, and
+its heads attend less the farther two cities are apart, each head at a rate of its own in each
+plane. Distances are taken in units of 1 / sqrt(n), near the spacing of n cities in a unit
+square, so that neighbourhoods look alike at every n.
+"""
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+from torch.nn.functional import scaled_dot_product_attention
+
+
+def plane_distances(cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b 2 n n"]:
+    """Distances in each plane, in units of 1 / sqrt(n).
+
+    Written without Python arithmetic on n and without cdist, both of which would freeze n when
+    the network is exported.
+    """
+    x, y = cities.transpose(1, 2)[:, 0::2], cities.transpose(1, 2)[:, 1::2]  # (b, 2, n)
+    squares = (x[..., :, None] - x[..., None, :]) ** 2 + (y[..., :, None] - y[..., None, :]) ** 2
+    root = torch.ones_like(x[:, :1]).sum(dim=-1).sqrt()  # sqrt(n), (b, 1)
+    return squares.sqrt() * root[..., None, None]
+
+
+class SelfAttention(nn.Module):
+    """Multi-head attention among the cities of an instance."""
+
+    def __init__(self, width: int, heads: int) -> None:
+        super().__init__()
+        self.heads = heads
+        self.project = nn.Linear(width, 3 * width, bias=False)
+        self.merge = nn.Linear(width, width, bias=False)
+
+    def forward(
+        self, features: Float[Tensor, "b n d"], bias: Float[Tensor, "b h n n"] | None = None
+    ) -> Float[Tensor, "b n d"]:
+        """Each city's view of all cities; the bias is added to the scores."""
+        query, key, value = (
+            part.unflatten(-1, (self.heads, -1)).transpose(1, 2)  # (b, h, n, d / h)
+            for part in self.project(features).chunk(3, dim=-1)
+        )
+        seen = scaled_dot_product_attention(query, key, value, attn_mask=bias)
+        merged: Tensor = self.merge(seen.transpose(1, 2).flatten(2))
+        return merged
+
+
+def feedforward(width: int, out: int, hidden: int) -> nn.Sequential:
+    """Two linear layers with a rectifier between them."""
+    return nn.Sequential(nn.Linear(width, hidden), nn.ReLU(), nn.Linear(hidden, out))
+
+
+class AttentionEncoder(nn.Module):
+    """Kool et al.: attention and feed-forward, each with a skip and then batch normalisation."""
+
+    def __init__(self, width: int, heads: int, layers: int, hidden: int) -> None:
+        super().__init__()
+        self.embed = nn.Linear(4, width)
+        self.layers = nn.ModuleList(_PostNormLayer(width, heads, hidden) for _ in range(layers))
+
+    def forward(self, cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b n d"]:
+        """Features of the cities."""
+        features: Tensor = self.embed(cities)
+        for layer in self.layers:
+            features = layer(features)
+        return features
+
+
+class _PostNormLayer(nn.Module):
+    def __init__(self, width: int, heads: int, hidden: int) -> None:
+        super().__init__()
+        self.attend = SelfAttention(width, heads)
+        self.think = feedforward(width, width, hidden)
+        self.norms = nn.ModuleList(nn.BatchNorm1d(width) for _ in range(2))
+
+    def forward(self, features: Tensor) -> Tensor:
+        features = self._normalised(0, features + self.attend(features))
+        return self._normalised(1, features + self.think(features))
+
+    def _normalised(self, index: int, features: Tensor) -> Tensor:
+        normalised: Tensor = self.norms[index](features.transpose(1, 2)).transpose(1, 2)
+        return normalised
+
+
+class DistanceAwareEncoder(nn.Module):
+    """PA-One's: attention that fades with distance, normalised before each layer."""
+
+    def __init__(self, width: int, heads: int, layers: int, hidden: int) -> None:
+        super().__init__()
+        self.embed = nn.Linear(4, width)
+        self.layers = nn.ModuleList(_PreNormLayer(width, heads, hidden) for _ in range(layers))
+        self.norm = nn.LayerNorm(width)
+
+    def forward(
+        self, cities: Float[Tensor, "b n 4"], log_distances: Float[Tensor, "b 2 n n"]
+    ) -> Float[Tensor, "b n d"]:
+        """Features of the cities, given log(1 + distance) between them in each plane."""
+        features: Tensor = self.embed(cities)
+        for layer in self.layers:
+            features = layer(features, log_distances)
+        normalised: Tensor = self.norm(features)
+        return normalised
+
+
+class _PreNormLayer(nn.Module):
+    def __init__(self, width: int, heads: int, hidden: int) -> None:
+        super().__init__()
+        self.attend = SelfAttention(width, heads)
+        self.think = feedforward(width, width, hidden)
+        self.norms = nn.ModuleList(nn.LayerNorm(width) for _ in range(2))
+        # At first a quarter of the heads each: near in plane 1, in plane 2, in both, everywhere.
+        kinds = torch.tensor([[2.0, 0.0], [0.0, 2.0], [1.0, 1.0], [0.0, 0.0]])
+        self.fading = nn.Parameter(kinds.repeat((heads + 3) // 4, 1)[:heads])  # (h, 2)
+
+    def forward(self, features: Tensor, log_distances: Tensor) -> Tensor:
+        near, nearby = log_distances[:, None, 0], log_distances[:, None, 1]  # (b, 1, n, n)
+        rates = self.fading[:, :, None, None]  # (h, 2, 1, 1)
+        bias = -(rates[:, 0] * near + rates[:, 1] * nearby)
+        features = features + self.attend(self.norms[0](features), bias)
+        thought: Tensor = self.think(self.norms[1](features))
+        return features + thought

@@ -1,0 +1,97 @@
+"""Tours from an actor, and their log-likelihoods.
+
+Tours are built city by city without gradients; the log-likelihoods of finished tours come from
+one pass over all their moments at once (teacher forcing), which is where gradients flow.
+"""
+
+from typing import Protocol
+
+import torch
+from jaxtyping import Float, Int
+from torch import Generator, Tensor
+
+from models.decoder import Moment
+from models.networks import Actor, Conditioning, Memory
+
+
+class Choose(Protocol):
+    """How the next city follows from the logits."""
+
+    def __call__(self, logits: Float[Tensor, "b r n"]) -> Int[Tensor, "b r"]:
+        """The chosen city of each row."""
+
+
+def greedily(logits: Float[Tensor, "b r n"]) -> Int[Tensor, "b r"]:
+    """The likeliest city; of equals the first."""
+    return logits.argmax(dim=-1)
+
+
+def sampling(generator: Generator) -> Choose:
+    """A way to choose that draws from the softmax, by the Gumbel-max trick."""
+
+    def choose(logits: Float[Tensor, "b r n"]) -> Int[Tensor, "b r"]:
+        noise = torch.empty_like(logits).exponential_(generator=generator)
+        return (logits - noise.log()).argmax(dim=-1)
+
+    return choose
+
+
+@torch.no_grad()
+def roll_out(
+    actor: Actor,
+    memory: Memory,
+    rows: Conditioning,
+    starts: Int[Tensor, "b r"],
+    choose: Choose,
+) -> Int[Tensor, "b r n"]:
+    """A tour for each row. Actors that choose their first city disregard the starts."""
+    decoder = actor.decoder
+    n = memory.keys.shape[1]
+    visited = torch.zeros(*starts.shape, n, dtype=torch.bool, device=starts.device)
+    if decoder.chooses_first:
+        nowhere = torch.full_like(starts, n)
+        starts = choose(decoder.logits(memory, rows, Moment(nowhere, nowhere, visited)))
+    tour = [starts]
+    visited.scatter_(-1, starts[..., None], True)
+    while len(tour) < n:
+        moment = Moment(tour[-1], starts, visited)
+        tour.append(choose(decoder.logits(memory, rows, moment)))
+        visited.scatter_(-1, tour[-1][..., None], True)
+    return torch.stack(tour, dim=-1)
+
+
+def log_likelihoods(
+    actor: Actor, memory: Memory, rows: Conditioning, tours: Int[Tensor, "b r n"]
+) -> Float[Tensor, "b r"]:
+    """The log-likelihood of each tour: the sum over the cities that the actor chose."""
+    b, r, _ = tours.shape
+    moments, targets = _moments(tours, actor.decoder.chooses_first)
+    logits = actor.decoder.logits(memory, repeated(rows, targets.shape[-1]), moments)
+    chosen = logits.float().log_softmax(dim=-1).gather(-1, targets.reshape(b, -1, 1))
+    return chosen.view(b, r, -1).sum(dim=-1)
+
+
+def repeated(rows: Conditioning, times: int) -> Conditioning:
+    """Each row several times, one copy after the other."""
+    return type(rows)(*(part.repeat_interleave(times, dim=0) for part in rows))
+
+
+def _moments(
+    tours: Int[Tensor, "b r n"], chooses_first: bool
+) -> tuple[Moment, Int[Tensor, "b r t"]]:
+    """All moments of the tours as rows, b by r t, and the cities that follow them."""
+    n = tours.shape[-1]
+    position = tours.argsort(dim=-1)  # of each city in its tour
+    now = torch.arange(n, device=tours.device)
+    visited = position[:, :, None, :] < now[:, None]  # (b, r, t, n)
+    previous = tours.roll(1, dims=-1)
+    first = tours[..., :1].expand_as(tours).clone()
+    previous[..., 0] = n
+    first[..., 0] = n
+    begin = 0 if chooses_first else 1
+    moment = Moment(
+        previous[..., begin:].flatten(1),
+        first[..., begin:].flatten(1),
+        visited[:, :, begin:].flatten(1, 2),
+    )
+    return moment, tours[..., begin:]

@@ -1,0 +1,188 @@
+"""Training: Algorithm 1 of Mehta, Taghipour and Saeedi (2022), arXiv:2203.01298.
+
+`python -m models.train --out runs/one` begins a run or, where one lies there, goes on with it.
+Beside the checkpoint it writes its configuration, a log (CSV) and a curve (PNG).
+"""
+
+import argparse
+import math
+import time
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import fields
+from pathlib import Path
+
+import torch
+from torch import Tensor
+
+from models.checkpoint import (
+    Run,
+    averaged_actor,
+    load_weights,
+    new_run,
+    resume,
+    save,
+    save_weights,
+    start_from,
+)
+from models.config import NetworkConfig, TrainingConfig
+from models.lagrangian import ascended, lagrangian, violation, weighted_sum
+from models.networks import Memory
+from models.record import Record, Step
+from models.rollout import log_likelihoods, repeated, roll_out, sampling
+from models.sampling import (
+    city_count,
+    distinct_starts,
+    fan_of_preferences,
+    spread_preferences,
+    uniform_cities,
+)
+from models.validation import ValidationSet, mean_hypervolume, tour_lengths, validation_sets
+
+
+def train(run: Run, steps: int, validation: list[ValidationSet], out: Path) -> None:
+    """Takes the run up to the given step, writing to the folder out as it goes."""
+    with Record(out, run, steps) as record:
+        while run.step < steps:
+            began = time.perf_counter()
+            record.stepped(train_step(run))
+            run.seconds += time.perf_counter() - began
+            if run.step % run.config.validate_every == 0 or run.step == steps:
+                actor = averaged_actor(run).eval()
+                record.validated({v.cities: mean_hypervolume(actor, v) for v in validation})
+                save(run, out / "run.pt")
+                save_weights(run, out / "weights.pt")
+
+
+def train_step(run: Run) -> Step:
+    """One iteration of Algorithm 1, for all instances and preferences at once."""
+    config = run.config
+    run.actor.train()
+    cities = _sample_instances(run)
+    preferences = _preferences(run)
+    starts = distinct_starts(
+        config.instances, cities.shape[1], config.starts, run.instance_generator, run.device
+    ).repeat(1, config.preferences)
+
+    with _precision(run.device):
+        memory = run.actor.remember(cities)
+        rows = repeated(run.actor.decoder.condition(preferences), config.starts)
+        choose = sampling(run.sampling_generator)
+        tours = roll_out(run.actor, _detached(memory), rows, starts, choose)
+        likelihoods = log_likelihoods(run.actor, memory, rows, tours)
+
+    points = tour_lengths(cities, tours)
+    each = preferences.repeat_interleave(config.starts, dim=0)
+    if config.objective == "lagrangian":
+        multipliers = run.multipliers.repeat_interleave(config.starts)
+        objectives = lagrangian(points, each, multipliers)
+    else:
+        objectives = weighted_sum(points, each)
+
+    advantages = objectives - _baseline(run, cities, preferences, objectives)
+    loss = (advantages * likelihoods).mean()
+    _descend(run, run.optimizer, run.actor, loss)
+    run.averaged.update_parameters(run.actor)
+
+    violations = violation(points, each)
+    run.multipliers = ascended(
+        run.multipliers,
+        violations.unflatten(1, (config.preferences, config.starts)).transpose(1, 2).flatten(0, 1),
+        config.ascent_rate,
+        (config.least_multiplier, config.most_multiplier),
+    )
+    run.step += 1
+    return Step(
+        loss=loss.item(),
+        objective=objectives.mean().item(),
+        violation=violations.mean().item(),
+        multiplier=run.multipliers.mean().item(),
+    )
+
+
+def _sample_instances(run: Run) -> Tensor:
+    config, generator = run.config, run.instance_generator
+    n = city_count(config.least_cities, config.most_cities, generator)
+    return uniform_cities(config.instances, n, generator, run.device)
+
+
+def _preferences(run: Run) -> Tensor:
+    """The paper's fixed fan where each preference has a multiplier; else drawn anew."""
+    if run.config.objective == "lagrangian":
+        return fan_of_preferences(run.config.preferences, run.device)
+    return spread_preferences(run.config.preferences, run.instance_generator, run.device)
+
+
+def _baseline(run: Run, cities: Tensor, preferences: Tensor, objectives: Tensor) -> Tensor:
+    """What to expect of each tour: the critic's word, or the mean over the starts."""
+    if run.config.baseline == "shared":
+        by_start = objectives.unflatten(1, (run.config.preferences, run.config.starts))
+        return by_start.mean(dim=-1, keepdim=True).expand_as(by_start).flatten(1)
+    predicted: Tensor = run.critic(cities, preferences)
+    _descend(run, run.critic_optimizer, run.critic, ((predicted - objectives) ** 2).mean())
+    return predicted.detach()
+
+
+def _descend(
+    run: Run, optimizer: torch.optim.Optimizer, network: torch.nn.Module, loss: Tensor
+) -> None:
+    for group in optimizer.param_groups:
+        group["lr"] = _learning_rate(run)
+    optimizer.zero_grad()
+    loss.backward()
+    torch.nn.utils.clip_grad_norm_(network.parameters(), run.config.clip_gradient)
+    optimizer.step()
+
+
+def _learning_rate(run: Run) -> float:
+    """Up in a line over the warm-up, then down along half a cosine to the last step."""
+    config = run.config
+    if run.step < config.warmup:
+        return config.learning_rate * (run.step + 1) / config.warmup
+    done = (run.step - config.warmup) / max(1, config.steps - config.warmup)
+    return config.learning_rate * (1 + math.cos(math.pi * min(1.0, done))) / 2
+
+
+def _precision(device: torch.device) -> AbstractContextManager[object]:
+    return torch.autocast("cuda", torch.bfloat16) if device.type == "cuda" else nullcontext()
+
+
+def _detached(memory: Memory) -> Memory:
+    return type(memory)(*(table.detach() for table in memory))
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """The command line."""
+    options = _parser().parse_args(arguments)
+    device = torch.device(options.device)
+    saved = options.out / "run.pt"
+    if saved.exists():
+        run = resume(saved, device)
+    else:
+        run = new_run(_configuration(options), device)
+        if options.initial:
+            start_from(run, load_weights(options.initial).actor)
+    train(run, run.config.steps, validation_sets({40: 16, 200: 3}, device), options.out)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser("python -m models.train", description=__doc__)
+    parser.add_argument("--out", type=Path, required=True, help="folder of the run")
+    parser.add_argument("--device", default="cpu", help="cpu or cuda (bfloat16 there)")
+    parser.add_argument("--initial", type=Path, help="checkpoint whose weights a new run takes")
+    for each in (*fields(NetworkConfig), *fields(TrainingConfig)):
+        if each.name != "network":
+            option = "--" + each.name.replace("_", "-")
+            meaning = f"{each.metadata['meaning']} (default {each.default})"
+            parser.add_argument(option, type=type(each.default), default=each.default, help=meaning)
+    return parser
+
+
+def _configuration(options: argparse.Namespace) -> TrainingConfig:
+    given = vars(options)
+    network = NetworkConfig(**{f.name: given[f.name] for f in fields(NetworkConfig)})
+    others = [f.name for f in fields(TrainingConfig) if f.name != "network"]
+    return TrainingConfig(network=network, **{name: given[name] for name in others})
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Paretour: Pareto fronts of tours under two objectives."""

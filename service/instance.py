@@ -1,0 +1,124 @@
+"""What is planned: cities under two objectives, checked where it is made."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class InvalidInstance(ValueError):
+    """What was given is not an instance; the message names the thing, the demand and what came."""
+
+
+@dataclass(frozen=True, eq=False)
+class Instance:
+    """Cities and what it costs, under each of two objectives, to go from one to another.
+
+    Either from coordinates, shape (n, 4), plane 1 in columns 0-1 and plane 2 in columns 2-3,
+    where cost m is the Euclidean distance in plane m; or from matrices, shape (2, n, n), where
+    cost m of going from i to j is matrices[m, i, j] and the diagonal is disregarded. Exactly
+    one of the two is given. Any unit will do, and the two objectives need not share one.
+
+    Raises:
+        InvalidInstance: wrong shape, no city, not finite, a negative cost, or costs so large
+            that the length of a tour could overflow.
+    """
+
+    coordinates: Array | None = None
+    matrices: Array | None = None
+
+    def __post_init__(self) -> None:
+        if (self.coordinates is None) == (self.matrices is None):
+            raise InvalidInstance("an instance needs either coordinates or matrices, and not both")
+        if self.coordinates is not None:
+            object.__setattr__(self, "coordinates", _checked_coordinates(self.coordinates))
+        else:
+            object.__setattr__(self, "matrices", _checked_matrices(self.matrices))
+        with np.errstate(over="ignore"):
+            longest = 2 * self.n * self._extents
+        if not np.isfinite(longest).all():
+            raise InvalidInstance(
+                f"costs must leave a tour's length finite, got costs up to {self._extents.max():g}"
+            )
+
+    @property
+    def n(self) -> int:
+        """The number of cities."""
+        if self.coordinates is not None:
+            return len(self.coordinates)
+        assert self.matrices is not None
+        return self.matrices.shape[1]
+
+    @property
+    def scale(self) -> Array:
+        """The unit of each objective, shape (2,), in which network, search and angles work.
+
+        The longer side of the plane's bounding box, or the largest entry of the matrix; 1 where
+        that is 0.
+        """
+        return np.where(self._extents > 0, self._extents, 1.0)
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether every cost is the same in both directions."""
+        return self.matrices is None or np.array_equal(
+            self.matrices, self.matrices.transpose(0, 2, 1)
+        )
+
+    @property
+    def scaled_coordinates(self) -> Array:
+        """Coordinates, shape (n, 4), with each plane moved and scaled into the unit square.
+
+        Raises:
+            InvalidInstance: the instance was made from matrices.
+        """
+        if self.coordinates is None:
+            raise InvalidInstance("an instance made from matrices has no coordinates")
+        return (self.coordinates - self.coordinates.min(axis=0)) / self.scale.repeat(2)
+
+    @cached_property
+    def _extents(self) -> Array:
+        if self.coordinates is not None:
+            with np.errstate(over="ignore"):
+                return np.ptp(self.coordinates, axis=0).reshape(2, 2).max(axis=1)
+        assert self.matrices is not None
+        return self.matrices.max(axis=(1, 2))
+
+
+def tour_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
+    """Both lengths, shape (k, 2), of closed tours, shape (k, n), in the instance's own units."""
+    following = np.roll(tours, -1, axis=1)
+    if instance.coordinates is not None:
+        steps = instance.coordinates[following] - instance.coordinates[tours]
+        return np.hypot(steps[..., 0::2], steps[..., 1::2]).sum(axis=1)
+    assert instance.matrices is not None
+    return instance.matrices[:, tours, following].sum(axis=2).T
+
+
+def _checked_coordinates(given: Array) -> Array:
+    coordinates = np.array(given, dtype=np.float64)
+    if coordinates.ndim != 2 or coordinates.shape[1] != 4 or not len(coordinates):
+        raise InvalidInstance(
+            f"coordinates must have shape (n, 4) with n at least 1, got {coordinates.shape}"
+        )
+    if not np.isfinite(coordinates).all():
+        raise InvalidInstance("coordinates must be finite")
+    coordinates.setflags(write=False)
+    return coordinates
+
+
+def _checked_matrices(given: Array | None) -> Array:
+    matrices = np.array(given, dtype=np.float64)
+    shape = matrices.shape
+    if matrices.ndim != 3 or shape[0] != 2 or shape[1] != shape[2] or not shape[1]:
+        raise InvalidInstance(f"matrices must have shape (2, n, n) with n at least 1, got {shape}")
+    matrices[:, np.arange(shape[1]), np.arange(shape[1])] = 0.0
+    if not np.isfinite(matrices).all():
+        raise InvalidInstance("costs must be finite")
+    if (matrices < 0).any():
+        raise InvalidInstance(f"costs must not be negative, got {matrices.min():g}")
+    matrices.setflags(write=False)
+    return matrices
