@@ -10,7 +10,6 @@ from typing import NamedTuple
 import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
-from torch.nn.functional import scaled_dot_product_attention
 
 from models.encoders import feedforward
 from models.lagrangian import weights
@@ -25,14 +24,18 @@ class Moment(NamedTuple):
 
 
 class AttentionMemory(NamedTuple):
-    """PA-AT's tables of the instances; the ends have one row more, for before the first choice."""
+    """PA-AT's tables of the instances; the ends have one row more, for before the first choice.
 
+    Here and below keys, values and pointers are scaled and laid out so that a step only
+    multiplies; e is d / h.
+    """
+
+    keys: Float[Tensor, "b h e n"]
+    values: Float[Tensor, "b h n e"]
+    pointers: Float[Tensor, "b d n"]
     context: Float[Tensor, "b 1 d"]
     current: Float[Tensor, "b n+1 d"]
     first: Float[Tensor, "b n+1 d"]
-    keys: Float[Tensor, "b n d"]
-    values: Float[Tensor, "b n d"]
-    pointers: Float[Tensor, "b n d"]
 
 
 class AttentionConditioning(NamedTuple):
@@ -45,15 +48,17 @@ class AttentionConditioning(NamedTuple):
 
 
 class OneMemory(NamedTuple):
-    """PA-One's tables of the instances; distances in units of 1 / sqrt(n), also as log(1 + .)."""
+    """PA-One's tables of the instances. Distances are 1 + sqrt(n) times those in each plane."""
 
+    keys: Float[Tensor, "b h e n"]
+    values: Float[Tensor, "b h n e"]
+    pointers: Float[Tensor, "b d n"]
     current: Float[Tensor, "b n d"]
     first: Float[Tensor, "b n d"]
-    keys: Float[Tensor, "b n d"]
-    values: Float[Tensor, "b n d"]
-    pointers: Float[Tensor, "b n d"]
-    distances: Float[Tensor, "b 2 n n"]
-    log_distances: Float[Tensor, "b 2 n n"]
+    distances: Float[Tensor, "b n n"]
+    other_distances: Float[Tensor, "b n n"]
+    log_distances: Float[Tensor, "b n n"]
+    other_log_distances: Float[Tensor, "b n n"]
 
 
 class OneConditioning(NamedTuple):
@@ -95,18 +100,17 @@ class AttentionDecoder(nn.Module):
             )
         )
         context = self.project_context(features.mean(dim=1, keepdim=True))
-        return AttentionMemory(
-            context, current, first, *self.project_city(features).chunk(3, dim=-1)
-        )
+        views = _views(self.project_city(features), self.heads)
+        return AttentionMemory(*views, context, current, first)
 
     def condition(self, preferences: Float[Tensor, "k 2"]) -> AttentionConditioning:
         """The rows of the preferences."""
         encoding = self.encode_preference(preferences)
         current, first = self.project_ends(encoding).chunk(2, dim=-1)
         _, values, pointers = self.project_city(encoding).chunk(3, dim=-1)
-        return AttentionConditioning(
-            self.project_context(encoding), current + first, values, pointers
-        )
+        pointers = pointers / pointers.shape[-1] ** 0.5
+        context = self.project_context(encoding)
+        return AttentionConditioning(context, current + first, values, pointers)
 
     def logits(
         self, memory: AttentionMemory, rows: AttentionConditioning, moment: Moment
@@ -115,11 +119,12 @@ class AttentionDecoder(nn.Module):
         begun = (moment.current < moment.visited.shape[-1])[..., None]
         ends = _look_up(memory.current, moment.current) + _look_up(memory.first, moment.first)
         query = memory.context + rows.context + ends + begun * rows.ends
-        glimpse = _glimpse(query, memory.keys, memory.values, ~moment.visited, self.heads)
+        mask = torch.zeros_like(moment.visited, dtype=query.dtype)
+        mask = mask.masked_fill(moment.visited, -torch.inf)
+        glimpse = _glimpse(query, memory.keys, memory.values, mask)
         glimpse = self.merge(glimpse + rows.values)
-        scores = glimpse @ memory.pointers.mT + (glimpse * rows.pointers).sum(-1, keepdim=True)
-        bounded = self.clip * torch.tanh(scores / query.shape[-1] ** 0.5)
-        return bounded.masked_fill(moment.visited, -torch.inf)
+        shift = (glimpse * rows.pointers).sum(-1, keepdim=True)
+        return self.clip * torch.tanh(glimpse @ memory.pointers + shift) + mask
 
 
 class OneDecoder(nn.Module):
@@ -136,13 +141,13 @@ class OneDecoder(nn.Module):
     def __init__(self, width: int, heads: int, clip: float) -> None:
         super().__init__()
         self.heads, self.clip = heads, clip
-        self.encode_preference = feedforward(2, 2 * width + 3, hidden=width)
+        last = nn.Linear(width, 2 * width + 3)
+        self.encode_preference = nn.Sequential(nn.Linear(2, width), nn.ReLU(), last)
         self.project_ends = nn.Linear(width, 2 * width, bias=False)
         self.project_city = nn.Linear(width, 3 * width, bias=False)
         self.merge = nn.Linear(width, width, bias=False)
         self.norm = nn.LayerNorm(width)
         self.think = feedforward(width, width, hidden=width)
-        last = self.encode_preference[-1]
         nn.init.normal_(last.weight, std=0.02)
         with torch.no_grad():
             self.project_city.weight[-width:] *= 0.1  # so that pointers begin near zero
@@ -156,10 +161,10 @@ class OneDecoder(nn.Module):
     ) -> OneMemory:
         """The tables of the instances."""
         return OneMemory(
+            *_views(self.project_city(features), self.heads),
             *self.project_ends(features).chunk(2, dim=-1),
-            *self.project_city(features).chunk(3, dim=-1),
-            distances,
-            log_distances,
+            *(1 + distances).unbind(1),
+            *log_distances.unbind(1),
         )
 
     def condition(self, preferences: Float[Tensor, "k 2"]) -> OneConditioning:
@@ -175,24 +180,25 @@ class OneDecoder(nn.Module):
         """Unnormalised log-probabilities of the next city; minus infinity where visited."""
         ends = _look_up(memory.current, moment.current) + _look_up(memory.first, moment.first)
         query = rows.scale * ends + rows.shift
-        pull = _pull(memory, rows, moment.current).masked_fill(moment.visited, -torch.inf)
-        glimpse = query + self.merge(self._glimpses(query, memory, pull.detach(), moment.visited))
+        mask = torch.zeros_like(moment.visited, dtype=query.dtype)
+        mask = mask.masked_fill(moment.visited, -torch.inf)
+        pull = _pull(memory, rows, moment.current) + mask
+        glimpse = query + self.merge(self._glimpses(query, memory, pull.detach(), mask))
         glimpse = glimpse + self.think(self.norm(glimpse))
-        scores = glimpse @ memory.pointers.mT
-        return self.clip * torch.tanh(scores / query.shape[-1] ** 0.5) + pull
+        return self.clip * torch.tanh(glimpse @ memory.pointers) + pull
 
     def _glimpses(
-        self, query: Tensor, memory: OneMemory, pull: Tensor, visited: Tensor
+        self, query: Tensor, memory: OneMemory, pull: Tensor, mask: Tensor
     ) -> Float[Tensor, "b r d"]:
         """Half of the heads through the pull, half without it; no gradient through the pull."""
         halves = zip(
             query.chunk(2, dim=-1),
-            memory.keys.chunk(2, dim=-1),
-            memory.values.chunk(2, dim=-1),
-            (pull, ~visited),
+            memory.keys.chunk(2, dim=1),
+            memory.values.chunk(2, dim=1),
+            (pull, mask),
             strict=True,
         )
-        return torch.cat([_glimpse(*half, self.heads // 2) for half in halves], dim=-1)
+        return torch.cat([_glimpse(*half) for half in halves], dim=-1)
 
 
 # Of log(1 + distance) under the weights, in plane 1, in plane 2.
@@ -203,28 +209,48 @@ def _pull(
     memory: OneMemory, rows: OneConditioning, current: Int[Tensor, "b r"]
 ) -> Float[Tensor, "b r n"]:
     """How much each city draws a row that stands at its current city: minus a cost."""
-    first, second = (_look_up(memory.distances[:, m], current) for m in range(2))  # (b, r, n)
-    log_first, log_second = (_look_up(memory.log_distances[:, m], current) for m in range(2))
-    weighted = torch.log1p(rows.weights[:, :1] * first + rows.weights[:, 1:] * second)
-    slope, slope_first, slope_second = rows.slopes.split(1, dim=-1)  # (r, 1)
-    return -(slope * weighted + slope_first * log_first + slope_second * log_second)
+    first, second, log_first, log_second = (
+        _look_up(table, current)
+        for table in (
+            memory.distances,
+            memory.other_distances,
+            memory.log_distances,
+            memory.other_log_distances,
+        )
+    )
+    # The weights add to 1, and so does what was added to the distances.
+    weighted = torch.log(rows.weights[:, :1] * first + rows.weights[:, 1:] * second)
+    slope, slope_first, slope_second = (-rows.slopes).split(1, dim=-1)  # (r, 1)
+    return slope * weighted + slope_first * log_first + slope_second * log_second
+
+
+def _views(
+    projected: Float[Tensor, "b n 3d"], heads: int
+) -> tuple[Float[Tensor, "b h e n"], Float[Tensor, "b h n e"], Float[Tensor, "b d n"]]:
+    """Keys, values and pointers from their projections."""
+    keys, values, pointers = projected.chunk(3, dim=-1)
+    width = keys.shape[-1]
+    return (
+        keys.unflatten(-1, (heads, -1)).permute(0, 2, 3, 1) * (heads / width) ** 0.5,
+        values.unflatten(-1, (heads, -1)).transpose(1, 2),
+        pointers.mT / width**0.5,
+    )
 
 
 def _look_up(table: Float[Tensor, "b m d"], index: Int[Tensor, "b r"]) -> Float[Tensor, "b r d"]:
     """For each instance, the rows of its table that the index names."""
-    return table.gather(1, index[..., None].expand(-1, -1, table.shape[-1]))
+    b, m, d = table.shape
+    flat = index + m * torch.arange(b, device=index.device)[:, None]
+    return table.reshape(-1, d).index_select(0, flat.flatten()).view(b, -1, d)
 
 
 def _glimpse(
-    query: Float[Tensor, "b r e"],
-    keys: Float[Tensor, "b n e"],
-    values: Float[Tensor, "b n e"],
-    mask: Tensor,
-    heads: int,
-) -> Float[Tensor, "b r e"]:
-    """Multi-head attention of rows to cities; the mask is added, or true where they may look."""
-    query, keys, values = (
-        part.unflatten(-1, (heads, -1)).transpose(1, 2) for part in (query, keys, values)
-    )
-    seen = scaled_dot_product_attention(query, keys, values, attn_mask=mask[:, None])
+    query: Float[Tensor, "b r d"],
+    keys: Float[Tensor, "b h e n"],
+    values: Float[Tensor, "b h n e"],
+    mask: Float[Tensor, "b r n"],
+) -> Float[Tensor, "b r d"]:
+    """Multi-head attention of rows to cities; the mask is added to the scores."""
+    heads = query.unflatten(-1, (keys.shape[1], -1)).transpose(1, 2)
+    seen = (heads @ keys + mask[:, None]).softmax(dim=-1) @ values
     return seen.transpose(1, 2).flatten(2)

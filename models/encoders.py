@@ -10,7 +10,6 @@ square, so that neighbourhoods look alike at every n.
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
-from torch.nn.functional import scaled_dot_product_attention
 
 
 def plane_distances(cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b 2 n n"]:
@@ -42,7 +41,8 @@ class SelfAttention(nn.Module):
             part.unflatten(-1, (self.heads, -1)).transpose(1, 2)  # (b, h, n, d / h)
             for part in self.project(features).chunk(3, dim=-1)
         )
-        seen = scaled_dot_product_attention(query, key, value, attn_mask=bias)
+        scores = query @ key.mT / query.shape[-1] ** 0.5
+        seen = (scores if bias is None else scores + bias).softmax(dim=-1) @ value
         merged: Tensor = self.merge(seen.transpose(1, 2).flatten(2))
         return merged
 

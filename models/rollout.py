@@ -46,7 +46,7 @@ def roll_out(
 ) -> Int[Tensor, "b r n"]:
     """A tour for each row. Actors that choose their first city disregard the starts."""
     decoder = actor.decoder
-    n = memory.keys.shape[1]
+    n = memory.keys.shape[-1]
     visited = torch.zeros(*starts.shape, n, dtype=torch.bool, device=starts.device)
     if decoder.chooses_first:
         nowhere = torch.full_like(starts, n)
@@ -64,11 +64,18 @@ def log_likelihoods(
     actor: Actor, memory: Memory, rows: Conditioning, tours: Int[Tensor, "b r n"]
 ) -> Float[Tensor, "b r"]:
     """The log-likelihood of each tour: the sum over the cities that the actor chose."""
+    return log_likelihoods_by_city(actor, memory, rows, tours).sum(dim=-1)
+
+
+def log_likelihoods_by_city(
+    actor: Actor, memory: Memory, rows: Conditioning, tours: Int[Tensor, "b r n"]
+) -> Float[Tensor, "b r t"]:
+    """The log-likelihood of each city that the actor chose, given those before it in its tour."""
     b, r, _ = tours.shape
     moments, targets = _moments(tours, actor.decoder.chooses_first)
     logits = actor.decoder.logits(memory, repeated(rows, targets.shape[-1]), moments)
     chosen = logits.float().log_softmax(dim=-1).gather(-1, targets.reshape(b, -1, 1))
-    return chosen.view(b, r, -1).sum(dim=-1)
+    return chosen.view(b, r, -1)
 
 
 def repeated(rows: Conditioning, times: int) -> Conditioning:

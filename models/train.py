@@ -9,6 +9,7 @@ import math
 import time
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
 
 import torch
@@ -36,7 +37,13 @@ from models.sampling import (
     spread_preferences,
     uniform_cities,
 )
-from models.validation import ValidationSet, mean_hypervolume, tour_lengths, validation_sets
+from models.validation import (
+    ValidationSet,
+    greedy_tours,
+    mean_hypervolume,
+    tour_lengths,
+    validation_sets,
+)
 
 
 def train(run: Run, steps: int, validation: list[ValidationSet], out: Path) -> None:
@@ -47,8 +54,8 @@ def train(run: Run, steps: int, validation: list[ValidationSet], out: Path) -> N
             record.stepped(train_step(run))
             run.seconds += time.perf_counter() - began
             if run.step % run.config.validate_every == 0 or run.step == steps:
-                actor = averaged_actor(run).eval()
-                record.validated({v.cities: mean_hypervolume(actor, v) for v in validation})
+                build = partial(greedy_tours, averaged_actor(run).eval())
+                record.validated({v.cities: mean_hypervolume(build, v) for v in validation})
                 save(run, out / "run.pt")
                 save_weights(run, out / "weights.pt")
 

@@ -1,6 +1,7 @@
 """How good an actor is: the hypervolume of its greedy front on fixed instances."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import torch
 from jaxtyping import Float, Int
@@ -50,12 +51,21 @@ def greedy_tours(
     return roll_out(actor, actor.remember(cities), rows, starts, greedily)
 
 
-def mean_hypervolume(actor: Actor, validation: ValidationSet) -> float:
-    """Mean over the instances, reference point (n, n), of greedy fronts of 100 preferences."""
+class Build(Protocol):
+    """Tours (b, k, n) of instances (b, n, 4) and preferences (k, 2), whoever builds them."""
+
+    def __call__(
+        self, cities: Float[Tensor, "b n 4"], preferences: Float[Tensor, "k 2"]
+    ) -> Int[Tensor, "b k n"]:
+        """The tours."""
+
+
+def mean_hypervolume(build: Build, validation: ValidationSet) -> float:
+    """Mean over the instances, reference point (n, n), of fronts of 100 preferences."""
     preferences = fan_of_preferences(_PREFERENCES, validation.instances.device)
     shares = []
     for cities in validation.instances.split(1):
-        points = tour_lengths(cities, greedy_tours(actor, cities, preferences))[0].cpu()
+        points = tour_lengths(cities, build(cities, preferences))[0].cpu()
         reference_point = torch.full((2,), float(validation.cities), dtype=torch.float64)
         shares.append(hypervolume(points.double().numpy(), reference_point.numpy()))
     return sum(shares) / len(shares)

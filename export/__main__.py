@@ -1,0 +1,85 @@
+"""`python -m export CHECKPOINT`: a released checkpoint to one ONNX file.
+
+The file is kept only if its greedy tours are those of the actor in torch.
+"""
+
+import argparse
+import json
+import subprocess
+from pathlib import Path
+
+import torch
+from onnx import ModelProto, helper
+
+from export.check import compare, onnx_tours, session
+from export.graph import to_onnx
+from models.checkpoint import Trained, load_weights
+from models.config import as_plain
+from models.validation import mean_hypervolume, validation_sets
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser("python -m export", description=__doc__)
+    parser.add_argument("checkpoint", type=Path, help="weights.pt of a training run")
+    parser.add_argument("--out", type=Path, help="default: service/actors/NAME.onnx")
+    options = parser.parse_args(arguments)
+    trained = load_weights(options.checkpoint)
+    model = to_onnx(trained.actor)
+    compare(trained.actor, model)
+    describe(model, trained)
+    out = options.out or Path("service/actors") / f"{trained.config.network.name}.onnx"
+    out.parent.mkdir(parents=True, exist_ok=True)
+    out.write_bytes(model.SerializeToString())
+    print(f"{out}: tours equal torch's; hypervolume {_property(model, 'figures')}")
+
+
+def describe(model: ModelProto, trained: Trained) -> None:
+    """Writes into the file what it is, and the hypervolume that it reaches when run."""
+    config = trained.config
+    helper.set_model_props(
+        model,
+        {
+            "name": config.network.name,
+            "inputs": "coordinates",
+            "config": json.dumps(as_plain(config)),
+            "commit": _commit(),
+            "steps": str(trained.step),
+            "seconds": f"{trained.seconds:.0f}",
+            "sizes": json.dumps([config.least_cities, config.most_cities]),
+            "angles": json.dumps([0, 90]),
+            "figures": json.dumps(_hypervolumes(model)),
+        },
+    )
+
+
+def _hypervolumes(model: ModelProto) -> dict[str, float]:
+    """Mean hypervolume on the validation instances, reference point (n, n), by cities."""
+    running = session(model)
+    return {
+        str(validation.cities): round(
+            mean_hypervolume(
+                lambda cities, preferences: torch.from_numpy(
+                    onnx_tours(running, cities[0], preferences)
+                )[None],
+                validation,
+            ),
+            5,
+        )
+        for validation in validation_sets({40: 16, 200: 3}, torch.device("cpu"))
+    }
+
+
+def _commit() -> str:
+    asked = subprocess.run(
+        ["git", "describe", "--always", "--dirty"], capture_output=True, text=True, check=True
+    )
+    return asked.stdout.strip()
+
+
+def _property(model: ModelProto, key: str) -> str:
+    return next(each.value for each in model.metadata_props if each.key == key)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,198 @@
+"""One ONNX graph from an actor: its encoder, and its decoding step as the body of a Loop.
+
+The two are exported apart and joined by hand. The body reads the encoder's tables from the scope
+around it, so that nothing but the state of the tours goes round the loop.
+"""
+
+import logging
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+import onnx
+import torch
+from onnx import GraphProto, ModelProto, NodeProto, TensorProto, helper
+from torch import Tensor, nn
+from torch.export import Dim
+
+from models.decoder import Moment
+from models.networks import Actor, Conditioning, Memory
+
+# Sizes to trace at: no other axis has them, so each axis shows whether it is n or k.
+_N, _K = 11, 7
+_STATE = ("current", "first", "visited")
+
+
+class _Encode(nn.Module):
+    """From cities and preferences to all that decoding needs and the state before its first step.
+
+    The state is the current city, the first city and the visited cities of each tour.
+    """
+
+    def __init__(self, actor: Actor) -> None:
+        super().__init__()
+        self.actor = actor
+
+    def forward(self, cities: Tensor, preferences: Tensor) -> tuple[Tensor, ...]:
+        memory = self.actor.remember(cities[None])
+        rows = self.actor.decoder.condition(preferences)
+        at = torch.zeros_like(preferences[:, 0], dtype=torch.long)  # (k,)
+        if self.actor.decoder.chooses_first:
+            at = at + cities.shape[0]
+        visited = torch.arange(cities.shape[0]) == at[:, None]
+        return *memory, *rows, at, at.clone(), visited
+
+
+class _Step(nn.Module):
+    """From the state before a step of all tours to the state after it."""
+
+    def __init__(self, actor: Actor, memory: type[Memory], rows: type[Conditioning]) -> None:
+        super().__init__()
+        self.decoder, self.memory, self.rows = actor.decoder, memory, rows
+
+    def forward(
+        self,
+        memory: tuple[Tensor, ...],
+        rows: tuple[Tensor, ...],
+        state: tuple[Tensor, Tensor, Tensor],
+    ) -> tuple[Tensor, Tensor, Tensor]:
+        current, first, visited = state
+        moment = Moment(current[None], first[None], visited[None])
+        chosen = self.decoder.logits(self.memory(*memory), self.rows(*rows), moment)[0].argmax(-1)
+        each = torch.arange(visited.shape[1])
+        if self.decoder.chooses_first:
+            first = torch.where(first == visited.shape[1], chosen, first)
+        return chosen, first.clone(), visited | (each == chosen[:, None])
+
+
+def to_onnx(actor: Actor) -> ModelProto:
+    """The actor as one graph: cities (n, 4) and preferences (k, 2) to greedy tours (k, n)."""
+    cities, preferences = torch.rand(_N, 4), torch.rand(_K, 2)
+    with torch.no_grad():
+        memory, rows = actor.remember(cities[None]), actor.decoder.condition(preferences)
+        state = _Encode(actor)(cities, preferences)[-3:]
+    tables = [f"memory_{i}" for i in range(len(memory))] + [f"rows_{i}" for i in range(len(rows))]
+    encode = _exported(
+        _Encode(actor), (cities, preferences), ["cities", "preferences"], [*tables, *_STATE]
+    )
+    step = _exported(
+        _Step(actor, type(memory), type(rows)),
+        (tuple(memory), tuple(rows), tuple(state)),
+        [*tables, *_STATE],
+        [f"next_{name}" for name in _STATE],
+    )
+    return _joined(encode, step, tables, actor.decoder.chooses_first)
+
+
+def _exported(
+    module: nn.Module, arguments: Any, inputs: Sequence[str], outputs: Sequence[str]
+) -> ModelProto:
+    axes = {_N: Dim("n", min=2), _K: Dim("k", min=1)}
+
+    def dynamic(argument: Any) -> Any:
+        if isinstance(argument, tuple):
+            return tuple(dynamic(each) for each in argument)
+        return {axis: axes[size] for axis, size in enumerate(argument.shape) if size in axes}
+
+    logging.getLogger("torch.onnx").setLevel(logging.ERROR)  # it warns of torchvision's absence
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the exporter's own deprecations and axis names
+        program = torch.onnx.export(
+            module.eval(),
+            arguments,
+            input_names=list(inputs),
+            output_names=list(outputs),
+            dynamic_shapes=dynamic(arguments),
+            dynamo=True,
+            verbose=False,
+        )
+    assert program is not None
+    return program.model_proto
+
+
+def _joined(
+    encode: ModelProto, step: ModelProto, tables: Sequence[str], chooses_first: bool
+) -> ModelProto:
+    body, constants = _loop_body(step.graph, set(tables))
+    trips = [
+        helper.make_node("Shape", ["cities"], ["n_cities"], start=0, end=1),
+        helper.make_node("Sub", ["n_cities", "given_cities"], ["trips"]),
+        helper.make_node("Squeeze", ["trips"], ["trip_count"]),
+    ]
+    loop = helper.make_node(
+        "Loop",
+        ["trip_count", "", *_STATE],
+        [*(f"last_{name}" for name in _STATE), "chosen"],
+        body=body,
+    )
+    given = helper.make_tensor("given_cities", TensorProto.INT64, [1], [0 if chooses_first else 1])
+    graph = helper.make_graph(
+        [*encode.graph.node, *trips, loop, *_ending(chooses_first)],
+        "actor",
+        list(encode.graph.input),
+        [helper.make_tensor_value_info("tours", TensorProto.INT64, ["k", "n"])],
+        [*encode.graph.initializer, *constants, given],
+    )
+    model = helper.make_model(graph, opset_imports=encode.opset_import, ir_version=10)
+    onnx.checker.check_model(model, full_check=True)
+    return model
+
+
+def _loop_body(step: GraphProto, shared: set[str]) -> tuple[GraphProto, list[TensorProto]]:
+    """The step as a Loop's body, and its constants, for the scope around it."""
+
+    def renamed(name: str) -> str:
+        return name if name in shared or not name else f"step_{name}"
+
+    nodes = []
+    for node in step.node:
+        copy = NodeProto()
+        copy.CopyFrom(node)
+        copy.input[:] = map(renamed, node.input)
+        copy.output[:] = map(renamed, node.output)
+        nodes.append(copy)
+    constants = []
+    for constant in step.initializer:
+        moved = TensorProto()
+        moved.CopyFrom(constant)
+        moved.name = renamed(constant.name)
+        constants.append(moved)
+    kinds = {"current": TensorProto.INT64, "first": TensorProto.INT64, "visited": TensorProto.BOOL}
+    shapes = {"current": ["k"], "first": ["k"], "visited": ["k", "n"]}
+
+    def described(prefix: str) -> list[onnx.ValueInfoProto]:
+        return [
+            helper.make_tensor_value_info(f"step_{prefix}{x}", kinds[x], shapes[x]) for x in _STATE
+        ]
+
+    body = helper.make_graph(
+        [
+            *nodes,
+            helper.make_node("Identity", ["condition"], ["go_on"]),
+            helper.make_node("Identity", ["step_next_current"], ["step_chosen"]),
+        ],
+        "step",
+        [
+            helper.make_tensor_value_info("iteration", TensorProto.INT64, []),
+            helper.make_tensor_value_info("condition", TensorProto.BOOL, []),
+            *described(""),
+        ],
+        [
+            helper.make_tensor_value_info("go_on", TensorProto.BOOL, []),
+            *described("next_"),
+            helper.make_tensor_value_info("step_chosen", TensorProto.INT64, ["k"]),
+        ],
+    )
+    return body, constants
+
+
+def _ending(chooses_first: bool) -> list[NodeProto]:
+    """From the chosen cities, a row a step, to tours, a row a preference."""
+    if chooses_first:
+        return [helper.make_node("Transpose", ["chosen"], ["tours"], perm=[1, 0])]
+    return [
+        helper.make_node("Constant", [], ["steps"], value_ints=[0]),
+        helper.make_node("Unsqueeze", ["current", "steps"], ["given"]),
+        helper.make_node("Concat", ["given", "chosen"], ["by_step"], axis=0),
+        helper.make_node("Transpose", ["by_step"], ["tours"], perm=[1, 0]),
+    ]
