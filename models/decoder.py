@@ -225,7 +225,7 @@ def _pull(
 
 
 def _views(
-    projected: Float[Tensor, "b n 3d"], heads: int
+    projected: Float[Tensor, "b n three_d"], heads: int
 ) -> tuple[Float[Tensor, "b h e n"], Float[Tensor, "b h n e"], Float[Tensor, "b d n"]]:
     """Keys, values and pointers from their projections."""
     keys, values, pointers = projected.chunk(3, dim=-1)

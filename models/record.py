@@ -5,7 +5,6 @@ import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Self
 
 import matplotlib.pyplot as plt
 from tqdm import tqdm
@@ -35,7 +34,7 @@ class Record:
         self._bar = tqdm(total=steps, initial=run.step, unit="step", dynamic_ncols=True)
         self._hypervolumes = ""
 
-    def __enter__(self) -> Self:
+    def __enter__(self) -> "Record":
         return self
 
     def __exit__(

@@ -4,7 +4,7 @@ Tours are built city by city without gradients; the log-likelihoods of finished 
 one pass over all their moments at once (teacher forcing), which is where gradients flow.
 """
 
-from typing import Protocol
+from collections.abc import Callable
 
 import torch
 from jaxtyping import Float, Int
@@ -13,12 +13,8 @@ from torch import Generator, Tensor
 from models.decoder import Moment
 from models.networks import Actor, Conditioning, Memory
 
-
-class Choose(Protocol):
-    """How the next city follows from the logits."""
-
-    def __call__(self, logits: Float[Tensor, "b r n"]) -> Int[Tensor, "b r"]:
-        """The chosen city of each row."""
+# How the next cities, (b, r), follow from the logits, (b, r, n).
+Choose = Callable[[Tensor], Tensor]
 
 
 def greedily(logits: Float[Tensor, "b r n"]) -> Int[Tensor, "b r"]:

@@ -45,6 +45,8 @@ from models.validation import (
     validation_sets,
 )
 
+_VALIDATION = {40: 16, 200: 3}  # instances by number of cities
+
 
 def train(run: Run, steps: int, validation: list[ValidationSet], out: Path) -> None:
     """Takes the run up to the given step, writing to the folder out as it goes."""
@@ -168,7 +170,7 @@ def main(arguments: list[str] | None = None) -> None:
         run = new_run(_configuration(options), device)
         if options.initial:
             start_from(run, load_weights(options.initial).actor)
-    train(run, run.config.steps, validation_sets({40: 16, 200: 3}, device), options.out)
+    train(run, run.config.steps, validation_sets(_VALIDATION, device), options.out)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -1,7 +1,7 @@
 """How good an actor is: the hypervolume of its greedy front on fixed instances."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import torch
 from jaxtyping import Float, Int
@@ -51,13 +51,8 @@ def greedy_tours(
     return roll_out(actor, actor.remember(cities), rows, starts, greedily)
 
 
-class Build(Protocol):
-    """Tours (b, k, n) of instances (b, n, 4) and preferences (k, 2), whoever builds them."""
-
-    def __call__(
-        self, cities: Float[Tensor, "b n 4"], preferences: Float[Tensor, "k 2"]
-    ) -> Int[Tensor, "b k n"]:
-        """The tours."""
+# Tours (b, k, n) of instances (b, n, 4) and preferences (k, 2), whoever builds them.
+Build = Callable[[Tensor, Tensor], Tensor]
 
 
 def mean_hypervolume(build: Build, validation: ValidationSet) -> float:

@@ -1,0 +1,18 @@
+"""`python -m tests.benchmarks NAME ...`: runs the benchmark of that name."""
+
+import argparse
+from importlib import import_module
+
+_NAMES = ("actors", "search")
+
+
+def main() -> None:
+    """The command line; what follows the name is the benchmark's own."""
+    parser = argparse.ArgumentParser("python -m tests.benchmarks", description=__doc__)
+    parser.add_argument("name", choices=_NAMES)
+    options, rest = parser.parse_known_args()
+    import_module(f"tests.benchmarks.{options.name}").main(rest)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,101 @@
+"""`python -m tests.benchmarks actors [NAME ...]`: the released actors on the paper's instances.
+
+For each: one inference call with 100 preferences an instance, the network alone and greedy. The
+plain construction heuristics stand beside them, with 100 weights. Prints a table and stores
+`results/actors.json`.
+"""
+
+import argparse
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from service.actor import Actor
+from tqdm import tqdm
+
+from service.front import hypervolume
+from service.instance import Instance, tour_lengths
+from service.preferences import fan, from_angles
+from tests.benchmarks.instances import COUNT, SIZES, paper_instances, reference_points
+from tests.benchmarks.provenance import provenance, store
+from tests.benchmarks.rivals.construction import greedy_edge, nearest_neighbour, spread_weights
+
+ACTORS = Path("service/actors")
+PREFERENCES = 100
+
+Build = Callable[[Instance], NDArray[np.integer]]
+
+
+def main(arguments: list[str]) -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser("python -m tests.benchmarks actors", description=__doc__)
+    parser.add_argument("names", nargs="*", help="default: every released actor")
+    parser.add_argument("--threads", type=int, default=2, help="of the inference session")
+    parser.add_argument("--count", type=int, default=COUNT, help="instances of each size")
+    options = parser.parse_args(arguments)
+    names = options.names or sorted(path.stem for path in ACTORS.glob("*.onnx"))
+    rows = {name: _actor_row(name, options.threads, options.count) for name in names}
+    rows |= {
+        "nearest neighbour": _heuristic_row(nearest_neighbour, options.count),
+        "greedy edge": _heuristic_row(greedy_edge, options.count),
+    }
+    store("actors", {**provenance(options.threads), "preferences": PREFERENCES, "rows": rows})
+    _print_table(rows)
+
+
+def measure(build: Build, n: int, count: int) -> dict[str, Any]:
+    """Hypervolume in per cent by reference point, and seconds an instance: mean and deviation."""
+    seconds: list[float] = []
+    shares: dict[str, list[float]] = {name: [] for name in reference_points(n)}
+    instances = [Instance(coordinates=cities) for cities in paper_instances(n, count)]
+    build(instances[0])  # compiles, and fills caches
+    for instance in tqdm(instances, desc=f"{n} cities", leave=False):
+        began = time.perf_counter()
+        tours = build(instance)
+        seconds.append(time.perf_counter() - began)
+        if not (np.sort(tours, axis=1) == np.arange(n)).all():
+            raise RuntimeError("not every tour visits every city once")
+        points = tour_lengths(instance, tours)
+        for name, reference_point in reference_points(n).items():
+            shares[name].append(100 * hypervolume(points, reference_point))
+    return {
+        "instances": count,
+        "hypervolume": {name: _summary(values) for name, values in shares.items()},
+        "seconds": _summary(seconds),
+    }
+
+
+def _actor_row(name: str, threads: int, count: int) -> dict[str, Any]:
+    actor = Actor(ACTORS / f"{name}.onnx", threads)
+    preferences = from_angles(fan(PREFERENCES))
+    row: dict[str, Any] = {
+        str(n): measure(lambda instance: actor.tours(instance, preferences), n, count)
+        for n in SIZES
+    }
+    return {"digest": actor.digest, **row}
+
+
+def _heuristic_row(construct: Callable[..., NDArray[np.int64]], count: int) -> dict[str, Any]:
+    weights = spread_weights(PREFERENCES)
+    return {str(n): measure(lambda instance: construct(instance, weights), n, count) for n in SIZES}
+
+
+def _summary(values: list[float]) -> dict[str, float]:
+    return {"mean": round(float(np.mean(values)), 4), "deviation": round(float(np.std(values)), 4)}
+
+
+def _print_table(rows: dict[str, dict[str, Any]]) -> None:
+    columns = [(n, name) for n in SIZES for name in reference_points(n)]
+    print("| | " + " | ".join(f"{n} cities, {name}" for n, name in columns) + " |")
+    print("|---" * (len(columns) + 1) + "|")
+    for row_name, row in rows.items():
+        cells = []
+        for n, name in columns:
+            share, seconds = row[str(n)]["hypervolume"][name], row[str(n)]["seconds"]
+            cells.append(
+                f"{share['mean']:.2f} ± {share['deviation']:.2f} % in {seconds['mean']:.3f} s"
+            )
+        print(f"| {row_name} | " + " | ".join(cells) + " |")

@@ -1,0 +1,45 @@
+"""From checkpoint to ONNX file."""
+
+import pytest
+from onnx import ModelProto, numpy_helper
+
+from export.check import Mismatch, compare
+from export.graph import to_onnx
+from models.config import NetworkConfig
+from models.networks import Actor, build
+
+
+def small(name: str) -> Actor:
+    config = NetworkConfig(name=name, width=16, heads=2, layers=1, feedforward=32)
+    return build(config, seed=2).eval()
+
+
+@pytest.fixture(scope="module", params=["pa-at", "pa-one"])
+def exported(request: pytest.FixtureRequest) -> tuple[Actor, ModelProto]:
+    actor = small(request.param)
+    return actor, to_onnx(actor)
+
+
+def test_the_file_builds_the_tours_that_torch_builds(exported: tuple[Actor, ModelProto]) -> None:
+    compare(*exported)
+
+
+def test_a_file_with_other_weights_is_refused(exported: tuple[Actor, ModelProto]) -> None:
+    actor, model = exported
+    changed = ModelProto()
+    changed.CopyFrom(model)
+    for weights in changed.graph.initializer:
+        values = numpy_helper.to_array(weights)
+        if values.ndim == 2 and values.dtype == "float32":
+            weights.CopyFrom(numpy_helper.from_array(-values, weights.name))
+    with pytest.raises(Mismatch, match="tours part"):
+        compare(actor, changed)
+
+
+def test_a_file_with_a_frozen_size_is_refused(exported: tuple[Actor, ModelProto]) -> None:
+    actor, model = exported
+    frozen = ModelProto()
+    frozen.CopyFrom(model)
+    frozen.graph.input[0].type.tensor_type.shape.dim[0].dim_value = 11
+    with pytest.raises(Mismatch, match=r"cities must have shape \['n', 4\], got \[11, 4\]"):
+        compare(actor, frozen)

@@ -1,0 +1,116 @@
+"""Actors as distributions over tours."""
+
+from itertools import permutations
+
+import pytest
+import torch
+from torch import Generator, Tensor
+
+from models.config import NetworkConfig
+from models.decoder import AttentionDecoder, Moment
+from models.networks import Actor, build
+from models.rollout import greedily, log_likelihoods, repeated, roll_out, sampling
+from models.sampling import fan_of_preferences, uniform_cities
+from models.validation import greedy_tours
+
+CPU = torch.device("cpu")
+NAMES = ("pa-at", "pa-one")
+
+
+def small(name: str) -> Actor:
+    config = NetworkConfig(name=name, width=16, heads=4, layers=2, feedforward=32)
+    actor = build(config, seed=3).eval()
+    for parameter in actor.parameters():  # away from the gentle beginning that training needs
+        torch.nn.init.normal_(parameter, std=0.2, generator=Generator().manual_seed(5))
+    return actor
+
+
+def cities(count: int, n: int, seed: int = 0) -> Tensor:
+    return uniform_cities(count, n, Generator().manual_seed(seed), CPU)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_sampled_tours_visit_every_city_once(name: str) -> None:
+    actor, instances = small(name), cities(3, 9)
+    rows = actor.decoder.condition(fan_of_preferences(5, CPU))
+    starts = torch.arange(15).reshape(3, 5) % 9
+    tours = roll_out(
+        actor, actor.remember(instances), rows, starts, sampling(Generator().manual_seed(1))
+    )
+    assert (tours.sort(dim=-1).values == torch.arange(9)).all()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_likelihoods_of_all_tours_add_to_one(name: str) -> None:
+    actor, instances = small(name), cities(2, 5)
+    free = actor.decoder.chooses_first
+    orders = [order for order in permutations(range(5)) if free or order[0] == 0]
+    tours = torch.tensor(orders).expand(2, -1, -1)
+    rows = repeated(actor.decoder.condition(fan_of_preferences(1, CPU)), len(orders))
+    likelihoods = log_likelihoods(actor, actor.remember(instances), rows, tours).exp()
+    assert likelihoods.sum(dim=1).tolist() == pytest.approx([1.0, 1.0], abs=1e-5)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_sampling_draws_tours_as_often_as_their_likelihood_says(name: str) -> None:
+    actor, instances = small(name), cities(1, 4)
+    many = 4000
+    rows = repeated(actor.decoder.condition(fan_of_preferences(1, CPU)), many)
+    memory = actor.remember(instances)
+    starts = torch.zeros(1, many, dtype=torch.long)
+    tours = roll_out(actor, memory, rows, starts, sampling(Generator().manual_seed(2)))[0]
+    for tour in tours.unique(dim=0):
+        share = (tours == tour).all(dim=1).double().mean()
+        row = repeated(actor.decoder.condition(fan_of_preferences(1, CPU)), 1)
+        likelihood = log_likelihoods(actor, memory, row, tour[None, None]).exp().item()
+        deviation = (likelihood * (1 - likelihood) / many) ** 0.5
+        assert abs(share - likelihood) < 5 * deviation + 1e-6
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_numbering_the_cities_otherwise_changes_no_tour(name: str) -> None:
+    actor, instances = small(name), cities(1, 12)
+    order = torch.cat((torch.zeros(1), 1 + torch.randperm(11, generator=Generator()))).long()
+    preferences = fan_of_preferences(4, CPU)
+    tours = greedy_tours(actor, instances, preferences)
+    renumbered = greedy_tours(actor, instances[:, order], preferences)
+    assert torch.equal(order[renumbered], tours)
+
+
+def test_a_new_pa_one_goes_to_the_nearest_neighbour_under_the_weights() -> None:
+    actor = build(NetworkConfig(name="pa-one"), seed=1).eval()
+    # Without what the pointers and the preferences add at random, distances alone are left.
+    actor.decoder.project_city.weight.data[-128:] = 0
+    actor.decoder.encode_preference[-1].weight.data.zero_()
+    instances = cities(1, 30)
+    tour = greedy_tours(actor, instances, torch.tensor([[0.6, 0.8]]))[0, 0]
+    steps = (instances[0, :, None] - instances[0]).unflatten(-1, (2, 2)).norm(dim=-1)
+    cost = steps @ torch.tensor([0.8, 0.6])
+    for t in range(29):
+        left = tour[t + 1 :]
+        assert tour[t + 1] == left[cost[tour[t], left].argmin()]
+
+
+def test_pa_at_adds_the_preference_to_the_features_of_every_city() -> None:
+    """Against the same decoder, fed with features to which the encoding was added by hand."""
+    torch.manual_seed(0)
+    decoder = AttentionDecoder(width=16, heads=4, clip=10.0)
+    features = torch.randn(1, 7, 16)
+    preferences = fan_of_preferences(3, CPU)
+    moment = Moment(torch.tensor([[2, 4, 6]]), torch.tensor([[0, 0, 1]]), torch.rand(1, 3, 7) < 0.4)
+    moment.visited[..., 5] = False
+    found = decoder.logits(decoder.remember(features), decoder.condition(preferences), moment)
+    nothing = decoder.condition(torch.zeros(1, 2))._replace(
+        context=torch.zeros(1, 16),
+        ends=torch.zeros(1, 16),
+        values=torch.zeros(1, 16),
+        pointers=torch.zeros(1, 16),
+    )
+    for i, encoding in enumerate(decoder.encode_preference(preferences)):
+        one = Moment(*(part[:, i : i + 1] for part in moment))
+        expected = decoder.logits(decoder.remember(features + encoding), nothing, one)
+        assert torch.allclose(found[:, i : i + 1], expected, atol=1e-5)
+
+
+def test_greedy_takes_the_first_of_equals() -> None:
+    assert greedily(torch.tensor([[[0.0, 1.0, 1.0]]])).item() == 1

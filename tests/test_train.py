@@ -1,0 +1,142 @@
+"""Training runs: what a user of `python -m models.train` sees."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+import torch
+
+from models import train
+from models.checkpoint import load_weights, new_run, resume, save
+from models.config import NetworkConfig, TrainingConfig, as_plain, from_plain
+from models.validation import validation_sets
+
+CPU = torch.device("cpu")
+SMALL = NetworkConfig(width=16, heads=2, layers=1, feedforward=32)
+
+
+def small_config(**changes: object) -> TrainingConfig:
+    settings: dict[str, object] = {
+        "network": SMALL,
+        "steps": 6,
+        "instances": 4,
+        "least_cities": 5,
+        "most_cities": 8,
+        "preferences": 3,
+        "starts": 4,
+        "validate_every": 3,
+        "warmup": 2,
+    }
+    return TrainingConfig(**{**settings, **changes})
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"objective": "lagrangian", "multiplier": 5.0},
+        {
+            "baseline": "critic",
+            "starts": 1,
+            "network": NetworkConfig(name="pa-at", width=16, heads=2, layers=1, feedforward=32),
+        },
+    ],
+)
+def test_resuming_equals_not_having_stopped(tmp_path: Path, changes: dict[str, object]) -> None:
+    config = small_config(**changes)
+    straight = new_run(config, CPU)
+    for _ in range(6):
+        train.train_step(straight)
+    stopped = new_run(config, CPU)
+    for _ in range(3):
+        train.train_step(stopped)
+    save(stopped, tmp_path / "run.pt")
+    resumed = resume(tmp_path / "run.pt", CPU)
+    for _ in range(3):
+        train.train_step(resumed)
+    assert resumed.step == 6
+    for name in ("actor", "averaged", "critic"):
+        ours, theirs = getattr(resumed, name).state_dict(), getattr(straight, name).state_dict()
+        assert all(torch.equal(ours[key], theirs[key]) for key in theirs), name
+    assert torch.equal(resumed.multipliers, straight.multipliers)
+
+
+@pytest.mark.parametrize("objective", ["lagrangian", "weighted-sum"])
+@pytest.mark.parametrize(("baseline", "starts"), [("shared", 8), ("critic", 1)])
+@pytest.mark.parametrize("name", ["pa-one", "pa-at"])
+def test_training_lowers_the_objective(
+    objective: str, baseline: str, starts: int, name: str
+) -> None:
+    config = small_config(
+        network=NetworkConfig(name=name, width=32, heads=2, layers=1, feedforward=32),
+        objective=objective,
+        baseline=baseline,
+        starts=starts,
+        steps=150,
+        instances=16,
+        least_cities=8,
+        most_cities=8,
+        learning_rate=3e-3,
+        warmup=5,
+        multiplier=2.0,
+        ascent_rate=0.0,
+    )
+    run = new_run(config, CPU)
+    objectives = [train.train_step(run).objective for _ in range(150)]
+    assert sum(objectives[-30:]) < 0.97 * sum(objectives[:30])
+
+
+def test_multipliers_rise_while_tours_miss_their_preference() -> None:
+    run = new_run(small_config(objective="lagrangian", multiplier=1.0, ascent_rate=2.0), CPU)
+    train.train_step(run)
+    assert (run.multipliers > 1.0).all()
+
+
+def test_a_run_leaves_its_configuration_log_curve_and_weights(tmp_path: Path) -> None:
+    config = small_config()
+    train.train(new_run(config, CPU), 6, validation_sets({6: 2}, CPU), tmp_path)
+    assert from_plain(json.loads((tmp_path / "config.json").read_text())) == config
+    with (tmp_path / "log.csv").open() as file:
+        lines = list(csv.DictReader(file))
+    assert [line["step"] for line in lines] == ["3", "6"]
+    assert 0 < float(lines[1]["hypervolume_6"]) < 1
+    assert (tmp_path / "curve.png").read_bytes().startswith(b"\x89PNG")
+    trained = load_weights(tmp_path / "weights.pt")
+    assert (trained.config, trained.step) == (config, 6)
+
+
+def test_the_command_goes_on_with_the_run_that_lies_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(train, "_VALIDATION", {6: 2})
+    run = new_run(small_config(), CPU)
+    train.train_step(run)
+    save(run, tmp_path / "run.pt")
+    train.main(["--out", str(tmp_path)])
+    assert load_weights(tmp_path / "weights.pt").step == 6
+
+
+@pytest.mark.parametrize(
+    ("changes", "complaint"),
+    [
+        ({"objective": "tchebycheff"}, "objective must be"),
+        ({"baseline": "greedy"}, "baseline must be"),
+        ({"starts": 1}, "at least 2 starts"),
+        ({"baseline": "critic"}, "starts must be 1"),
+        ({"least_cities": 9}, "least <= most"),
+        ({"steps": 0}, "steps must be at least 1"),
+    ],
+)
+def test_a_configuration_that_makes_no_sense_is_refused(
+    changes: dict[str, object], complaint: str
+) -> None:
+    with pytest.raises(ValueError, match=complaint):
+        small_config(**changes)
+
+
+def test_a_configuration_survives_storage() -> None:
+    config = small_config(seed=7)
+    assert from_plain(json.loads(json.dumps(as_plain(config)))) == config
+    with pytest.raises(ValueError, match="fields must be"):
+        from_plain({**as_plain(config), "surprise": 1})
