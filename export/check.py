@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from onnx import ModelProto
 from torch import Generator, Tensor
 
+from models.groups import grouped
 from models.networks import Actor
 from models.rollout import log_likelihoods_by_city
 from models.sampling import fan_of_preferences, uniform_cities
@@ -53,8 +54,8 @@ def compare(actor: Actor, model: ModelProto) -> None:
             preferences = fan_of_preferences(k, torch.device("cpu"))
             expected = greedy_tours(actor, cities, preferences)[0]
             tours = torch.from_numpy(onnx_tours(running, cities[0], preferences))
-            for i in (tours != expected).any(dim=1).nonzero().flatten():
-                _check_tie(actor, cities, preferences[i : i + 1], tours[i], expected[i])
+            if not torch.equal(tours, expected):
+                _check_ties(actor, cities, preferences, (tours, expected))
 
 
 def _check_dimensions(model: ModelProto) -> None:
@@ -65,24 +66,25 @@ def _check_dimensions(model: ModelProto) -> None:
             raise Mismatch(f"{value.name} must have shape {expected[value.name]}, got {shape}")
 
 
-def _check_tie(
-    actor: Actor, cities: Tensor, preference: Tensor, tour: Tensor, expected: Tensor
+def _check_ties(
+    actor: Actor, cities: Tensor, preferences: Tensor, both: tuple[Tensor, Tensor]
 ) -> None:
-    """Raises unless, where the tours part, torch finds both next cities all but equally likely."""
-    if sorted(tour.tolist()) != list(range(len(tour))):
-        raise Mismatch(f"{tour.tolist()} is not a tour")
-    parting = int((tour != expected).nonzero()[0])
-    memory, rows = actor.remember(cities), actor.decoder.condition(preference)
+    """Raises unless, wherever two tours part, torch finds both next cities all but as likely."""
+    rows, members, places = grouped(preferences, actor.groups)
     with torch.no_grad():
+        memory, conditioning = actor.remember(cities, rows), actor.decoder.condition(rows)
         likelihoods = [
-            log_likelihoods_by_city(actor, memory, rows, each[None, None])[0, 0]
-            for each in (tour, expected)
+            log_likelihoods_by_city(actor, memory, conditioning, tours[None, members])[0, places]
+            for tours in both
         ]
-    # Tours that follow given starts have one choice fewer than cities.
-    choice = parting - (len(tour) - len(likelihoods[0]))
-    difference = float((likelihoods[0][choice] - likelihoods[1][choice]).abs())
-    if difference > _TIE:
-        raise Mismatch(
-            f"with {len(tour)} cities the tours part at position {parting}, where log-likelihoods "
-            f"must differ by at most {_TIE}, got {difference:g}"
-        )
+    differs = both[0] != both[1]
+    for i in differs.any(dim=1).nonzero().flatten().tolist():
+        parting = int(differs[i].nonzero()[0])
+        # Tours from a given city have one choice fewer than cities.
+        choice = parting - (differs.shape[1] - likelihoods[0].shape[1])
+        gap = float((likelihoods[0][i, choice] - likelihoods[1][i, choice]).abs())
+        if not gap <= _TIE:
+            raise Mismatch(
+                f"tours of {differs.shape[1]} cities part at position {parting}, where "
+                f"log-likelihoods must differ by at most {_TIE}, got {gap:g}"
+            )

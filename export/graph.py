@@ -16,10 +16,11 @@ from torch import Tensor, nn
 from torch.export import Dim
 
 from models.decoder import Moment
+from models.groups import grouped
 from models.networks import Actor, Conditioning, Memory
 
 # Sizes to trace at: no other axis has them, so each axis shows whether it is n or k.
-_N, _K = 11, 7
+_N, _K = 11, 35
 _STATE = ("current", "first", "visited")
 
 
@@ -34,13 +35,14 @@ class _Encode(nn.Module):
         self.actor = actor
 
     def forward(self, cities: Tensor, preferences: Tensor) -> tuple[Tensor, ...]:
-        memory = self.actor.remember(cities[None])
-        rows = self.actor.decoder.condition(preferences)
-        at = torch.zeros_like(preferences[:, 0], dtype=torch.long)  # (k,)
+        grouping = grouped(preferences, self.actor.groups)
+        memory = self.actor.remember(cities[None], grouping.rows)
+        rows = self.actor.decoder.condition(grouping.rows)
+        at = torch.zeros_like(grouping.members)  # (r,)
         if self.actor.decoder.chooses_first:
             at = at + cities.shape[0]
         visited = torch.arange(cities.shape[0]) == at[:, None]
-        return *memory, *rows, at, at.clone(), visited
+        return *memory, *rows, grouping.places, at, at.clone(), visited
 
 
 class _Step(nn.Module):
@@ -69,19 +71,28 @@ def to_onnx(actor: Actor) -> ModelProto:
     """The actor as one graph: cities (n, 4) and preferences (k, 2) to greedy tours (k, n)."""
     cities, preferences = torch.rand(_N, 4), torch.rand(_K, 2)
     with torch.no_grad():
-        memory, rows = actor.remember(cities[None]), actor.decoder.condition(preferences)
+        grouped_preferences = grouped(preferences, actor.groups).rows
+        memory = actor.remember(cities[None], grouped_preferences)
+        rows = actor.decoder.condition(grouped_preferences)
         state = _Encode(actor)(cities, preferences)[-3:]
     tables = [f"memory_{i}" for i in range(len(memory))] + [f"rows_{i}" for i in range(len(rows))]
     encode = _exported(
-        _Encode(actor), (cities, preferences), ["cities", "preferences"], [*tables, *_STATE]
+        _Encode(actor),
+        (cities, preferences),
+        ["cities", "preferences"],
+        [*tables, "places", *_STATE],
     )
     step = _exported(
         _Step(actor, type(memory), type(rows)),
-        (tuple(memory), tuple(rows), tuple(state)),
+        (_contiguous(memory), _contiguous(rows), tuple(state)),
         [*tables, *_STATE],
         [f"next_{name}" for name in _STATE],
     )
     return _joined(encode, step, tables, actor.decoder.chooses_first)
+
+
+def _contiguous(tables: tuple[Tensor, ...]) -> tuple[Tensor, ...]:
+    return tuple(table.contiguous() for table in tables)
 
 
 def _exported(
@@ -158,7 +169,7 @@ def _loop_body(step: GraphProto, shared: set[str]) -> tuple[GraphProto, list[Ten
         moved.name = renamed(constant.name)
         constants.append(moved)
     kinds = {"current": TensorProto.INT64, "first": TensorProto.INT64, "visited": TensorProto.BOOL}
-    shapes = {"current": ["k"], "first": ["k"], "visited": ["k", "n"]}
+    shapes = {"current": ["rows"], "first": ["rows"], "visited": ["rows", "n"]}
 
     def described(prefix: str) -> list[onnx.ValueInfoProto]:
         return [
@@ -180,7 +191,7 @@ def _loop_body(step: GraphProto, shared: set[str]) -> tuple[GraphProto, list[Ten
         [
             helper.make_tensor_value_info("go_on", TensorProto.BOOL, []),
             *described("next_"),
-            helper.make_tensor_value_info("step_chosen", TensorProto.INT64, ["k"]),
+            helper.make_tensor_value_info("step_chosen", TensorProto.INT64, ["rows"]),
         ],
     )
     return body, constants
@@ -189,10 +200,15 @@ def _loop_body(step: GraphProto, shared: set[str]) -> tuple[GraphProto, list[Ten
 def _ending(chooses_first: bool) -> list[NodeProto]:
     """From the chosen cities, a row a step, to tours, a row a preference."""
     if chooses_first:
-        return [helper.make_node("Transpose", ["chosen"], ["tours"], perm=[1, 0])]
+        whole = [helper.make_node("Identity", ["chosen"], ["by_step"])]
+    else:
+        whole = [
+            helper.make_node("Constant", [], ["steps"], value_ints=[0]),
+            helper.make_node("Unsqueeze", ["current", "steps"], ["given"]),
+            helper.make_node("Concat", ["given", "chosen"], ["by_step"], axis=0),
+        ]
     return [
-        helper.make_node("Constant", [], ["steps"], value_ints=[0]),
-        helper.make_node("Unsqueeze", ["current", "steps"], ["given"]),
-        helper.make_node("Concat", ["given", "chosen"], ["by_step"], axis=0),
-        helper.make_node("Transpose", ["by_step"], ["tours"], perm=[1, 0]),
+        *whole,
+        helper.make_node("Transpose", ["by_step"], ["rows"], perm=[1, 0]),
+        helper.make_node("Gather", ["rows", "places"], ["tours"], axis=0),
     ]

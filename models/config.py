@@ -32,7 +32,7 @@ class TrainingConfig:
     """Algorithm 1 of the paper, and what it leaves open. Angles of preferences: (0, 90) degrees."""
 
     network: NetworkConfig = NetworkConfig()
-    objective: str = setting("weighted-sum", "lagrangian (the paper's) or weighted-sum")
+    objective: str = setting("weighted-sum", "lagrangian (the paper's), weighted-sum or imitation")
     baseline: str = setting("shared", "critic (the paper's) or shared: the mean over starts")
     steps: int = setting(10_000, "gradient steps in all; the learning rate ends at their end")
     instances: int = setting(8, "instances a step")
@@ -52,8 +52,10 @@ class TrainingConfig:
     seed: int = setting(1, "of weights, instances, preferences and sampling")
 
     def __post_init__(self) -> None:
-        if self.objective not in ("lagrangian", "weighted-sum"):
-            raise ValueError(f"objective must be lagrangian or weighted-sum, got {self.objective}")
+        if self.objective not in ("lagrangian", "weighted-sum", "imitation"):
+            raise ValueError(
+                f"objective must be lagrangian, weighted-sum or imitation, got {self.objective}"
+            )
         if self.baseline not in ("critic", "shared"):
             raise ValueError(f"baseline must be critic or shared, got {self.baseline}")
         if self.baseline == "shared" and self.starts < 2:

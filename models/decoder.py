@@ -48,13 +48,19 @@ class AttentionConditioning(NamedTuple):
 
 
 class OneMemory(NamedTuple):
-    """PA-One's tables of the instances. Distances are 1 + sqrt(n) times those in each plane."""
+    """PA-One's tables of the instances, those of features for each group of preferences anew.
 
-    keys: Float[Tensor, "b h e n"]
-    values: Float[Tensor, "b h n e"]
-    pointers: Float[Tensor, "b d n"]
-    current: Float[Tensor, "b n d"]
-    first: Float[Tensor, "b n d"]
+    Axis bg is instances and groups, groups inner. Distances are 1 + sqrt(n) times those in each
+    plane.
+    """
+
+    near_keys: Float[Tensor, "bg h/2 e n"]
+    near_values: Float[Tensor, "bg h/2 n e"]
+    far_keys: Float[Tensor, "bg h/2 e n"]
+    far_values: Float[Tensor, "bg h/2 n e"]
+    pointers: Float[Tensor, "bg d n"]
+    current: Float[Tensor, "bg n d"]
+    first: Float[Tensor, "bg n d"]
     distances: Float[Tensor, "b n n"]
     other_distances: Float[Tensor, "b n n"]
     log_distances: Float[Tensor, "b n n"]
@@ -133,7 +139,8 @@ class OneDecoder(nn.Module):
     Its logits start as those of the nearest neighbour under the preference's weights, softened:
     minus a multiple of log(1 + distance); the pointer learns the rest. Half of the heads see the
     cities that are left through the same fall-off, the other half see them all alike. Tours
-    start at a city that is given.
+    start at a city that is given. The rows of an instance are its groups of preferences in turn,
+    all of one size.
     """
 
     chooses_first = False
@@ -155,16 +162,21 @@ class OneDecoder(nn.Module):
 
     def remember(
         self,
-        features: Float[Tensor, "b n d"],
+        features: Float[Tensor, "bg n d"],
         distances: Float[Tensor, "b 2 n n"],
-        log_distances: Float[Tensor, "b 2 n n"],
     ) -> OneMemory:
         """The tables of the instances."""
+        keys, values, pointers = _views(self.project_city(features), self.heads)
+        (near_keys, far_keys), (near_values, far_values) = keys.chunk(2, 1), values.chunk(2, 1)
         return OneMemory(
-            *_views(self.project_city(features), self.heads),
+            near_keys,
+            near_values,
+            far_keys,
+            far_values,
+            pointers,
             *self.project_ends(features).chunk(2, dim=-1),
             *(1 + distances).unbind(1),
-            *log_distances.unbind(1),
+            *distances.log1p().unbind(1),
         )
 
     def condition(self, preferences: Float[Tensor, "k 2"]) -> OneConditioning:
@@ -178,27 +190,23 @@ class OneDecoder(nn.Module):
         self, memory: OneMemory, rows: OneConditioning, moment: Moment
     ) -> Float[Tensor, "b r n"]:
         """Unnormalised log-probabilities of the next city; minus infinity where visited."""
-        ends = _look_up(memory.current, moment.current) + _look_up(memory.first, moment.first)
-        query = rows.scale * ends + rows.shift
+        b, r, _ = moment.visited.shape
+        by_group = (len(memory.pointers), -1)  # the leading shape of what is looked up by group
+        current, first = moment.current.view(by_group), moment.first.view(by_group)
+        ends = _look_up(memory.current, current) + _look_up(memory.first, first)
+        query = (rows.scale * ends.view(b, r, -1) + rows.shift).view_as(ends)
         mask = torch.zeros_like(moment.visited, dtype=query.dtype)
         mask = mask.masked_fill(moment.visited, -torch.inf)
-        pull = _pull(memory, rows, moment.current) + mask
-        glimpse = query + self.merge(self._glimpses(query, memory, pull.detach(), mask))
-        glimpse = glimpse + self.think(self.norm(glimpse))
-        return self.clip * torch.tanh(glimpse @ memory.pointers) + pull
-
-    def _glimpses(
-        self, query: Tensor, memory: OneMemory, pull: Tensor, mask: Tensor
-    ) -> Float[Tensor, "b r d"]:
-        """Half of the heads through the pull, half without it; no gradient through the pull."""
-        halves = zip(
-            query.chunk(2, dim=-1),
-            memory.keys.chunk(2, dim=1),
-            memory.values.chunk(2, dim=1),
-            (pull, mask),
-            strict=True,
+        pull = (_pull(memory, rows, moment.current) + mask).view(*current.shape, -1)
+        near, far = query.chunk(2, dim=-1)
+        glimpses = (
+            # No gradient through the pull here: the logits below teach it.
+            _glimpse(near, memory.near_keys, memory.near_values, pull.detach()),
+            _glimpse(far, memory.far_keys, memory.far_values, mask.view_as(pull)),
         )
-        return torch.cat([_glimpse(*half) for half in halves], dim=-1)
+        glimpse = query + self.merge(torch.cat(glimpses, dim=-1))
+        glimpse = glimpse + self.think(self.norm(glimpse))
+        return (self.clip * torch.tanh(glimpse @ memory.pointers) + pull).view_as(mask)
 
 
 # Of log(1 + distance) under the weights, in plane 1, in plane 2.

@@ -1,10 +1,11 @@
 """From cities to features: the encoders of PA-AT and PA-One.
 
 PA-AT's is the encoder of Kool, van Hoof and Welling (2019), arXiv:1803.08475. PA-One's differs
-in two ways: it normalises before each layer rather than after, so that deeper stacks train, and
-its heads attend less the farther two cities are apart, each head at a rate of its own in each
-plane. Distances are taken in units of 1 / sqrt(n), near the spacing of n cities in a unit
-square, so that neighbourhoods look alike at every n.
+in three ways: it normalises before each layer rather than after, so that deeper stacks train; it
+encodes the cities for a preference, not once for all; and its heads attend less the farther two
+cities are apart, each head at rates of its own in either plane and under the preference's
+weights. Distances are in units of 1 / sqrt(n), near the spacing of n cities in a unit square, so
+that neighbourhoods look alike at every n.
 """
 
 import torch
@@ -85,21 +86,32 @@ class _PostNormLayer(nn.Module):
 
 
 class DistanceAwareEncoder(nn.Module):
-    """PA-One's: attention that fades with distance, normalised before each layer."""
+    """PA-One's: attention that fades with distance, normalised before each layer.
+
+    A city is given by its coordinates, by these times their plane's weight, and by the weights.
+    """
 
     def __init__(self, width: int, heads: int, layers: int, hidden: int) -> None:
         super().__init__()
-        self.embed = nn.Linear(4, width)
+        self.embed = nn.Linear(10, width)
         self.layers = nn.ModuleList(_PreNormLayer(width, heads, hidden) for _ in range(layers))
         self.norm = nn.LayerNorm(width)
 
     def forward(
-        self, cities: Float[Tensor, "b n 4"], log_distances: Float[Tensor, "b 2 n n"]
+        self,
+        cities: Float[Tensor, "b n 4"],
+        distances: Float[Tensor, "b 2 n n"],
+        weights: Float[Tensor, "b 2"],
     ) -> Float[Tensor, "b n d"]:
-        """Features of the cities, given log(1 + distance) between them in each plane."""
-        features: Tensor = self.embed(cities)
+        """Features of the cities for the weights."""
+        spread = weights[:, None].expand(-1, cities.shape[1], -1)  # (b, n, 2)
+        weighted_cities = cities * spread.repeat_interleave(2, dim=-1)
+        features: Tensor = self.embed(torch.cat((cities, weighted_cities, spread), dim=-1))
+        first, second = distances.unbind(1)
+        weighted = weights[:, :1, None] * first + weights[:, 1:, None] * second
+        nearness = -torch.stack((first, second, weighted), dim=1).log1p()  # (b, 3, n, n)
         for layer in self.layers:
-            features = layer(features, log_distances)
+            features = layer(features, nearness)
         normalised: Tensor = self.norm(features)
         return normalised
 
@@ -110,14 +122,13 @@ class _PreNormLayer(nn.Module):
         self.attend = SelfAttention(width, heads)
         self.think = feedforward(width, width, hidden)
         self.norms = nn.ModuleList(nn.LayerNorm(width) for _ in range(2))
-        # At first a quarter of the heads each: near in plane 1, in plane 2, in both, everywhere.
-        kinds = torch.tensor([[2.0, 0.0], [0.0, 2.0], [1.0, 1.0], [0.0, 0.0]])
-        self.fading = nn.Parameter(kinds.repeat((heads + 3) // 4, 1)[:heads])  # (h, 2)
+        # At first a quarter of the heads each: near in plane 1, in plane 2, by weight, everywhere.
+        kinds = torch.tensor([[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0], [0.0, 0.0, 0.0]])
+        self.fading = nn.Parameter(kinds.repeat((heads + 3) // 4, 1)[:heads])  # (h, 3)
 
-    def forward(self, features: Tensor, log_distances: Tensor) -> Tensor:
-        near, nearby = log_distances[:, None, 0], log_distances[:, None, 1]  # (b, 1, n, n)
-        rates = self.fading[:, :, None, None]  # (h, 2, 1, 1)
-        bias = -(rates[:, 0] * near + rates[:, 1] * nearby)
+    def forward(self, features: Tensor, nearness: Tensor) -> Tensor:
+        # As a product it is one pass over (b, h, n, n), the largest thing there is.
+        bias = (self.fading @ nearness.flatten(2)).unflatten(2, nearness.shape[2:])
         features = features + self.attend(self.norms[0](features), bias)
         thought: Tensor = self.think(self.norms[1](features))
         return features + thought

@@ -9,6 +9,7 @@ from torch import Tensor, nn
 from models.config import NetworkConfig
 from models.decoder import AttentionDecoder, AttentionMemory, OneDecoder, OneMemory
 from models.encoders import AttentionEncoder, DistanceAwareEncoder, plane_distances
+from models.lagrangian import weights
 
 # Named tuples of tensors, of a kind that only the actor's own decoder reads.
 Memory = Any
@@ -18,6 +19,8 @@ Conditioning = Any
 class AttentionActor(nn.Module):
     """PA-AT: the attention network with a preference encoder, as the paper describes it."""
 
+    groups = 1
+
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
         self.encoder = AttentionEncoder(
@@ -25,13 +28,22 @@ class AttentionActor(nn.Module):
         )
         self.decoder = AttentionDecoder(config.width, config.heads, config.clip)
 
-    def remember(self, cities: Float[Tensor, "b n 4"]) -> AttentionMemory:
+    def remember(
+        self,
+        cities: Float[Tensor, "b n 4"],
+        preferences: Float[Tensor, "k 2"],  # noqa: ARG002, the encoder does without
+    ) -> AttentionMemory:
         """What decoding needs of the instances, computed once."""
         return self.decoder.remember(self.encoder(cities))
 
 
 class OneActor(nn.Module):
-    """PA-One: distances in the encoder's attention and in the decoder's logits."""
+    """PA-One: distances in the encoder's attention and in the decoder's logits.
+
+    It encodes the cities once for each group of neighbouring preferences.
+    """
+
+    groups = 5
 
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
@@ -40,12 +52,21 @@ class OneActor(nn.Module):
         )
         self.decoder = OneDecoder(config.width, config.heads, config.clip)
 
-    def remember(self, cities: Float[Tensor, "b n 4"]) -> OneMemory:
-        """What decoding needs of the instances, computed once."""
+    def remember(
+        self, cities: Float[Tensor, "b n 4"], preferences: Float[Tensor, "k 2"]
+    ) -> OneMemory:
+        """What decoding needs of the instances, computed once for each group of preferences.
+
+        The preferences come as `models.groups` lays them out.
+        """
+        middles = preferences.unflatten(0, (self.groups, -1)).mean(dim=1)
         distances = plane_distances(cities)
-        log_distances = distances.log1p()
-        features = self.encoder(cities, log_distances)
-        return self.decoder.remember(features, distances, log_distances)
+        features = self.encoder(
+            cities.repeat_interleave(self.groups, dim=0),
+            distances.repeat_interleave(self.groups, dim=0),
+            weights(middles).repeat(len(cities), 1),
+        )
+        return self.decoder.remember(features, distances)
 
 
 Actor = AttentionActor | OneActor

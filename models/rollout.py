@@ -42,7 +42,7 @@ def roll_out(
 ) -> Int[Tensor, "b r n"]:
     """A tour for each row. Actors that choose their first city disregard the starts."""
     decoder = actor.decoder
-    n = memory.keys.shape[-1]
+    n = memory.pointers.shape[-1]
     visited = torch.zeros(*starts.shape, n, dtype=torch.bool, device=starts.device)
     if decoder.chooses_first:
         nowhere = torch.full_like(starts, n)

@@ -1,7 +1,8 @@
 """Training: Algorithm 1 of Mehta, Taghipour and Saeedi (2022), arXiv:2203.01298.
 
 `python -m models.train --out runs/one` begins a run or, where one lies there, goes on with it.
-Beside the checkpoint it writes its configuration, a log (CSV) and a curve (PNG).
+Beside the checkpoint it writes its configuration, a log (CSV) and a curve (PNG). With
+`--objective imitation --labels FOLDER` the actor learns the tours of `models.expert` instead.
 """
 
 import argparse
@@ -26,10 +27,17 @@ from models.checkpoint import (
     start_from,
 )
 from models.config import NetworkConfig, TrainingConfig
+from models.labels import Labels
 from models.lagrangian import ascended, lagrangian, violation, weighted_sum
 from models.networks import Memory
 from models.record import Record, Step
-from models.rollout import log_likelihoods, repeated, roll_out, sampling
+from models.rollout import (
+    log_likelihoods,
+    log_likelihoods_by_city,
+    repeated,
+    roll_out,
+    sampling,
+)
 from models.sampling import (
     city_count,
     distinct_starts,
@@ -48,12 +56,20 @@ from models.validation import (
 _VALIDATION = {40: 16, 200: 3}  # instances by number of cities
 
 
-def train(run: Run, steps: int, validation: list[ValidationSet], out: Path) -> None:
+def train(
+    run: Run,
+    steps: int,
+    validation: list[ValidationSet],
+    out: Path,
+    labels: Labels | None = None,
+) -> None:
     """Takes the run up to the given step, writing to the folder out as it goes."""
+    if (labels is None) == (run.config.objective == "imitation"):
+        raise ValueError("labels must be given for imitation, and for nothing else")
     with Record(out, run, steps) as record:
         while run.step < steps:
             began = time.perf_counter()
-            record.stepped(train_step(run))
+            record.stepped(policy_gradient_step(run) if labels is None else imitate(run, labels))
             run.seconds += time.perf_counter() - began
             if run.step % run.config.validate_every == 0 or run.step == steps:
                 build = partial(greedy_tours, averaged_actor(run).eval())
@@ -62,7 +78,7 @@ def train(run: Run, steps: int, validation: list[ValidationSet], out: Path) -> N
                 save_weights(run, out / "weights.pt")
 
 
-def train_step(run: Run) -> Step:
+def policy_gradient_step(run: Run) -> Step:
     """One iteration of Algorithm 1, for all instances and preferences at once."""
     config = run.config
     run.actor.train()
@@ -73,7 +89,7 @@ def train_step(run: Run) -> Step:
     ).repeat(1, config.preferences)
 
     with _precision(run.device):
-        memory = run.actor.remember(cities)
+        memory = run.actor.remember(cities, preferences)
         rows = repeated(run.actor.decoder.condition(preferences), config.starts)
         choose = sampling(run.sampling_generator)
         tours = roll_out(run.actor, _detached(memory), rows, starts, choose)
@@ -105,6 +121,32 @@ def train_step(run: Run) -> Step:
         objective=objectives.mean().item(),
         violation=violations.mean().item(),
         multiplier=run.multipliers.mean().item(),
+    )
+
+
+def imitate(run: Run, labels: Labels) -> Step:
+    """One step towards the expert: the loss is what a city of its tours costs in likelihood."""
+    config = run.config
+    run.actor.train()
+    cities, preferences, tours = (
+        part.to(run.device)
+        for part in labels.batch(
+            config.instances, config.preferences, config.starts, run.instance_generator
+        )
+    )
+    with _precision(run.device):
+        memory = run.actor.remember(cities, preferences)
+        rows = repeated(run.actor.decoder.condition(preferences), config.starts)
+        loss = -log_likelihoods_by_city(run.actor, memory, rows, tours).mean()
+    _descend(run, run.optimizer, run.actor, loss)
+    run.averaged.update_parameters(run.actor)
+    run.step += 1
+    points, each = tour_lengths(cities, tours), preferences.repeat_interleave(config.starts, dim=0)
+    return Step(
+        loss=loss.item(),
+        objective=weighted_sum(points, each).mean().item(),
+        violation=violation(points, each).mean().item(),
+        multiplier=0.0,
     )
 
 
@@ -170,7 +212,8 @@ def main(arguments: list[str] | None = None) -> None:
         run = new_run(_configuration(options), device)
         if options.initial:
             start_from(run, load_weights(options.initial).actor)
-    train(run, run.config.steps, validation_sets(_VALIDATION, device), options.out)
+    labels = Labels(options.labels) if options.labels else None
+    train(run, run.config.steps, validation_sets(_VALIDATION, device), options.out, labels)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -178,6 +221,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--out", type=Path, required=True, help="folder of the run")
     parser.add_argument("--device", default="cpu", help="cpu or cuda (bfloat16 there)")
     parser.add_argument("--initial", type=Path, help="checkpoint whose weights a new run takes")
+    parser.add_argument("--labels", type=Path, help="folder of shards, for imitation")
     for each in (*fields(NetworkConfig), *fields(TrainingConfig)):
         if each.name != "network":
             option = "--" + each.name.replace("_", "-")

@@ -7,6 +7,7 @@ import torch
 from jaxtyping import Float, Int
 from torch import Generator, Tensor
 
+from models.groups import grouped
 from models.networks import Actor
 from models.rollout import greedily, roll_out
 from models.sampling import fan_of_preferences, uniform_cities
@@ -46,9 +47,10 @@ def greedy_tours(
     actor: Actor, cities: Float[Tensor, "b n 4"], preferences: Float[Tensor, "k 2"]
 ) -> Int[Tensor, "b k n"]:
     """The greedy tour of each instance and preference."""
-    starts = torch.zeros(len(cities), len(preferences), dtype=torch.long, device=cities.device)
-    rows = actor.decoder.condition(preferences)
-    return roll_out(actor, actor.remember(cities), rows, starts, greedily)
+    rows, _, places = grouped(preferences, actor.groups)
+    starts = torch.zeros(len(cities), len(rows), dtype=torch.long, device=cities.device)
+    memory = actor.remember(cities, rows)
+    return roll_out(actor, memory, actor.decoder.condition(rows), starts, greedily)[:, places]
 
 
 # Tours (b, k, n) of instances (b, n, 4) and preferences (k, 2), whoever builds them.

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 def fan(k: int) -> Array:
     """Angles in degrees that cut the open interval (0, 90) into k equal parts, at their middles."""
-    return (np.arange(k) + 0.5) * (90.0 / k)
+    return (np.arange(k, dtype=np.float64) + 0.5) * (90.0 / k)
 
 
 def from_angles(degrees: Array) -> Array:

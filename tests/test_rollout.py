@@ -32,11 +32,10 @@ def cities(count: int, n: int, seed: int = 0) -> Tensor:
 @pytest.mark.parametrize("name", NAMES)
 def test_sampled_tours_visit_every_city_once(name: str) -> None:
     actor, instances = small(name), cities(3, 9)
-    rows = actor.decoder.condition(fan_of_preferences(5, CPU))
+    preferences = fan_of_preferences(5, CPU)
+    memory, rows = actor.remember(instances, preferences), actor.decoder.condition(preferences)
     starts = torch.arange(15).reshape(3, 5) % 9
-    tours = roll_out(
-        actor, actor.remember(instances), rows, starts, sampling(Generator().manual_seed(1))
-    )
+    tours = roll_out(actor, memory, rows, starts, sampling(Generator().manual_seed(1)))
     assert (tours.sort(dim=-1).values == torch.arange(9)).all()
 
 
@@ -46,23 +45,26 @@ def test_the_likelihoods_of_all_tours_add_to_one(name: str) -> None:
     free = actor.decoder.chooses_first
     orders = [order for order in permutations(range(5)) if free or order[0] == 0]
     tours = torch.tensor(orders).expand(2, -1, -1)
-    rows = repeated(actor.decoder.condition(fan_of_preferences(1, CPU)), len(orders))
-    likelihoods = log_likelihoods(actor, actor.remember(instances), rows, tours).exp()
-    assert likelihoods.sum(dim=1).tolist() == pytest.approx([1.0, 1.0], abs=1e-5)
+    preferences = fan_of_preferences(5, CPU)
+    rows = repeated(actor.decoder.condition(preferences), len(orders))
+    memory = actor.remember(instances, preferences)
+    likelihoods = log_likelihoods(actor, memory, rows, tours.repeat(1, 5, 1)).exp()
+    sums = likelihoods.unflatten(1, (5, -1)).sum(dim=-1)
+    assert torch.allclose(sums, torch.ones(2, 5), atol=1e-5)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_sampling_draws_tours_as_often_as_their_likelihood_says(name: str) -> None:
     actor, instances = small(name), cities(1, 4)
     many = 4000
-    rows = repeated(actor.decoder.condition(fan_of_preferences(1, CPU)), many)
-    memory = actor.remember(instances)
-    starts = torch.zeros(1, many, dtype=torch.long)
-    tours = roll_out(actor, memory, rows, starts, sampling(Generator().manual_seed(2)))[0]
+    preferences = fan_of_preferences(5, CPU)
+    memory, rows = actor.remember(instances, preferences), actor.decoder.condition(preferences)
+    starts = torch.zeros(1, 5 * many, dtype=torch.long)
+    choose = sampling(Generator().manual_seed(2))
+    tours = roll_out(actor, memory, repeated(rows, many), starts, choose)[0, :many]
     for tour in tours.unique(dim=0):
         share = (tours == tour).all(dim=1).double().mean()
-        row = repeated(actor.decoder.condition(fan_of_preferences(1, CPU)), 1)
-        likelihood = log_likelihoods(actor, memory, row, tour[None, None]).exp().item()
+        likelihood = log_likelihoods(actor, memory, rows, tour.expand(1, 5, -1))[0, 0].exp().item()
         deviation = (likelihood * (1 - likelihood) / many) ** 0.5
         assert abs(share - likelihood) < 5 * deviation + 1e-6
 

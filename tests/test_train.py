@@ -23,7 +23,7 @@ def small_config(**changes: object) -> TrainingConfig:
         "instances": 4,
         "least_cities": 5,
         "most_cities": 8,
-        "preferences": 3,
+        "preferences": 5,
         "starts": 4,
         "validate_every": 3,
         "warmup": 2,
@@ -47,14 +47,14 @@ def test_resuming_equals_not_having_stopped(tmp_path: Path, changes: dict[str, o
     config = small_config(**changes)
     straight = new_run(config, CPU)
     for _ in range(6):
-        train.train_step(straight)
+        train.policy_gradient_step(straight)
     stopped = new_run(config, CPU)
     for _ in range(3):
-        train.train_step(stopped)
+        train.policy_gradient_step(stopped)
     save(stopped, tmp_path / "run.pt")
     resumed = resume(tmp_path / "run.pt", CPU)
     for _ in range(3):
-        train.train_step(resumed)
+        train.policy_gradient_step(resumed)
     assert resumed.step == 6
     for name in ("actor", "averaged", "critic"):
         ours, theirs = getattr(resumed, name).state_dict(), getattr(straight, name).state_dict()
@@ -83,13 +83,13 @@ def test_training_lowers_the_objective(
         ascent_rate=0.0,
     )
     run = new_run(config, CPU)
-    objectives = [train.train_step(run).objective for _ in range(150)]
+    objectives = [train.policy_gradient_step(run).objective for _ in range(150)]
     assert sum(objectives[-30:]) < 0.97 * sum(objectives[:30])
 
 
 def test_multipliers_rise_while_tours_miss_their_preference() -> None:
     run = new_run(small_config(objective="lagrangian", multiplier=1.0, ascent_rate=2.0), CPU)
-    train.train_step(run)
+    train.policy_gradient_step(run)
     assert (run.multipliers > 1.0).all()
 
 
@@ -111,7 +111,7 @@ def test_the_command_goes_on_with_the_run_that_lies_there(
 ) -> None:
     monkeypatch.setattr(train, "_VALIDATION", {6: 2})
     run = new_run(small_config(), CPU)
-    train.train_step(run)
+    train.policy_gradient_step(run)
     save(run, tmp_path / "run.pt")
     train.main(["--out", str(tmp_path)])
     assert load_weights(tmp_path / "weights.pt").step == 6

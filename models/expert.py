@@ -1,0 +1,122 @@
+"""Near-optimal tours to learn from: `python -m models.expert --out runs/expert --shards 100`.
+
+A shard holds instances of one size and, for each of its preferences, the best tour that the local
+search of the service found. What a shard holds follows from the seed and its number: shards that
+exist are left as they are, and several processes may make shards of one folder.
+"""
+
+import argparse
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+from models.config import setting
+from service.improve import improve
+from service.instance import Instance
+from service.preferences import from_angles, weights
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExpertConfig:
+    """What the shards hold."""
+
+    instances: int = setting(200, "instances of a shard")
+    preferences: int = setting(40, "preferences of a shard, a tour of each instance for each")
+    least_cities: int = setting(20, "least cities of an instance; all of a shard have as many")
+    most_cities: int = setting(100, "most cities of an instance")
+    clustered: float = setting(0.25, "share of planes that are clustered; the others are uniform")
+    iterations_per_city: int = setting(50, "iterations of the search for each city")
+    seed: int = setting(1, "of the instances and the search")
+
+
+@dataclass(frozen=True, eq=False)
+class Shard:
+    """Cities (m, n, 4), preferences (k, 2) by ascending angle, and their tours (m, k, n)."""
+
+    cities: NDArray[np.float32]
+    preferences: NDArray[np.float32]
+    tours: NDArray[np.int16]
+
+    @classmethod
+    def load(cls, path: Path) -> Self:
+        """The shard at path."""
+        with np.load(path) as stored:
+            return cls(stored["cities"], stored["preferences"], stored["tours"])
+
+    def save(self, path: Path) -> None:
+        """Writes the shard whole or not at all."""
+        unfinished = path.with_suffix(".part.npz")
+        np.savez(unfinished, cities=self.cities, preferences=self.preferences, tours=self.tours)
+        unfinished.rename(path)
+
+
+def make_shard(config: ExpertConfig, number: int) -> Shard:
+    """The shard with that number."""
+    generator = np.random.default_rng([config.seed, number])
+    n = int(generator.integers(config.least_cities, config.most_cities + 1))
+    shares = (np.arange(config.preferences) + generator.random(config.preferences)) * 90
+    preferences = from_angles(shares / config.preferences)
+    cities = np.stack([_cities(n, config.clustered, generator) for _ in range(config.instances)])
+    iterations = config.iterations_per_city * n
+    tours = [expert_tours(each, preferences, iterations, number) for each in cities]
+    return Shard(
+        cities.astype(np.float32), preferences.astype(np.float32), np.stack(tours).astype(np.int16)
+    )
+
+
+def expert_tours(
+    cities: Array, preferences: Array, iterations: int, seed: int
+) -> NDArray[np.integer]:
+    """For each preference the best tour, under its weights, of the front that the search finds."""
+    nothing = np.empty((0, len(cities)), dtype=np.int64)
+    instance = Instance(coordinates=cities)
+    found = improve(instance, nothing, iterations=iterations, seed=seed)
+    costs = found.points @ weights(preferences).T  # (p, k)
+    return found.tours[costs.argmin(axis=0)]
+
+
+def _cities(n: int, clustered: float, generator: Generator) -> Array:
+    """Cities in the unit squares of both planes, each plane uniform or in Gaussian clusters."""
+    planes = []
+    for _ in range(2):
+        plane = generator.random((n, 2))
+        if generator.random() < clustered:
+            centres = generator.random((generator.integers(2, 8), 2))
+            plane = centres[generator.integers(len(centres), size=n)]
+            plane = plane + generator.normal(scale=0.07, size=(n, 2))
+            plane = (plane - plane.min(axis=0)) / np.ptp(plane, axis=0).max()
+        planes.append(plane)
+    return np.concatenate(planes, axis=1)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser("python -m models.expert", description=__doc__)
+    parser.add_argument("--out", type=Path, required=True, help="folder of the shards")
+    parser.add_argument("--shards", type=int, default=100, help="how many there shall be")
+    for each in fields(ExpertConfig):
+        option, meaning = "--" + each.name.replace("_", "-"), each.metadata["meaning"]
+        parser.add_argument(
+            option,
+            type=type(each.default),
+            default=each.default,
+            help=f"{meaning} (default {each.default})",
+        )
+    given = vars(parser.parse_args(arguments))
+    config = ExpertConfig(**{each.name: given[each.name] for each in fields(ExpertConfig)})
+    given["out"].mkdir(parents=True, exist_ok=True)
+    for number in tqdm(range(given["shards"]), unit="shard"):
+        path = given["out"] / f"shard-{number:05}.npz"
+        if not path.exists():
+            make_shard(config, number).save(path)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,87 @@
+"""Batches of expert tours to imitate, no two alike."""
+
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+import torch
+from jaxtyping import Float, Int
+from torch import Generator, Tensor
+
+from models.expert import Shard
+
+
+class Batch(NamedTuple):
+    """Instances, preferences by ascending angle, and for each a tour from several starts."""
+
+    cities: Float[Tensor, "b n 4"]
+    preferences: Float[Tensor, "k 2"]
+    tours: Int[Tensor, "b ks n"]
+
+
+class Labels:
+    """The shards in a folder; those that are added to it later are found too."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._load = lru_cache(maxsize=64)(Shard.load)
+
+    def batch(self, instances: int, preferences: int, starts: int, generator: Generator) -> Batch:
+        """A batch from one shard, mirrored, turned and begun at random.
+
+        Raises:
+            FileNotFoundError: the folder has no shard.
+        """
+        paths = sorted(self._folder.glob("shard-?????.npz"))
+        if not paths:
+            raise FileNotFoundError(f"{self._folder} must hold shards, got none")
+        shard = self._load(paths[_below(len(paths), generator)])
+        some = torch.randperm(len(shard.cities), generator=generator)[:instances].numpy()
+        members = _one_of_each_stretch(len(shard.preferences), preferences, generator).numpy()
+        batch = Batch(
+            torch.from_numpy(shard.cities[some]),
+            torch.from_numpy(shard.preferences[members]),
+            torch.from_numpy(shard.tours[some][:, members]).long(),
+        )
+        batch = batch._replace(cities=_mirrored(batch.cities, generator))
+        if _below(2, generator):
+            batch = _exchanged(batch)
+        tours = batch.tours.repeat_interleave(starts, dim=1)
+        return batch._replace(tours=_begun_anywhere(tours, generator))
+
+
+def _below(bound: int, generator: Generator) -> int:
+    return int(torch.randint(bound, (), generator=generator))
+
+
+def _one_of_each_stretch(count: int, wanted: int, generator: Generator) -> Int[Tensor, " k"]:
+    """Indices, one at random from each of `wanted` equal stretches of range(count)."""
+    shares = (torch.arange(wanted) + torch.rand(wanted, generator=generator)) / wanted
+    return (shares * count).long().clamp(max=count - 1)
+
+
+def _mirrored(cities: Float[Tensor, "b n 4"], generator: Generator) -> Float[Tensor, "b n 4"]:
+    """One of the eight symmetries of the square for each instance and plane."""
+    b, n, _ = cities.shape
+    planes = cities.view(b, n, 2, 2)
+    swap = torch.rand(b, 1, 2, 1, generator=generator) < 0.5
+    planes = torch.where(swap, planes.flip(-1), planes)
+    flip = torch.rand(b, 1, 2, 2, generator=generator) < 0.5
+    return torch.where(flip, 1 - planes, planes).view(b, n, 4)
+
+
+def _exchanged(batch: Batch) -> Batch:
+    """The same with the planes exchanged: preference a becomes 90 degrees minus a."""
+    return Batch(
+        batch.cities.roll(2, dims=-1),
+        batch.preferences.flip(0, 1),
+        batch.tours.flip(1),
+    )
+
+
+def _begun_anywhere(tours: Int[Tensor, "b r n"], generator: Generator) -> Int[Tensor, "b r n"]:
+    """Each tour from a city and in a direction at random."""
+    b, r, n = tours.shape
+    start = torch.randint(n, (b, r, 1), generator=generator)
+    step = 1 - 2 * torch.randint(2, (b, r, 1), generator=generator)
+    return tours.gather(-1, (start + step * torch.arange(n)) % n)
