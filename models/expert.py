@@ -8,7 +8,6 @@ exist are left as they are, and several processes may make shards of one folder.
 import argparse
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Self
 
 import numpy as np
 from numpy.random import Generator
@@ -45,7 +44,7 @@ class Shard:
     tours: NDArray[np.int16]
 
     @classmethod
-    def load(cls, path: Path) -> Self:
+    def load(cls, path: Path) -> "Shard":
         """The shard at path."""
         with np.load(path) as stored:
             return cls(stored["cities"], stored["preferences"], stored["tours"])
