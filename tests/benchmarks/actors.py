@@ -75,7 +75,7 @@ def _actor_row(name: str, threads: int, count: int) -> dict[str, Any]:
         str(n): measure(lambda instance: actor.tours(instance, preferences), n, count)
         for n in SIZES
     }
-    return {"digest": actor.digest, **row}
+    return {"digest": actor.facts.digest, **row}
 
 
 def _heuristic_row(construct: Callable[..., NDArray[np.int64]], count: int) -> dict[str, Any]:

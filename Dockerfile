@@ -1,0 +1,37 @@
+# Build: docker build -t paretour .
+# Run:   docker run --read-only -p 8000:8000 paretour
+
+FROM python:3.11-slim AS build
+WORKDIR /source
+COPY pyproject.toml README.md LICENSE ./
+COPY service ./service
+COPY models ./models
+COPY export ./export
+RUN python -m venv /opt/paretour
+RUN /opt/paretour/bin/pip install --no-cache-dir .
+# Compile the search now, outside the source, where the installed package would be shadowed.
+WORKDIR /opt/paretour
+ENV NUMBA_CACHE_DIR=/var/cache/paretour
+RUN ["/opt/paretour/bin/python", "-c", "from service.improve import warm_up; warm_up()"]
+
+# The same interpreter at the same path, so that the virtual environment works as it is.
+FROM python:3.11-slim
+COPY --from=build /opt/paretour /opt/paretour
+COPY --from=build --chown=10001:10001 /var/cache/paretour /var/cache/paretour
+# Nothing else is written: not even bytecode, which pip has compiled.
+ENV PATH=/opt/paretour/bin:$PATH \
+    PYTHONDONTWRITEBYTECODE=1 \
+    PYTHONUNBUFFERED=1 \
+    NUMBA_CACHE_DIR=/var/cache/paretour \
+    PARETOUR_HOST=0.0.0.0 \
+    PARETOUR_PORT=8000
+# A number, so that an orchestrator can tell that it is not root.
+USER 10001:10001
+# numba insists on a cache that it can write to. A volume stays writable where the root is not,
+# starts with what the build has compiled, and takes what another processor needs compiled anew.
+VOLUME /var/cache/paretour
+EXPOSE 8000
+HEALTHCHECK --interval=10s --timeout=3s --start-period=10s --retries=3 \
+    CMD ["python", "-c", "import os, urllib.request; urllib.request.urlopen('http://127.0.0.1:' + os.environ['PARETOUR_PORT'] + '/health/live', timeout=2)"]
+STOPSIGNAL SIGTERM
+CMD ["paretour", "serve"]

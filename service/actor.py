@@ -1,0 +1,102 @@
+"""Networks as they are shipped: one ONNX file each, cities and preferences in, tours out."""
+
+import hashlib
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import onnxruntime
+from numpy.typing import NDArray
+
+from service.instance import Instance
+
+Array = NDArray[np.float64]
+Tours = NDArray[np.int64]
+_METADATA = ("name", "config", "commit", "sizes", "angles", "figures", "inputs")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ActorFacts:
+    """Who an actor is: what its file says of itself, and the SHA-256 of that file, in hex.
+
+    `sizes` and `angles` are what it was trained on, `figures` what was measured of it, `inputs`
+    the kind of instance that it reads.
+    """
+
+    name: str
+    digest: str
+    commit: str
+    inputs: str
+    sizes: Any
+    angles: Any
+    config: Any
+    figures: Any
+
+
+class Actor:
+    """An ONNX file that builds a tour for every preference in one inference call.
+
+    Raises:
+        ValueError: the file lacks metadata.
+    """
+
+    def __init__(self, path: Path, threads: int) -> None:
+        content = path.read_bytes()
+        self._session = onnxruntime.InferenceSession(
+            content, _options(threads), providers=["CPUExecutionProvider"]
+        )
+        self._run_options = onnxruntime.RunOptions()
+        # Else what the largest instance needed is never given back (microsoft/onnxruntime#11627).
+        shrink = ("memory.enable_memory_arena_shrinkage", "cpu:0")
+        self._run_options.add_run_config_entry(*shrink)
+        metadata = self._session.get_modelmeta().custom_metadata_map
+        if missing := [name for name in _METADATA if name not in metadata]:
+            raise ValueError(f"the metadata of {path} must have {', '.join(missing)}")
+        self.facts = ActorFacts(
+            digest=hashlib.sha256(content).hexdigest(),
+            **{name: metadata[name] for name in ("name", "commit", "inputs")},
+            **{name: _decoded(metadata[name]) for name in ("sizes", "angles", "config", "figures")},
+        )
+
+    def tours(self, instance: Instance, preferences: Array) -> Tours:
+        """One tour, a row of shape (n,), for each preference, a row of shape (k, 2)."""
+        inputs = {
+            "cities": instance.scaled_coordinates.astype(np.float32),
+            "preferences": preferences.astype(np.float32),
+        }
+        (tours,) = self._session.run(["tours"], inputs, self._run_options)
+        if not (np.sort(tours, axis=1) == np.arange(instance.n)).all():
+            raise RuntimeError(f"{self.facts.name} built a tour that is not a permutation")
+        return tours
+
+
+def load_actors(directory: Path, threads: int) -> dict[str, Actor]:
+    """The actors in a directory, by name.
+
+    Raises:
+        ValueError: there is none, or two have the same name.
+    """
+    actors = [Actor(path, threads) for path in sorted(directory.glob("*.onnx"))]
+    by_name = {actor.facts.name: actor for actor in actors}
+    if not actors or len(by_name) < len(actors):
+        names = [actor.facts.name for actor in actors]
+        raise ValueError(f"{directory} must hold ONNX files of different names, got {names}")
+    return by_name
+
+
+def _options(threads: int) -> onnxruntime.SessionOptions:
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = threads
+    options.inter_op_num_threads = 1
+    # Threads that spin while they wait take the cores from the plans beside them.
+    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
+    return options
+
+
+def _decoded(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError:
+        return text

@@ -1,0 +1,93 @@
+"""The service over HTTP: every path, and what any of them answers when it refuses."""
+
+from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager
+from dataclasses import asdict
+from typing import Any
+
+from fastapi import APIRouter, FastAPI
+from starlette.middleware import Middleware
+from starlette.responses import Response
+
+from service.bodies import json_response
+from service.fronts import FrontRoutes, KeptFront, NamedActor
+from service.problems import REFUSALS, Problem, RequestIds, answer_refusal, responses
+from service.schemas import ActorsAnswer, HealthAnswer, Limits
+from service.store import Store
+from service.workers import Workers
+
+
+def create_app(
+    actors: Mapping[str, NamedActor],
+    store: Store[KeptFront],
+    workers: Workers,
+    limits: Limits,
+    version: str,
+) -> FastAPI:
+    """The application. It closes the workers when it shuts down."""
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        yield
+        workers.close()
+
+    app = _Documented(
+        title="Paretour",
+        summary="Pareto fronts of tours under two objectives",
+        version=version,
+        lifespan=lifespan,
+        middleware=[Middleware(RequestIds)],
+        exception_handlers=dict.fromkeys(REFUSALS, answer_refusal),
+        redirect_slashes=False,
+        redoc_url=None,
+    )
+    app.include_router(FrontRoutes(actors, store, workers, limits).router())
+    app.include_router(_ServiceRoutes(actors, workers).router())
+    return app
+
+
+class _Documented(FastAPI):
+    """An application whose OpenAPI document knows the problem document."""
+
+    def openapi(self) -> dict[str, Any]:
+        document = super().openapi()
+        document["components"]["schemas"].setdefault("Problem", _problem_schema())
+        return document
+
+
+def _problem_schema() -> dict[str, Any]:
+    schema = Problem.model_json_schema()
+    schema["properties"]["errors"] = {"type": "array", "items": schema.pop("$defs")["Fault"]}
+    return schema
+
+
+class _ServiceRoutes:
+    """What the service says of itself."""
+
+    def __init__(self, actors: Mapping[str, NamedActor], workers: Workers) -> None:
+        self._actors = actors
+        self._workers = workers
+
+    def router(self) -> APIRouter:
+        """The paths, with what the OpenAPI document says of them."""
+        router = APIRouter(tags=["service"])
+        router.get("/actors", response_model=ActorsAnswer)(self.actors)
+        router.get("/health/live", response_model=HealthAnswer)(self.live)
+        router.get("/health/ready", response_model=HealthAnswer, responses=responses(503))(
+            self.ready
+        )
+        return router
+
+    async def actors(self) -> Response:
+        """The networks to choose from."""
+        facts = [asdict(actor.facts) for _, actor in sorted(self._actors.items())]
+        return json_response({"actors": facts})
+
+    async def live(self) -> Response:
+        """Whether the process answers."""
+        return json_response({"status": "live"})
+
+    async def ready(self) -> Response:
+        """Whether the process takes work."""
+        self._workers.check_open()
+        return json_response({"status": "ready"})

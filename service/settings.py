@@ -1,0 +1,45 @@
+"""What an operator can set, by environment variables PARETOUR_*. Nothing else reads them."""
+
+import os
+from pathlib import Path
+
+from pydantic import Field
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from service.schemas import Limits
+
+
+def _cores() -> int:
+    return min(len(os.sched_getaffinity(0)), 4)
+
+
+class Settings(BaseSettings):
+    """Every setting; the variable is the field's name in capitals after PARETOUR_."""
+
+    model_config = SettingsConfigDict(env_prefix="PARETOUR_", frozen=True)
+
+    host: str = Field("127.0.0.1", description="address to listen on")
+    port: int = Field(8000, ge=0, le=65535, description="port to listen on; 0 takes a free one")
+    actors: Path = Field(
+        Path(__file__).parent / "actors", description="directory of the networks, ONNX files"
+    )
+    workers: int = Field(default_factory=_cores, ge=1, description="plans made at a time")
+    threads: int = Field(default_factory=_cores, ge=1, description="threads of one inference call")
+    queue: int = Field(16, ge=0, description="requests that may wait for a worker")
+    max_body_bytes: int = Field(2**20, ge=1, description="the longest request body")
+    max_cities: int = Field(1000, ge=1, description="the most cities of an instance")
+    max_preferences: int = Field(200, ge=1, description="the most preferences of a request")
+    max_size: int = Field(1000, ge=1, description="the most tours that a request may ask for")
+    drain_seconds: int = Field(20, ge=0, description="time to finish what is under way at SIGTERM")
+    store_entries: int = Field(256, ge=1, description="fronts kept for later questions")
+    store_seconds: float = Field(3600.0, gt=0, description="how long a front is kept")
+
+    @property
+    def limits(self) -> Limits:
+        """What a request may ask for."""
+        return Limits(
+            body_bytes=self.max_body_bytes,
+            cities=self.max_cities,
+            preferences=self.max_preferences,
+            size=self.max_size,
+        )

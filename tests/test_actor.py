@@ -1,0 +1,108 @@
+"""The released network, as the service runs it."""
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+import onnx
+import pytest
+from onnx import TensorProto, helper
+
+from service.actor import Actor, load_actors
+from service.instance import Instance
+from service.preferences import fan, from_angles
+from service.settings import Settings
+
+RELEASED = Settings().actors / "pa-one.onnx"
+METADATA = {
+    "name": "broken",
+    "commit": "0000000",
+    "inputs": "coordinates",
+    "sizes": "[20, 60]",
+    "angles": "[0, 90]",
+    "config": "{}",
+    "figures": "{}",
+}
+
+
+@pytest.fixture(scope="module")
+def actor() -> Actor:
+    return Actor(RELEASED, threads=1)
+
+
+def always_city_0(path: Path, metadata: dict[str, str]) -> Path:
+    """A file that answers every preference with city 0 over and over."""
+    graph = helper.make_graph(
+        [
+            helper.make_node("Transpose", ["cities"], ["turned"]),
+            helper.make_node("MatMul", ["preferences", "nothing"], ["wide"]),
+            helper.make_node("MatMul", ["wide", "turned"], ["zeros"]),
+            helper.make_node("Cast", ["zeros"], ["tours"], to=TensorProto.INT64),
+        ],
+        "broken",
+        [
+            helper.make_tensor_value_info("cities", TensorProto.FLOAT, ["n", 4]),
+            helper.make_tensor_value_info("preferences", TensorProto.FLOAT, ["k", 2]),
+        ],
+        [helper.make_tensor_value_info("tours", TensorProto.INT64, ["k", "n"])],
+        [helper.make_tensor("nothing", TensorProto.FLOAT, [2, 4], [0.0] * 8)],
+    )
+    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 20)], ir_version=10)
+    helper.set_model_props(model, metadata)
+    onnx.save(model, path)
+    return path
+
+
+@pytest.mark.parametrize("n", [3, 7, 40, 200])
+@pytest.mark.parametrize("k", [1, 20])
+def test_every_preference_gets_a_tour_of_all_cities(actor: Actor, n: int, k: int) -> None:
+    instance = Instance(coordinates=np.random.default_rng(n).random((n, 4)))
+    tours = actor.tours(instance, from_angles(fan(k)))
+    assert (tours.shape, tours.dtype) == ((k, n), np.int64)
+    np.testing.assert_array_equal(np.sort(tours, axis=1), np.tile(np.arange(n), (k, 1)))
+
+
+def test_coincident_cities_are_fine(actor: Actor) -> None:
+    tours = actor.tours(Instance(coordinates=np.ones((5, 4))), from_angles(fan(3)))
+    assert tours.shape == (3, 5)
+
+
+def test_the_unit_of_the_coordinates_does_not_matter(actor: Actor) -> None:
+    cities = np.random.default_rng(1).integers(0, 1024, (30, 4)).astype(np.float64)
+    unit = np.array([2.0**-10, 2.0**-10, 2.0**10, 2.0**10])
+    preferences = from_angles(fan(5))
+    tours = actor.tours(Instance(coordinates=cities), preferences)
+    others = actor.tours(Instance(coordinates=cities * unit), preferences)
+    np.testing.assert_array_equal(tours, others)
+
+
+def test_the_digest_is_that_of_the_file(actor: Actor) -> None:
+    assert actor.facts.digest == hashlib.sha256(RELEASED.read_bytes()).hexdigest()
+
+
+def test_the_file_says_what_it_is(actor: Actor) -> None:
+    assert actor.facts.name == "pa-one"
+    assert actor.facts.inputs == "coordinates"
+    assert actor.facts.commit
+    assert actor.facts.config
+    assert len(actor.facts.sizes) == len(actor.facts.angles) == 2
+
+
+def test_a_tour_that_is_no_permutation_is_a_bug_and_never_an_answer(tmp_path: Path) -> None:
+    broken = Actor(always_city_0(tmp_path / "broken.onnx", METADATA), threads=1)
+    with pytest.raises(RuntimeError, match="broken built a tour that is not a permutation"):
+        broken.tours(Instance(coordinates=np.eye(4)), from_angles(fan(2)))
+
+
+def test_a_file_without_metadata_is_refused(tmp_path: Path) -> None:
+    path = always_city_0(tmp_path / "anonymous.onnx", {"name": "anonymous"})
+    with pytest.raises(ValueError, match="must have config, commit, sizes"):
+        Actor(path, threads=1)
+
+
+def test_actors_are_loaded_by_name(tmp_path: Path) -> None:
+    always_city_0(tmp_path / "any.onnx", METADATA)
+    assert list(load_actors(tmp_path, threads=1)) == ["broken"]
+    always_city_0(tmp_path / "same.onnx", METADATA)
+    with pytest.raises(ValueError, match="different names"):
+        load_actors(tmp_path, threads=1)

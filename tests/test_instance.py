@@ -1,0 +1,104 @@
+"""What an instance is, and what it refuses to be."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from service.instance import Instance, InvalidInstance, tour_lengths
+
+COORDINATES = arrays(
+    np.float64, st.tuples(st.integers(1, 6), st.just(4)), elements=st.integers(-5, 5)
+)
+SQUARE = np.array([[0, 0, 0, 0], [3, 0, 0, 1], [3, 4, 2, 1], [0, 4, 2, 0]], dtype=np.float64)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({}, "either coordinates or matrices"),
+        ({"coordinates": SQUARE, "matrices": np.zeros((2, 4, 4))}, "and not both"),
+        ({"coordinates": np.zeros((0, 4))}, r"n at least 1, got \(0, 4\)"),
+        ({"coordinates": np.zeros((3, 2))}, r"shape \(n, 4\) .* got \(3, 2\)"),
+        ({"coordinates": np.zeros(4)}, r"got \(4,\)"),
+        ({"coordinates": np.array([[0, 0, 0, np.nan]])}, "coordinates must be finite"),
+        ({"coordinates": np.array([[0, 0, 0, np.inf]])}, "coordinates must be finite"),
+        # Each is finite; their difference is not.
+        ({"coordinates": np.array([[1e308] * 4, [-1e308] * 4])}, "length finite"),
+        ({"matrices": np.zeros((2, 3, 4))}, r"shape \(2, n, n\) .* got \(2, 3, 4\)"),
+        ({"matrices": np.zeros((1, 3, 3))}, r"got \(1, 3, 3\)"),
+        ({"matrices": np.zeros((2, 0, 0))}, "n at least 1"),
+        ({"matrices": -np.ones((2, 2, 2))}, "not be negative, got -1"),
+        ({"matrices": np.full((2, 2, 2), np.inf)}, "costs must be finite"),
+        ({"matrices": np.full((2, 2, 2), 1e308)}, r"got costs up to 1e\+308"),
+    ],
+)
+def test_what_is_not_an_instance_is_refused(given: dict[str, np.ndarray], sentence: str) -> None:
+    with pytest.raises(InvalidInstance, match=sentence):
+        Instance(**given)
+
+
+def test_the_scale_is_the_longer_side_of_each_plane() -> None:
+    assert Instance(coordinates=SQUARE).scale.tolist() == [4, 2]
+
+
+def test_the_scale_of_matrices_is_their_largest_cost_beside_the_diagonal() -> None:
+    matrices = np.array([[[9, 2], [1, 9]], [[0, 0], [0, 0]]])
+    assert Instance(matrices=matrices).scale.tolist() == [2, 1]
+
+
+def test_the_scale_of_coincident_cities_is_one() -> None:
+    assert Instance(coordinates=np.full((5, 4), 7.0)).scale.tolist() == [1, 1]
+
+
+@given(COORDINATES)
+def test_scaled_coordinates_fill_the_unit_square_and_no_more(coordinates: np.ndarray) -> None:
+    scaled = Instance(coordinates=coordinates).scaled_coordinates
+    assert scaled.min() == 0
+    longer_sides = scaled.max(axis=0).reshape(2, 2).max(axis=1)
+    assert set(longer_sides) <= {0.0, 1.0}
+
+
+def test_matrices_have_no_scaled_coordinates() -> None:
+    with pytest.raises(InvalidInstance, match="no coordinates"):
+        _ = Instance(matrices=np.ones((2, 3, 3))).scaled_coordinates
+
+
+def test_a_tour_is_closed() -> None:
+    lengths = tour_lengths(Instance(coordinates=SQUARE), np.array([[0, 1, 2, 3], [0, 2, 1, 3]]))
+    np.testing.assert_allclose(lengths[0], [3 + 4 + 3 + 4, 1 + 2 + 1 + 2])
+    np.testing.assert_allclose(lengths[1], [5 + 4 + 5 + 4, 5**0.5 + 2 + 5**0.5 + 2])
+
+
+@given(COORDINATES, st.randoms(use_true_random=False))
+def test_coordinates_and_their_distances_give_the_same_lengths(
+    coordinates: np.ndarray, random: np.random.Generator
+) -> None:
+    steps = coordinates[:, None] - coordinates
+    matrices = np.stack([np.hypot(steps[..., 0], steps[..., 1]), np.hypot(*steps.T[2:]).T])
+    tour = list(range(len(coordinates)))
+    random.shuffle(tour)
+    tours = np.array([tour])
+    by_coordinates = tour_lengths(Instance(coordinates=coordinates), tours)
+    by_matrices = Instance(matrices=matrices)
+    np.testing.assert_allclose(by_coordinates, tour_lengths(by_matrices, tours))
+    assert by_matrices.symmetric
+
+
+def test_the_direction_of_a_tour_matters_where_costs_are_asymmetric() -> None:
+    matrices = np.array([[[0, 1, 5], [5, 0, 1], [1, 5, 0]], [[0, 1, 1], [1, 0, 1], [1, 1, 0]]])
+    instance = Instance(matrices=matrices)
+    assert not instance.symmetric
+    lengths = tour_lengths(instance, np.array([[0, 1, 2], [0, 2, 1]]))
+    assert lengths.tolist() == [[3, 3], [15, 3]]
+
+
+def test_an_instance_keeps_its_own_copy() -> None:
+    given = SQUARE.copy()
+    instance = Instance(coordinates=given)
+    given[0] = 99
+    assert instance.coordinates is not None
+    assert instance.coordinates[0].tolist() == [0, 0, 0, 0]
+    with pytest.raises(ValueError, match="read-only"):
+        instance.coordinates[0] = 99

@@ -1,0 +1,127 @@
+"""From an instance to its front: properties against brute force."""
+
+from itertools import permutations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from service.actor import Actor
+from service.front import hypervolume, nondominated
+from service.instance import Instance, tour_lengths
+from service.planner import Demand, Front, plan
+from service.preferences import fan
+from service.settings import Settings
+
+SMALL = (
+    st.integers(1, 7)
+    .flatmap(lambda n: arrays(np.float64, (n, 4), elements=st.integers(0, 4)))
+    .map(lambda coordinates: Instance(coordinates=coordinates))
+)
+
+
+class Everything:
+    """A constructor that builds every tour there is, whatever the preferences."""
+
+    def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:  # noqa: ARG002
+        return np.array(list(permutations(range(instance.n))))
+
+
+@pytest.fixture(scope="module")
+def actor() -> Actor:
+    return Actor(Settings().actors / "pa-one.onnx", threads=1)
+
+
+def random_instance(n: int) -> Instance:
+    return Instance(coordinates=np.random.default_rng(n).random((n, 4)))
+
+
+def check(front: Front, instance: Instance) -> None:
+    """What holds of every front."""
+    n = instance.n
+    np.testing.assert_array_equal(np.sort(front.tours, axis=1), [range(n)] * len(front.tours))
+    np.testing.assert_allclose(front.points, tour_lengths(instance, front.tours))
+    assert len(nondominated(front.points)) == len(front.points)
+    assert (np.diff(front.points[:, 0]) > 0).all()
+    assert front.hypervolume == hypervolume(front.points, front.reference_point)
+
+
+@given(SMALL)
+def test_of_every_tour_the_front_keeps_the_nondominated(instance: Instance) -> None:
+    front = plan(Everything(), instance, Demand(angles=fan(3), size=1000))
+    check(front, instance)
+    every = tour_lengths(instance, Everything().tours(instance, fan(1)))
+    kept = every[nondominated(every)]
+    np.testing.assert_allclose(front.points, kept)
+    assert front.found == len(kept)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 6, 7, 8])
+def test_no_front_is_better_than_brute_force(actor: Actor, n: int) -> None:
+    instance = random_instance(n)
+    front = plan(actor, instance, Demand(angles=fan(20), size=100))
+    check(front, instance)
+    best = tour_lengths(instance, Everything().tours(instance, fan(1)))
+    slack = 1e-9
+    for point in front.points:
+        assert (best <= point + slack).all(axis=1).any()
+    assert front.hypervolume <= hypervolume(best, front.reference_point) + slack
+
+
+@pytest.mark.parametrize("size", [1, 2, 5])
+def test_a_larger_front_is_cut_to_size(size: int) -> None:
+    instance = random_instance(6)
+    whole = plan(Everything(), instance, Demand(angles=fan(3), size=1000))
+    cut = plan(Everything(), instance, Demand(angles=fan(3), size=size))
+    check(cut, instance)
+    assert len(cut.points) == size < whole.found == cut.found
+    assert cut.hypervolume <= whole.hypervolume
+
+
+@settings(max_examples=20)
+@given(st.data())
+def test_every_tour_is_reported_from_the_start(data: st.DataObject) -> None:
+    instance = data.draw(SMALL)
+    start = data.draw(st.integers(0, instance.n - 1))
+    front = plan(Everything(), instance, Demand(angles=fan(3), size=1000, start=start))
+    assert (front.tours[:, 0] == start).all()
+    check(front, instance)
+
+
+@pytest.mark.parametrize("n", [1, 2])
+def test_one_or_two_cities_are_a_front_of_one_tour(actor: Actor, n: int) -> None:
+    front = plan(actor, random_instance(n), Demand(angles=fan(3), size=10, start=n - 1))
+    assert front.tours.tolist() == [[n - 1, 0][:n]]
+
+
+def test_coincident_cities_are_one_point_at_the_origin(actor: Actor) -> None:
+    front = plan(actor, Instance(coordinates=np.ones((4, 4))), Demand(angles=fan(3), size=10))
+    assert front.points.tolist() == [[0, 0]]
+    assert (front.hypervolume, front.angles.tolist()) == (1, [45])
+    assert front.reference_point.tolist() == [4, 4]
+
+
+def test_the_reference_point_is_n_times_the_scale_unless_given() -> None:
+    instance = random_instance(5)
+    front = plan(Everything(), instance, Demand(angles=fan(1), size=9))
+    np.testing.assert_array_equal(front.reference_point, 5 * instance.scale)
+    point = np.array([3.0, 4.0])
+    front = plan(Everything(), instance, Demand(angles=fan(1), size=9, reference_point=point))
+    np.testing.assert_array_equal(front.reference_point, point)
+
+
+def test_the_nearest_tour_is_nearest_in_scaled_objectives() -> None:
+    points = np.array([[1.0, 200.0], [2.0, 100.0], [4.0, 50.0]])
+    front = Front(
+        tours=np.tile(np.arange(3), (3, 1)),
+        points=points,
+        found=3,
+        scale=np.array([1.0, 50.0]),
+        reference_point=np.array([10.0, 1000.0]),
+        terminated="converged",
+        timings={},
+    )
+    assert front.angles[1] == pytest.approx(45)
+    assert [front.nearest(angle) for angle in (0, 45, 90)] == [2, 1, 0]

@@ -1,0 +1,63 @@
+"""Settings come from the environment, and wrong ones stop the server from starting."""
+
+import pytest
+from pydantic import ValidationError
+
+from service.__main__ import main
+from service.settings import Settings
+
+
+def test_every_setting_has_a_default_and_says_what_it_is() -> None:
+    Settings()
+    assert all(field.description for field in Settings.model_fields.values())
+
+
+def test_a_setting_is_read_from_its_variable(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PARETOUR_MAX_CITIES", "7")
+    assert Settings().limits.cities == 7
+
+
+@pytest.mark.parametrize(
+    ("variable", "value"),
+    [
+        ("PARETOUR_PORT", "65536"),
+        ("PARETOUR_PORT", "tcp://10.0.0.1:8000"),
+        ("PARETOUR_WORKERS", "0"),
+        ("PARETOUR_THREADS", "0"),
+        ("PARETOUR_QUEUE", "-1"),
+        ("PARETOUR_STORE_SECONDS", "0"),
+        ("PARETOUR_MAX_CITIES", "many"),
+    ],
+)
+def test_a_wrong_setting_is_refused(
+    monkeypatch: pytest.MonkeyPatch, variable: str, value: str
+) -> None:
+    monkeypatch.setenv(variable, value)
+    with pytest.raises(ValidationError):
+        Settings()
+
+
+def test_the_command_names_the_setting_that_is_wrong(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PARETOUR_QUEUE", "-1")
+    with pytest.raises(SystemExit) as stopped:
+        main(["serve"])
+    assert stopped.value.code == 2
+    assert "queue: Input should be greater than or equal to 0, got '-1'" in capsys.readouterr().err
+
+
+def test_an_option_of_the_command_is_a_setting(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["serve", "--workers", "0"])
+    assert "workers: Input should be greater than or equal to 1" in capsys.readouterr().err
+
+
+def test_the_command_needs_an_actor(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: object
+) -> None:
+    monkeypatch.setenv("PARETOUR_ACTORS", str(tmp_path))
+    with pytest.raises(SystemExit) as stopped:
+        main(["serve"])
+    assert stopped.value.code == 2
+    assert f"{tmp_path} must hold ONNX files" in capsys.readouterr().err
