@@ -14,6 +14,7 @@ from pydantic import ValidationError
 
 from service.actor import load_actors
 from service.app import create_app
+from service.improve import warm_up
 from service.settings import Settings
 from service.store import Store
 from service.workers import Workers
@@ -47,7 +48,7 @@ def build(settings: Settings) -> FastAPI:
     return create_app(
         load_actors(settings.actors, settings.threads),
         Store(settings.store_entries, settings.store_seconds),
-        Workers(settings.workers, settings.queue),
+        Workers(settings.workers, settings.queue, warm_up),
         settings.limits,
         _version(),
     )

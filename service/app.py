@@ -88,6 +88,7 @@ class _ServiceRoutes:
         return json_response({"status": "live"})
 
     async def ready(self) -> Response:
-        """Whether the process takes work."""
+        """Whether the process takes work of every kind."""
         self._workers.check_open()
+        self._workers.check_warm()
         return json_response({"status": "ready"})

@@ -1,11 +1,13 @@
 """The paths that plan fronts and answer questions about them."""
 
+import asyncio
 import time
 import uuid
-from collections.abc import Mapping
+from collections.abc import Coroutine, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Annotated, Any, NoReturn, Protocol
+from threading import Event
+from typing import Annotated, Any, NoReturn, Protocol, TypeVar
 
 import numpy as np
 from fastapi import APIRouter, Query
@@ -27,6 +29,9 @@ from service.schemas import (
 )
 from service.store import Expired, Store, Unknown
 from service.workers import Workers
+
+T = TypeVar("T")
+_GLANCE = 0.1  # seconds between two looks at whether the client is still there
 
 
 class NamedActor(Constructor, Protocol):
@@ -54,6 +59,7 @@ class KeptFront:
             "front": [self._item(index) for index in range(len(front.points))],
             "points": front.found,
             "hypervolume": front.hypervolume,
+            "hypervolume_bound": front.bound,
             "reference_point": front.reference_point.tolist(),
             "scale": front.scale.tolist(),
             "actor": {"name": self.actor.name, "digest": self.actor.digest},
@@ -114,8 +120,10 @@ class FrontRoutes:
         body = await json_body(request, self._limits.body_bytes)
         asked = parse_front_request(body, self._limits)
         actor = self._actor(asked.actor)
-        kept = KeptFront(uuid.uuid4().hex, await self._plan(actor, asked), actor.facts)
-        self._store.put(kept.id, kept)
+        front = await self._plan(request, actor, asked)
+        kept = KeptFront(uuid.uuid4().hex, front, actor.facts)
+        if front.terminated != "cancelled":
+            self._store.put(kept.id, kept)
         return json_response(kept.answer())
 
     async def front(self, id: str) -> Response:  # noqa: A002
@@ -133,9 +141,14 @@ class FrontRoutes:
         fault = Fault(pointer="/actor", detail=sentence)
         raise Refusal(422, "unknown-actor", sentence, errors=[fault])
 
-    async def _plan(self, actor: NamedActor, asked: FrontRequest) -> Front:
+    async def _plan(self, request: Request, actor: NamedActor, asked: FrontRequest) -> Front:
+        demand = asked.demand()
+        if demand.needs_compiled_code:
+            self._workers.check_warm()
         asked_at = time.perf_counter()
-        front = await self._workers.run(partial(plan, actor, asked.instance(), asked.demand()))
+        stop = Event()
+        work = partial(plan, actor, asked.instance(), demand, stop.is_set)
+        front = await _while_wanted(request, self._workers.run(work), stop)
         total = 1000 * (time.perf_counter() - asked_at)
         waited = total - sum(front.timings.values())
         # Kept fronts are what fills the memory: no city number needs eight bytes.
@@ -153,6 +166,24 @@ class FrontRoutes:
         except Expired:
             sentence = f"front {_named(front)} was kept for a while and is no more: plan it again"
             raise Refusal(410, "front-expired", sentence) from None
+
+
+async def _while_wanted(request: Request, work: Coroutine[Any, Any, T], stop: Event) -> T:
+    """What the work returns; it is told to stop as soon as the client has gone away."""
+    working = asyncio.ensure_future(work)
+    leaving = asyncio.ensure_future(_left(request))
+    try:
+        await asyncio.wait((working, leaving), return_when=asyncio.FIRST_COMPLETED)
+        stop.set()
+        return await working
+    finally:
+        stop.set()
+        leaving.cancel()
+
+
+async def _left(request: Request) -> None:
+    while not await request.is_disconnected():
+        await asyncio.sleep(_GLANCE)
 
 
 def _check_prefer(request: Request) -> None:

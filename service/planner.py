@@ -1,6 +1,7 @@
 """The middle of the program: from an instance to its front, with no HTTP in it."""
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, Protocol
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.front import hypervolume, nondominated
-from service.improve import best_subset
+from service.improve import best_subset, hypervolume_bound, improve
 from service.instance import Instance, tour_lengths
 from service.preferences import angles, from_angles
 
@@ -29,21 +30,32 @@ class Constructor(Protocol):
 class Demand:
     """What is asked of a front: angles in degrees, shape (k,), and how it is to be reported.
 
-    Without a reference point it is n times the scale: where every step costs a whole unit.
+    The search that improves it has `time_limit` seconds; at 0 there is none. The caller may bring
+    tours, shape (m, n), that the front shall dominate or equal. Without a reference point it is
+    n times the scale: where every step costs a whole unit.
     """
 
     angles: Array
     size: int
     start: int = 0
     reference_point: Array | None = None
+    time_limit: float = 0.0
+    initial_tours: Tours | None = None
+    bound: bool = False
+    seed: int = 0
+
+    @property
+    def needs_compiled_code(self) -> bool:
+        """Whether more than the network is asked for."""
+        return self.time_limit > 0 or self.bound or len(self.angles) > self.size
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Front:
     """Nondominated tours, shape (m, n), and their points, shape (m, 2), by ascending first length.
 
-    Of `found` nondominated tours these are the ones that were kept. Times are in milliseconds, by
-    phase of the work.
+    Of `found` nondominated tours these are the ones that were kept. No front of the instance has
+    a hypervolume above `bound`, where that was asked for. Times are in milliseconds, by phase.
     """
 
     tours: NDArray[np.integer]
@@ -53,6 +65,7 @@ class Front:
     reference_point: Array
     terminated: Termination
     timings: dict[str, float]
+    bound: float | None = None
 
     @property
     def n(self) -> int:
@@ -74,25 +87,58 @@ class Front:
         return int(np.abs(self.angles - angle).argmin())
 
 
-def plan(constructor: Constructor, instance: Instance, demand: Demand) -> Front:
-    """The best front found for the instance."""
+def plan(
+    constructor: Constructor,
+    instance: Instance,
+    demand: Demand,
+    stop: Callable[[], bool] = lambda: False,
+) -> Front:
+    """The best front found for the instance, within the time limit and until told to stop."""
     clock = _Clock()
     tours = _constructed(constructor, instance, demand.angles)
+    if demand.initial_tours is not None:
+        tours = np.concatenate((tours, demand.initial_tours))
     clock.ends("construction")
-    points = tour_lengths(instance, tours)
-    front = nondominated(points)
     reference_point = _reference_point(instance, demand)
-    kept = front[best_subset(points[front], demand.size, reference_point)]
+    tours, points, terminated = _improved(instance, tours, demand, reference_point, stop)
+    clock.ends("improvement")
+    kept = best_subset(points, demand.size, reference_point)
     clock.ends("selection")
+    bound = hypervolume_bound(instance, reference_point) if demand.bound else None
+    clock.ends("bound")
     return Front(
         tours=_starting_at(demand.start, tours[kept]),
         points=points[kept],
-        found=len(front),
+        found=len(points),
         scale=instance.scale,
         reference_point=reference_point,
-        terminated="converged",
+        terminated=terminated,
         timings=clock.phases,
+        bound=bound,
     )
+
+
+def _improved(
+    instance: Instance,
+    tours: Tours,
+    demand: Demand,
+    reference_point: Array,
+    stop: Callable[[], bool],
+) -> tuple[Tours, Array, Termination]:
+    """The nondominated tours, their points, and how the search for more of them ended."""
+    if demand.time_limit == 0:
+        points = tour_lengths(instance, tours)
+        front = nondominated(points)
+        return tours[front], points[front], "converged"
+    found = improve(
+        instance,
+        tours,
+        deadline=time.monotonic() + demand.time_limit,
+        seed=demand.seed,
+        stop=stop,
+        reference_point=reference_point,
+    )
+    return found.tours.astype(np.int64), found.points, found.terminated
 
 
 def _constructed(constructor: Constructor, instance: Instance, degrees: Array) -> Tours:

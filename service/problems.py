@@ -21,7 +21,7 @@ from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.instance import InvalidInstance
-from service.workers import Busy, Closed
+from service.workers import Busy, Closed, Cold
 
 MEDIA_TYPE = "application/problem+json"
 _SAFE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
@@ -115,7 +115,15 @@ async def answer_refusal(request: Request, error: Exception) -> Response:
     return response
 
 
-REFUSALS = (Refusal, HTTPException, RequestValidationError, InvalidInstance, Busy, Closed)
+_UNAVAILABLE: dict[type[Exception], tuple[str, str]] = {
+    Busy: ("queue-full", "the queue must have a free place, and all are taken: ask again"),
+    Closed: ("shutting-down", "the server is shutting down"),
+    Cold: (
+        "warming-up",
+        "the search is being compiled, once: ask again, or for the network alone with time_limit 0",
+    ),
+}
+REFUSALS = (Refusal, HTTPException, RequestValidationError, InvalidInstance, Busy, Closed, Cold)
 
 
 class RequestIds:
@@ -169,11 +177,8 @@ def _as_refusal(request: Request, error: Exception) -> Refusal:
             return error
         case RequestValidationError():
             return refused_by(error.errors(), parameters=True)
-        case Busy():
-            sentence = "the queue must have a free place, and all are taken: ask again"
-            return Refusal(503, "queue-full", sentence)
-        case Closed():
-            return Refusal(503, "shutting-down", "the server is shutting down")
+        case Busy() | Closed() | Cold():
+            return Refusal(503, *_UNAVAILABLE[type(error)])
         case HTTPException(status_code=404):
             return Refusal(404, "no-such-path", f"there is nothing at {path}; /docs says what is")
         case HTTPException(status_code=405, headers=headers):

@@ -48,6 +48,7 @@ class Limits:
     cities: int
     preferences: int
     size: int
+    seconds: float
 
 
 class FrontRequest(BaseModel):
@@ -71,7 +72,10 @@ class FrontRequest(BaseModel):
         default=100, description="angles in degrees to look along, or how many, evenly spread"
     )
     time_limit: float = Field(
-        default=0.0, ge=0, allow_inf_nan=False, description="seconds of improvement"
+        default=1.0,
+        ge=0,
+        allow_inf_nan=False,
+        description="seconds of improvement after the network; 0 asks for its tours alone",
     )
     size: Count = Field(default=100, description="the most tours to return")
     start: Whole = Field(default=0, description="the city that every tour is reported from")
@@ -80,6 +84,12 @@ class FrontRequest(BaseModel):
         min_length=2,
         max_length=2,
         description="of the hypervolume; by default the number of cities times the scale",
+    )
+    initial_tours: Annotated[list[list[Whole]], Field(min_length=1, fail_fast=True)] = Field(
+        default_factory=list, description="tours that the front shall dominate or equal"
+    )
+    bound: bool = Field(
+        default=False, description="whether to prove how large any front's hypervolume can be"
     )
     actor: str = Field(default="pa-one", description="the network that builds the tours")
     seed: Whole = Field(default=0, description="of everything random in the improvement")
@@ -96,6 +106,10 @@ class FrontRequest(BaseModel):
             size=self.size,
             start=self.start,
             reference_point=np.array(self.reference_point) if self.reference_point else None,
+            time_limit=self.time_limit,
+            initial_tours=np.array(self.initial_tours) if self.initial_tours else None,
+            bound=self.bound,
+            seed=self.seed,
         )
 
 
@@ -139,6 +153,9 @@ class FrontAnswer(BaseModel):
     front: list[TourItem]
     points: int = Field(description="nondominated points found; front holds at most `size`")
     hypervolume: float = Field(description="of the front returned, 0 to 1")
+    hypervolume_bound: float | None = Field(
+        description="what no front of this instance exceeds, where `bound` asked for it"
+    )
     reference_point: Annotated[list[float], Field(min_length=2, max_length=2)]
     scale: Annotated[list[float], Field(min_length=2, max_length=2)]
     actor: ActorName
@@ -182,8 +199,8 @@ def request_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
         fields[name]["default"] = default
     fields["start"]["maximum"] = limits.cities - 1
     fields["actor"]["enum"] = sorted(actors)
-    # There is no improvement yet.
-    fields["time_limit"]["maximum"] = 0
+    fields["time_limit"]["maximum"] = limits.seconds
+    fields["initial_tours"]["maxItems"] = limits.size
     return schema
 
 
@@ -208,9 +225,13 @@ def parse_front_request(body: bytes, limits: Limits) -> FrontRequest:
     return request.model_copy(update={name: v for name, v in defaults if name not in given})
 
 
-def _defaults_within(limits: Limits) -> dict[str, int]:
+def _defaults_within(limits: Limits) -> dict[str, float]:
     """The defaults that a limit may lower: who asks for nothing is never over a limit."""
-    most = {"preferences": limits.preferences, "size": limits.size}
+    most = {
+        "preferences": limits.preferences,
+        "size": limits.size,
+        "time_limit": limits.seconds,
+    }
     fields = FrontRequest.model_fields
     return {name: min(fields[name].default, limit) for name, limit in most.items()}
 
@@ -222,9 +243,6 @@ def _check_available(request: FrontRequest) -> None:
         raise _invalid("/coordinates", f"either coordinates or matrices are required, got {came}")
     if not given:
         raise _not_available("/matrices", "matrices cannot be planned yet: give coordinates")
-    if request.time_limit > 0:
-        sentence = f"there is no improvement yet: time_limit must be 0, got {request.time_limit:g}"
-        raise _not_available("/time_limit", sentence)
 
 
 def _check_limits(request: FrontRequest, limits: Limits) -> None:
@@ -247,11 +265,20 @@ def _check_limits(request: FrontRequest, limits: Limits) -> None:
         _check_most("preferences", limits.preferences, k)
     if "size" in request.model_fields_set:
         _check_most("size", limits.size, request.size)
+    if "time_limit" in request.model_fields_set:
+        _check_most("time_limit", limits.seconds, request.time_limit)
+    _check_most("initial_tours", limits.size, len(request.initial_tours))
+    for index, tour in enumerate(request.initial_tours):
+        if sorted(tour) != list(range(n)):
+            sentence = f"initial_tours/{index} must visit each city, 0 to {n - 1}, once"
+            raise _invalid(f"/initial_tours/{index}", sentence)
 
 
-def _check_most(name: str, limit: int, actual: int) -> None:
+def _check_most(name: str, limit: float, actual: float) -> None:
     if actual > limit:
-        fault = Fault(pointer=f"/{name}", detail=f"{name} must be at most {limit}, got {actual}")
+        fault = Fault(
+            pointer=f"/{name}", detail=f"{name} must be at most {limit:g}, got {actual:g}"
+        )
         raise Refusal(422, "over-limit", fault.detail, errors=[fault], limit=limit, actual=actual)
 
 

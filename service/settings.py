@@ -30,6 +30,7 @@ class Settings(BaseSettings):
     max_cities: int = Field(1000, ge=1, description="the most cities of an instance")
     max_preferences: int = Field(200, ge=1, description="the most preferences of a request")
     max_size: int = Field(1000, ge=1, description="the most tours that a request may ask for")
+    max_time_limit: float = Field(60.0, ge=0, description="the most seconds of improvement")
     drain_seconds: int = Field(20, ge=0, description="time to finish what is under way at SIGTERM")
     store_entries: int = Field(256, ge=1, description="fronts kept for later questions")
     store_seconds: float = Field(3600.0, gt=0, description="how long a front is kept")
@@ -42,4 +43,5 @@ class Settings(BaseSettings):
             cities=self.max_cities,
             preferences=self.max_preferences,
             size=self.max_size,
+            seconds=self.max_time_limit,
         )

@@ -18,7 +18,7 @@ from service.schemas import Limits
 from service.store import Store
 from service.workers import Workers
 
-LIMITS = Limits(body_bytes=100_000, cities=50, preferences=20, size=30)
+LIMITS = Limits(body_bytes=100_000, cities=50, preferences=20, size=30, seconds=0.2)
 
 
 @dataclass
@@ -57,6 +57,10 @@ class Broken(Shuffler):
         raise RuntimeError(f"no tour of {instance.n} cities for {len(preferences)} preferences")
 
 
+def nothing() -> None:
+    """A warm-up of nothing."""
+
+
 def app_of(
     actor: Shuffler | None = None,
     store: Store | None = None,
@@ -67,7 +71,7 @@ def app_of(
     return create_app(
         {actor.facts.name: actor},
         store or Store(entries=100, max_age=60),
-        workers or Workers(workers=2, queue=8),
+        workers or Workers(workers=2, queue=8, warm_up=nothing),
         limits,
         "test",
     )

@@ -4,9 +4,11 @@ import json
 import os
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +24,7 @@ from service.planner import Front
 from service.settings import Settings
 from service.store import Store
 from service.workers import Workers
-from tests.serving import LIMITS, Broken, Shuffler, app_of, serving
+from tests.serving import LIMITS, Broken, Shuffler, app_of, nothing, serving
 
 CITIES = np.random.default_rng(5).random((12, 4)).tolist()
 ROOT = Path(__file__).parent.parent
@@ -72,7 +74,9 @@ def test_cities_become_a_front(client: httpx.Client) -> None:
     np.testing.assert_allclose(body["scale"], instance.scale)
     np.testing.assert_allclose(body["reference_point"], 12 * instance.scale)
     assert body["actor"] == {"name": "pa-one", "digest": "0" * 64}
-    assert {"queue", "construction", "selection", "total"} == set(body["timings_ms"])
+    assert {"queue", "construction", "improvement", "selection", "bound", "total"} == set(
+        body["timings_ms"]
+    )
     assert body["terminated"] == "converged"
 
 
@@ -283,6 +287,8 @@ def test_too_many_cities_are_413(client: httpx.Client) -> None:
         ("preferences", LIMITS.preferences + 1, LIMITS.preferences),
         ("preferences", [45] * (LIMITS.preferences + 1), LIMITS.preferences),
         ("size", LIMITS.size + 1, LIMITS.size),
+        ("time_limit", LIMITS.seconds + 1, LIMITS.seconds),
+        ("initial_tours", [list(range(len(CITIES)))] * (LIMITS.size + 1), LIMITS.size),
     ],
 )
 def test_more_than_a_limit_names_the_limit(
@@ -294,18 +300,78 @@ def test_more_than_a_limit_names_the_limit(
     assert document["errors"][0]["pointer"] == f"/{member}"
 
 
-@pytest.mark.parametrize(
-    ("body", "pointer"),
-    [
-        ({"matrices": [[[0, 1], [1, 0]], [[0, 1], [1, 0]]]}, "/matrices"),
-        ({"coordinates": CITIES, "time_limit": 0.5}, "/time_limit"),
-    ],
-)
-def test_what_is_not_there_yet_is_a_clear_422(
-    client: httpx.Client, body: dict[str, Any], pointer: str
-) -> None:
+def test_matrices_are_not_there_yet(client: httpx.Client) -> None:
+    body = {"matrices": [[[0, 1], [1, 0]], [[0, 1], [1, 0]]]}
     document = problem(client.post("/front", json=body), 422, "not-available")
-    assert document["errors"][0]["pointer"] == pointer
+    assert document["errors"][0]["pointer"] == "/matrices"
+
+
+@pytest.mark.parametrize(
+    "tour", [[0], [*range(1, len(CITIES)), 1], [*range(1, len(CITIES)), len(CITIES)]]
+)
+def test_an_initial_tour_that_is_no_tour_is_named(client: httpx.Client, tour: list[int]) -> None:
+    tours = [list(range(len(CITIES))), tour]
+    answer = client.post("/front", json={"coordinates": CITIES, "initial_tours": tours})
+    document = problem(answer, 422, "invalid-request")
+    assert document["errors"][0]["pointer"] == "/initial_tours/1"
+    assert "must visit each city" in document["detail"]
+
+
+def test_the_front_dominates_or_equals_the_initial_tours(client: httpx.Client) -> None:
+    points = client.post("/front", json={"coordinates": CITIES, "time_limit": 0.1}).json()["front"]
+    tours = [item["tour"] for item in points]
+    for time_limit in (0, 0.01):
+        request = {"coordinates": CITIES, "initial_tours": tours, "time_limit": time_limit}
+        found = client.post("/front", json=request).json()["front"]
+        for point in points:
+            assert any(
+                item["lengths"][0] <= point["lengths"][0] + 1e-9
+                and item["lengths"][1] <= point["lengths"][1] + 1e-9
+                for item in found
+            )
+
+
+def test_time_makes_the_front_better_and_no_front_passes_the_bound(client: httpx.Client) -> None:
+    request = {"coordinates": CITIES, "bound": True}
+    before, after = (
+        client.post("/front", json={**request, "time_limit": limit}).json() for limit in (0, 0.2)
+    )
+    assert before["terminated"] == "converged"
+    assert before["hypervolume"] < after["hypervolume"] <= after["hypervolume_bound"] + 1e-12
+
+
+def test_before_the_search_is_compiled_only_the_network_answers() -> None:
+    may_end = threading.Event()
+    workers = Workers(workers=1, queue=1, warm_up=may_end.wait)
+    with serving(app_of(workers=workers)) as address, httpx.Client(base_url=address) as client:
+        request = {"coordinates": CITIES, "time_limit": 0}
+        assert client.post("/front", json=request).status_code == 200
+        for refused in (
+            client.get("/health/ready"),
+            client.post("/front", json={**request, "time_limit": 0.1}),
+            client.post("/front", json={**request, "preferences": 9, "size": 3}),
+        ):
+            problem(refused, 503, "warming-up")
+            assert int(refused.headers["Retry-After"]) > 0
+        may_end.set()
+        while client.get("/health/ready").status_code == 503:
+            pass
+        assert client.post("/front", json={**request, "time_limit": 0.1}).status_code == 200
+
+
+def test_a_client_that_goes_away_frees_its_worker() -> None:
+    workers = Workers(workers=1, queue=0, warm_up=nothing)
+    limits = replace(LIMITS, seconds=600.0)
+    with serving(app_of(workers=workers, limits=limits)) as address:
+        cities = np.random.default_rng(0).random((50, 4)).tolist()
+        with pytest.raises(httpx.ReadTimeout):
+            httpx.post(
+                f"{address}/front", json={"coordinates": cities, "time_limit": 600}, timeout=1
+            )
+        request = {"coordinates": CITIES, "time_limit": 0}
+        while httpx.post(f"{address}/front", json=request).status_code == 503:
+            pass
+        assert httpx.get(f"{address}/tour?angle=45").json()["tour"]
 
 
 def test_asynchronous_answers_are_not_there_yet(client: httpx.Client) -> None:
@@ -395,7 +461,7 @@ def test_the_callers_own_request_id_is_kept_where_it_is_plain(
 def test_a_full_queue_is_503_and_health_answers_all_the_while() -> None:
     actor = Shuffler()
     actor.may_go_on.clear()
-    app = app_of(actor, workers=Workers(workers=1, queue=1))
+    app = app_of(actor, workers=Workers(workers=1, queue=1, warm_up=nothing))
     with serving(app) as url, ThreadPoolExecutor() as clients:
 
         def post() -> httpx.Response:
@@ -423,7 +489,7 @@ def _finished(waiting: list[Any]) -> Iterator[httpx.Response]:
 
 
 def test_a_server_that_shuts_down_takes_no_work() -> None:
-    workers = Workers(workers=1, queue=1)
+    workers = Workers(workers=1, queue=1, warm_up=nothing)
     with serving(app_of(workers=workers)) as url:
         workers.close()
         refused = httpx.post(f"{url}/front", json={"coordinates": CITIES})

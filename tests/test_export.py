@@ -5,8 +5,12 @@ from onnx import ModelProto, numpy_helper
 
 from export.check import Mismatch, compare
 from export.graph import to_onnx
+from models.checkpoint import load_weights
 from models.config import NetworkConfig
 from models.networks import Actor, build
+
+ROOT = Path(__file__).parent.parent
+ACTORS = ROOT / "service/actors"
 
 
 def small(name: str) -> Actor:
@@ -22,6 +26,12 @@ def exported(request: pytest.FixtureRequest) -> tuple[Actor, ModelProto]:
 
 def test_the_file_builds_the_tours_that_torch_builds(exported: tuple[Actor, ModelProto]) -> None:
     compare(*exported)
+
+
+@pytest.mark.parametrize("path", sorted(ACTORS.glob("*.onnx")), ids=lambda path: path.stem)
+def test_the_released_file_builds_the_tours_of_the_released_checkpoint(path: Path) -> None:
+    trained = load_weights(ROOT / f"models/checkpoints/{path.stem}.pt")
+    compare(trained.actor, onnx.load(path))
 
 
 def test_a_file_with_other_weights_is_refused(exported: tuple[Actor, ModelProto]) -> None:

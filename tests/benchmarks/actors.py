@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from service.actor import Actor
 from tqdm import tqdm
 
+from service.actor import Actor
 from service.front import hypervolume
 from service.instance import Instance, tour_lengths
 from service.preferences import fan, from_angles
