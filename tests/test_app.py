@@ -77,7 +77,7 @@ def test_cities_become_a_front(client: httpx.Client) -> None:
     assert {"queue", "construction", "improvement", "selection", "bound", "total"} == set(
         body["timings_ms"]
     )
-    assert body["terminated"] == "converged"
+    assert body["terminated"] in ("converged", "time_limit")
 
 
 def test_a_front_can_be_asked_for_again(client: httpx.Client) -> None:

@@ -1,5 +1,8 @@
 """From checkpoint to ONNX file."""
 
+from pathlib import Path
+
+import onnx
 import pytest
 from onnx import ModelProto, numpy_helper
 
