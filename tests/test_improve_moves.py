@@ -27,8 +27,9 @@ def instance_of(n: int, seed: int, symmetric: bool) -> Instance:
 def scalar_of(instance: Instance) -> Scalar:
     costs = make_costs(instance)
     sums = costs.matrix.sum(axis=2) + np.diag(np.full(instance.n, np.inf))
-    near = np.argsort(sums, axis=1)[:, : min(8, instance.n - 1)].astype(np.int32)
-    return Scalar(costs, np.ascontiguousarray(near), 0.5, 0.5)
+    near = np.argsort(sums, axis=1)[:, : min(8, instance.n - 1)]
+    near_costs = np.take_along_axis(sums, near, axis=1) / 2
+    return Scalar(costs, np.ascontiguousarray(near, np.int32), near_costs, 0.5, 0.5)
 
 
 def cycle(tour: NDArray[np.int32]) -> list[int]:

@@ -3,7 +3,7 @@
 import argparse
 from importlib import import_module
 
-_NAMES = ("actors", "search")
+_NAMES = ("ablation", "actors", "search")
 
 
 def main() -> None:
