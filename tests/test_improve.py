@@ -1,5 +1,8 @@
 """The search never loses a tour, always returns permutations, and keeps to what limits it."""
 
+import os
+import subprocess
+import sys
 import time
 
 import numpy as np
@@ -189,3 +192,20 @@ def test_random_tours_are_improved_a_great_deal() -> None:
     before = hypervolume(tour_lengths(instance, tours), corner)
     found = improve(instance, tours, iterations=2_000)
     assert hypervolume(found.points, corner) > before + 0.3
+
+
+def test_the_search_works_where_no_compiled_code_can_be_kept() -> None:
+    """With none of numba's ways to find a place for it but one that does not apply."""
+    code = (
+        "import numpy as np, service.improve as improve;"
+        "points = np.stack([np.arange(9.0), 9 - np.arange(9.0)], axis=1);"
+        "print(len(improve.best_subset(points, 3, np.full(2, 10.0))))"
+    )
+    environment = {
+        **os.environ,
+        "NUMBA_CACHE_LOCATOR_CLASSES": "numba.core.caching.ZipCacheLocator",
+    }
+    ran = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True
+    )
+    assert (ran.stdout, ran.stderr) == ("3\n", "")

@@ -18,7 +18,20 @@ import numba
 P = ParamSpec("P")
 R = TypeVar("R")
 
-_njit = partial(numba.njit, cache=True, nogil=True, error_model="numpy")
+
+def _can_be_kept() -> bool:
+    """Whether numba finds a place to keep code in: beside this file, or in the user's cache.
+
+    In a container that can write nowhere there is none, and each start compiles anew.
+    """
+    try:
+        numba.njit(cache=True)(lambda: None)
+    except RuntimeError:
+        return False
+    return True
+
+
+_njit = partial(numba.njit, cache=_can_be_kept(), nogil=True, error_model="numpy")
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
