@@ -26,7 +26,7 @@ def drawn(seed: int, n: int, symmetric: bool, planar: bool) -> Instance:
     return Instance(matrices=matrices + (matrices.transpose(0, 2, 1) if symmetric else 0))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     seed=st.integers(0, 10**6),
     n=st.integers(1, 9),
@@ -43,7 +43,7 @@ def test_the_exact_front_of_up_to_nine_cities_is_within_the_bound(
     assert exact <= hypervolume_bound(instance, reference_point) <= 1
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(seed=st.integers(0, 10**6), n=st.integers(4, 8), symmetric=st.booleans())
 def test_no_tour_is_shorter_than_the_bound_under_a_weight(
     seed: int, n: int, symmetric: bool

@@ -68,7 +68,7 @@ def test_a_few_cities_give_the_exact_front(kind: str, n: int) -> None:
     assert found.terminated == "converged"
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(kind=st.sampled_from(KINDS), n=st.integers(8, 30), m=st.integers(0, 5), seed=st.integers(0))
 def test_every_given_tour_is_dominated_or_equalled(kind: str, n: int, m: int, seed: int) -> None:
     instance = drawn(kind, n, seed % 1000)

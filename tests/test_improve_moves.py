@@ -76,7 +76,7 @@ def test_a_move_changes_lengths_as_foretold(seed: int, flip: bool, data: st.Data
     assert np.array(lengths(scalar.costs, route.tour)) == pytest.approx(before + foretold)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=st.integers(0, 10**6), symmetric=st.booleans(), n=st.integers(8, 40))
 def test_every_improving_move_gains_what_it_says(seed: int, symmetric: bool, n: int) -> None:
     scalar = scalar_of(instance_of(n, seed, symmetric))
@@ -123,7 +123,8 @@ def test_the_archive_holds_just_the_nondominated_points_and_their_tours(
     owners = archive.tours[archive.slots[:size], 0]
     assert np.array_equal(np.array(points, float)[owners], kept)
     assert area(archive, 13.0, 13.0) == pytest.approx(169 * hypervolume(kept, np.full(2, 13.0)))
-    assert best(archive, 0.3, 0.7) == np.argmin(kept @ [0.3, 0.7])
+    # Powers of two, so that equal sums are equal to the last bit.
+    assert best(archive, 0.25, 0.75) == np.argmin(kept @ [0.25, 0.75])
 
 
 def test_a_full_archive_makes_room_and_keeps_its_ends() -> None:

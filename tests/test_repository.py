@@ -23,7 +23,7 @@ def tracked() -> list[str]:
 def test_the_service_starts_without_the_factory() -> None:
     code = (
         "import sys, service.app, service.actor, service.__main__;"
-        "sys.exit(' '.join({'torch', 'onnx', 'models', 'export'} & set(sys.modules)))"
+        "sys.exit(len({'torch', 'onnx', 'models', 'export'} & set(sys.modules)))"
     )
     subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True)
 

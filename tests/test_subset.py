@@ -5,7 +5,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from service.front import hypervolume
@@ -14,7 +14,6 @@ from service.improve import best_subset
 POINTS = st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, max_size=9)
 
 
-@settings(deadline=None)
 @given(
     points=POINTS, size=st.integers(1, 6), corner=st.tuples(st.integers(1, 10), st.integers(1, 10))
 )

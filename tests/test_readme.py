@@ -1,0 +1,46 @@
+"""What the README says is what the service does."""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from service.__main__ import build
+from service.settings import Settings
+from tests.serving import serving
+
+README = (Path(__file__).parent.parent / "README.md").read_text()
+
+
+def test_the_request_gets_the_answer() -> None:
+    blocks = re.findall(r"```json\n(.*?)```", README, re.DOTALL)
+    request, answer = (json.loads(block) for block in blocks)
+    with serving(build(Settings())) as address:
+        while httpx.get(f"{address}/health/ready").status_code == 503:
+            pass
+        found = httpx.post(f"{address}/front", json=request, timeout=60).json()
+    assert lasting(found) == lasting(answer)
+
+
+def lasting(answer: dict[str, Any]) -> dict[str, Any]:
+    """What is the same whenever and wherever the request is made: a tour in either direction."""
+    front = [
+        {
+            "angle": round(item["angle"], 6),
+            "lengths": [round(length, 6) for length in item["lengths"]],
+            "tour": min(item["tour"], item["tour"][:1] + item["tour"][:0:-1]),
+        }
+        for item in answer["front"]
+    ]
+    changed = {"front": front, "hypervolume": round(answer["hypervolume"], 6)}
+    kept = {name: value for name, value in answer.items() if name not in ("id", "timings_ms")}
+    return kept | changed
+
+
+def test_every_setting_is_described() -> None:
+    for name, field in Settings.model_fields.items():
+        assert f"| `PARETOUR_{name.upper()}` |" in README
+        assert field.description is not None
+        assert field.description in README
