@@ -3,7 +3,7 @@
 import argparse
 from importlib import import_module
 
-_NAMES = ("ablation", "actors", "search")
+_NAMES = ("ablation", "actors", "curves", "kro", "search")
 
 
 def main() -> None:

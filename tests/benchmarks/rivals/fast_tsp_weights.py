@@ -1,4 +1,4 @@
-"""fast-tsp under weighted sums: among libraries, the quickest to a near-optimal tour of one cost."""
+"""fast-tsp under weighted sums: of all libraries the quickest to a near-optimal tour."""
 
 import fast_tsp
 import numpy as np
