@@ -16,6 +16,7 @@ from service.preferences import angles, from_angles
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
+BOUND_SECONDS = 5.0  # after which a bound, valid all along, is tight enough
 Termination = Literal["converged", "time_limit", "cancelled"]
 
 
@@ -104,7 +105,7 @@ def plan(
     clock.ends("improvement")
     kept = best_subset(points, demand.size, reference_point)
     clock.ends("selection")
-    bound = hypervolume_bound(instance, reference_point) if demand.bound else None
+    bound = _bound(instance, reference_point) if demand.bound else None
     clock.ends("bound")
     return Front(
         tours=_starting_at(demand.start, tours[kept]),
@@ -116,6 +117,10 @@ def plan(
         timings=clock.phases,
         bound=bound,
     )
+
+
+def _bound(instance: Instance, reference_point: Array) -> float:
+    return hypervolume_bound(instance, reference_point, time.monotonic() + BOUND_SECONDS)
 
 
 def _improved(

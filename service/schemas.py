@@ -89,7 +89,8 @@ class FrontRequest(BaseModel):
         default_factory=list, description="tours that the front shall dominate or equal"
     )
     bound: bool = Field(
-        default=False, description="whether to prove how large any front's hypervolume can be"
+        default=False,
+        description="whether to prove, in up to 5 s, how large any front's hypervolume can be",
     )
     actor: str = Field(default="pa-one", description="the network that builds the tours")
     seed: Whole = Field(default=0, description="of everything random in the improvement")
