@@ -15,7 +15,7 @@ from export.check import compare, onnx_tours, session
 from export.graph import to_onnx
 from models.checkpoint import Trained, load_weights
 from models.config import as_plain
-from models.validation import mean_hypervolume, validation_sets
+from models.validation import COUNTS, mean_hypervolume, validation_sets
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -66,7 +66,7 @@ def _hypervolumes(model: ModelProto) -> dict[str, float]:
             ),
             5,
         )
-        for validation in validation_sets({40: 16, 200: 3}, torch.device("cpu"))
+        for validation in validation_sets(COUNTS, torch.device("cpu"))
     }
 
 

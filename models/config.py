@@ -1,7 +1,10 @@
 """What a network and a training run are made of: frozen, checked, stored with the weights."""
 
-from dataclasses import asdict, dataclass, field, fields
-from typing import Any
+from argparse import ArgumentParser, Namespace
+from dataclasses import Field, asdict, dataclass, field, fields
+from typing import Any, TypeVar
+
+T = TypeVar("T")
 
 
 def setting(default: Any, meaning: str) -> Any:
@@ -70,6 +73,23 @@ class TrainingConfig:
         for name in ("steps", "instances", "preferences", "validate_every"):
             if getattr(self, name) < 1:
                 raise ValueError(f"{name} must be at least 1, got {getattr(self, name)}")
+
+
+def add_options(parser: ArgumentParser, kind: type[Any]) -> None:
+    """An option for each setting of a configuration, with its default and its sentence."""
+    for each in _settings(kind):
+        option = "--" + each.name.replace("_", "-")
+        meaning = f"{each.metadata['meaning']} (default {each.default})"
+        parser.add_argument(option, type=type(each.default), default=each.default, help=meaning)
+
+
+def from_options(kind: type[T], given: Namespace, **others: Any) -> T:
+    """The configuration that the options describe; what is no setting comes by name."""
+    return kind(**{each.name: getattr(given, each.name) for each in _settings(kind)}, **others)
+
+
+def _settings(kind: type[Any]) -> list[Field[Any]]:
+    return [each for each in fields(kind) if "meaning" in each.metadata]
 
 
 def as_plain(config: TrainingConfig) -> dict[str, Any]:

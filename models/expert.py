@@ -6,7 +6,7 @@ exist are left as they are, and several processes may make shards of one folder.
 """
 
 import argparse
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from models.config import setting
+from models.config import add_options, from_options, setting
 from service.improve import improve
 from service.instance import Instance
 from service.preferences import from_angles, weights
@@ -100,19 +100,12 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser("python -m models.expert", description=__doc__)
     parser.add_argument("--out", type=Path, required=True, help="folder of the shards")
     parser.add_argument("--shards", type=int, default=100, help="how many there shall be")
-    for each in fields(ExpertConfig):
-        option, meaning = "--" + each.name.replace("_", "-"), each.metadata["meaning"]
-        parser.add_argument(
-            option,
-            type=type(each.default),
-            default=each.default,
-            help=f"{meaning} (default {each.default})",
-        )
-    given = vars(parser.parse_args(arguments))
-    config = ExpertConfig(**{each.name: given[each.name] for each in fields(ExpertConfig)})
-    given["out"].mkdir(parents=True, exist_ok=True)
-    for number in tqdm(range(given["shards"]), unit="shard"):
-        path = given["out"] / f"shard-{number:05}.npz"
+    add_options(parser, ExpertConfig)
+    options = parser.parse_args(arguments)
+    config = from_options(ExpertConfig, options)
+    options.out.mkdir(parents=True, exist_ok=True)
+    for number in tqdm(range(options.shards), unit="shard"):
+        path = options.out / f"shard-{number:05}.npz"
         if not path.exists():
             make_shard(config, number).save(path)
 

@@ -9,7 +9,6 @@ import argparse
 import math
 import time
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import fields
 from functools import partial
 from pathlib import Path
 
@@ -26,7 +25,7 @@ from models.checkpoint import (
     save_weights,
     start_from,
 )
-from models.config import NetworkConfig, TrainingConfig
+from models.config import NetworkConfig, TrainingConfig, add_options, from_options
 from models.labels import Labels
 from models.lagrangian import ascended, lagrangian, violation, weighted_sum
 from models.networks import Memory
@@ -46,14 +45,13 @@ from models.sampling import (
     uniform_cities,
 )
 from models.validation import (
+    COUNTS,
     ValidationSet,
     greedy_tours,
     mean_hypervolume,
     tour_lengths,
     validation_sets,
 )
-
-_VALIDATION = {40: 16, 200: 3}  # instances by number of cities
 
 
 def train(
@@ -105,8 +103,7 @@ def policy_gradient_step(run: Run) -> Step:
 
     advantages = objectives - _baseline(run, cities, preferences, objectives)
     loss = (advantages * likelihoods).mean()
-    _descend(run, run.optimizer, run.actor, loss)
-    run.averaged.update_parameters(run.actor)
+    _learn(run, loss)
 
     violations = violation(points, each)
     run.multipliers = ascended(
@@ -115,7 +112,6 @@ def policy_gradient_step(run: Run) -> Step:
         config.ascent_rate,
         (config.least_multiplier, config.most_multiplier),
     )
-    run.step += 1
     return Step(
         loss=loss.item(),
         objective=objectives.mean().item(),
@@ -138,9 +134,7 @@ def imitate(run: Run, labels: Labels) -> Step:
         memory = run.actor.remember(cities, preferences)
         rows = repeated(run.actor.decoder.condition(preferences), config.starts)
         loss = -log_likelihoods_by_city(run.actor, memory, rows, tours).mean()
-    _descend(run, run.optimizer, run.actor, loss)
-    run.averaged.update_parameters(run.actor)
-    run.step += 1
+    _learn(run, loss)
     points, each = tour_lengths(cities, tours), preferences.repeat_interleave(config.starts, dim=0)
     return Step(
         loss=loss.item(),
@@ -171,6 +165,13 @@ def _baseline(run: Run, cities: Tensor, preferences: Tensor, objectives: Tensor)
     predicted: Tensor = run.critic(cities, preferences)
     _descend(run, run.critic_optimizer, run.critic, ((predicted - objectives) ** 2).mean())
     return predicted.detach()
+
+
+def _learn(run: Run, loss: Tensor) -> None:
+    """Ends a step: the actor goes down its loss, and its average follows."""
+    _descend(run, run.optimizer, run.actor, loss)
+    run.averaged.update_parameters(run.actor)
+    run.step += 1
 
 
 def _descend(
@@ -209,11 +210,12 @@ def main(arguments: list[str] | None = None) -> None:
     if saved.exists():
         run = resume(saved, device)
     else:
-        run = new_run(_configuration(options), device)
+        network = from_options(NetworkConfig, options)
+        run = new_run(from_options(TrainingConfig, options, network=network), device)
         if options.initial:
             start_from(run, load_weights(options.initial).actor)
     labels = Labels(options.labels) if options.labels else None
-    train(run, run.config.steps, validation_sets(_VALIDATION, device), options.out, labels)
+    train(run, run.config.steps, validation_sets(COUNTS, device), options.out, labels)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -222,19 +224,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--device", default="cpu", help="cpu or cuda (bfloat16 there)")
     parser.add_argument("--initial", type=Path, help="checkpoint whose weights a new run takes")
     parser.add_argument("--labels", type=Path, help="folder of shards, for imitation")
-    for each in (*fields(NetworkConfig), *fields(TrainingConfig)):
-        if each.name != "network":
-            option = "--" + each.name.replace("_", "-")
-            meaning = f"{each.metadata['meaning']} (default {each.default})"
-            parser.add_argument(option, type=type(each.default), default=each.default, help=meaning)
+    add_options(parser, NetworkConfig)
+    add_options(parser, TrainingConfig)
     return parser
-
-
-def _configuration(options: argparse.Namespace) -> TrainingConfig:
-    given = vars(options)
-    network = NetworkConfig(**{f.name: given[f.name] for f in fields(NetworkConfig)})
-    others = [f.name for f in fields(TrainingConfig) if f.name != "network"]
-    return TrainingConfig(network=network, **{name: given[name] for name in others})
 
 
 if __name__ == "__main__":

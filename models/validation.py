@@ -15,6 +15,7 @@ from service.front import hypervolume
 
 _SEED = 20_220_303  # apart from the seeds of training and from the instances of the paper
 _PREFERENCES = 100
+COUNTS = {40: 16, 200: 3}  # instances by number of cities, in training and for releases
 
 
 @dataclass(frozen=True)

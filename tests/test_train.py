@@ -109,7 +109,7 @@ def test_a_run_leaves_its_configuration_log_curve_and_weights(tmp_path: Path) ->
 def test_the_command_goes_on_with_the_run_that_lies_there(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(train, "_VALIDATION", {6: 2})
+    monkeypatch.setattr(train, "COUNTS", {6: 2})
     run = new_run(small_config(), CPU)
     train.policy_gradient_step(run)
     save(run, tmp_path / "run.pt")

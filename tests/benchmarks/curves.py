@@ -23,7 +23,7 @@ from service.front import hypervolume
 from service.improve import improve, warm_up
 from service.improve.search import bisecting
 from service.instance import Instance, tour_lengths
-from tests.benchmarks.instances import paper_instances, reference_points
+from tests.benchmarks.instances import check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import RESULTS, load, provenance, store
 from tests.benchmarks.rivals import fast_tsp_weights, ortools_routing
 from tests.benchmarks.rivals.construction import distances, spread_weights
@@ -114,8 +114,7 @@ def weighted_sums(instance: Instance, solve: Callable[[Array], NDArray[np.int64]
     for k in bisecting(WEIGHTS):
         tours.append(solve(weights[k, 0] * costs[0] + weights[k, 1] * costs[1]))
         seconds.append(time.process_time() - began)
-    if not (np.sort(tours, axis=1) == np.arange(instance.n)).all():
-        raise RuntimeError("not every tour visits every city once")
+    check_tours(np.array(tours), instance.n)
     points = tour_lengths(instance, np.array(tours))
     return [(seconds[k], points[: k + 1]) for k in range(WEIGHTS)]
 

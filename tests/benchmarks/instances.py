@@ -21,6 +21,16 @@ def paper_instances(n: int, count: int = COUNT) -> list[NDArray[np.float64]]:
     return instances
 
 
+def check_tours(tours: NDArray[np.integer], n: int) -> None:
+    """Nothing, if every row visits each of n cities once.
+
+    Raises:
+        RuntimeError: some row does not.
+    """
+    if not (np.sort(tours, axis=1) == np.arange(n)).all():
+        raise RuntimeError("not every tour visits every city once")
+
+
 def reference_points(n: int) -> dict[str, NDArray[np.float64]]:
     """By name, (n, n); and for 40 cities also (50, 50), which the paper's printed column needs."""
     sides = (40, 50) if n == 40 else (n,)

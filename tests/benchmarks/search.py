@@ -18,7 +18,7 @@ from tqdm import tqdm
 from service.front import hypervolume
 from service.improve import improve, warm_up
 from service.instance import Instance, tour_lengths
-from tests.benchmarks.instances import COUNT, paper_instances, reference_points
+from tests.benchmarks.instances import COUNT, check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import load, provenance, store
 from tests.benchmarks.rivals.construction import distances, spread_weights
 from tests.benchmarks.rivals.ortools_routing import solve
@@ -85,8 +85,7 @@ def or_tools(cities: NDArray[np.float64], solution_limit: int | None) -> list[di
 
 
 def _row(instance: Instance, tours: NDArray[np.integer], seconds: float) -> dict[str, Any]:
-    if not (np.sort(tours, axis=1) == np.arange(instance.n)).all():
-        raise RuntimeError("not every tour visits every city once")
+    check_tours(tours, instance.n)
     points = tour_lengths(instance, tours)
     shares = {
         name: 100 * hypervolume(points, corner)
