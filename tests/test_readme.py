@@ -7,7 +7,7 @@ from typing import Any
 
 import httpx
 
-from service.__main__ import build
+from service.serve import build
 from service.settings import Settings
 from tests.serving import serving
 

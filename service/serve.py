@@ -1,0 +1,52 @@
+"""Everything put together as the settings ask, and served."""
+
+import signal
+import sys
+from importlib.metadata import PackageNotFoundError, version
+from types import FrameType
+from typing import NoReturn
+
+import uvicorn
+from fastapi import FastAPI
+
+from service.actor import load_actors
+from service.app import create_app
+from service.improve import warm_up
+from service.settings import Settings
+from service.store import Store
+from service.workers import Workers
+
+
+def build(settings: Settings) -> FastAPI:
+    """The application that the settings ask for."""
+    return create_app(
+        load_actors(settings.actors, settings.threads),
+        Store(settings.store_entries, settings.store_seconds),
+        Workers(settings.workers, settings.queue, warm_up),
+        settings.limits,
+        _version(),
+    )
+
+
+def serve(app: FastAPI, settings: Settings) -> None:
+    """Answer requests until told to stop."""
+    # Without a handler, uvicorn ends by the signal and the exit status says so.
+    signal.signal(signal.SIGTERM, _exit)
+    uvicorn.run(
+        app,
+        host=settings.host,
+        port=settings.port,
+        server_header=False,
+        timeout_graceful_shutdown=settings.drain_seconds,
+    )
+
+
+def _version() -> str:
+    try:
+        return version("paretour")
+    except PackageNotFoundError:
+        return "not installed"
+
+
+def _exit(_signal: int, _frame: FrameType | None) -> NoReturn:
+    sys.exit(0)
