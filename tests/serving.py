@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
+import httpx
 import numpy as np
 import uvicorn
 from fastapi import FastAPI
@@ -15,6 +16,8 @@ from service.actor import ActorFacts
 from service.app import create_app
 from service.instance import Instance
 from service.schemas import Limits
+from service.serve import build
+from service.settings import Settings
 from service.store import Store
 from service.workers import Workers
 
@@ -92,3 +95,12 @@ def serving(app: FastAPI, drain: int = 5) -> Iterator[str]:
         server.should_exit = True
         thread.join()
         listening.close()
+
+
+@contextmanager
+def serving_released() -> Iterator[str]:
+    """The address of the service as it is released, once it takes work of every kind."""
+    with serving(build(Settings())) as address:
+        while httpx.get(f"{address}/health/ready").status_code == 503:
+            time.sleep(0.05)
+        yield address

@@ -7,9 +7,8 @@ from typing import Any
 
 import httpx
 
-from service.serve import build
 from service.settings import Settings
-from tests.serving import serving
+from tests.serving import serving_released
 
 README = (Path(__file__).parent.parent / "README.md").read_text()
 
@@ -17,9 +16,7 @@ README = (Path(__file__).parent.parent / "README.md").read_text()
 def test_the_request_gets_the_answer() -> None:
     blocks = re.findall(r"```json\n(.*?)```", README, re.DOTALL)
     request, answer = (json.loads(block) for block in blocks)
-    with serving(build(Settings())) as address:
-        while httpx.get(f"{address}/health/ready").status_code == 503:
-            pass
+    with serving_released() as address:
         found = httpx.post(f"{address}/front", json=request, timeout=60).json()
     assert lasting(found) == lasting(answer)
 

@@ -1,0 +1,30 @@
+"""Writes the examples anew, or into the directory that is named."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from service.examples.deliveries import deliveries
+
+
+def write(directory: Path) -> None:
+    """Write every example into a directory."""
+    for name, request in {"city-deliveries": deliveries()}.items():
+        (directory / f"{name}.json").write_text(_laid_out(request))
+
+
+def _laid_out(request: dict[str, Any]) -> str:
+    """JSON with a line for each member, and for each row of a list of lists."""
+    members = [f"  {json.dumps(name)}: {_rows(value)}" for name, value in request.items()]
+    return "{\n" + ",\n".join(members) + "\n}\n"
+
+
+def _rows(value: Any) -> str:
+    if isinstance(value, list) and isinstance(value[0], list):
+        return "[\n" + ",\n".join(f"    {json.dumps(row)}" for row in value) + "\n  ]"
+    return json.dumps(value)
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent)
