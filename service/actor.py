@@ -1,16 +1,16 @@
-"""Networks as they are shipped: one ONNX file each, cities and preferences in, tours out."""
+"""Networks as they are shipped: one ONNX file each, an instance and preferences in, tours out."""
 
 import hashlib
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
-from service.instance import Instance
+from service.instance import Instance, Kind
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
@@ -22,24 +22,30 @@ class ActorFacts:
     """Who an actor is: what its file says of itself, and the SHA-256 of that file, in hex.
 
     `sizes` and `angles` are what it was trained on, `figures` what was measured of it, `inputs`
-    the kind of instance that it reads.
+    the kind of instance that it reads: `coordinates` (a row of four for each city, each plane
+    moved and scaled into the unit square) or `matrices` (2, n, n) (in units of the scale, with
+    zeros on the diagonal).
     """
 
     name: str
     digest: str
     commit: str
-    inputs: str
+    inputs: Kind
     sizes: Any
     angles: Any
     config: Any
     figures: Any
+
+    def serves(self, kind: Kind) -> bool:
+        """Whether it can build tours for instances of this kind: coordinates have distances."""
+        return self.inputs in ("matrices", kind)
 
 
 class Actor:
     """An ONNX file that builds a tour for every preference in one inference call.
 
     Raises:
-        ValueError: the file lacks metadata.
+        ValueError: the file lacks metadata, or reads something else.
     """
 
     def __init__(self, path: Path, threads: int) -> None:
@@ -56,20 +62,23 @@ class Actor:
             raise ValueError(f"the metadata of {path} must have {', '.join(missing)}")
         self.facts = ActorFacts(
             digest=hashlib.sha256(content).hexdigest(),
-            **{name: metadata[name] for name in ("name", "commit", "inputs")},
+            inputs=_kind(metadata["inputs"], path),
+            **{name: metadata[name] for name in ("name", "commit")},
             **{name: _decoded(metadata[name]) for name in ("sizes", "angles", "config", "figures")},
         )
 
     def tours(self, instance: Instance, preferences: Array) -> Tours:
         """One tour, a row of shape (n,), for each preference, a row of shape (k, 2)."""
-        inputs = {
-            "cities": instance.scaled_coordinates.astype(np.float32),
-            "preferences": preferences.astype(np.float32),
-        }
+        inputs = {**self._read(instance), "preferences": preferences.astype(np.float32)}
         (tours,) = self._session.run(["tours"], inputs, self._run_options)
         if not (np.sort(tours, axis=1) == np.arange(instance.n)).all():
             raise RuntimeError(f"{self.facts.name} built a tour that is not a permutation")
         return tours
+
+    def _read(self, instance: Instance) -> dict[str, NDArray[np.float32]]:
+        if self.facts.inputs == "matrices":
+            return {"matrices": instance.scaled_matrices.astype(np.float32)}
+        return {"cities": instance.scaled_coordinates.astype(np.float32)}
 
 
 def load_actors(directory: Path, threads: int) -> dict[str, Actor]:
@@ -84,6 +93,13 @@ def load_actors(directory: Path, threads: int) -> dict[str, Actor]:
         names = [actor.facts.name for actor in actors]
         raise ValueError(f"{directory} must hold ONNX files of different names, got {names}")
     return by_name
+
+
+def _kind(given: str, path: Path) -> Kind:
+    for kind in get_args(Kind):
+        if given == kind:
+            return kind
+    raise ValueError(f"inputs of {path} must be coordinates or matrices, got {given!r}")
 
 
 def _options(threads: int) -> onnxruntime.SessionOptions:

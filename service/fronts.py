@@ -17,15 +17,15 @@ from starlette.responses import Response
 from service.actor import ActorFacts
 from service.bodies import json_body, json_response
 from service.planner import Constructor, Front, plan
-from service.problems import Fault, Refusal, responses
+from service.problems import Refusal, responses
+from service.requests import parse_front_request, request_schema
+from service.roster import choose_actor
 from service.schemas import (
     FrontAnswer,
     FrontRequest,
     Limits,
     TourAnswer,
     TourQuery,
-    parse_front_request,
-    request_schema,
 )
 from service.store import Expired, Store, Unknown
 from service.workers import Workers
@@ -119,7 +119,8 @@ class FrontRoutes:
         _check_prefer(request)
         body = await json_body(request, self._limits.body_bytes)
         asked = parse_front_request(body, self._limits)
-        actor = self._actor(asked.actor)
+        loaded = {name: actor.facts for name, actor in self._actors.items()}
+        actor = self._actors[choose_actor(loaded, asked.kind, asked.named_actor)]
         front = await self._plan(request, actor, asked)
         kept = KeptFront(uuid.uuid4().hex, front, actor.facts)
         if front.terminated != "cancelled":
@@ -133,13 +134,6 @@ class FrontRoutes:
     async def tour(self, query: Annotated[TourQuery, Query()]) -> Response:
         """Give the tour of a front whose direction is nearest to an angle."""
         return json_response(self._kept(query.front).nearest(query.angle))
-
-    def _actor(self, name: str) -> NamedActor:
-        if name in self._actors:
-            return self._actors[name]
-        sentence = f"actor must be one of {', '.join(sorted(self._actors))}, got {name[:80]!r}"
-        fault = Fault(pointer="/actor", detail=sentence)
-        raise Refusal(422, "unknown-actor", sentence, errors=[fault])
 
     async def _plan(self, request: Request, actor: NamedActor, asked: FrontRequest) -> Front:
         demand = asked.demand()

@@ -2,11 +2,13 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Kind = Literal["coordinates", "matrices"]
 
 
 class InvalidInstance(ValueError):
@@ -53,6 +55,11 @@ class Instance:
         return self.matrices.shape[1]
 
     @property
+    def kind(self) -> Kind:
+        """What the instance was made from."""
+        return "matrices" if self.coordinates is None else "coordinates"
+
+    @property
     def scale(self) -> Array:
         """The unit of each objective, shape (2,), in which network, search and angles work.
 
@@ -78,6 +85,14 @@ class Instance:
         if self.coordinates is None:
             raise InvalidInstance("an instance made from matrices has no coordinates")
         return (self.coordinates - self.coordinates.min(axis=0)) / self.scale.repeat(2)
+
+    @property
+    def scaled_matrices(self) -> Array:
+        """Costs, shape (2, n, n), each objective's in units of its scale."""
+        if self.matrices is not None:
+            return self.matrices / self.scale[:, np.newaxis, np.newaxis]
+        steps = self.scaled_coordinates[:, np.newaxis] - self.scaled_coordinates
+        return np.hypot(steps[..., 0::2], steps[..., 1::2]).transpose(2, 0, 1)
 
     @cached_property
     def _extents(self) -> Array:

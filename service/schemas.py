@@ -1,28 +1,29 @@
-"""What travels over HTTP, and every limit on it."""
+"""What travels over HTTP."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
     Discriminator,
     Field,
+    GetPydanticSchema,
     Tag,
-    ValidationError,
 )
 from pydantic.json_schema import SkipJsonSchema
+from pydantic_core.core_schema import no_info_after_validator_function
 
-from service.instance import Instance
+from service.instance import Instance, Kind
+from service.matrices import stacked
 from service.planner import Demand, Termination
 from service.preferences import fan
-from service.problems import Fault, Refusal, refused_by
 
 # Between these, lengths and hypervolumes neither overflow nor vanish.
-_LARGEST = 1e150
+LARGEST = 1e150
 _SMALLEST = 1e-150
 
 
@@ -31,10 +32,17 @@ def _whole(given: object) -> object:
     return int(given) if isinstance(given, float) and given.is_integer() else given
 
 
-Coordinate = Annotated[float, Field(ge=-_LARGEST, le=_LARGEST, allow_inf_nan=False)]
+Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
 Row = Annotated[list[Coordinate], Field(min_length=4, max_length=4, fail_fast=True)]
+# That these are costs is checked of the whole array: half a million are too many to look at singly.
+Rows = Annotated[list[Annotated[list[float], Field(fail_fast=True)]], Field(fail_fast=True)]
+Pair = Annotated[list[Rows], Field(min_length=2, max_length=2, fail_fast=True)]
+Matrices = Annotated[
+    NDArray[np.float64],
+    GetPydanticSchema(lambda _, handler: no_info_after_validator_function(stacked, handler(Pair))),
+]
 Angle = Annotated[float, Field(ge=0, le=90, allow_inf_nan=False)]
-Positive = Annotated[float, Field(ge=_SMALLEST, le=_LARGEST, allow_inf_nan=False)]
+Positive = Annotated[float, Field(ge=_SMALLEST, le=LARGEST, allow_inf_nan=False)]
 # The validator comes last: before it, the bounds would be lost to the OpenAPI document.
 Count = Annotated[int, Field(ge=1, le=2**31 - 1), BeforeValidator(_whole)]
 Whole = Annotated[int, Field(ge=0, le=2**31 - 1), BeforeValidator(_whole)]
@@ -54,7 +62,7 @@ class Limits:
 class FrontRequest(BaseModel):
     """Cities under two objectives, and what is asked of their front.
 
-    An empty list can only be a default: none is given.
+    What is empty can only be a default: none is given.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -63,7 +71,11 @@ class FrontRequest(BaseModel):
         default_factory=list,
         description="a row for each city: x and y in plane 1, x and y in plane 2",
     )
-    matrices: SkipJsonSchema[Any] = None
+    matrices: Matrices = Field(
+        default_factory=lambda: np.empty((2, 0, 0)),
+        description="instead of coordinates, for each objective the costs from each city (row) to"
+        " each (column); the diagonal is disregarded",
+    )
     preferences: Annotated[
         Annotated[Count, Tag("[count]")]
         | Annotated[list[Angle], Field(min_length=1, fail_fast=True), Tag("[angles]")],
@@ -92,11 +104,32 @@ class FrontRequest(BaseModel):
         default=False,
         description="whether to prove, in up to 5 s, how large any front's hypervolume can be",
     )
-    actor: str = Field(default="pa-one", description="the network that builds the tours")
+    actor: str = Field(
+        default="",
+        description="the network that builds the tours; by default pa-one for coordinates and"
+        " pa-one-matrix for matrices",
+    )
     seed: Whole = Field(default=0, description="of everything random in the improvement")
+
+    @property
+    def kind(self) -> Kind:
+        """In what the cities are given."""
+        return "coordinates" if self.coordinates else "matrices"
+
+    @property
+    def n(self) -> int:
+        """The number of cities."""
+        return len(self.coordinates) or self.matrices.shape[1]
+
+    @property
+    def named_actor(self) -> str | None:
+        """The actor asked for, if one is."""
+        return self.actor if "actor" in self.model_fields_set else None
 
     def instance(self) -> Instance:
         """The cities."""
+        if self.kind == "matrices":
+            return Instance(matrices=self.matrices)
         return Instance(coordinates=np.array(self.coordinates, dtype=np.float64))
 
     def demand(self) -> Demand:
@@ -185,107 +218,3 @@ class HealthAnswer(BaseModel):
     """How the service is."""
 
     status: str
-
-
-def request_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
-    """The JSON schema of a front request where these limits hold and these actors are loaded."""
-    schema = FrontRequest.model_json_schema()
-    fields = schema["properties"]
-    schema["required"] = ["coordinates"]
-    fields["coordinates"]["maxItems"] = limits.cities
-    count, angles = fields["preferences"]["oneOf"]
-    count["maximum"] = angles["maxItems"] = limits.preferences
-    fields["size"]["maximum"] = limits.size
-    for name, default in _defaults_within(limits).items():
-        fields[name]["default"] = default
-    fields["start"]["maximum"] = limits.cities - 1
-    fields["actor"]["enum"] = sorted(actors)
-    fields["time_limit"]["maximum"] = limits.seconds
-    fields["initial_tours"]["maxItems"] = limits.size
-    return schema
-
-
-def parse_front_request(body: bytes, limits: Limits) -> FrontRequest:
-    """The request in a body.
-
-    Raises:
-        Refusal: it is not JSON, not a front request, over a limit, or asks for what there is not.
-    """
-    try:
-        request = FrontRequest.model_validate_json(body)
-    except ValidationError as error:
-        errors = error.errors(include_url=False)
-        if errors[0]["type"] == "json_invalid":
-            reason = errors[0]["ctx"]["error"]
-            raise Refusal(400, "malformed-json", f"the body must be JSON: {reason}") from None
-        raise refused_by(errors) from None
-    _check_available(request)
-    _check_limits(request, limits)
-    defaults = _defaults_within(limits).items()
-    given = request.model_fields_set
-    return request.model_copy(update={name: v for name, v in defaults if name not in given})
-
-
-def _defaults_within(limits: Limits) -> dict[str, float]:
-    """The defaults that a limit may lower: who asks for nothing is never over a limit."""
-    most = {
-        "preferences": limits.preferences,
-        "size": limits.size,
-        "time_limit": limits.seconds,
-    }
-    fields = FrontRequest.model_fields
-    return {name: min(fields[name].default, limit) for name, limit in most.items()}
-
-
-def _check_available(request: FrontRequest) -> None:
-    given = bool(request.coordinates)
-    if given == (request.matrices is not None):
-        came = "both" if given else "neither"
-        raise _invalid("/coordinates", f"either coordinates or matrices are required, got {came}")
-    if not given:
-        raise _not_available("/matrices", "matrices cannot be planned yet: give coordinates")
-
-
-def _check_limits(request: FrontRequest, limits: Limits) -> None:
-    n = len(request.coordinates)
-    if n > limits.cities:
-        raise Refusal(
-            413,
-            "too-many-cities",
-            f"coordinates must have at most {limits.cities} rows, got {n}",
-            errors=[Fault(pointer="/coordinates", detail="too many rows")],
-            limit=limits.cities,
-            actual=n,
-        )
-    if request.start >= n:
-        sentence = f"start must be a city, 0 to {n - 1}, got {request.start}"
-        raise _invalid("/start", sentence)
-    if "preferences" in request.model_fields_set:
-        looked = request.preferences
-        k = looked if isinstance(looked, int) else len(looked)
-        _check_most("preferences", limits.preferences, k)
-    if "size" in request.model_fields_set:
-        _check_most("size", limits.size, request.size)
-    if "time_limit" in request.model_fields_set:
-        _check_most("time_limit", limits.seconds, request.time_limit)
-    _check_most("initial_tours", limits.size, len(request.initial_tours))
-    for index, tour in enumerate(request.initial_tours):
-        if sorted(tour) != list(range(n)):
-            sentence = f"initial_tours/{index} must visit each city, 0 to {n - 1}, once"
-            raise _invalid(f"/initial_tours/{index}", sentence)
-
-
-def _check_most(name: str, limit: float, actual: float) -> None:
-    if actual > limit:
-        fault = Fault(
-            pointer=f"/{name}", detail=f"{name} must be at most {limit:g}, got {actual:g}"
-        )
-        raise Refusal(422, "over-limit", fault.detail, errors=[fault], limit=limit, actual=actual)
-
-
-def _invalid(pointer: str, detail: str) -> Refusal:
-    return Refusal(422, "invalid-request", detail, errors=[Fault(pointer=pointer, detail=detail)])
-
-
-def _not_available(pointer: str, detail: str) -> Refusal:
-    return Refusal(422, "not-available", detail, errors=[Fault(pointer=pointer, detail=detail)])

@@ -26,7 +26,7 @@ class Settings(BaseSettings):
     workers: int = Field(default_factory=_cores, ge=1, description="plans made at a time")
     threads: int = Field(default_factory=_cores, ge=1, description="threads of one inference call")
     queue: int = Field(16, ge=0, description="requests that may wait for a worker")
-    max_body_bytes: int = Field(2**20, ge=1, description="the longest request body")
+    max_body_bytes: int = Field(2**24, ge=1, description="the longest request body")
     max_cities: int = Field(1000, ge=1, description="the most cities of an instance")
     max_preferences: int = Field(200, ge=1, description="the most preferences of a request")
     max_size: int = Field(1000, ge=1, description="the most tours that a request may ask for")

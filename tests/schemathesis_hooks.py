@@ -7,13 +7,35 @@ import schemathesis
 
 @schemathesis.hook
 def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noqa: ARG001
-    """No schema can say that a start is one of the cities, nor that a tour visits each once."""
+    """No schema can say that a matrix is square, that its costs are not negative but on the
+    diagonal, that some actors read no matrices, that a start is one of the cities, nor that a
+    tour visits each once.
+    """
     match case.body:
         case {"coordinates": [_, *_] as rows, **others}:
-            if isinstance(others.get("start"), int | float) and others["start"] >= len(rows):
-                case.body["start"] = 0
-            if _are_tours(others.get("initial_tours")):
-                case.body["initial_tours"] = [list(range(len(rows)))]
+            _make_fit(case.body, len(rows), others)
+        case {"matrices": [[_, *_] as rows, _] as matrices, **others} if _are_matrices(matrices):
+            case.body["matrices"] = [[[1.0] * len(rows)] * len(rows)] * 2
+            if others.get("actor") == "pa-one":
+                case.body["actor"] = "pa-one-matrix"
+            _make_fit(case.body, len(rows), others)
+
+
+def _make_fit(body: dict[str, Any], n: int, others: dict[str, Any]) -> None:
+    if isinstance(others.get("start"), int | float) and others["start"] >= n:
+        body["start"] = 0
+    if _are_tours(others.get("initial_tours")):
+        body["initial_tours"] = [list(range(n))]
+
+
+def _are_matrices(given: list[Any]) -> bool:
+    """Whether the schema takes them for matrices."""
+    return all(
+        isinstance(rows, list)
+        and rows != []
+        and all(isinstance(row, list) and all(map(_is_number, row)) for row in rows)
+        for rows in given
+    )
 
 
 def _are_tours(given: Any) -> bool:
@@ -27,5 +49,8 @@ def _are_tours(given: Any) -> bool:
 
 
 def _is_city(given: Any) -> bool:
-    whole = not isinstance(given, bool) and isinstance(given, int | float) and given % 1 == 0
-    return whole and 0 <= given < 2**31
+    return _is_number(given) and given % 1 == 0 and 0 <= given < 2**31
+
+
+def _is_number(given: Any) -> bool:
+    return not isinstance(given, bool) and isinstance(given, int | float)

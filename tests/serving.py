@@ -3,9 +3,10 @@
 import socket
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from typing import Any
 
 import httpx
 import numpy as np
@@ -14,7 +15,8 @@ from fastapi import FastAPI
 
 from service.actor import ActorFacts
 from service.app import create_app
-from service.instance import Instance
+from service.fronts import NamedActor
+from service.instance import Instance, Kind
 from service.schemas import Limits
 from service.serve import build
 from service.settings import Settings
@@ -24,24 +26,26 @@ from service.workers import Workers
 LIMITS = Limits(body_bytes=100_000, cities=50, preferences=20, size=30, seconds=0.2)
 
 
+def facts_of(name: str, inputs: Kind) -> ActorFacts:
+    return ActorFacts(
+        name=name,
+        digest="0" * 64,
+        commit="0000000",
+        inputs=inputs,
+        sizes=[20, 60],
+        angles=[0, 90],
+        config={},
+        figures={},
+    )
+
+
 @dataclass
 class Shuffler:
     """An actor that shuffles the cities, each time the same way, and waits until it may go on."""
 
     may_go_on: threading.Event = field(default_factory=threading.Event)
     started: threading.Semaphore = field(default_factory=lambda: threading.Semaphore(0))
-    facts: ActorFacts = field(
-        default_factory=lambda: ActorFacts(
-            name="pa-one",
-            digest="0" * 64,
-            commit="0000000",
-            inputs="coordinates",
-            sizes=[20, 60],
-            angles=[0, 90],
-            config={},
-            figures={},
-        )
-    )
+    facts: ActorFacts = field(default_factory=lambda: facts_of("pa-one", "coordinates"))
 
     def __post_init__(self) -> None:
         self.may_go_on.set()
@@ -69,10 +73,12 @@ def app_of(
     store: Store | None = None,
     workers: Workers | None = None,
     limits: Limits = LIMITS,
+    actors: Sequence[NamedActor] | None = None,
 ) -> FastAPI:
-    actor = actor or Shuffler()
+    if actors is None:
+        actors = [actor or Shuffler(), Shuffler(facts=facts_of("pa-one-matrix", "matrices"))]
     return create_app(
-        {actor.facts.name: actor},
+        {each.facts.name: each for each in actors},
         store or Store(entries=100, max_age=60),
         workers or Workers(workers=2, queue=8, warm_up=nothing),
         limits,
@@ -104,3 +110,16 @@ def serving_released() -> Iterator[str]:
         while httpx.get(f"{address}/health/ready").status_code == 503:
             time.sleep(0.05)
         yield address
+
+
+def problem(response: httpx.Response, status: int, code: str) -> dict[str, Any]:
+    """The problem document, checked for what every one of them must say."""
+    assert response.status_code == status, response.text
+    assert response.headers["content-type"] == "application/problem+json"
+    document = response.json()
+    assert document["status"] == status
+    assert document["code"] == code
+    assert document["title"]
+    assert document["detail"]
+    assert document["request_id"] == response.headers["x-request-id"]
+    return document

@@ -4,53 +4,20 @@ import hashlib
 from pathlib import Path
 
 import numpy as np
-import onnx
 import pytest
-from onnx import TensorProto, helper
 
 from service.actor import Actor, load_actors
 from service.instance import Instance
 from service.preferences import fan, from_angles
 from service.settings import Settings
+from tests.artifacts import METADATA, always_city_0, by_row_sums
 
 RELEASED = Settings().actors / "pa-one.onnx"
-METADATA = {
-    "name": "broken",
-    "commit": "0000000",
-    "inputs": "coordinates",
-    "sizes": "[20, 60]",
-    "angles": "[0, 90]",
-    "config": "{}",
-    "figures": "{}",
-}
 
 
 @pytest.fixture(scope="module")
 def actor() -> Actor:
     return Actor(RELEASED, threads=1)
-
-
-def always_city_0(path: Path, metadata: dict[str, str]) -> Path:
-    """A file that answers every preference with city 0 over and over."""
-    graph = helper.make_graph(
-        [
-            helper.make_node("Transpose", ["cities"], ["turned"]),
-            helper.make_node("MatMul", ["preferences", "nothing"], ["wide"]),
-            helper.make_node("MatMul", ["wide", "turned"], ["zeros"]),
-            helper.make_node("Cast", ["zeros"], ["tours"], to=TensorProto.INT64),
-        ],
-        "broken",
-        [
-            helper.make_tensor_value_info("cities", TensorProto.FLOAT, ["n", 4]),
-            helper.make_tensor_value_info("preferences", TensorProto.FLOAT, ["k", 2]),
-        ],
-        [helper.make_tensor_value_info("tours", TensorProto.INT64, ["k", "n"])],
-        [helper.make_tensor("nothing", TensorProto.FLOAT, [2, 4], [0.0] * 8)],
-    )
-    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 20)], ir_version=10)
-    helper.set_model_props(model, metadata)
-    onnx.save(model, path)
-    return path
 
 
 @pytest.mark.parametrize("n", [3, 7, 40, 200])
@@ -92,6 +59,36 @@ def test_a_tour_that_is_no_permutation_is_a_bug_and_never_an_answer(tmp_path: Pa
     broken = Actor(always_city_0(tmp_path / "broken.onnx", METADATA), threads=1)
     with pytest.raises(RuntimeError, match="broken built a tour that is not a permutation"):
         broken.tours(Instance(coordinates=np.eye(4)), from_angles(fan(2)))
+
+
+def test_an_actor_of_matrices_reads_scaled_matrices_with_zeros_on_the_diagonal(
+    tmp_path: Path,
+) -> None:
+    actor = Actor(by_row_sums(tmp_path / "sums.onnx"), threads=1)
+    matrices = np.random.default_rng(2).random((2, 9, 9)) * np.array([1e6, 1e-6]).reshape(2, 1, 1)
+    preferences = from_angles(fan(7))
+    tours = actor.tours(Instance(matrices=matrices), preferences)
+    np.testing.assert_array_equal(tours, expected_by_row_sums(matrices, preferences))
+
+
+def test_an_actor_of_matrices_serves_coordinates_by_their_distances(tmp_path: Path) -> None:
+    actor = Actor(by_row_sums(tmp_path / "sums.onnx"), threads=1)
+    instance = Instance(coordinates=np.random.default_rng(3).random((9, 4)) * [5, 5, 700, 700])
+    preferences = from_angles(fan(7))
+    expected = np.argsort(-preferences @ instance.scaled_matrices.sum(axis=2))
+    np.testing.assert_array_equal(actor.tours(instance, preferences), expected)
+
+
+def expected_by_row_sums(matrices: np.ndarray, preferences: np.ndarray) -> np.ndarray:
+    costs = matrices * (1 - np.eye(matrices.shape[1]))
+    sums = costs.sum(axis=2) / costs.max(axis=(1, 2))[:, None]
+    return np.argsort(-preferences @ sums)
+
+
+def test_a_file_that_reads_neither_is_refused(tmp_path: Path) -> None:
+    path = always_city_0(tmp_path / "odd.onnx", {**METADATA, "inputs": "words"})
+    with pytest.raises(ValueError, match="must be coordinates or matrices, got 'words'"):
+        Actor(path, threads=1)
 
 
 def test_a_file_without_metadata_is_refused(tmp_path: Path) -> None:

@@ -24,7 +24,7 @@ from service.planner import Front
 from service.settings import Settings
 from service.store import Store
 from service.workers import Workers
-from tests.serving import LIMITS, Broken, Shuffler, app_of, nothing, serving
+from tests.serving import LIMITS, Broken, Shuffler, app_of, nothing, problem, serving
 
 CITIES = np.random.default_rng(5).random((12, 4)).tolist()
 ROOT = Path(__file__).parent.parent
@@ -41,19 +41,6 @@ def url() -> Iterator[str]:
 def client(url: str) -> Iterator[httpx.Client]:
     with httpx.Client(base_url=url, timeout=30) as client:
         yield client
-
-
-def problem(response: httpx.Response, status: int, code: str) -> dict[str, Any]:
-    """The problem document, checked for what every one of them must say."""
-    assert response.status_code == status, response.text
-    assert response.headers["content-type"] == "application/problem+json"
-    document = response.json()
-    assert document["status"] == status
-    assert document["code"] == code
-    assert document["title"]
-    assert document["detail"]
-    assert document["request_id"] == response.headers["x-request-id"]
-    return document
 
 
 def test_cities_become_a_front(client: httpx.Client) -> None:
@@ -300,12 +287,6 @@ def test_more_than_a_limit_names_the_limit(
     assert document["errors"][0]["pointer"] == f"/{member}"
 
 
-def test_matrices_are_not_there_yet(client: httpx.Client) -> None:
-    body = {"matrices": [[[0, 1], [1, 0]], [[0, 1], [1, 0]]]}
-    document = problem(client.post("/front", json=body), 422, "not-available")
-    assert document["errors"][0]["pointer"] == "/matrices"
-
-
 @pytest.mark.parametrize(
     "tour", [[0], [*range(1, len(CITIES)), 1], [*range(1, len(CITIES)), len(CITIES)]]
 )
@@ -383,7 +364,7 @@ def test_asynchronous_answers_are_not_there_yet(client: httpx.Client) -> None:
 def test_an_actor_that_is_not_loaded_is_named(client: httpx.Client) -> None:
     answer = client.post("/front", json={"coordinates": CITIES, "actor": "pa-two"})
     document = problem(answer, 422, "unknown-actor")
-    assert document["detail"] == "actor must be one of pa-one, got 'pa-two'"
+    assert document["detail"] == "actor must be one of pa-one, pa-one-matrix, got 'pa-two'"
 
 
 @pytest.mark.parametrize(
@@ -514,8 +495,11 @@ def test_what_is_under_way_for_too_long_at_the_end_is_refused() -> None:
 
 
 def test_the_actors_are_named(client: httpx.Client) -> None:
-    (actor,) = client.get("/actors").json()["actors"]
-    assert (actor["name"], actor["inputs"], actor["sizes"]) == ("pa-one", "coordinates", [20, 60])
+    actors = client.get("/actors").json()["actors"]
+    assert [(actor["name"], actor["inputs"], actor["sizes"]) for actor in actors] == [
+        ("pa-one", "coordinates", [20, 60]),
+        ("pa-one-matrix", "matrices", [20, 60]),
+    ]
 
 
 def test_the_documentation_is_served(client: httpx.Client) -> None:

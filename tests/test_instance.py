@@ -1,5 +1,7 @@
 """What an instance is, and what it refuses to be."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -63,6 +65,21 @@ def test_scaled_coordinates_fill_the_unit_square_and_no_more(coordinates: np.nda
 def test_matrices_have_no_scaled_coordinates() -> None:
     with pytest.raises(InvalidInstance, match="no coordinates"):
         _ = Instance(matrices=np.ones((2, 3, 3))).scaled_coordinates
+
+
+@given(COORDINATES)
+def test_scaled_matrices_are_the_distances_of_scaled_coordinates(coordinates: np.ndarray) -> None:
+    instance = Instance(coordinates=coordinates)
+    cities = instance.scaled_coordinates
+    expected = np.array(
+        [[[math.dist(a[m : m + 2], b[m : m + 2]) for b in cities] for a in cities] for m in (0, 2)]
+    )
+    np.testing.assert_allclose(instance.scaled_matrices, expected)
+
+
+def test_scaled_matrices_have_a_largest_entry_of_one_and_a_diagonal_of_zeros() -> None:
+    scaled = Instance(matrices=np.array([[[9, 2], [1, 9]], [[5, 3], [30, 5]]])).scaled_matrices
+    assert scaled.tolist() == [[[0, 1], [0.5, 0]], [[0, 0.1], [1, 0]]]
 
 
 def test_a_tour_is_closed() -> None:

@@ -1,0 +1,112 @@
+"""Front requests: what they may say under given limits, and what one says."""
+
+from collections.abc import Iterable
+from typing import Any
+
+from pydantic import ValidationError
+
+from service.matrices import check_costs
+from service.problems import Fault, Refusal, refused_by
+from service.schemas import LARGEST, FrontRequest, Limits
+
+
+def request_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
+    """The JSON schema of a front request where these limits hold and these actors are loaded."""
+    schema = FrontRequest.model_json_schema()
+    fields = schema["properties"]
+    schema["oneOf"] = [{"required": ["coordinates"]}, {"required": ["matrices"]}]
+    fields["coordinates"]["maxItems"] = limits.cities
+    rows = fields["matrices"]["items"]
+    rows["minItems"], rows["maxItems"] = 1, limits.cities
+    count, angles = fields["preferences"]["oneOf"]
+    count["maximum"] = angles["maxItems"] = limits.preferences
+    fields["size"]["maximum"] = limits.size
+    for name, default in _defaults_within(limits).items():
+        fields[name]["default"] = default
+    fields["start"]["maximum"] = limits.cities - 1
+    del fields["actor"]["default"]
+    fields["actor"]["enum"] = sorted(actors)
+    fields["time_limit"]["maximum"] = limits.seconds
+    fields["initial_tours"]["maxItems"] = limits.size
+    return schema
+
+
+def parse_front_request(body: bytes, limits: Limits) -> FrontRequest:
+    """The request in a body.
+
+    Raises:
+        Refusal: it is not JSON, not a front request, over a limit, or asks for what there is not.
+    """
+    try:
+        request = FrontRequest.model_validate_json(body)
+    except ValidationError as error:
+        errors = error.errors(include_url=False)
+        if errors[0]["type"] == "json_invalid":
+            reason = errors[0]["ctx"]["error"]
+            raise Refusal(400, "malformed-json", f"the body must be JSON: {reason}") from None
+        raise refused_by(errors) from None
+    _check_instance(request, limits)
+    _check_limits(request, limits)
+    defaults = _defaults_within(limits).items()
+    given = request.model_fields_set
+    return request.model_copy(update={name: v for name, v in defaults if name not in given})
+
+
+def _defaults_within(limits: Limits) -> dict[str, float]:
+    """The defaults that a limit may lower: who asks for nothing is never over a limit."""
+    most = {
+        "preferences": limits.preferences,
+        "size": limits.size,
+        "time_limit": limits.seconds,
+    }
+    fields = FrontRequest.model_fields
+    return {name: min(fields[name].default, limit) for name, limit in most.items()}
+
+
+def _check_instance(request: FrontRequest, limits: Limits) -> None:
+    given = {"coordinates", "matrices"} & request.model_fields_set
+    if len(given) != 1:
+        came = "both" if given else "neither"
+        raise _invalid("/coordinates", f"either coordinates or matrices are required, got {came}")
+    if request.n > limits.cities:
+        raise Refusal(
+            413,
+            "too-many-cities",
+            f"{request.kind} must have at most {limits.cities} rows, got {request.n}",
+            errors=[Fault(pointer=f"/{request.kind}", detail="too many rows")],
+            limit=limits.cities,
+            actual=request.n,
+        )
+    check_costs(request.matrices, LARGEST)
+
+
+def _check_limits(request: FrontRequest, limits: Limits) -> None:
+    n = request.n
+    if request.start >= n:
+        sentence = f"start must be a city, 0 to {n - 1}, got {request.start}"
+        raise _invalid("/start", sentence)
+    if "preferences" in request.model_fields_set:
+        looked = request.preferences
+        k = looked if isinstance(looked, int) else len(looked)
+        _check_most("preferences", limits.preferences, k)
+    if "size" in request.model_fields_set:
+        _check_most("size", limits.size, request.size)
+    if "time_limit" in request.model_fields_set:
+        _check_most("time_limit", limits.seconds, request.time_limit)
+    _check_most("initial_tours", limits.size, len(request.initial_tours))
+    for index, tour in enumerate(request.initial_tours):
+        if sorted(tour) != list(range(n)):
+            sentence = f"initial_tours/{index} must visit each city, 0 to {n - 1}, once"
+            raise _invalid(f"/initial_tours/{index}", sentence)
+
+
+def _check_most(name: str, limit: float, actual: float) -> None:
+    if actual > limit:
+        fault = Fault(
+            pointer=f"/{name}", detail=f"{name} must be at most {limit:g}, got {actual:g}"
+        )
+        raise Refusal(422, "over-limit", fault.detail, errors=[fault], limit=limit, actual=actual)
+
+
+def _invalid(pointer: str, detail: str) -> Refusal:
+    return Refusal(422, "invalid-request", detail, errors=[Fault(pointer=pointer, detail=detail)])
