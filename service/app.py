@@ -6,12 +6,12 @@ from dataclasses import asdict
 from typing import Any
 
 from fastapi import APIRouter, FastAPI
-from starlette.middleware import Middleware
 from starlette.responses import Response
 
 from service.bodies import json_response
+from service.edge import Edge
 from service.fronts import FrontRoutes, KeptFront, NamedActor
-from service.problems import REFUSALS, Problem, RequestIds, answer_refusal, responses
+from service.problems import REFUSALS, Problem, answer_refusal, responses
 from service.schemas import ActorsAnswer, HealthAnswer, Limits
 from service.store import Store
 from service.workers import Workers
@@ -23,8 +23,10 @@ def create_app(
     workers: Workers,
     limits: Limits,
     version: str,
+    edge: Edge | None = None,
 ) -> FastAPI:
     """The application. It closes the workers when it shuts down."""
+    edge = edge or Edge()
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -36,13 +38,15 @@ def create_app(
         summary="Pareto fronts of tours under two objectives",
         version=version,
         lifespan=lifespan,
-        middleware=[Middleware(RequestIds)],
+        middleware=edge.middleware,
         exception_handlers=dict.fromkeys(REFUSALS, answer_refusal),
         redirect_slashes=False,
         redoc_url=None,
     )
-    app.include_router(FrontRoutes(actors, store, workers, limits).router())
-    app.include_router(_ServiceRoutes(actors, workers).router())
+    app.include_router(FrontRoutes(actors, store, workers, limits).router(), **edge.guard)
+    app.include_router(_actor_router(actors), **edge.guard)
+    app.include_router(edge.metrics.router(), **edge.guard)
+    app.include_router(_HealthRoutes(workers).router())
     return app
 
 
@@ -61,27 +65,32 @@ def _problem_schema() -> dict[str, Any]:
     return schema
 
 
-class _ServiceRoutes:
-    """What the service says of itself."""
+def _actor_router(actors: Mapping[str, NamedActor]) -> APIRouter:
+    router = APIRouter(tags=["service"])
 
-    def __init__(self, actors: Mapping[str, NamedActor], workers: Workers) -> None:
-        self._actors = actors
+    @router.get("/actors", response_model=ActorsAnswer)
+    async def actors_there_are() -> Response:
+        """The networks to choose from."""
+        facts = [asdict(actor.facts) for _, actor in sorted(actors.items())]
+        return json_response({"actors": facts})
+
+    return router
+
+
+class _HealthRoutes:
+    """How the service is. These are open to all: an orchestrator has no key."""
+
+    def __init__(self, workers: Workers) -> None:
         self._workers = workers
 
     def router(self) -> APIRouter:
         """The paths, with what the OpenAPI document says of them."""
         router = APIRouter(tags=["service"])
-        router.get("/actors", response_model=ActorsAnswer)(self.actors)
         router.get("/health/live", response_model=HealthAnswer)(self.live)
         router.get("/health/ready", response_model=HealthAnswer, responses=responses(503))(
             self.ready
         )
         return router
-
-    async def actors(self) -> Response:
-        """The networks to choose from."""
-        facts = [asdict(actor.facts) for _, actor in sorted(self._actors.items())]
-        return json_response({"actors": facts})
 
     async def live(self) -> Response:
         """Whether the process answers."""

@@ -9,9 +9,13 @@ from typing import NoReturn
 import uvicorn
 from fastapi import FastAPI
 
+from service.access import Access, Rates
 from service.actor import load_actors
 from service.app import create_app
+from service.edge import Edge
 from service.improve import warm_up
+from service.logs import logging_config
+from service.metrics import Metrics
 from service.settings import Settings
 from service.store import Store
 from service.workers import Workers
@@ -25,6 +29,11 @@ def build(settings: Settings) -> FastAPI:
         Workers(settings.workers, settings.queue, warm_up),
         settings.limits,
         _version(),
+        Edge(
+            access=Access(settings.api_keys, Rates(settings.rate)),
+            metrics=Metrics(),
+            origins=settings.origins,
+        ),
     )
 
 
@@ -37,6 +46,8 @@ def serve(app: FastAPI, settings: Settings) -> None:
         host=settings.host,
         port=settings.port,
         server_header=False,
+        log_config=logging_config(),
+        access_log=False,
         timeout_graceful_shutdown=settings.drain_seconds,
     )
 

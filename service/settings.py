@@ -2,15 +2,37 @@
 
 import os
 from pathlib import Path
+from typing import Annotated
 
-from pydantic import Field
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from limits import parse
+from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
+from service.access import KeyHash
 from service.schemas import Limits
 
 
 def _cores() -> int:
     return min(len(os.sched_getaffinity(0)), 4)
+
+
+def _words(given: object) -> object:
+    return [word.strip() for word in given.split(",") if word] if isinstance(given, str) else given
+
+
+def _key_hash(given: object) -> object:
+    return KeyHash.read(given) if isinstance(given, str) else given
+
+
+def _rate(given: str) -> str:
+    parse(given)
+    return given
+
+
+Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_words)]
+KeyHashes = Annotated[
+    tuple[Annotated[KeyHash, BeforeValidator(_key_hash)], ...], NoDecode, BeforeValidator(_words)
+]
 
 
 class Settings(BaseSettings):
@@ -34,6 +56,16 @@ class Settings(BaseSettings):
     drain_seconds: int = Field(20, ge=0, description="time to finish what is under way at SIGTERM")
     store_entries: int = Field(256, ge=1, description="fronts kept for later questions")
     store_seconds: float = Field(3600.0, gt=0, description="how long a front is kept")
+
+    api_keys: KeyHashes = Field(
+        (), description="who may call, as CALLER:HASH with commas between; none lets everybody in"
+    )
+    rate: Annotated[str, AfterValidator(_rate)] = Field(
+        "1000/minute", description="requests that each caller with a key may make"
+    )
+    origins: Words = Field(
+        (), description="origins whose pages may call (CORS), with commas between; or *"
+    )
 
     @property
     def limits(self) -> Limits:

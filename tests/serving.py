@@ -15,6 +15,7 @@ from fastapi import FastAPI
 
 from service.actor import ActorFacts
 from service.app import create_app
+from service.edge import Edge
 from service.fronts import NamedActor
 from service.instance import Instance, Kind
 from service.schemas import Limits
@@ -74,6 +75,7 @@ def app_of(
     workers: Workers | None = None,
     limits: Limits = LIMITS,
     actors: Sequence[NamedActor] | None = None,
+    edge: Edge | None = None,
 ) -> FastAPI:
     if actors is None:
         actors = [actor or Shuffler(), Shuffler(facts=facts_of("pa-one-matrix", "matrices"))]
@@ -83,6 +85,7 @@ def app_of(
         workers or Workers(workers=2, queue=8, warm_up=nothing),
         limits,
         "test",
+        edge,
     )
 
 

@@ -1,0 +1,76 @@
+"""What Prometheus is told, against a live server."""
+
+import httpx
+from prometheus_client.parser import text_string_to_metric_families
+
+from service.edge import Edge
+from service.metrics import Metrics
+from tests.serving import Broken, app_of, serving
+from tests.test_app import CITIES
+
+FRONT = {"coordinates": CITIES, "time_limit": 0}
+
+
+def samples(url: str) -> dict[tuple[str, ...], float]:
+    """The value of each sample, by its name and its labels' values in the order of their names."""
+    answer = httpx.get(f"{url}/metrics")
+    assert answer.headers["content-type"].startswith("text/plain; version=0.0.4")
+    return {
+        (sample.name, *(value for _, value in sorted(sample.labels.items()))): sample.value
+        for family in text_string_to_metric_families(answer.text)
+        for sample in family.samples
+    }
+
+
+def test_requests_are_counted_by_the_path_that_they_matched() -> None:
+    with serving(app_of()) as url:
+        for _ in range(3):
+            httpx.post(f"{url}/front", json=FRONT)
+        httpx.get(f"{url}/front/none")
+        httpx.get(f"{url}/nowhere/at/all")
+        httpx.request("BREW", f"{url}/front")
+        counted = samples(url)
+    requests = {key[1:]: value for key, value in counted.items() if key[0].endswith("s_total")}
+    assert requests["POST", "/front", "200"] == 3
+    assert requests["GET", "/front/{id}", "404"] == 1
+    assert requests["GET", "unmatched", "404"] == 1
+    assert requests["other", "/front", "405"] == 1
+    assert counted["paretour_request_seconds_count", "POST", "/front"] == 3
+
+
+def test_a_bug_is_counted() -> None:
+    with serving(app_of(Broken())) as url:
+        httpx.post(f"{url}/front", json=FRONT)
+        assert samples(url)["paretour_requests_total", "POST", "/front", "500"] == 1
+
+
+def test_the_queue_is_asked_whenever_prometheus_asks() -> None:
+    metrics = Metrics()
+    depths = iter([3, 0])
+    metrics.watch_queue(lambda: next(depths))
+    with serving(app_of(edge=Edge(metrics=metrics))) as url:
+        assert samples(url)["paretour_queue_depth",] == 3
+        assert samples(url)["paretour_queue_depth",] == 0
+
+
+def test_plans_are_counted_by_phase_and_size_class() -> None:
+    metrics = Metrics()
+    metrics.planned(40, {"construction": 20.0, "improvement": 1000.0}, 0.02)
+    metrics.planned(50, {"construction": 30.0}, None)
+    metrics.planned(5000, {"construction": 500.0}, None)
+    with serving(app_of(edge=Edge(metrics=metrics))) as url:
+        counted = samples(url)
+    assert counted["paretour_planning_seconds_count", "50", "construction"] == 2
+    assert abs(counted["paretour_planning_seconds_sum", "50", "construction"] - 0.05) < 1e-9
+    assert counted["paretour_planning_seconds_sum", "50", "improvement"] == 1
+    assert counted["paretour_planning_seconds_count", "more", "construction"] == 1
+    assert counted["paretour_hypervolume_gained_sum", "50"] == 0.02
+
+
+def test_restarts_of_workers_are_counted() -> None:
+    metrics = Metrics()
+    metrics.worker_restarted()
+    with serving(app_of(edge=Edge(metrics=metrics))) as url:
+        counted = samples(url)
+    assert counted["paretour_worker_restarts_total",] == 1
+    assert counted["process_resident_memory_bytes",] > 1e6
