@@ -18,12 +18,13 @@ from service.logs import logging_config
 from service.metrics import Metrics
 from service.settings import Settings
 from service.store import Store
+from service.tracing import trace
 from service.workers import Workers
 
 
 def build(settings: Settings) -> FastAPI:
     """The application that the settings ask for."""
-    return create_app(
+    app = create_app(
         load_actors(settings.actors, settings.threads),
         Store(settings.store_entries, settings.store_seconds),
         Workers(settings.workers, settings.queue, warm_up),
@@ -35,6 +36,9 @@ def build(settings: Settings) -> FastAPI:
             origins=settings.origins,
         ),
     )
+    if settings.traces:
+        trace(app)
+    return app
 
 
 def serve(app: FastAPI, settings: Settings) -> None:

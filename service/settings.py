@@ -1,4 +1,4 @@
-"""What an operator can set, by environment variables PARETOUR_*. Nothing else reads them."""
+"""What an operator can set, by environment variables. Nothing else in the service reads them."""
 
 import os
 from pathlib import Path
@@ -36,7 +36,7 @@ KeyHashes = Annotated[
 
 
 class Settings(BaseSettings):
-    """Every setting; the variable is the field's name in capitals after PARETOUR_."""
+    """Every setting; the variable is PARETOUR_ and the field's name in capitals, or its alias."""
 
     model_config = SettingsConfigDict(env_prefix="PARETOUR_", frozen=True)
 
@@ -65,6 +65,11 @@ class Settings(BaseSettings):
     )
     origins: Words = Field(
         (), description="origins whose pages may call (CORS), with commas between; or *"
+    )
+    traces: str | None = Field(
+        None,
+        validation_alias="OTEL_EXPORTER_OTLP_ENDPOINT",
+        description="where OpenTelemetry traces go, over HTTP",
     )
 
     @property

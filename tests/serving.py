@@ -1,9 +1,13 @@
 """A live server in a thread, and an actor to put behind it."""
 
+import os
+import signal
 import socket
+import subprocess
+import sys
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
@@ -113,6 +117,44 @@ def serving_released() -> Iterator[str]:
         while httpx.get(f"{address}/health/ready").status_code == 503:
             time.sleep(0.05)
         yield address
+
+
+@dataclass
+class Running:
+    """The command `paretour serve`, and what it has written to its log once it has ended."""
+
+    url: str
+    process: subprocess.Popen[bytes]
+    log: bytes = b""
+
+
+@contextmanager
+def running(settings: Mapping[str, str]) -> Iterator[Running]:
+    """The service as a process of its own, told to end when the block does."""
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    command = [sys.executable, "-m", "service", "serve", "--port", str(port)]
+    # Nothing here waits for compiled code.
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", **settings}
+    with subprocess.Popen(command, env=environment, stderr=subprocess.PIPE) as process:
+        service = Running(f"http://127.0.0.1:{port}", process)
+        try:
+            _wait_until_live(service.url)
+            yield service
+        finally:
+            process.send_signal(signal.SIGTERM)
+            _, service.log = process.communicate(timeout=30)
+
+
+def _wait_until_live(url: str) -> None:
+    deadline = time.monotonic() + 30
+    while time.monotonic() < deadline:
+        try:
+            httpx.get(f"{url}/health/live").raise_for_status()
+            return
+        except httpx.ConnectError:
+            time.sleep(0.05)
+    raise TimeoutError("the server must start within 30 s")
 
 
 def problem(response: httpx.Response, status: int, code: str) -> dict[str, Any]:

@@ -38,6 +38,7 @@ def lasting(answer: dict[str, Any]) -> dict[str, Any]:
 
 def test_every_setting_is_described() -> None:
     for name, field in Settings.model_fields.items():
-        assert f"| `PARETOUR_{name.upper()}` |" in README
+        variable = field.validation_alias or f"PARETOUR_{name.upper()}"
+        assert f"| `{variable}` |" in README
         assert field.description is not None
         assert field.description in README
