@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+import pytest
 
 from service.settings import Settings
 from tests.serving import serving_released
@@ -19,6 +20,14 @@ def test_the_request_gets_the_answer() -> None:
     with serving_released() as address:
         found = httpx.post(f"{address}/front", json=request, timeout=60).json()
     assert lasting(found) == lasting(answer)
+
+
+def test_the_python_code_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    [code] = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    with serving_released() as address:
+        exec(code.replace("http://localhost:8000", address), {})
+    hypervolume, *_ = capsys.readouterr().out.split()
+    assert 0 < float(hypervolume) < 1
 
 
 def lasting(answer: dict[str, Any]) -> dict[str, Any]:

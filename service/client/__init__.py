@@ -1,0 +1,29 @@
+"""A client of the service, for programs that wait and for programs that await.
+
+    from service.client import Client
+
+    with Client("http://localhost:8000") as client:
+        front = client.front(coordinates=cities, time_limit=2)
+        tour = front.nearest(angle=30).tour
+
+What is asked, and how an answer is read, is written once, in `calls` and `following`; the two
+clients only carry it to and fro. Nothing else of the service is needed.
+"""
+
+from service.client.asynchronous import AsyncClient, AsyncJob
+from service.client.refused import Refused
+from service.client.sync import Client, Job
+from service.client.values import Actor, Front, FrontRequest, Progress, Tour
+
+__all__ = [
+    "Actor",
+    "AsyncClient",
+    "AsyncJob",
+    "Client",
+    "Front",
+    "FrontRequest",
+    "Job",
+    "Progress",
+    "Refused",
+    "Tour",
+]
