@@ -130,8 +130,9 @@ def test_the_tour_at_an_angle_is_that_of_the_front(url: str, connect: Connect) -
 
 
 def test_the_actors_are_named(url: str, connect: Connect) -> None:
-    [actor] = connect(url).actors()
-    assert (actor.name, actor.inputs) == ("pa-one", "coordinates")
+    named = {actor.name: actor.inputs for actor in connect(url).actors()}
+    assert named["pa-one"] == "coordinates"
+    assert list(named) == [item["name"] for item in httpx.get(f"{url}/actors").json()["actors"]]
 
 
 def test_a_refusal_says_what_the_problem_document_says(url: str, connect: Connect) -> None:

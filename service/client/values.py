@@ -17,6 +17,7 @@ class FrontRequest(TypedDict, total=False):
     """The members of a request to POST /front, whose documentation says what each means."""
 
     coordinates: ArrayLike
+    matrices: ArrayLike
     preferences: int | ArrayLike
     time_limit: float
     size: int
