@@ -21,13 +21,13 @@ from models.networks import Actor, Conditioning, Memory
 
 # Sizes to trace at: no other axis has them, so each axis shows whether it is n or k.
 _N, _K = 11, 35
-_STATE = ("current", "first", "visited")
+_STATE = ("recent", "first", "visited")
 
 
 class _Encode(nn.Module):
     """From cities and preferences to all that decoding needs and the state before its first step.
 
-    The state is the current city, the first city and the visited cities of each tour.
+    The state is the last three cities, the first city and the visited cities of each tour.
     """
 
     def __init__(self, actor: Actor) -> None:
@@ -38,15 +38,15 @@ class _Encode(nn.Module):
         grouping = grouped(preferences, self.actor.groups)
         memory = self.actor.remember(cities[None], grouping.rows)
         rows = self.actor.decoder.condition(grouping.rows)
-        at = torch.zeros_like(grouping.members)  # (r,)
-        if self.actor.decoder.chooses_first:
-            at = at + cities.shape[0]
+        nowhere = torch.zeros_like(grouping.members) + cities.shape[0]  # (r,)
+        at = nowhere if self.actor.decoder.chooses_first else torch.zeros_like(nowhere)
+        recent = torch.stack((at, nowhere, nowhere), dim=-1)
         visited = torch.arange(cities.shape[0]) == at[:, None]
-        return *memory, *rows, grouping.places, at, at.clone(), visited
+        return *memory, *rows, grouping.places, recent, at.clone(), visited
 
 
 class _Step(nn.Module):
-    """From the state before a step of all tours to the state after it."""
+    """From the state before a step of all tours to the state after it, and the cities chosen."""
 
     def __init__(self, actor: Actor, memory: type[Memory], rows: type[Conditioning]) -> None:
         super().__init__()
@@ -57,14 +57,15 @@ class _Step(nn.Module):
         memory: tuple[Tensor, ...],
         rows: tuple[Tensor, ...],
         state: tuple[Tensor, Tensor, Tensor],
-    ) -> tuple[Tensor, Tensor, Tensor]:
-        current, first, visited = state
-        moment = Moment(current[None], first[None], visited[None])
+    ) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+        recent, first, visited = state
+        moment = Moment(recent[None], first[None], visited[None])
         chosen = self.decoder.logits(self.memory(*memory), self.rows(*rows), moment)[0].argmax(-1)
         each = torch.arange(visited.shape[1])
         if self.decoder.chooses_first:
             first = torch.where(first == visited.shape[1], chosen, first)
-        return chosen, first.clone(), visited | (each == chosen[:, None])
+        recent = torch.cat((chosen[:, None], recent[:, :2]), dim=1)
+        return recent, first.clone(), visited | (each == chosen[:, None]), chosen
 
 
 def to_onnx(actor: Actor) -> ModelProto:
@@ -86,7 +87,7 @@ def to_onnx(actor: Actor) -> ModelProto:
         _Step(actor, type(memory), type(rows)),
         (_contiguous(memory), _contiguous(rows), tuple(state)),
         [*tables, *_STATE],
-        [f"next_{name}" for name in _STATE],
+        [*(f"next_{name}" for name in _STATE), "chosen"],
     )
     return _joined(encode, step, tables, actor.decoder.chooses_first)
 
@@ -168,20 +169,17 @@ def _loop_body(step: GraphProto, shared: set[str]) -> tuple[GraphProto, list[Ten
         moved.CopyFrom(constant)
         moved.name = renamed(constant.name)
         constants.append(moved)
-    kinds = {"current": TensorProto.INT64, "first": TensorProto.INT64, "visited": TensorProto.BOOL}
-    shapes = {"current": ["rows"], "first": ["rows"], "visited": ["rows", "n"]}
+    kinds = {"recent": TensorProto.INT64, "first": TensorProto.INT64, "visited": TensorProto.BOOL}
+    others: dict[str, list[int | str]] = {"recent": [3], "first": [], "visited": ["n"]}
 
     def described(prefix: str) -> list[onnx.ValueInfoProto]:
         return [
-            helper.make_tensor_value_info(f"step_{prefix}{x}", kinds[x], shapes[x]) for x in _STATE
+            helper.make_tensor_value_info(f"step_{prefix}{x}", kinds[x], ["rows", *others[x]])
+            for x in _STATE
         ]
 
     body = helper.make_graph(
-        [
-            *nodes,
-            helper.make_node("Identity", ["condition"], ["go_on"]),
-            helper.make_node("Identity", ["step_next_current"], ["step_chosen"]),
-        ],
+        [*nodes, helper.make_node("Identity", ["condition"], ["go_on"])],
         "step",
         [
             helper.make_tensor_value_info("iteration", TensorProto.INT64, []),
@@ -204,7 +202,7 @@ def _ending(chooses_first: bool) -> list[NodeProto]:
     else:
         whole = [
             helper.make_node("Constant", [], ["steps"], value_ints=[0]),
-            helper.make_node("Unsqueeze", ["current", "steps"], ["given"]),
+            helper.make_node("Unsqueeze", ["first", "steps"], ["given"]),
             helper.make_node("Concat", ["given", "chosen"], ["by_step"], axis=0),
         ]
     return [

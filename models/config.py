@@ -16,7 +16,7 @@ def setting(default: Any, meaning: str) -> Any:
 class NetworkConfig:
     """Which actor, and how large."""
 
-    name: str = setting("pa-one", "pa-one or pa-at")
+    name: str = setting("pa-one", "pa-one, pa-at or pa-ean")
     width: int = setting(128, "features of a city")
     heads: int = setting(8, "attention heads")
     layers: int = setting(5, "encoder layers")
@@ -24,8 +24,8 @@ class NetworkConfig:
     clip: float = setting(10.0, "bound on the pointer's logits before distances are taken off")
 
     def __post_init__(self) -> None:
-        if self.name not in ("pa-one", "pa-at"):
-            raise ValueError(f"name must be pa-one or pa-at, got {self.name}")
+        if self.name not in ("pa-one", "pa-at", "pa-ean"):
+            raise ValueError(f"name must be pa-one, pa-at or pa-ean, got {self.name}")
         if self.width % self.heads:
             raise ValueError(f"width {self.width} must be a multiple of heads {self.heads}")
 

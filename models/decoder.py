@@ -16,11 +16,19 @@ from models.lagrangian import weights
 
 
 class Moment(NamedTuple):
-    """Where each row stands. Before the first choice, current and first may be index n."""
+    """Where each row stands: its last three cities, the latest first; its first; all it has seen.
 
-    current: Int[Tensor, "b r"]
+    Index n stands for a city that is not chosen yet.
+    """
+
+    recent: Int[Tensor, "b r 3"]
     first: Int[Tensor, "b r"]
     visited: Bool[Tensor, "b r n"]
+
+    @property
+    def current(self) -> Int[Tensor, "b r"]:
+        """The city that each row is at."""
+        return self.recent[..., 0]
 
 
 class AttentionMemory(NamedTuple):
@@ -123,7 +131,7 @@ class AttentionDecoder(nn.Module):
     ) -> Float[Tensor, "b r n"]:
         """Unnormalised log-probabilities of the next city; minus infinity where visited."""
         begun = (moment.current < moment.visited.shape[-1])[..., None]
-        ends = _look_up(memory.current, moment.current) + _look_up(memory.first, moment.first)
+        ends = look_up(memory.current, moment.current) + look_up(memory.first, moment.first)
         query = memory.context + rows.context + ends + begun * rows.ends
         mask = torch.zeros_like(moment.visited, dtype=query.dtype)
         mask = mask.masked_fill(moment.visited, -torch.inf)
@@ -193,7 +201,7 @@ class OneDecoder(nn.Module):
         b, r, _ = moment.visited.shape
         by_group = (len(memory.pointers), -1)  # the leading shape of what is looked up by group
         current, first = moment.current.view(by_group), moment.first.view(by_group)
-        ends = _look_up(memory.current, current) + _look_up(memory.first, first)
+        ends = look_up(memory.current, current) + look_up(memory.first, first)
         query = (rows.scale * ends.view(b, r, -1) + rows.shift).view_as(ends)
         mask = torch.zeros_like(moment.visited, dtype=query.dtype)
         mask = mask.masked_fill(moment.visited, -torch.inf)
@@ -218,7 +226,7 @@ def _pull(
 ) -> Float[Tensor, "b r n"]:
     """How much each city draws a row that stands at its current city: minus a cost."""
     first, second, log_first, log_second = (
-        _look_up(table, current)
+        look_up(table, current)
         for table in (
             memory.distances,
             memory.other_distances,
@@ -245,7 +253,7 @@ def _views(
     )
 
 
-def _look_up(table: Float[Tensor, "b m d"], index: Int[Tensor, "b r"]) -> Float[Tensor, "b r d"]:
+def look_up(table: Float[Tensor, "b m d"], index: Int[Tensor, "b r"]) -> Float[Tensor, "b r d"]:
     """For each instance, the rows of its table that the index names."""
     b, m, d = table.shape
     flat = index + m * torch.arange(b, device=index.device)[:, None]

@@ -59,7 +59,9 @@ class AttentionEncoder(nn.Module):
     def __init__(self, width: int, heads: int, layers: int, hidden: int) -> None:
         super().__init__()
         self.embed = nn.Linear(4, width)
-        self.layers = nn.ModuleList(_PostNormLayer(width, heads, hidden) for _ in range(layers))
+        self.layers = nn.ModuleList(
+            PostNormLayer(SelfAttention(width, heads), width, hidden) for _ in range(layers)
+        )
 
     def forward(self, cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b n d"]:
         """Features of the cities."""
@@ -69,14 +71,17 @@ class AttentionEncoder(nn.Module):
         return features
 
 
-class _PostNormLayer(nn.Module):
-    def __init__(self, width: int, heads: int, hidden: int) -> None:
+class PostNormLayer(nn.Module):
+    """Attention of a kind and a feed-forward, each with a skip and then batch normalisation."""
+
+    def __init__(self, attend: nn.Module, width: int, hidden: int) -> None:
         super().__init__()
-        self.attend = SelfAttention(width, heads)
+        self.attend = attend
         self.think = feedforward(width, width, hidden)
         self.norms = nn.ModuleList(nn.BatchNorm1d(width) for _ in range(2))
 
-    def forward(self, features: Tensor) -> Tensor:
+    def forward(self, features: Float[Tensor, "b n d"]) -> Float[Tensor, "b n d"]:
+        """Features one layer deeper."""
         features = self._normalised(0, features + self.attend(features))
         return self._normalised(1, features + self.think(features))
 

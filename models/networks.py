@@ -8,6 +8,7 @@ from torch import Tensor, nn
 
 from models.config import NetworkConfig
 from models.decoder import AttentionDecoder, AttentionMemory, OneDecoder, OneMemory
+from models.ean import EANDecoder, EANEncoder, EANMemory
 from models.encoders import AttentionEncoder, DistanceAwareEncoder, plane_distances
 from models.lagrangian import weights
 
@@ -33,6 +34,25 @@ class AttentionActor(nn.Module):
         cities: Float[Tensor, "b n 4"],
         preferences: Float[Tensor, "k 2"],  # noqa: ARG002, the encoder does without
     ) -> AttentionMemory:
+        """What decoding needs of the instances, computed once."""
+        return self.decoder.remember(self.encoder(cities))
+
+
+class EANActor(nn.Module):
+    """PA-EAN: Encode, Attend, Navigate with a preference encoder, as the paper describes it."""
+
+    groups = 1
+
+    def __init__(self, config: NetworkConfig) -> None:
+        super().__init__()
+        self.encoder = EANEncoder(config.width, config.heads, config.layers, config.feedforward)
+        self.decoder = EANDecoder(config.width, config.clip)
+
+    def remember(
+        self,
+        cities: Float[Tensor, "b n 4"],
+        preferences: Float[Tensor, "k 2"],  # noqa: ARG002, the encoder does without
+    ) -> EANMemory:
         """What decoding needs of the instances, computed once."""
         return self.decoder.remember(self.encoder(cities))
 
@@ -69,8 +89,12 @@ class OneActor(nn.Module):
         return self.decoder.remember(features, distances)
 
 
-Actor = AttentionActor | OneActor
-ACTORS: dict[str, type[Actor]] = {"pa-at": AttentionActor, "pa-one": OneActor}
+Actor = AttentionActor | EANActor | OneActor
+ACTORS: dict[str, type[Actor]] = {
+    "pa-at": AttentionActor,
+    "pa-ean": EANActor,
+    "pa-one": OneActor,
+}
 
 
 def build(config: NetworkConfig, seed: int) -> Actor:

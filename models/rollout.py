@@ -44,16 +44,22 @@ def roll_out(
     decoder = actor.decoder
     n = memory.pointers.shape[-1]
     visited = torch.zeros(*starts.shape, n, dtype=torch.bool, device=starts.device)
+    nowhere = torch.full_like(starts, n)
+    tour = [nowhere] * 3
     if decoder.chooses_first:
-        nowhere = torch.full_like(starts, n)
-        starts = choose(decoder.logits(memory, rows, Moment(nowhere, nowhere, visited)))
-    tour = [starts]
+        moment = Moment(_recent(tour), nowhere, visited)
+        starts = choose(decoder.logits(memory, rows, moment))
+    tour.append(starts)
     visited.scatter_(-1, starts[..., None], True)
-    while len(tour) < n:
-        moment = Moment(tour[-1], starts, visited)
+    for _ in range(1, n):
+        moment = Moment(_recent(tour), starts, visited)
         tour.append(choose(decoder.logits(memory, rows, moment)))
         visited.scatter_(-1, tour[-1][..., None], True)
-    return torch.stack(tour, dim=-1)
+    return torch.stack(tour[3:], dim=-1)
+
+
+def _recent(tour: list[Tensor]) -> Int[Tensor, "b r 3"]:
+    return torch.stack(tour[:-4:-1], dim=-1)
 
 
 def log_likelihoods(
@@ -87,13 +93,13 @@ def _moments(
     position = tours.argsort(dim=-1)  # of each city in its tour
     now = torch.arange(n, device=tours.device)
     visited = position[:, :, None, :] < now[:, None]  # (b, r, t, n)
-    previous = tours.roll(1, dims=-1)
+    recent = torch.stack([tours.roll(back, dims=-1) for back in (1, 2, 3)], dim=-1)
+    recent[..., now[:, None] < torch.arange(1, 4, device=tours.device)] = n
     first = tours[..., :1].expand_as(tours).clone()
-    previous[..., 0] = n
     first[..., 0] = n
     begin = 0 if chooses_first else 1
     moment = Moment(
-        previous[..., begin:].flatten(1),
+        recent[..., begin:, :].flatten(1, 2),
         first[..., begin:].flatten(1),
         visited[:, :, begin:].flatten(1, 2),
     )

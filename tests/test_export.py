@@ -21,7 +21,7 @@ def small(name: str) -> Actor:
     return build(config, seed=2).eval()
 
 
-@pytest.fixture(scope="module", params=["pa-at", "pa-one"])
+@pytest.fixture(scope="module", params=["pa-at", "pa-ean", "pa-one"])
 def exported(request: pytest.FixtureRequest) -> tuple[Actor, ModelProto]:
     actor = small(request.param)
     return actor, to_onnx(actor)

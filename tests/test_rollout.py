@@ -14,7 +14,7 @@ from models.sampling import fan_of_preferences, uniform_cities
 from models.validation import greedy_tours
 
 CPU = torch.device("cpu")
-NAMES = ("pa-at", "pa-one")
+NAMES = ("pa-at", "pa-ean", "pa-one")
 
 
 def small(name: str) -> Actor:
@@ -99,7 +99,8 @@ def test_pa_at_adds_the_preference_to_the_features_of_every_city() -> None:
     decoder = AttentionDecoder(width=16, heads=4, clip=10.0)
     features = torch.randn(1, 7, 16)
     preferences = fan_of_preferences(3, CPU)
-    moment = Moment(torch.tensor([[2, 4, 6]]), torch.tensor([[0, 0, 1]]), torch.rand(1, 3, 7) < 0.4)
+    recent = torch.tensor([[[2, 0, 7], [4, 3, 0], [6, 1, 7]]])
+    moment = Moment(recent, torch.tensor([[0, 0, 1]]), torch.rand(1, 3, 7) < 0.4)
     moment.visited[..., 5] = False
     found = decoder.logits(decoder.remember(features), decoder.condition(preferences), moment)
     nothing = decoder.condition(torch.zeros(1, 2))._replace(

@@ -64,7 +64,7 @@ def test_resuming_equals_not_having_stopped(tmp_path: Path, changes: dict[str, o
 
 @pytest.mark.parametrize("objective", ["lagrangian", "weighted-sum"])
 @pytest.mark.parametrize(("baseline", "starts"), [("shared", 8), ("critic", 1)])
-@pytest.mark.parametrize("name", ["pa-one", "pa-at"])
+@pytest.mark.parametrize("name", ["pa-one", "pa-at", "pa-ean"])
 def test_training_lowers_the_objective(
     objective: str, baseline: str, starts: int, name: str
 ) -> None:
