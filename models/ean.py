@@ -90,7 +90,8 @@ class EANDecoder(nn.Module):
         self.project_past = nn.Linear(width, 3 * query, bias=False)
         self.project_query = nn.Linear(query, pointer, bias=False)
         self.project_city = nn.Linear(width, pointer, bias=False)
-        self.judge = nn.Parameter(torch.empty(pointer).uniform_(-1, 1) * (3 / pointer) ** 0.5)
+        # Small, so that all cities are about as likely at first.
+        self.judge = nn.Parameter(torch.empty(pointer).uniform_(-0.1, 0.1) * (3 / pointer) ** 0.5)
 
     def remember(self, features: Float[Tensor, "b n d"]) -> EANMemory:
         """The tables of the instances."""
