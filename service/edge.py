@@ -1,4 +1,4 @@
-"""What stands between the network and the paths: access, metrics, the log, other origins."""
+"""What stands between the network and the paths: access, metrics, the log, other origins, time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -11,6 +11,7 @@ from service.access import Access
 from service.metrics import Metrics
 from service.observed import ObservedRequests, log_request
 from service.problems import RequestIds, responses
+from service.timely import TimelyBodies
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +21,7 @@ class Edge:
     access: Access = field(default_factory=Access)
     metrics: Metrics = field(default_factory=Metrics)
     origins: Sequence[str] = ()
+    body_seconds: float = 30.0
 
     @property
     def guard(self) -> dict[str, Any]:
@@ -31,7 +33,12 @@ class Edge:
         """What each request passes through, outermost first."""
         observers = (self.metrics.answered, log_request)
         cors = [Middleware(CORSMiddleware, **self._cors)] if self.origins else []
-        return [Middleware(RequestIds), Middleware(ObservedRequests, observers), *cors]
+        return [
+            Middleware(RequestIds),
+            Middleware(ObservedRequests, observers),
+            *cors,
+            Middleware(TimelyBodies, self.body_seconds),
+        ]
 
     @property
     def _cors(self) -> dict[str, Any]:

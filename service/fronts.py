@@ -103,7 +103,7 @@ class FrontRoutes:
         router.post(
             "/front",
             response_model=FrontAnswer,
-            responses=responses(400, 413, 415, 422, 503),
+            responses=responses(400, 408, 413, 415, 422, 503),
             openapi_extra={"requestBody": body},
         )(self.plan_front)
         router.get("/front/{id}", response_model=FrontAnswer, responses=responses(404, 410))(

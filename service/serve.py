@@ -34,6 +34,7 @@ def build(settings: Settings) -> FastAPI:
             access=Access(settings.api_keys, Rates(settings.rate)),
             metrics=Metrics(),
             origins=settings.origins,
+            body_seconds=settings.body_seconds,
         ),
     )
     if settings.traces:

@@ -57,6 +57,7 @@ class Settings(BaseSettings):
     store_entries: int = Field(256, ge=1, description="fronts kept for later questions")
     store_seconds: float = Field(3600.0, gt=0, description="how long a front is kept")
 
+    body_seconds: float = Field(30.0, gt=0, description="how long a body may take to arrive")
     api_keys: KeyHashes = Field(
         (), description="who may call, as CALLER:HASH with commas between; none lets everybody in"
     )

@@ -1,0 +1,186 @@
+"""Whatever a body says, the answer is one that the OpenAPI document promises."""
+
+import gzip
+import json
+import re
+import socket
+import time
+import zlib
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import httpx
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from service.edge import Edge
+from tests.serving import LIMITS, app_of, problem, serving
+
+JSON = {"Content-Type": "application/json"}
+VALID: dict[str, Any] = {
+    "coordinates": [[0, 0, 1, 3], [2, 5, 0, 0], [4, 1, 2, 2], [3, 3, 5, 1]],
+    "preferences": [0, 45, 90],
+    "time_limit": 0,
+    "size": 3,
+    "start": 1,
+    "reference_point": [50, 50],
+    "initial_tours": [[0, 1, 2, 3]],
+    "actor": "pa-one",
+    "seed": 1,
+}
+# JSON as it is written, because some of it no encoder would write.
+HOSTILE = [
+    *("null", "true", '""', '"\\ud800"', '"\\u0000"', '"1"', "[]", "[[]]", "{}", '{"": []}'),
+    *("0", "-0.0", "-1", "1e308", "-1e308", "1e309", "5e-324", "1e-400", "1.5", "NaN", "Infinity"),
+    *("9007199254740993", "2147483648", "1" + 400 * "0", "1" + 5000 * "0", "0." + 5000 * "1"),
+    "[" * 100 + "]" * 100,
+    '{"a":' * 100 + "1" + "}" * 100,
+    "[" + "0," * 5000 + "0]",
+    '"' + "x" * 20_000 + '"',
+]
+ANY_JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20),
+    lambda inner: st.lists(inner, max_size=5) | st.dictionaries(st.text(max_size=9), inner),
+    max_leaves=20,
+)
+OFTEN = settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
+
+
+@pytest.fixture(scope="module")
+def url() -> Iterator[str]:
+    limits = replace(LIMITS, body_bytes=12 * 2**20)
+    with serving(app_of(limits=limits, edge=Edge(body_seconds=0.5))) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def client(url: str) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=url, timeout=30) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def promised(client: httpx.Client) -> set[str]:
+    document = client.get("/openapi.json").json()
+    return set(document["paths"]["/front"]["post"]["responses"])
+
+
+def check(answer: httpx.Response, promised: set[str]) -> None:
+    assert str(answer.status_code) in promised, answer.text
+    assert answer.status_code < 500, answer.text
+    assert "Traceback" not in answer.text
+    if answer.status_code != 200:
+        problem(answer, answer.status_code, answer.json()["code"])
+        assert len(answer.content) < 20_000
+    else:
+        assert answer.json()["front"]
+
+
+@OFTEN
+@given(body=ANY_JSON)
+def test_any_json(client: httpx.Client, promised: set[str], body: object) -> None:
+    check(client.post("/front", content=json.dumps(body), headers=JSON), promised)
+
+
+@OFTEN
+@given(body=st.binary(max_size=200))
+def test_any_bytes(client: httpx.Client, promised: set[str], body: bytes) -> None:
+    check(client.post("/front", content=body, headers=JSON), promised)
+
+
+@OFTEN
+@given(
+    member=st.sampled_from(sorted(VALID)), hostile=st.sampled_from(HOSTILE), depth=st.integers(0, 2)
+)
+def test_a_front_request_with_one_thing_wrong(
+    client: httpx.Client, promised: set[str], member: str, hostile: str, depth: int
+) -> None:
+    """The value of a member, or the first or last thing inside it, is what no client would say."""
+    broken = json.dumps({**VALID, member: _replaced(VALID[member], depth)})
+    body = broken.replace('"HERE"', hostile, 1)
+    check(client.post("/front", content=body.encode(), headers=JSON), promised)
+
+
+def _replaced(value: Any, depth: int) -> Any:
+    if depth == 0 or not isinstance(value, list):
+        return "HERE"
+    return [*value[:-1], _replaced(value[-1], depth - 1)]
+
+
+@OFTEN
+@given(body=ANY_JSON, data=st.data())
+def test_any_json_in_the_place_of_a_member(
+    client: httpx.Client, promised: set[str], body: object, data: st.DataObject
+) -> None:
+    member = data.draw(st.sampled_from(sorted(VALID)))
+    check(
+        client.post("/front", content=json.dumps({**VALID, member: body}), headers=JSON), promised
+    )
+
+
+@pytest.mark.parametrize(
+    "cities",
+    [
+        [[1e150, -1e150, 5e-324, 1e-300]] * 3,
+        [[1e150, 1e150, 1e150, 1e150], [-1e150, -1e150, -1e150, -1e150], [0, 0, 0, 0]],
+        [[5e-324, 0, 0, 5e-324], [0, 5e-324, 5e-324, 0], [0, 0, 0, 0]],
+        [[1e150, 5e-324, 1e-150, 0], [0, 0, 1e150, 5e-324], [3, 1e-310, 2, 1]],
+    ],
+)
+def test_extremes_of_floating_point_are_planned(client: httpx.Client, cities: Any) -> None:
+    answer = client.post("/front", json={"coordinates": cities, "time_limit": 0})
+    assert answer.status_code == 200
+    assert 0 <= answer.json()["hypervolume"] <= 1
+
+
+@pytest.mark.parametrize("opening", ["[", '{"a":', '{"coordinates":[', "[[],"])
+def test_ten_megabytes_of_brackets_are_refused(client: httpx.Client, opening: str) -> None:
+    body = opening * (10 * 2**20 // len(opening))
+    answer = client.post("/front", content=body, headers=JSON)
+    problem(answer, 400, "malformed-json")
+
+
+@pytest.mark.parametrize(
+    ("coding", "bomb"),
+    [
+        ("gzip", gzip.compress(bytes(50 * 2**20))),
+        ("deflate", zlib.compress(bytes(50 * 2**20))),
+        ("gzip, gzip", gzip.compress(gzip.compress(bytes(50 * 2**20)))),
+        ("br", b"\x0b\x02\x80"),
+    ],
+)
+def test_nothing_compressed_is_opened(client: httpx.Client, coding: str, bomb: bytes) -> None:
+    headers = {**JSON, "Content-Encoding": coding}
+    problem(client.post("/front", content=bomb, headers=headers), 415, "not-plain")
+
+
+@pytest.mark.parametrize("headers", ["Content-Length: 100", "Transfer-Encoding: chunked"])
+def test_a_body_that_never_ends_is_refused(url: str, headers: str) -> None:
+    host, port = re.findall(r"//(.*):(\d+)", url)[0]
+    request = f"POST /front HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n{headers}\r\n"
+    with socket.create_connection((host, int(port)), timeout=10) as connection:
+        connection.sendall(f"{request}\r\n".encode())
+        answer = b""
+        while chunk := connection.recv(4096):
+            answer += chunk
+    head, _, body = answer.partition(b"\r\n\r\n")
+    assert head.startswith(b"HTTP/1.1 408 ")
+    assert b"application/problem+json" in head
+    assert json.loads(body)["code"] == "body-too-slow"
+
+
+def test_a_body_that_trickles_is_refused_whatever_its_pace(url: str) -> None:
+    def trickling() -> Iterator[bytes]:
+        for _ in range(50):
+            time.sleep(0.05)
+            yield b"["
+
+    with httpx.Client() as client:
+        answer = client.post(f"{url}/front", content=trickling(), headers=JSON)
+    problem(answer, 408, "body-too-slow")
+
+
+def test_after_all_that_it_still_answers(client: httpx.Client) -> None:
+    assert client.post("/front", json=VALID).status_code == 200
