@@ -22,12 +22,19 @@ class NetworkConfig:
     layers: int = setting(5, "encoder layers")
     feedforward: int = setting(512, "hidden features of an encoder layer")
     clip: float = setting(10.0, "bound on the pointer's logits before distances are taken off")
+    preference_layers: int = setting(1, "0 leaves the preference out, as in the paper's ablation")
 
     def __post_init__(self) -> None:
         if self.name not in ("pa-one", "pa-at", "pa-ean"):
             raise ValueError(f"name must be pa-one, pa-at or pa-ean, got {self.name}")
         if self.width % self.heads:
             raise ValueError(f"width {self.width} must be a multiple of heads {self.heads}")
+        least = 1 if self.name == "pa-one" else 0
+        if not least <= self.preference_layers <= 1:
+            raise ValueError(
+                f"preference_layers of {self.name} must be from {least} to 1, "
+                f"got {self.preference_layers}"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)

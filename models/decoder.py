@@ -11,7 +11,7 @@ import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 
-from models.encoders import feedforward
+from models.encoders import feedforward, preference_encoder
 from models.lagrangian import weights
 
 
@@ -95,10 +95,10 @@ class AttentionDecoder(nn.Module):
 
     chooses_first = True
 
-    def __init__(self, width: int, heads: int, clip: float) -> None:
+    def __init__(self, width: int, heads: int, clip: float, preference_layers: int = 1) -> None:
         super().__init__()
         self.heads, self.clip = heads, clip
-        self.encode_preference = nn.Linear(2, width)
+        self.encode_preference = preference_encoder(width, preference_layers)
         self.placeholder = nn.Parameter(torch.empty(2, 1, 1, width).uniform_(-1, 1))
         self.project_context = nn.Linear(width, width, bias=False)
         self.project_ends = nn.Linear(width, 2 * width, bias=False)

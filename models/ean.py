@@ -12,7 +12,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from models.decoder import Moment, look_up
-from models.encoders import PostNormLayer
+from models.encoders import PostNormLayer, preference_encoder
 from models.pointing import exponential, pointed
 
 
@@ -82,11 +82,11 @@ class EANDecoder(nn.Module):
 
     chooses_first = True
 
-    def __init__(self, width: int, clip: float) -> None:
+    def __init__(self, width: int, clip: float, preference_layers: int = 1) -> None:
         super().__init__()
         query, pointer = 360 * width // 128, 2 * width  # theirs are 360 and 256, of width 128
         self.clip = clip
-        self.encode_preference = nn.Linear(2, width)
+        self.encode_preference = preference_encoder(width, preference_layers)
         self.project_past = nn.Linear(width, 3 * query, bias=False)
         self.project_query = nn.Linear(query, pointer, bias=False)
         self.project_city = nn.Linear(width, pointer, bias=False)

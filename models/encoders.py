@@ -53,6 +53,20 @@ def feedforward(width: int, out: int, hidden: int) -> nn.Sequential:
     return nn.Sequential(nn.Linear(width, hidden), nn.ReLU(), nn.Linear(hidden, out))
 
 
+def preference_encoder(width: int, layers: int) -> nn.Module:
+    """The paper's: one linear layer, (k, 2) to (k, d); or none, and all preferences are alike."""
+    return nn.Linear(2, width) if layers else _Alike(width)
+
+
+class _Alike(nn.Module):
+    def __init__(self, width: int) -> None:
+        super().__init__()
+        self.width = width
+
+    def forward(self, preferences: Float[Tensor, "k 2"]) -> Float[Tensor, "k d"]:
+        return preferences.new_zeros(len(preferences), self.width)
+
+
 class AttentionEncoder(nn.Module):
     """Kool et al.: attention and feed-forward, each with a skip and then batch normalisation."""
 

@@ -27,7 +27,9 @@ class AttentionActor(nn.Module):
         self.encoder = AttentionEncoder(
             config.width, config.heads, config.layers, config.feedforward
         )
-        self.decoder = AttentionDecoder(config.width, config.heads, config.clip)
+        self.decoder = AttentionDecoder(
+            config.width, config.heads, config.clip, config.preference_layers
+        )
 
     def remember(
         self,
@@ -46,7 +48,7 @@ class EANActor(nn.Module):
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
         self.encoder = EANEncoder(config.width, config.heads, config.layers, config.feedforward)
-        self.decoder = EANDecoder(config.width, config.clip)
+        self.decoder = EANDecoder(config.width, config.clip, config.preference_layers)
 
     def remember(
         self,

@@ -17,8 +17,15 @@ CPU = torch.device("cpu")
 NAMES = ("pa-at", "pa-ean", "pa-one")
 
 
-def small(name: str) -> Actor:
-    config = NetworkConfig(name=name, width=16, heads=4, layers=2, feedforward=32)
+def small(name: str, preference_layers: int = 1) -> Actor:
+    config = NetworkConfig(
+        name=name,
+        width=16,
+        heads=4,
+        layers=2,
+        feedforward=32,
+        preference_layers=preference_layers,
+    )
     actor = build(config, seed=3).eval()
     for parameter in actor.parameters():  # away from the gentle beginning that training needs
         torch.nn.init.normal_(parameter, std=0.2, generator=Generator().manual_seed(5))
@@ -77,6 +84,13 @@ def test_numbering_the_cities_otherwise_changes_no_tour(name: str) -> None:
     tours = greedy_tours(actor, instances, preferences)
     renumbered = greedy_tours(actor, instances[:, order], preferences)
     assert torch.equal(order[renumbered], tours)
+
+
+@pytest.mark.parametrize("name", ["pa-at", "pa-ean"])
+def test_without_a_preference_layer_all_preferences_are_alike(name: str) -> None:
+    actor, instances = small(name, preference_layers=0), cities(2, 12)
+    tours = greedy_tours(actor, instances, fan_of_preferences(9, CPU))
+    assert (tours == tours[:, :1]).all()
 
 
 def test_a_new_pa_one_goes_to_the_nearest_neighbour_under_the_weights() -> None:

@@ -135,6 +135,14 @@ def test_a_configuration_that_makes_no_sense_is_refused(
         small_config(**changes)
 
 
+@pytest.mark.parametrize(
+    ("name", "layers"), [("pa-one", 0), ("pa-at", 2), ("pa-ean", -1), ("pa-tsp", 1)]
+)
+def test_a_network_that_does_not_exist_is_refused(name: str, layers: int) -> None:
+    with pytest.raises(ValueError, match="must be"):
+        NetworkConfig(name=name, preference_layers=layers)
+
+
 def test_a_configuration_survives_storage() -> None:
     config = small_config(seed=7)
     assert from_plain(json.loads(json.dumps(as_plain(config)))) == config
