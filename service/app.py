@@ -11,6 +11,7 @@ from starlette.responses import Response
 from service.bodies import json_response
 from service.edge import Edge
 from service.fronts import FrontRoutes, KeptFront, NamedActor
+from service.pages import page_routes
 from service.problems import REFUSALS, Problem, answer_refusal, responses
 from service.schemas import ActorsAnswer, HealthAnswer, Limits
 from service.store import Store
@@ -39,8 +40,10 @@ def create_app(
         version=version,
         lifespan=lifespan,
         middleware=edge.middleware,
+        routes=page_routes(),
         exception_handlers=dict.fromkeys(REFUSALS, answer_refusal),
         redirect_slashes=False,
+        docs_url=None,
         redoc_url=None,
     )
     app.include_router(FrontRoutes(actors, store, workers, limits).router(), **edge.guard)

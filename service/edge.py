@@ -8,6 +8,7 @@ from starlette.middleware import Middleware
 from starlette.middleware.cors import CORSMiddleware
 
 from service.access import Access
+from service.headers import BrowserHeaders
 from service.metrics import Metrics
 from service.observed import ObservedRequests, log_request
 from service.problems import RequestIds, responses
@@ -34,6 +35,7 @@ class Edge:
         observers = (self.metrics.answered, log_request)
         cors = [Middleware(CORSMiddleware, **self._cors)] if self.origins else []
         return [
+            Middleware(BrowserHeaders),
             Middleware(RequestIds),
             Middleware(ObservedRequests, observers),
             *cors,

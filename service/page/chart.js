@@ -1,0 +1,139 @@
+/** The front on two axes: the network's alone under the improved one. */
+
+import uPlot from "./vendor/uplot/uPlot.esm.js";
+import { colour, onSchemeChange } from "./colours.js";
+import { counted, length } from "./numbers.js";
+import { UNNAMED, withUnit } from "./objectives.js";
+import { drawnNearest } from "./tours.js";
+
+const FONT = "12px system-ui, sans-serif";
+const REACH = 40; // pixels within which a click selects a point
+
+export class FrontChart {
+  #element;
+  #chart;
+  #front = [];
+  #markers = {};
+  #marked = {};
+  #objectives = UNNAMED;
+
+  /** @param {(index: number) => void} onSelect told which point was clicked */
+  constructor(element, onSelect) {
+    this.#element = element;
+    this.#chart = new uPlot(options(element), [[], [], []], element);
+    for (const name of ["pinned", "selected"]) {
+      const marker = document.createElement("i");
+      marker.className = `marker ${name}`;
+      marker.hidden = true;
+      this.#chart.over.append(marker);
+      this.#markers[name] = marker;
+    }
+    this.#chart.over.addEventListener("click", (event) => this.#clicked(event, onSelect));
+    new ResizeObserver(() => this.#resize()).observe(element);
+    onSchemeChange(() => this.#chart.redraw(false, true));
+  }
+
+  name(objectives) {
+    this.#objectives = objectives;
+    objectives.forEach((objective, axis) => (this.#chart.axes[axis].label = withUnit(objective)));
+  }
+
+  show(alone, front) {
+    this.#front = front;
+    this.#chart.setData(uPlot.join([columns(alone), columns(front)]));
+    this.#element.setAttribute("aria-label", described(front, this.#objectives));
+    this.#place();
+  }
+
+  /** Marks a point as "selected" or "pinned"; null takes the mark away. */
+  mark(name, lengths) {
+    this.#marked[name] = lengths;
+    this.#place();
+  }
+
+  #place() {
+    for (const [name, marker] of Object.entries(this.#markers)) {
+      const lengths = this.#marked[name];
+      marker.hidden = !lengths;
+      if (!lengths) continue;
+      const [x, y] = this.#position(lengths);
+      marker.style.transform = `translate(${x}px, ${y}px)`;
+    }
+  }
+
+  #position([first, second]) {
+    return [this.#chart.valToPos(first, "x"), this.#chart.valToPos(second, "y")];
+  }
+
+  #clicked(event, onSelect) {
+    if (!this.#front.length) return;
+    const box = this.#chart.over.getBoundingClientRect();
+    const place = [event.clientX - box.left, event.clientY - box.top];
+    const index = drawnNearest(this.#front, place, (lengths) => this.#position(lengths));
+    const [x, y] = this.#position(this.#front[index].lengths);
+    if (Math.hypot(x - place[0], y - place[1]) <= REACH) onSelect(index);
+  }
+
+  #resize() {
+    this.#chart.setSize(size(this.#element));
+    this.#place();
+  }
+}
+
+const size = (element) => ({ width: element.clientWidth, height: element.clientHeight });
+
+const columns = (front) => [
+  front.map((item) => item.lengths[0]),
+  front.map((item) => item.lengths[1]),
+];
+
+function options(element) {
+  return {
+    ...size(element),
+    legend: { show: false },
+    cursor: { show: false },
+    padding: [12, 12, 0, 0],
+    scales: { x: { time: false, range: roomy }, y: { range: roomy } },
+    axes: [axis(UNNAMED[0], 40), axis(UNNAMED[1], 64)],
+    series: [{}, line("alone", 1, 4), line("improved", 1.5, 5)],
+  };
+}
+
+/** A step from each point to the next: what it bounds is what the front dominates. */
+function line(name, width, points) {
+  const stroke = () => colour(name);
+  return {
+    stroke,
+    width,
+    paths: uPlot.paths.stepped({ align: 1 }),
+    points: { show: true, size: points, fill: stroke, width: 0 },
+  };
+}
+
+function axis(objective, room) {
+  return {
+    label: withUnit(objective),
+    size: room,
+    labelSize: 18,
+    font: FONT,
+    labelFont: FONT,
+    stroke: () => colour("quiet"),
+    grid: { stroke: () => colour("line"), width: 1 },
+    ticks: { show: false },
+    values: (_, ticks) => ticks.map((tick) => length(tick)),
+  };
+}
+
+function roomy(_, least, most) {
+  if (least == null) return [0, 1];
+  const room = 0.06 * (most - least || Math.abs(most) || 1);
+  return [least - room, most + room];
+}
+
+function described(front, objectives) {
+  if (!front.length) return "No front yet";
+  const from = (axis) => length(Math.min(front[0].lengths[axis], front.at(-1).lengths[axis]));
+  const to = (axis) => length(Math.max(front[0].lengths[axis], front.at(-1).lengths[axis]));
+  const ranges = objectives.map(({ name }, axis) => `${name} from ${from(axis)} to ${to(axis)}`);
+  return `A front of ${counted(front.length, "tour", "tours")}: ${ranges.join(", ")}`;
+}

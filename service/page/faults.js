@@ -1,0 +1,50 @@
+/** What the service found wrong, said at the field at fault. */
+
+const FIELD_OF = { coordinates: "cities", matrices: "cities" };
+const FIELD_OF_CODE = { unauthorized: "key" };
+
+/** Shows the faults of a problem; whatever has no field of its own is said under the buttons. */
+export function showFaults(problem) {
+  clearFaults();
+  const faults = problem.errors?.length ? problem.errors : [{ detail: problem.message }];
+  let first = null;
+  for (const { pointer = "", detail } of faults) {
+    const [member, row] = pointer.split("/").slice(1);
+    const field = FIELD_OF_CODE[problem.code] ?? FIELD_OF[member] ?? member ?? "request";
+    const said = document.getElementById(`${field}-fault`) ?? document.getElementById("request-fault");
+    said.textContent ||= sentence(detail);
+    first ??= mark(field, row);
+  }
+  first?.focus();
+}
+
+export function clearFaults() {
+  for (const said of document.querySelectorAll(".fault")) said.textContent = "";
+  for (const field of document.querySelectorAll("[aria-invalid]")) field.removeAttribute("aria-invalid");
+}
+
+/** Says what is wrong with one field. */
+export function showFault(field, detail) {
+  clearFaults();
+  document.getElementById(`${field}-fault`).textContent = sentence(detail);
+}
+
+function mark(name, row) {
+  const field = document.getElementById(name);
+  if (!field) return null;
+  field.setAttribute("aria-invalid", "true");
+  const folded = field.closest("details");
+  if (folded) folded.open = true;
+  if (name === "cities" && row !== undefined) selectLine(field, Number(row));
+  return field;
+}
+
+function selectLine(area, row) {
+  const lines = area.value.split("\n");
+  const before = lines.slice(0, row).join("\n").length + (row > 0 ? 1 : 0);
+  area.setSelectionRange(before, before + (lines[row]?.length ?? 0));
+}
+
+function sentence(detail) {
+  return `${detail[0].toUpperCase()}${detail.slice(1)}${detail.endsWith(".") ? "" : "."}`;
+}

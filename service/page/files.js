@@ -1,0 +1,38 @@
+/** Files that people bring, as the members of a request. */
+
+import { rowsOf } from "./cities.js";
+import { isTsplib, pair } from "./tsplib.js";
+
+/** The members of a request that the files say. A file that cannot be read is an Error. */
+export async function read(files) {
+  const texts = await Promise.all(
+    [...files].map(async (file) => ({ name: file.name, text: await file.text() })),
+  );
+  texts.sort((one, other) => (one.name < other.name ? -1 : 1));
+  if (texts.length === 2) return pair(texts);
+  if (texts.length > 2) throw new Error(`one file is wanted, or two of TSPLIB, got ${texts.length}`);
+  const [{ name, text }] = texts;
+  if (isTsplib(text)) throw new Error(`${name} is one plane: open it together with the other`);
+  return /^\s*[[{]/.test(text) ? parsed(name, text) : table(name, text);
+}
+
+function parsed(name, text) {
+  let given;
+  try {
+    given = JSON.parse(text);
+  } catch (error) {
+    throw new Error(`${name} must be JSON, and is not: ${error.message}`);
+  }
+  return Array.isArray(given) ? { coordinates: given } : given;
+}
+
+function table(name, text) {
+  const rows = rowsOf(text);
+  const wrong = rows.findIndex((row) => row.length !== 4 || row.some((cell) => typeof cell === "string"));
+  if (!rows.length) throw new Error(`${name} must have a city on each line, got none`);
+  if (wrong >= 0) {
+    const came = rows[wrong].join(", ").slice(0, 60);
+    throw new Error(`${name} must have four numbers on each line, got "${came}" as city ${wrong}`);
+  }
+  return { coordinates: rows };
+}

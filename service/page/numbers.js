@@ -1,0 +1,14 @@
+/** Numbers as people read them. */
+
+const LENGTH = new Intl.NumberFormat("en", { maximumSignificantDigits: 6 });
+const DIFFERENCE = new Intl.NumberFormat("en", {
+  style: "percent",
+  signDisplay: "exceptZero",
+  maximumFractionDigits: 2,
+});
+
+export const length = (value) => (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e9 ? value.toPrecision(4) : LENGTH.format(value));
+export const degrees = (angle) => `${angle.toFixed(1)}°`;
+export const share = (value) => `${(100 * value).toFixed(2)} %`;
+export const difference = (value, beside) => (beside === 0 ? "" : DIFFERENCE.format(value / beside - 1));
+export const counted = (count, one, many) => `${count.toLocaleString("en")} ${count === 1 ? one : many}`;

@@ -1,0 +1,109 @@
+/** The cities and tours on the map of one plane. */
+
+import "./vendor/leaflet/leaflet.js";
+import { colour, onSchemeChange } from "./colours.js";
+import { Frame } from "./frame.js";
+
+const { L } = globalThis;
+const BY_FINGER = matchMedia("(pointer: coarse)").matches;
+
+export class Plane {
+  #map;
+  #frame = Frame.around([]);
+  #cities;
+  #renderer = L.canvas({ padding: 0.2 });
+  #start;
+  #highlight;
+  #lines = {};
+  #places = [];
+
+  /** @param {{ onHover: (city: number | null) => void, onClick: (place: number[]) => void }} told */
+  constructor(element, { onHover, onClick }) {
+    this.#map = L.map(element, {
+      crs: L.CRS.Simple,
+      attributionControl: false,
+      zoomControl: !BY_FINGER,
+      zoomSnap: 0,
+      zoomDelta: 0.5,
+      minZoom: -3,
+      maxZoom: 12,
+      scrollWheelZoom: false, // the wheel scrolls the page
+      doubleClickZoom: false,
+      dragging: !BY_FINGER, // and so does one finger
+    });
+    this.#map.createPane("tours").style.zIndex = 350;
+    const beneath = L.canvas({ pane: "tours", padding: 0.2 });
+    this.#lines.pinned = line(beneath, { weight: 2, dashArray: "5 5" }).addTo(this.#map);
+    this.#lines.selected = line(beneath, { weight: 2 }).addTo(this.#map);
+    this.#cities = L.featureGroup().addTo(this.#map);
+    this.#cities.on("mouseover", (event) => onHover(event.sourceTarget.city));
+    this.#cities.on("mouseout", () => onHover(null));
+    const above = { renderer: L.canvas({ pane: "tooltipPane" }), interactive: false };
+    this.#start = L.circleMarker([0, 0], { ...above, radius: 7, weight: 2, fill: false });
+    this.#highlight = L.circleMarker([0, 0], { ...above, radius: 6, weight: 2, fill: false });
+    this.#map.on("click", (event) => onClick(this.#frame.place(event.latlng)));
+    new ResizeObserver(() => this.#resize()).observe(element);
+    onSchemeChange(() => this.#colour());
+    this.#fit();
+    this.#colour();
+  }
+
+  /** Draws cities at these places; `fit` says whether the view moves to hold them all. */
+  show(places, fit = true) {
+    this.#places = places;
+    if (fit) this.#frame = Frame.around(places);
+    this.#cities.clearLayers();
+    places.forEach((place, city) => this.#cities.addLayer(this.#dot(place, city)));
+    this.draw("selected", null);
+    this.draw("pinned", null);
+    this.highlight(null);
+    if (fit) this.#fit();
+    this.#colour();
+  }
+
+  /** Draws a tour as "selected" or "pinned"; null takes it away. */
+  draw(name, tour) {
+    const closed = tour ? [...tour, tour[0]] : [];
+    this.#lines[name].setLatLngs(closed.map((city) => this.#frame.latlng(this.#places[city])));
+    if (name === "selected") this.#mark(this.#start, tour?.[0]);
+  }
+
+  /** Rings a city, and says what it is; null takes the ring away. */
+  highlight(city, said = "") {
+    this.#mark(this.#highlight, city);
+    if (city == null) this.#highlight.unbindTooltip();
+    else this.#highlight.bindTooltip(said, { permanent: true, direction: "top" }).openTooltip();
+  }
+
+  #mark(ring, city) {
+    const place = city == null ? undefined : this.#places[city];
+    if (place) ring.setLatLng(this.#frame.latlng(place)).addTo(this.#map);
+    else ring.remove();
+  }
+
+  #dot(place, city) {
+    const style = { renderer: this.#renderer, radius: this.#places.length > 300 ? 2 : 3.5, weight: 0 };
+    const dot = L.circleMarker(this.#frame.latlng(place), style);
+    dot.city = city;
+    return dot;
+  }
+
+  #resize() {
+    this.#map.invalidateSize({ pan: false });
+    this.#fit();
+  }
+
+  #fit() {
+    this.#map.fitBounds(this.#frame.bounds, { padding: [20, 20], animate: false });
+  }
+
+  #colour() {
+    this.#cities.setStyle({ fillColor: colour("ink"), fillOpacity: 1 });
+    this.#lines.selected.setStyle({ color: colour("selected") });
+    this.#lines.pinned.setStyle({ color: colour("pinned") });
+    this.#start.setStyle({ color: colour("selected") });
+    this.#highlight.setStyle({ color: colour("ink") });
+  }
+}
+
+const line = (renderer, style) => L.polyline([], { renderer, interactive: false, ...style });

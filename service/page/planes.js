@@ -1,0 +1,35 @@
+/** Two maps of the same cities, one for each objective: what is pointed at on one shows on both. */
+
+import { Plane } from "./plane.js";
+
+export class Planes {
+  #maps;
+  #tour = null;
+
+  /** @param {(plane: number, place: number[]) => void} onClick told where a map was clicked */
+  constructor(elements, onClick) {
+    this.#maps = elements.map((element, plane) => {
+      const onHover = (city) => this.#highlight(city);
+      return new Plane(element, { onHover, onClick: (place) => onClick(plane, place) });
+    });
+  }
+
+  /** Draws cities, rows of four numbers; tours are taken away. */
+  show(rows, fit = true) {
+    this.#tour = null;
+    this.#maps[0].show(rows.map((row) => row.slice(0, 2)), fit);
+    this.#maps[1].show(rows.map((row) => row.slice(2, 4)), fit);
+  }
+
+  /** Draws a tour as "selected" or "pinned"; null takes it away. */
+  draw(name, tour) {
+    if (name === "selected") this.#tour = tour;
+    this.#maps.forEach((map) => map.draw(name, tour));
+  }
+
+  #highlight(city) {
+    const turn = this.#tour ? this.#tour.indexOf(city) + 1 : 0;
+    const said = turn ? `city ${city}, stop ${turn}` : `city ${city}`;
+    this.#maps.forEach((map) => map.highlight(city, said));
+  }
+}

@@ -1,0 +1,57 @@
+/** A slider over the angles of a front, in the direction of its chart; arrow keys go tour by tour. */
+
+import { degrees, length } from "./numbers.js";
+import { UNNAMED } from "./objectives.js";
+import { nearest } from "./tours.js";
+
+const STEPS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 };
+
+export class AngleSlider {
+  #input;
+  #shown;
+  #front = [];
+  #objectives = UNNAMED;
+
+  /** @param {(index: number) => void} onSelect told which tour is wanted */
+  constructor(input, shown, onSelect) {
+    this.#input = input;
+    this.#shown = shown;
+    input.addEventListener("input", () => onSelect(nearest(this.#front, Number(input.value))));
+    input.addEventListener("keydown", (event) => this.#step(event, onSelect));
+  }
+
+  name(objectives) {
+    this.#objectives = objectives;
+  }
+
+  show(front) {
+    this.#front = front;
+    this.#input.disabled = !front.length;
+    if (!front.length) {
+      this.#shown.textContent = "";
+      return;
+    }
+    this.#input.min = front.at(-1).angle;
+    this.#input.max = front[0].angle;
+  }
+
+  /** Stands at a tour of the front. A hand that drags the slider is not pulled back. */
+  select(index) {
+    const { angle, lengths } = this.#front[index];
+    if (nearest(this.#front, Number(this.#input.value)) !== index) this.#input.value = angle;
+    this.#shown.textContent = degrees(angle);
+    const place = `tour ${index + 1} of ${this.#front.length}`;
+    const said = this.#objectives.map(({ name }, axis) => `${name} ${length(lengths[axis])}`);
+    this.#input.setAttribute("aria-valuetext", `${degrees(angle)}, ${place}: ${said.join(", ")}`);
+  }
+
+  #step(event, onSelect) {
+    const last = this.#front.length - 1;
+    const index = nearest(this.#front, Number(this.#input.value));
+    const ends = { Home: 0, End: last };
+    const wanted = ends[event.key] ?? index + STEPS[event.key];
+    if (Number.isNaN(wanted)) return;
+    event.preventDefault();
+    onSelect(Math.min(Math.max(wanted, 0), last));
+  }
+}

@@ -1,0 +1,23 @@
+/** Which tour of a front is meant. */
+
+/** The index of the tour whose direction is nearest to the angle in degrees. */
+export function nearest(front, angle) {
+  let best = 0;
+  for (let index = 1; index < front.length; index++) {
+    if (Math.abs(front[index].angle - angle) < Math.abs(front[best].angle - angle)) best = index;
+  }
+  return best;
+}
+
+/** The index of the tour that is drawn nearest to a place on the chart. */
+export function drawnNearest(front, place, position) {
+  const distance = (item) => {
+    const [x, y] = position(item.lengths);
+    return Math.hypot(x - place[0], y - place[1]);
+  };
+  let best = 0;
+  front.forEach((item, index) => {
+    if (distance(item) < distance(front[best])) best = index;
+  });
+  return best;
+}

@@ -1,0 +1,250 @@
+"""The page, used as people use it: in Debian's Chromium, against the service as it is shipped."""
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
+
+from service.serve import build
+from service.settings import Settings
+from tests.serving import serving
+
+CHROMIUM = Path("/usr/bin/chromium")
+SERVICE = Path(__file__).parent.parent / "service"
+DESK, PHONE = 1440, 390
+SECOND = 1000.0
+CITIES = "0, 0, 5, 5\n3.1, 0.4, 9, 1\n5.2, 2, 2, 8\n4, 5.5, 7, 7\n1, 4.2, 1, 2\n2.5, 2.5, 6, 0"
+
+at_both_widths = pytest.mark.parametrize("width", [DESK, PHONE])
+needs_browser = pytest.mark.skipif(
+    not CHROMIUM.exists(), reason="these need Debian's Chromium: apt-get install chromium"
+)
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    with serving(build(Settings())) as address:
+        while httpx.get(f"{address}/health/ready").status_code == 503:
+            pass
+        yield address
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        yield playwright.chromium.launch(executable_path=CHROMIUM)
+
+
+@pytest.fixture
+def width() -> int:
+    """Of the window; a test that is made for several names them."""
+    return DESK
+
+
+@pytest.fixture
+def page(width: int, browser: Browser, address: str) -> Iterator[Page]:
+    """The page with its first example planned; whatever the browser complains of is a failure."""
+    page = browser.new_page(viewport={"width": width, "height": 900})
+    complaints: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
+    page.goto(address)
+    expect(page.locator("#status")).to_contain_text("Done", timeout=60 * SECOND)
+    yield page
+    page.close()
+    # Chromium writes a line for each refusal of the service, which the page has shown.
+    assert [each for each in complaints if "responded with a status of 4" not in each] == []
+
+
+@needs_browser
+@at_both_widths
+def test_the_page_opens_with_an_example_and_its_front(page: Page) -> None:
+    expect(page.get_by_label("A front of 100 tours: distance from")).to_be_visible()
+    expect(page.locator("#count")).to_have_text("61 cities")
+    expect(page.locator("#figures")).to_contain_text("Network alone")
+
+
+@needs_browser
+@at_both_widths
+def test_nothing_sticks_out_at_either_width(page: Page, width: int) -> None:
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
+@needs_browser
+@at_both_widths
+def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> None:
+    slider = page.get_by_role("slider", name="Angle")
+    slider.press("Home")
+    shortest = figure(page, "Distance")
+    slider.press("End")
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("tour 100 of 100"))
+    assert figure(page, "Distance") > shortest
+    slider.press("ArrowLeft")
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("tour 99 of 100"))
+    marker = page.locator("#front-chart .marker.selected").bounding_box()
+    slider.press("Home")
+    page.mouse.click(marker["x"] + marker["width"] / 2, marker["y"] + marker["height"] / 2)
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("tour 99 of 100"))
+
+
+@needs_browser
+def test_a_pinned_tour_stays_beside_the_selected_one(page: Page) -> None:
+    slider = page.get_by_role("slider", name="Angle")
+    slider.press("Home")
+    page.get_by_role("button", name="Pin to compare").click()
+    slider.press("End")
+    selected, pinned, difference = page.get_by_role("row", name="Risk").get_by_role("cell").all()
+    assert number(selected) < number(pinned)
+    expect(difference).to_contain_text("-")
+    page.get_by_role("button", name="Unpin").click()
+    expect(difference).to_have_text("")
+
+
+@needs_browser
+def test_what_is_planned_can_be_stopped(page: Page) -> None:
+    page.get_by_label("Seconds of search").fill("50")
+    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Stop").click()
+    expect(page.locator("#status")).to_contain_text("Stopped")
+    expect(page.get_by_role("button", name="Plan")).to_be_enabled()
+
+
+@needs_browser
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("stops.csv", "x,y,u,v\n1,2,3,4\n5,6,7\n", "stops.csv must have four numbers on each line"),
+        ("stops.json", '{"coordinates": [', "stops.json must be JSON"),
+        ("kroA.tsp", "EDGE_WEIGHT_TYPE: EUC_2D\n", "open it together with the other"),
+    ],
+)
+def test_a_bad_file_is_refused_in_a_sentence(page: Page, name: str, text: str, said: str) -> None:
+    bring(page, {name: text})
+    expect(page.locator("#file-fault")).to_contain_text(said, ignore_case=True)
+    expect(page.locator("#count")).to_have_text("61 cities")
+
+
+@needs_browser
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"cities.csv": "x,y,u,v\n0,0,5,5\n3,1,9,1\n5,2,2,8\n"},
+        {"cities.json": '{"coordinates": [[0, 0, 5, 5], [3, 1, 9, 1], [5, 2, 2, 8]]}'},
+        {
+            "a.tsp": "NODE_COORD_SECTION\n1 0 0\n2 3 1\n3 5 2\nEOF\n",
+            "b.tsp": "NODE_COORD_SECTION\n1 5 5\n2 9 1\n3 2 8\nEOF\n",
+        },
+    ],
+    ids=["csv", "json", "tsplib"],
+)
+def test_a_file_of_cities_is_planned(page: Page, files: dict[str, str]) -> None:
+    bring(page, files)
+    expect(page.get_by_label("x1, y1, x2, y2")).to_have_value("0, 0, 5, 5\n3, 1, 9, 1\n5, 2, 2, 8")
+    page.get_by_role("button", name="Plan").click()
+    expect(page.locator("#status")).to_have_text("Done: 1 tour found.")
+
+
+@needs_browser
+def test_what_the_service_refuses_is_said_at_the_field(page: Page) -> None:
+    page.get_by_label("Seconds of search").fill("soon")
+    page.get_by_role("button", name="Plan").click()
+    expect(page.locator("#time_limit-fault")).to_contain_text('got "soon"')
+    expect(page.get_by_label("Seconds of search")).to_be_focused()
+    page.get_by_label("x1, y1, x2, y2").fill("1, 2, 3, 4\n1, 2, 3\n")
+    page.get_by_role("button", name="Plan").click()
+    expect(page.locator("#cities-fault")).to_contain_text("Coordinates/1 must have 4 items")
+
+
+@needs_browser
+def test_cities_are_clicked_into_place_plane_by_plane(page: Page) -> None:
+    page.get_by_role("button", name="Clear").click()
+    page.get_by_role("button", name="Click into place").click()
+    for x, y in [(100, 160), (190, 130), (130, 90)]:
+        page.locator("#plane-1").click(position={"x": x, "y": y})
+        page.locator("#plane-2").click(position={"x": y, "y": x})
+    expect(page.locator("#count")).to_have_text("3 cities")
+    page.get_by_role("button", name="Plan").click()
+    expect(page.locator("#status")).to_have_text("Done: 1 tour found.")
+
+
+@needs_browser
+@at_both_widths
+def test_the_keyboard_is_enough(page: Page) -> None:
+    page.get_by_label("x1, y1, x2, y2").fill(CITIES)
+    page.get_by_label("Seconds of search").focus()
+    page.keyboard.press("Control+a")
+    page.keyboard.type("0.1")
+    page.keyboard.press("Enter")
+    expect(page.locator("#status")).to_contain_text("Done")
+    slider = page.get_by_role("slider", name="Angle")
+    for _ in range(20):
+        if slider.evaluate("slider => slider === document.activeElement"):
+            break
+        page.keyboard.press("Tab")
+    page.keyboard.press("End")
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("tour 5 of 5"))
+
+
+@needs_browser
+def test_the_front_can_be_taken_along(page: Page, address: str) -> None:
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save JSON").click()
+    answer = json.loads(saved.value.path().read_text())
+    assert answer == httpx.get(f"{address}/front/{answer['id']}").json()
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save CSV").click()
+    head, *lines = saved.value.path().read_text().splitlines()
+    assert head == "angle,length_1,length_2,tour"
+    assert len(lines) == len(answer["front"])
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Copy as curl").click()
+    command = page.evaluate("navigator.clipboard.readText()")
+    asked = json.loads(command.splitlines()[1])
+    assert command.startswith(f"curl {address}/front ")
+    found = httpx.post(f"{address}/front", json={**asked, "time_limit": 0}).json()
+    assert found["cities"] == 61
+
+
+@needs_browser
+def test_the_reference_needs_nothing_from_elsewhere(browser: Browser, address: str) -> None:
+    page = browser.new_page()
+    page.goto(f"{address}/docs")
+    expect(page.get_by_role("button", name="POST /front Plan Front")).to_be_visible()
+    page.close()
+
+
+def bring(page: Page, files: dict[str, str]) -> None:
+    given = [{"name": n, "mimeType": "text/plain", "buffer": t.encode()} for n, t in files.items()]
+    page.get_by_label("Open files").set_input_files(given)
+
+
+def figure(page: Page, name: str) -> float:
+    page.wait_for_timeout(50)  # drawn with the next frame
+    return number(page.get_by_role("row", name=name).get_by_role("cell").first)
+
+
+def number(cell: Locator) -> float:
+    return float(cell.inner_text().replace(",", ""))
+
+
+def test_what_the_page_loads_weighs_less_than_half_a_megabyte() -> None:
+    files = [path for path in (SERVICE / "page").rglob("*") if path.is_file()]
+    assert sum(path.stat().st_size for path in files) < 500_000
+
+
+def test_every_vendored_library_comes_with_its_licence() -> None:
+    libraries = [*SERVICE.glob("page/vendor/*"), *SERVICE.glob("docs/vendor/*")]
+    assert libraries
+    assert all((library / "LICENSE").exists() for library in libraries)
+
+
+def test_a_browser_may_load_nothing_from_elsewhere(address: str) -> None:
+    for path in ("/", "/docs", "/actors", "/nowhere"):
+        policy = httpx.get(f"{address}{path}").headers["content-security-policy"]
+        assert "default-src 'none'" in policy
+        assert "unsafe" not in policy
+        assert "http" not in policy
