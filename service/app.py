@@ -8,9 +8,10 @@ from typing import Any
 from fastapi import APIRouter, FastAPI
 from starlette.responses import Response
 
+from service.actor import ActorFacts
 from service.bodies import json_response
 from service.edge import Edge
-from service.fronts import FrontRoutes, KeptFront, NamedActor
+from service.fronts import FrontRoutes, KeptFront
 from service.pages import page_routes
 from service.problems import REFUSALS, Problem, answer_refusal, responses
 from service.schemas import ActorsAnswer, HealthAnswer, Limits
@@ -19,20 +20,21 @@ from service.workers import Workers
 
 
 def create_app(
-    actors: Mapping[str, NamedActor],
+    actors: Mapping[str, ActorFacts],
     store: Store[KeptFront],
     workers: Workers,
     limits: Limits,
     version: str,
     edge: Edge | None = None,
 ) -> FastAPI:
-    """The application. It closes the workers when it shuts down."""
+    """The application. It starts the workers and closes them when it shuts down."""
     edge = edge or Edge()
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        await workers.start()
         yield
-        workers.close()
+        await workers.close()
 
     app = _Documented(
         title="Paretour",
@@ -68,13 +70,13 @@ def _problem_schema() -> dict[str, Any]:
     return schema
 
 
-def _actor_router(actors: Mapping[str, NamedActor]) -> APIRouter:
+def _actor_router(actors: Mapping[str, ActorFacts]) -> APIRouter:
     router = APIRouter(tags=["service"])
 
     @router.get("/actors", response_model=ActorsAnswer)
     async def actors_there_are() -> Response:
         """The networks to choose from."""
-        facts = [asdict(actor.facts) for _, actor in sorted(actors.items())]
+        facts = [asdict(each) for _, each in sorted(actors.items())]
         return json_response({"actors": facts})
 
     return router
@@ -101,6 +103,5 @@ class _HealthRoutes:
 
     async def ready(self) -> Response:
         """Whether the process takes work of every kind."""
-        self._workers.check_open()
-        self._workers.check_warm()
+        self._workers.check_ready()
         return json_response({"status": "ready"})

@@ -1,45 +1,27 @@
 """The paths that plan fronts and answer questions about them."""
 
 import asyncio
-import time
 import uuid
-from collections.abc import Coroutine, Mapping
-from dataclasses import dataclass, replace
-from functools import partial
-from threading import Event
-from typing import Annotated, Any, NoReturn, Protocol, TypeVar
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, NoReturn
 
-import numpy as np
 from fastapi import APIRouter, Query
+from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
 
 from service.actor import ActorFacts
-from service.bodies import json_body, json_response
-from service.planner import Constructor, Front, plan
+from service.bodies import json_body, json_bytes
+from service.messages import Work
+from service.order import Order
 from service.problems import Refusal, responses
+from service.rendered import Rendered
 from service.requests import parse_front_request, request_schema
 from service.roster import choose_actor
-from service.schemas import (
-    FrontAnswer,
-    FrontRequest,
-    Limits,
-    TourAnswer,
-    TourQuery,
-)
+from service.schemas import FrontAnswer, Limits, TourAnswer, TourQuery
 from service.store import Expired, Store, Unknown
 from service.workers import Workers
-
-T = TypeVar("T")
-_GLANCE = 0.1  # seconds between two looks at whether the client is still there
-
-
-class NamedActor(Constructor, Protocol):
-    """A constructor that says who it is."""
-
-    @property
-    def facts(self) -> ActorFacts:
-        """Who it is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,37 +29,16 @@ class KeptFront:
     """A front as it was answered, for when it is asked for again."""
 
     id: str
-    front: Front
-    actor: ActorFacts
+    front: Rendered
 
-    def answer(self) -> dict[str, Any]:
-        """The members of a FrontAnswer."""
-        front = self.front
-        return {
-            "id": self.id,
-            "cities": front.n,
-            "front": [self._item(index) for index in range(len(front.points))],
-            "points": front.found,
-            "hypervolume": front.hypervolume,
-            "hypervolume_bound": front.bound,
-            "reference_point": front.reference_point.tolist(),
-            "scale": front.scale.tolist(),
-            "actor": {"name": self.actor.name, "digest": self.actor.digest},
-            "timings_ms": front.timings,
-            "terminated": front.terminated,
-        }
+    def answer(self) -> Response:
+        """A FrontAnswer."""
+        return json_bytes(self.front.json(id=self.id, status="done"))
 
-    def nearest(self, angle: float) -> dict[str, Any]:
-        """The members of a TourAnswer."""
-        return {"front": self.id, **self._item(self.front.nearest(angle))}
-
-    def _item(self, index: int) -> dict[str, Any]:
-        front = self.front
-        return {
-            "angle": float(front.angles[index]),
-            "lengths": front.points[index].tolist(),
-            "tour": front.tours[index].tolist(),
-        }
+    def nearest(self, angle: float) -> Response:
+        """A TourAnswer."""
+        tour = self.front.nearest(angle)
+        return json_bytes(b'{"front":' + to_json(self.id) + b"," + tour[1:])
 
 
 class FrontRoutes:
@@ -85,7 +46,7 @@ class FrontRoutes:
 
     def __init__(
         self,
-        actors: Mapping[str, NamedActor],
+        actors: Mapping[str, ActorFacts],
         store: Store[KeptFront],
         workers: Workers,
         limits: Limits,
@@ -103,7 +64,7 @@ class FrontRoutes:
         router.post(
             "/front",
             response_model=FrontAnswer,
-            responses=responses(400, 408, 413, 415, 422, 503),
+            responses=responses(400, 408, 413, 415, 422, 503, 504),
             openapi_extra={"requestBody": body},
         )(self.plan_front)
         router.get("/front/{id}", response_model=FrontAnswer, responses=responses(404, 410))(
@@ -117,40 +78,30 @@ class FrontRoutes:
     async def plan_front(self, request: Request) -> Response:
         """Plan the front of tours through the cities given."""
         _check_prefer(request)
+        self._workers.check_open()
+        self._workers.check_place()
         body = await json_body(request, self._limits.body_bytes)
-        asked = parse_front_request(body, self._limits)
-        loaded = {name: actor.facts for name, actor in self._actors.items()}
-        actor = self._actors[choose_actor(loaded, asked.kind, asked.named_actor)]
-        front = await self._plan(request, actor, asked)
-        kept = KeptFront(uuid.uuid4().hex, front, actor.facts)
-        if front.terminated != "cancelled":
-            self._store.put(kept.id, kept)
-        return json_response(kept.answer())
+        order = self._workers.order(self._work(body))
+        await _while_wanted(request, order, self._workers)
+        kept = KeptFront(uuid.uuid4().hex, await order.front())
+        self._store.put(kept.id, kept)
+        return kept.answer()
 
     async def front(self, id: str) -> Response:  # noqa: A002
         """Give a front again."""
-        return json_response(self._kept(id).answer())
+        return self._kept(id).answer()
 
     async def tour(self, query: Annotated[TourQuery, Query()]) -> Response:
         """Give the tour of a front whose direction is nearest to an angle."""
-        return json_response(self._kept(query.front).nearest(query.angle))
+        return self._kept(query.front).nearest(query.angle)
 
-    async def _plan(self, request: Request, actor: NamedActor, asked: FrontRequest) -> Front:
-        demand = asked.demand()
-        if demand.needs_compiled_code:
+    def _work(self, body: bytes) -> Work:
+        asked = parse_front_request(body, self._limits)
+        choose_actor(self._actors, asked.kind, asked.named_actor)
+        asked.instance()  # which raises where there is none
+        if asked.demand().needs_compiled_code:
             self._workers.check_warm()
-        asked_at = time.perf_counter()
-        stop = Event()
-        work = partial(plan, actor, asked.instance(), demand, stop.is_set)
-        front = await _while_wanted(request, self._workers.run(work), stop)
-        total = 1000 * (time.perf_counter() - asked_at)
-        waited = total - sum(front.timings.values())
-        # Kept fronts are what fills the memory: no city number needs eight bytes.
-        return replace(
-            front,
-            tours=front.tours.astype(np.uint32),
-            timings={"queue": waited, **front.timings, "total": total},
-        )
+        return Work("front", body)
 
     def _kept(self, front: str | None) -> KeptFront:
         try:
@@ -162,22 +113,21 @@ class FrontRoutes:
             raise Refusal(410, "front-expired", sentence) from None
 
 
-async def _while_wanted(request: Request, work: Coroutine[Any, Any, T], stop: Event) -> T:
-    """What the work returns; it is told to stop as soon as the client has gone away."""
-    working = asyncio.ensure_future(work)
+async def _while_wanted(request: Request, order: Order, workers: Workers) -> None:
+    """Wait for the order's end, and stop it as soon as the client has gone away."""
+    working = asyncio.ensure_future(order.front())
     leaving = asyncio.ensure_future(_left(request))
     try:
         await asyncio.wait((working, leaving), return_when=asyncio.FIRST_COMPLETED)
-        stop.set()
-        return await working
     finally:
-        stop.set()
+        workers.stop(order)
+        working.cancel()
         leaving.cancel()
 
 
 async def _left(request: Request) -> None:
-    while not await request.is_disconnected():
-        await asyncio.sleep(_GLANCE)
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
 
 
 def _check_prefer(request: Request) -> None:

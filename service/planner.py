@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, Protocol
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.front import hypervolume, nondominated
-from service.improve import best_subset, hypervolume_bound, improve
+from service.improve import Progress, best_subset, hypervolume_bound, improve
 from service.instance import Instance, tour_lengths
 from service.preferences import angles, from_angles
 
@@ -64,7 +64,7 @@ class Front:
     found: int
     scale: Array
     reference_point: Array
-    terminated: Termination
+    terminated: Termination | None  # none while the search goes on
     timings: dict[str, float]
     bound: float | None = None
 
@@ -88,24 +88,42 @@ class Front:
         return int(np.abs(self.angles - angle).argmin())
 
 
+@dataclass(frozen=True, eq=False)
+class Interim:
+    """How far the improvement has come. `front` gives the best so many tours found so far."""
+
+    seconds: float
+    hypervolume: float
+    points: int
+    front: Callable[[int], Front]
+
+
+Report = Callable[[Interim], None]
+
+
 def plan(
     constructor: Constructor,
     instance: Instance,
     demand: Demand,
     stop: Callable[[], bool] = lambda: False,
+    report: Report = lambda _: None,
 ) -> Front:
-    """The best front found for the instance, within the time limit and until told to stop."""
+    """The best front found for the instance, within the time limit and until told to stop.
+
+    Meanwhile the report is told, ten times a second, how far it has come.
+    """
     clock = _Clock()
     tours = _constructed(constructor, instance, demand.angles)
     if demand.initial_tours is not None:
         tours = np.concatenate((tours, demand.initial_tours))
     clock.ends("construction")
     reference_point = _reference_point(instance, demand)
-    tours, points, terminated = _improved(instance, tours, demand, reference_point, stop)
+    demand = replace(demand, reference_point=reference_point)
+    tours, points, terminated = _improved(instance, tours, demand, stop, report)
     clock.ends("improvement")
     kept = best_subset(points, demand.size, reference_point)
     clock.ends("selection")
-    bound = _bound(instance, reference_point) if demand.bound else None
+    bound = _bound(instance, reference_point) if demand.bound and not stop() else None
     clock.ends("bound")
     return Front(
         tours=_starting_at(demand.start, tours[kept]),
@@ -127,9 +145,9 @@ def _improved(
     instance: Instance,
     tours: Tours,
     demand: Demand,
-    reference_point: Array,
     stop: Callable[[], bool],
-) -> tuple[Tours, Array, Termination]:
+    report: Report,
+) -> tuple[Tours, Array, Termination | None]:
     """The nondominated tours, their points, and how the search for more of them ended."""
     if demand.time_limit == 0:
         points = tour_lengths(instance, tours)
@@ -141,9 +159,26 @@ def _improved(
         deadline=time.monotonic() + demand.time_limit,
         seed=demand.seed,
         stop=stop,
-        reference_point=reference_point,
+        report=lambda progress: report(_interim(instance, demand, progress)),
+        reference_point=demand.reference_point,
     )
     return found.tours.astype(np.int64), found.points, found.terminated
+
+
+def _interim(instance: Instance, demand: Demand, progress: Progress) -> Interim:
+    def front(size: int) -> Front:
+        best = progress.best(min(size, demand.size))
+        return Front(
+            tours=_starting_at(demand.start, best.tours),
+            points=best.points,
+            found=progress.points,
+            scale=instance.scale,
+            reference_point=_reference_point(instance, demand),
+            terminated=None,
+            timings={},
+        )
+
+    return Interim(progress.seconds, progress.hypervolume, progress.points, front)
 
 
 def _constructed(constructor: Constructor, instance: Instance, degrees: Array) -> Tours:
@@ -159,7 +194,7 @@ def _reference_point(instance: Instance, demand: Demand) -> Array:
     return instance.n * instance.scale
 
 
-def _starting_at(start: int, tours: Tours) -> Tours:
+def _starting_at(start: int, tours: NDArray[np.integer]) -> NDArray[np.integer]:
     n = tours.shape[1]
     first = (tours == start).argmax(axis=1)
     return np.take_along_axis(tours, (first[:, np.newaxis] + np.arange(n)) % n, axis=1)

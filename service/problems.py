@@ -21,6 +21,7 @@ from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.instance import InvalidInstance
+from service.order import Lost, Overdue, Stopped
 from service.workers import Busy, Closed, Cold
 
 MEDIA_TYPE = "application/problem+json"
@@ -115,15 +116,19 @@ async def answer_refusal(request: Request, error: Exception) -> Response:
     return response
 
 
-_UNAVAILABLE: dict[type[Exception], tuple[str, str]] = {
-    Busy: ("queue-full", "the queue must have a free place, and all are taken: ask again"),
-    Closed: ("shutting-down", "the server is shutting down"),
+_UNAVAILABLE: dict[type[Exception], tuple[int, str, str]] = {
+    Busy: (503, "queue-full", "the queue must have a free place, and all are taken: ask again"),
+    Closed: (503, "shutting-down", "the server is shutting down"),
+    Lost: (503, "worker-lost", "the work must leave its worker alive, and two were lost over it"),
+    Stopped: (503, "stopped", "the work was stopped before there was a front"),
+    Overdue: (504, "overdue", "the work must end in time, and there was no front yet"),
     Cold: (
+        503,
         "warming-up",
         "the search is being compiled, once: ask again, or for the network alone with time_limit 0",
     ),
 }
-REFUSALS = (Refusal, HTTPException, RequestValidationError, InvalidInstance, Busy, Closed, Cold)
+REFUSALS = (Refusal, HTTPException, RequestValidationError, InvalidInstance, *_UNAVAILABLE)
 
 
 class RequestIds:
@@ -172,13 +177,13 @@ class RequestIds:
 
 def _as_refusal(request: Request, error: Exception) -> Refusal:
     path = _cut(request.url.path)
+    if type(error) in _UNAVAILABLE:
+        return Refusal(*_UNAVAILABLE[type(error)])
     match error:
         case Refusal():
             return error
         case RequestValidationError():
             return refused_by(error.errors(), parameters=True)
-        case Busy() | Closed() | Cold():
-            return Refusal(503, *_UNAVAILABLE[type(error)])
         case HTTPException(status_code=404):
             return Refusal(404, "no-such-path", f"there is nothing at {path}; /docs says what is")
         case HTTPException(status_code=405, headers=headers):

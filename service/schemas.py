@@ -1,7 +1,7 @@
 """What travels over HTTP."""
 
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -183,6 +183,7 @@ class FrontAnswer(BaseModel):
     """A front of tours, by ascending first length."""
 
     id: str
+    status: Literal["done"]
     cities: int
     front: list[TourItem]
     points: int = Field(description="nondominated points found; front holds at most `size`")

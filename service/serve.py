@@ -2,6 +2,7 @@
 
 import signal
 import sys
+from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from types import FrameType
 from typing import NoReturn
@@ -13,9 +14,9 @@ from service.access import Access, Rates
 from service.actor import load_actors
 from service.app import create_app
 from service.edge import Edge
-from service.improve import warm_up
 from service.logs import logging_config
 from service.metrics import Metrics
+from service.planning import load_planner
 from service.settings import Settings
 from service.store import Store
 from service.tracing import trace
@@ -24,15 +25,25 @@ from service.workers import Workers
 
 def build(settings: Settings) -> FastAPI:
     """The application that the settings ask for."""
+    # Loaded here only to know, before anything is served, that they can be and who they are.
+    actors = load_actors(settings.actors, settings.threads)
+    workers = Workers(
+        partial(load_planner, settings.actors, settings.threads, settings.limits),
+        workers=settings.workers,
+        queue=settings.queue,
+        seconds=settings.request_seconds,
+    )
+    metrics = Metrics()
+    metrics.watch_queue(lambda: workers.waiting)
     app = create_app(
-        load_actors(settings.actors, settings.threads),
+        {name: actor.facts for name, actor in actors.items()},
         Store(settings.store_entries, settings.store_seconds),
-        Workers(settings.workers, settings.queue, warm_up),
+        workers,
         settings.limits,
         _version(),
         Edge(
             access=Access(settings.api_keys, Rates(settings.rate)),
-            metrics=Metrics(),
+            metrics=metrics,
             origins=settings.origins,
             body_seconds=settings.body_seconds,
         ),

@@ -45,14 +45,19 @@ class Settings(BaseSettings):
     actors: Path = Field(
         Path(__file__).parent / "actors", description="directory of the networks, ONNX files"
     )
-    workers: int = Field(default_factory=_cores, ge=1, description="plans made at a time")
-    threads: int = Field(default_factory=_cores, ge=1, description="threads of one inference call")
+    workers: int = Field(
+        default_factory=_cores, ge=1, description="processes that plan, one request at a time each"
+    )
+    threads: int = Field(1, ge=1, description="threads of one inference call")
     queue: int = Field(16, ge=0, description="requests that may wait for a worker")
     max_body_bytes: int = Field(2**24, ge=1, description="the longest request body")
     max_cities: int = Field(1000, ge=1, description="the most cities of an instance")
     max_preferences: int = Field(200, ge=1, description="the most preferences of a request")
     max_size: int = Field(1000, ge=1, description="the most tours that a request may ask for")
     max_time_limit: float = Field(60.0, ge=0, description="the most seconds of improvement")
+    request_seconds: float = Field(
+        90.0, gt=0, description="when a request is ended with the best front so far"
+    )
     drain_seconds: int = Field(20, ge=0, description="time to finish what is under way at SIGTERM")
     store_entries: int = Field(256, ge=1, description="fronts kept for later questions")
     store_seconds: float = Field(3600.0, gt=0, description="how long a front is kept")

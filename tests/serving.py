@@ -7,9 +7,11 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import httpx
@@ -20,8 +22,9 @@ from fastapi import FastAPI
 from service.actor import ActorFacts
 from service.app import create_app
 from service.edge import Edge
-from service.fronts import NamedActor
 from service.instance import Instance, Kind
+from service.planning import FrontPlanner, NamedActor
+from service.process import MakePlanner
 from service.schemas import Limits
 from service.serve import build
 from service.settings import Settings
@@ -44,20 +47,26 @@ def facts_of(name: str, inputs: Kind) -> ActorFacts:
     )
 
 
-@dataclass
+@dataclass(frozen=True)
 class Shuffler:
-    """An actor that shuffles the cities, each time the same way, and waits until it may go on."""
+    """An actor that shuffles the cities, each time the same way.
 
-    may_go_on: threading.Event = field(default_factory=threading.Event)
-    started: threading.Semaphore = field(default_factory=lambda: threading.Semaphore(0))
+    With a gate it leaves a mark beside it, and waits until the gate is there.
+    """
+
+    gate: Path | None = None
     facts: ActorFacts = field(default_factory=lambda: facts_of("pa-one", "coordinates"))
 
-    def __post_init__(self) -> None:
-        self.may_go_on.set()
+    @property
+    def started(self) -> bool:
+        assert self.gate is not None
+        return self.gate.with_suffix(".started").exists()
 
     def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
-        self.started.release()
-        assert self.may_go_on.wait(timeout=30)
+        if self.gate is not None:
+            self.gate.with_suffix(".started").touch()
+            while not self.gate.exists():
+                time.sleep(0.005)
         rng = np.random.default_rng(0)
         return np.array([rng.permutation(instance.n) for _ in preferences])
 
@@ -69,24 +78,50 @@ class Broken(Shuffler):
         raise RuntimeError(f"no tour of {instance.n} cities for {len(preferences)} preferences")
 
 
-def nothing() -> None:
-    """A warm-up of nothing."""
+ACTORS = (Shuffler(), Shuffler(facts=facts_of("pa-one-matrix", "matrices")))
+
+
+@dataclass(frozen=True)
+class ColdPlanner(FrontPlanner):
+    """A planner that is warm once there is a file."""
+
+    warm: Path = Path("/nowhere")
+
+    def warm_up(self) -> None:
+        while not self.warm.exists():
+            time.sleep(0.005)
+
+
+def planner_of(
+    *actors: NamedActor, limits: Limits = LIMITS, warm: Path | None = None
+) -> MakePlanner:
+    by_name = {actor.facts.name: actor for actor in actors or ACTORS}
+    if warm is None:
+        return partial(FrontPlanner, by_name, limits)
+    return partial(ColdPlanner, by_name, limits, warm)
+
+
+def workers_of(
+    make_planner: MakePlanner | None = None,
+    workers: int = 1,
+    queue: int = 8,
+    seconds: float = 60.0,
+) -> Workers:
+    make_planner = make_planner or planner_of()
+    return Workers(make_planner, workers=workers, queue=queue, seconds=seconds)
 
 
 def app_of(
-    actor: Shuffler | None = None,
+    *actors: NamedActor,
     store: Store | None = None,
     workers: Workers | None = None,
     limits: Limits = LIMITS,
-    actors: Sequence[NamedActor] | None = None,
     edge: Edge | None = None,
 ) -> FastAPI:
-    if actors is None:
-        actors = [actor or Shuffler(), Shuffler(facts=facts_of("pa-one-matrix", "matrices"))]
     return create_app(
-        {each.facts.name: each for each in actors},
+        {actor.facts.name: actor.facts for actor in actors or ACTORS},
         store or Store(entries=100, max_age=60),
-        workers or Workers(workers=2, queue=8, warm_up=nothing),
+        workers or workers_of(planner_of(*actors, limits=limits)),
         limits,
         "test",
         edge,
@@ -94,16 +129,17 @@ def app_of(
 
 
 @contextmanager
-def serving(app: FastAPI, drain: int = 5) -> Iterator[str]:
+def serving(app: FastAPI, drain: int = 5, warm: bool = True) -> Iterator[str]:
     """The address of a server that answers as long as the block lasts."""
     listening = socket.create_server(("127.0.0.1", 0))
     server = uvicorn.Server(uvicorn.Config(app, log_config=None, timeout_graceful_shutdown=drain))
     thread = threading.Thread(target=server.run, args=[[listening]])
     thread.start()
-    while not server.started:
-        time.sleep(0.01)
+    url = f"http://127.0.0.1:{listening.getsockname()[1]}"
     try:
-        yield f"http://127.0.0.1:{listening.getsockname()[1]}"
+        while not server.started or (warm and httpx.get(f"{url}/health/ready").status_code == 503):
+            time.sleep(0.01)
+        yield url
     finally:
         server.should_exit = True
         thread.join()
@@ -113,9 +149,7 @@ def serving(app: FastAPI, drain: int = 5) -> Iterator[str]:
 @contextmanager
 def serving_released() -> Iterator[str]:
     """The address of the service as it is released, once it takes work of every kind."""
-    with serving(build(Settings())) as address:
-        while httpx.get(f"{address}/health/ready").status_code == 503:
-            time.sleep(0.05)
+    with serving(build(Settings(workers=1))) as address:
         yield address
 
 

@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -16,15 +15,22 @@ import httpx
 import numpy as np
 import pytest
 
-from service.actor import load_actors
-from service.bodies import json_response
-from service.fronts import KeptFront
 from service.instance import Instance, tour_lengths
 from service.planner import Front
+from service.rendered import rendered
+from service.serve import build
 from service.settings import Settings
 from service.store import Store
-from service.workers import Workers
-from tests.serving import LIMITS, Broken, Shuffler, app_of, nothing, problem, serving
+from tests.serving import (
+    LIMITS,
+    Broken,
+    Shuffler,
+    app_of,
+    planner_of,
+    problem,
+    serving,
+    workers_of,
+)
 
 CITIES = np.random.default_rng(5).random((12, 4)).tolist()
 ROOT = Path(__file__).parent.parent
@@ -79,6 +85,9 @@ def test_the_tour_at_an_angle_is_the_nearest_of_the_front(client: httpx.Client) 
     nearest = min(front["front"], key=lambda item: abs(item["angle"] - 30))
     asked = client.get("/tour", params={"angle": 30, "front": front["id"]})
     assert asked.json() == {"front": front["id"], **nearest}
+    for angle in (0, 90):
+        end = client.get("/tour", params={"angle": angle, "front": front["id"]}).json()
+        assert end == {"front": front["id"], **front["front"][-1 if angle == 0 else 0]}
     latest = client.get("/tour", params={"angle": 30})
     assert latest.json()["front"] == other["id"]
 
@@ -321,12 +330,12 @@ def test_time_makes_the_front_better_and_no_front_passes_the_bound(client: httpx
     assert before["hypervolume"] < after["hypervolume"] <= after["hypervolume_bound"] + 1e-12
 
 
-def test_before_the_search_is_compiled_only_the_network_answers() -> None:
-    may_end = threading.Event()
-    workers = Workers(workers=1, queue=1, warm_up=may_end.wait)
-    with serving(app_of(workers=workers)) as address, httpx.Client(base_url=address) as client:
+def test_before_the_search_is_compiled_only_the_network_answers(tmp_path: Path) -> None:
+    workers = workers_of(planner_of(warm=tmp_path / "warm"))
+    app = app_of(workers=workers)
+    with serving(app, warm=False) as address, httpx.Client(base_url=address) as client:
         request = {"coordinates": CITIES, "time_limit": 0}
-        assert client.post("/front", json=request).status_code == 200
+        assert client.post("/front", json=request, timeout=30).status_code == 200
         for refused in (
             client.get("/health/ready"),
             client.post("/front", json={**request, "time_limit": 0.1}),
@@ -334,15 +343,16 @@ def test_before_the_search_is_compiled_only_the_network_answers() -> None:
         ):
             problem(refused, 503, "warming-up")
             assert int(refused.headers["Retry-After"]) > 0
-        may_end.set()
+        (tmp_path / "warm").touch()
         while client.get("/health/ready").status_code == 503:
             pass
-        assert client.post("/front", json={**request, "time_limit": 0.1}).status_code == 200
+        answer = client.post("/front", json={**request, "time_limit": 0.1}, timeout=30)
+        assert answer.status_code == 200
 
 
 def test_a_client_that_goes_away_frees_its_worker() -> None:
-    workers = Workers(workers=1, queue=0, warm_up=nothing)
     limits = replace(LIMITS, seconds=600.0)
+    workers = workers_of(planner_of(limits=limits), queue=0, seconds=700)
     with serving(app_of(workers=workers, limits=limits)) as address:
         cities = np.random.default_rng(0).random((50, 4)).tolist()
         with pytest.raises(httpx.ReadTimeout):
@@ -353,6 +363,25 @@ def test_a_client_that_goes_away_frees_its_worker() -> None:
         while httpx.post(f"{address}/front", json=request).status_code == 503:
             pass
         assert httpx.get(f"{address}/tour?angle=45").json()["tour"]
+
+
+def test_a_request_that_takes_too_long_is_answered_with_what_was_found() -> None:
+    limits = replace(LIMITS, seconds=600.0)
+    workers = workers_of(planner_of(limits=limits), seconds=1)
+    with serving(app_of(workers=workers, limits=limits)) as address:
+        cities = np.random.default_rng(0).random((50, 4)).tolist()
+        request = {"coordinates": cities, "time_limit": 600}
+        answer = httpx.post(f"{address}/front", json=request, timeout=60)
+        assert (answer.status_code, answer.json()["terminated"]) == (200, "time_limit")
+        assert answer.json()["front"]
+
+
+def test_a_request_that_takes_too_long_for_any_front_is_504(tmp_path: Path) -> None:
+    actor = Shuffler(tmp_path / "gate")
+    workers = workers_of(planner_of(actor), seconds=0.5)
+    with serving(app_of(workers=workers)) as address:
+        answer = httpx.post(f"{address}/front", json={"coordinates": CITIES}, timeout=60)
+        problem(answer, 504, "overdue")
 
 
 def test_asynchronous_answers_are_not_there_yet(client: httpx.Client) -> None:
@@ -439,25 +468,25 @@ def test_the_callers_own_request_id_is_kept_where_it_is_plain(
     assert (answer.headers["x-request-id"] == given) is kept
 
 
-def test_a_full_queue_is_503_and_health_answers_all_the_while() -> None:
-    actor = Shuffler()
-    actor.may_go_on.clear()
-    app = app_of(actor, workers=Workers(workers=1, queue=1, warm_up=nothing))
-    with serving(app) as url, ThreadPoolExecutor() as clients:
+def test_a_full_queue_is_503_and_health_answers_all_the_while(tmp_path: Path) -> None:
+    actor = Shuffler(tmp_path / "gate")
+    workers = workers_of(planner_of(actor), queue=1)
+    with serving(app_of(workers=workers)) as url, ThreadPoolExecutor() as clients:
 
         def post() -> httpx.Response:
             return httpx.post(f"{url}/front", json={"coordinates": CITIES}, timeout=30)
 
         waiting = [clients.submit(post) for _ in range(3)]
         try:
-            assert actor.started.acquire(timeout=10)
             refused = next(each for each in _finished(waiting))
             problem(refused, 503, "queue-full")
             assert int(refused.headers["retry-after"]) > 0
+            # A full queue is said before the body is read.
+            problem(httpx.post(f"{url}/front", content="{"), 503, "queue-full")
             assert httpx.get(f"{url}/health/live").status_code == 200
             assert httpx.get(f"{url}/health/ready").status_code == 200
         finally:
-            actor.may_go_on.set()
+            (tmp_path / "gate").touch()
         assert sorted(each.result().status_code for each in waiting) == [200, 200, 503]
         assert post().status_code == 200
 
@@ -469,29 +498,15 @@ def _finished(waiting: list[Any]) -> Iterator[httpx.Response]:
         time.sleep(0.01)
 
 
-def test_a_server_that_shuts_down_takes_no_work() -> None:
-    workers = Workers(workers=1, queue=1, warm_up=nothing)
-    with serving(app_of(workers=workers)) as url:
-        workers.close()
-        refused = httpx.post(f"{url}/front", json={"coordinates": CITIES})
-        problem(refused, 503, "shutting-down")
-        assert refused.headers["retry-after"]
-        problem(httpx.get(f"{url}/health/ready"), 503, "shutting-down")
-        assert httpx.get(f"{url}/health/live").json() == {"status": "live"}
-
-
-def test_what_is_under_way_for_too_long_at_the_end_is_refused() -> None:
-    actor = Shuffler()
-    actor.may_go_on.clear()
+def test_what_is_under_way_for_too_long_at_the_end_is_refused(tmp_path: Path) -> None:
+    actor = Shuffler(tmp_path / "gate")
     with ThreadPoolExecutor() as clients:
-        try:
-            with serving(app_of(actor), drain=1) as url:
-                body = {"coordinates": CITIES}
-                asked = clients.submit(httpx.post, f"{url}/front", json=body, timeout=30)
-                assert actor.started.acquire(timeout=10)
-            problem(asked.result(), 503, "shutting-down")
-        finally:
-            actor.may_go_on.set()
+        with serving(app_of(actor), drain=1) as url:
+            body = {"coordinates": CITIES}
+            asked = clients.submit(httpx.post, f"{url}/front", json=body, timeout=30)
+            while not actor.started:
+                time.sleep(0.01)
+        problem(asked.result(), 503, "shutting-down")
 
 
 def test_the_actors_are_named(client: httpx.Client) -> None:
@@ -520,22 +535,22 @@ def test_a_hundred_tours_of_a_thousand_cities_serialise_in_50_ms() -> None:
         terminated="converged",
         timings={"construction": 1.0},
     )
-    kept = KeptFront("id", front, Shuffler().facts)
-    best = min(_seconds(kept) for _ in range(5))
+    best = min(_seconds(front) for _ in range(5))
     assert best < 0.05
 
 
-def _seconds(kept: KeptFront) -> float:
+def _seconds(front: Front) -> float:
     began = time.perf_counter()
-    json_response(kept.answer())
+    rendered(front).json(id="id")
     return time.perf_counter() - began
 
 
 def test_the_released_actor_plans_over_http() -> None:
-    (actor,) = load_actors(Settings().actors, threads=1).values()
-    with serving(app_of(actor)) as url:
-        body = httpx.post(f"{url}/front", json={"coordinates": CITIES, "preferences": 20}).json()
-        assert body["actor"]["digest"] == actor.facts.digest
+    with serving(build(Settings(workers=1)), warm=False) as url:
+        request = {"coordinates": CITIES, "preferences": 20, "time_limit": 0}
+        body = httpx.post(f"{url}/front", json=request, timeout=30).json()
+        [facts] = httpx.get(f"{url}/actors").json()["actors"]
+        assert body["actor"]["digest"] == facts["digest"]
         assert len(body["front"]) > 1
 
 

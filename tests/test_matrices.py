@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import httpx
@@ -10,9 +11,10 @@ import pytest
 
 from service.actor import Actor
 from service.instance import Instance, tour_lengths
+from service.planning import load_planner
 from service.settings import Settings
 from tests.artifacts import by_row_sums
-from tests.serving import LIMITS, Shuffler, app_of, facts_of, problem, serving
+from tests.serving import LIMITS, Shuffler, app_of, facts_of, problem, serving, workers_of
 
 JSON = {"Content-Type": "application/json"}
 COSTS = np.random.default_rng(6).random((2, 12, 12))
@@ -130,7 +132,7 @@ def test_an_actor_of_matrices_serves_coordinates_where_it_is_asked_to(client: ht
 
 
 def test_where_no_actor_reads_matrices_they_are_refused() -> None:
-    with serving(app_of(actors=[Shuffler()])) as url:
+    with serving(app_of(Shuffler())) as url:
         request = {"matrices": COSTS.tolist()}
         document = problem(httpx.post(f"{url}/front", json=request), 422, "no-actor")
         assert document["detail"] == "matrices need an actor that reads them, and none is loaded"
@@ -139,7 +141,7 @@ def test_where_no_actor_reads_matrices_they_are_refused() -> None:
 
 
 def test_where_the_default_is_not_loaded_another_that_reads_matrices_serves() -> None:
-    with serving(app_of(actors=[Shuffler(facts=facts_of("own", "matrices"))])) as url:
+    with serving(app_of(Shuffler(facts=facts_of("own", "matrices")))) as url:
         for instance in ({"matrices": COSTS.tolist()}, {"coordinates": np.eye(4).tolist()}):
             answer = httpx.post(f"{url}/front", json={**instance, "time_limit": 0})
             assert answer.json()["actor"]["name"] == "own"
@@ -147,7 +149,8 @@ def test_where_the_default_is_not_loaded_another_that_reads_matrices_serves() ->
 
 def test_a_network_of_matrices_plans_over_http(tmp_path: Path) -> None:
     actor = Actor(by_row_sums(tmp_path / "sums.onnx"), threads=1)
-    with serving(app_of(actors=[actor])) as url:
+    workers = workers_of(partial(load_planner, tmp_path, 1, LIMITS))
+    with serving(app_of(actor, workers=workers)) as url:
         request = {"matrices": COSTS.tolist(), "preferences": [30], "time_limit": 0}
         answer = httpx.post(f"{url}/front", json=request).json()
     assert answer["actor"] == {"name": "sums", "digest": actor.facts.digest}

@@ -7,6 +7,7 @@ front is filled between what they reach. Everything nondominated that is visited
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -27,22 +28,26 @@ REPORT_EVERY = 0.1  # seconds
 __all__ = ["Improved", "Progress", "best_subset", "hypervolume_bound", "improve", "warm_up"]
 
 
-@dataclass(frozen=True)
-class Progress:
-    """How far a search has come."""
-
-    seconds: float
-    hypervolume: float
-    points: int
-
-
 @dataclass(frozen=True, eq=False)
 class Improved:
     """A front: tours, shape (p, n), and points, shape (p, 2), by ascending first length."""
 
     tours: NDArray[np.int32]
     points: Array
-    terminated: Termination
+    terminated: Termination | None  # none while the search goes on
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a search has come.
+
+    `best` copies the best so many tours found so far, and may be asked until the report returns.
+    """
+
+    seconds: float
+    hypervolume: float
+    points: int
+    best: Callable[[int], Improved]
 
 
 def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a default
@@ -106,8 +111,15 @@ def _watch(
             return "time_limit"
         if report is not None and now - reported >= REPORT_EVERY:
             reported = now
-            report(Progress(now - began, search.share, search.found))
+            report(Progress(now - began, search.share, search.found, partial(_best, search)))
     return "converged"
+
+
+def _best(search: Search, size: int) -> Improved:
+    """The best so many of what a search has found so far."""
+    points = search.points()
+    kept = best_subset(points, size, search.corner / search.units)
+    return Improved(search.tours(kept), points[kept], None)
 
 
 def _front(instance: Instance, tours: NDArray[np.integer], terminated: Termination) -> Improved:

@@ -84,10 +84,11 @@ class Search:
         """How many points the front has."""
         return int(self.ground.archive.counts[0])
 
-    def tours(self) -> NDArray[np.int32]:
-        """The tours of the front, by ascending first length."""
+    def tours(self, kept: NDArray[np.intp] | None = None) -> NDArray[np.int32]:
+        """The tours of the front, or those at the indices kept, by ascending first length."""
         archive = self.ground.archive
-        return archive.tours[archive.slots[: self.found]]
+        slots = archive.slots[: self.found]
+        return archive.tours[slots if kept is None else slots[kept]]
 
     def points(self) -> Array:
         """The points of the front, in the instance's units."""

@@ -1,0 +1,94 @@
+"""Work that was handed in, and what has come of it."""
+
+import asyncio
+from asyncio import Future, TimerHandle
+from collections.abc import Callable
+from dataclasses import replace
+from time import perf_counter
+
+from service.messages import Snapshot, Work
+from service.rendered import Rendered
+
+MOST_ATTEMPTS = 2
+Report = Callable[[Snapshot], None]
+
+
+class Lost(Exception):
+    """Two workers were lost over the work, which may be why."""
+
+
+class Stopped(Exception):
+    """The work was stopped before there was a front."""
+
+
+class Overdue(Exception):
+    """The work took longer than any may, and there was no front yet."""
+
+
+class Order:
+    """Work, who is told of its progress, and in the end its front.
+
+    A patient one has its time limit from when it is begun, another from when it is handed in.
+    """
+
+    def __init__(self, number: int, work: Work, report: Report, patient: bool) -> None:
+        self.number = number
+        self.work = work
+        self.patient = patient
+        self.attempts = 0
+        self.stopped: type[Stopped | Overdue] | None = None
+        self.snapshot: Snapshot | None = None
+        self.timer: TimerHandle | None = None
+        self._report = report
+        self._future: Future[Rendered] = asyncio.get_running_loop().create_future()
+        self._handed_in = perf_counter()
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has a front, or never will."""
+        return self._future.done()
+
+    async def front(self) -> Rendered:
+        """The front, once there is one. Who no longer waits does not end the work.
+
+        Raises:
+            Lost: workers died over it.
+            Stopped: it was stopped.
+            Overdue: it took too long.
+        """
+        return await asyncio.shield(self._future)
+
+    def hear(self, snapshot: Snapshot) -> None:
+        """Take note of how far the work has come."""
+        self.snapshot = snapshot
+        self._report(snapshot)
+
+    def done(self, front: Rendered) -> None:
+        """End with a front."""
+        total = 1000 * (perf_counter() - self._handed_in)
+        phases = front.members["timings_ms"]
+        timings = {"queue": total - sum(phases.values()), **phases, "total": total}
+        members = {**front.members, "timings_ms": timings}
+        if front.members["terminated"] in (None, "cancelled"):
+            late = self.stopped is Overdue
+            members["terminated"] = "time_limit" if late else "cancelled"
+        self._end()
+        self._future.set_result(replace(front, members=members))
+
+    def failed(self, error: Exception) -> None:
+        """End without a front."""
+        self._end()
+        self._future.set_exception(error)
+        # Nobody may be waiting any more, which asyncio would take for an oversight.
+        self._future.exception()
+
+    def cut_short(self) -> None:
+        """End with what was found so far, if anything was."""
+        if self.snapshot is None:
+            self.failed((self.stopped or Stopped)())
+        else:
+            self.done(self.snapshot.front)
+
+    def _end(self) -> None:
+        if self.timer is not None:
+            self.timer.cancel()

@@ -1,0 +1,54 @@
+"""A front in the form in which it travels and is kept: JSON, written once, where it was found."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import to_json
+
+from service.planner import Front
+
+
+@dataclass(frozen=True, eq=False)
+class Rendered:
+    """A front of m tours as JSON.
+
+    `members` are all the members of the answer but the tours. `tours` is the inside of the array
+    of these: tour i, whose direction is angles[i] degrees, ends before byte ends[i].
+    """
+
+    members: dict[str, Any]
+    tours: bytes
+    ends: NDArray[np.int64]
+    angles: NDArray[np.float64]
+
+    def nearest(self, angle: float) -> bytes:
+        """The tour whose direction is nearest to the angle in degrees, as a JSON object."""
+        index = int(np.abs(self.angles - angle).argmin())
+        begin = int(self.ends[index - 1]) + 1 if index else 0
+        return self.tours[begin : int(self.ends[index])]
+
+    def json(self, **more: Any) -> bytes:
+        """The answer, which begins with these other members."""
+        members = to_json({**more, **self.members})
+        return b"".join((members[:-1], b',"front":[', self.tours, b"]}"))
+
+
+def rendered(front: Front, **more: Any) -> Rendered:
+    """A front as JSON, with other members."""
+    members = {
+        "cities": front.n,
+        "points": front.found,
+        "hypervolume": front.hypervolume,
+        "hypervolume_bound": front.bound,
+        "reference_point": front.reference_point.tolist(),
+        "scale": front.scale.tolist(),
+        "timings_ms": front.timings,
+        "terminated": front.terminated,
+        **more,
+    }
+    rows = zip(front.angles.tolist(), front.points.tolist(), front.tours.tolist(), strict=True)
+    tours = [to_json({"angle": a, "lengths": f, "tour": tour}) for a, f, tour in rows]
+    ends = np.cumsum([len(tour) + 1 for tour in tours]) - 1
+    return Rendered(members, b",".join(tours), ends, front.angles)

@@ -1,0 +1,136 @@
+"""The inside of a worker process: one piece of work at a time, as told over a socket."""
+
+import os
+import pickle
+import signal
+import socket
+import time
+import traceback
+from collections.abc import Callable
+from contextlib import suppress
+from queue import SimpleQueue
+from threading import Event, Lock, Thread
+from typing import Protocol
+
+from service.messages import (
+    Do,
+    Done,
+    Failed,
+    Found,
+    Snapshot,
+    Started,
+    Stop,
+    Warm,
+    WarmUp,
+    Work,
+    packed,
+    received_now,
+)
+from service.planner import Interim
+from service.rendered import Rendered, rendered
+
+MOST_TOURS = 100  # of a snapshot
+EVERY = 0.25  # seconds between two snapshots
+MOST_SHARE = 0.05  # of the time goes into snapshots
+
+
+class Planner(Protocol):
+    """What a worker process plans with."""
+
+    def warm_up(self) -> None:
+        """Compile what can be compiled, or load it."""
+
+    def plan(
+        self, work: Work, stop: Callable[[], bool], report: Callable[[Interim], None]
+    ) -> Rendered:
+        """The front that is asked for."""
+
+
+def run_worker(connection: socket.socket, make_planner: Callable[[], Planner]) -> None:
+    """Work as long as the service is there."""
+    # An interrupt from a terminal goes to everyone; the service tells its workers when to end.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    worker = _Worker(connection, make_planner())
+    Thread(target=worker.listen, name="listen", daemon=True).start()
+    with suppress(OSError):
+        worker.work()
+
+
+class _Worker:
+    """Works in one thread, listens in another, and warms up in a third."""
+
+    def __init__(self, connection: socket.socket, planner: Planner) -> None:
+        self._connection = connection
+        self._planner = planner
+        self._sending = Lock()
+        self._given: SimpleQueue[Do] = SimpleQueue()
+        self._stops: dict[int, Event] = {}
+
+    def listen(self) -> None:
+        """Take messages until the service is gone, and then end whatever is being done."""
+        with suppress(EOFError, OSError), self._connection.makefile("rb") as stream:
+            while True:
+                self._hear(received_now(stream))
+        os._exit(0)
+
+    def work(self) -> None:
+        """Do what is given, one after another."""
+        self._send(Started())
+        while True:
+            given = self._given.get()
+            self._send(self._done(given.number, given.work))
+            del self._stops[given.number]
+
+    def _hear(self, message: object) -> None:
+        match message:
+            case Do():
+                self._stops[message.number] = Event()
+                self._given.put(message)
+            case Stop() if stop := self._stops.get(message.number):
+                stop.set()
+            case WarmUp():
+                Thread(target=self._warm_up, name="warm-up", daemon=True).start()
+
+    def _done(self, number: int, work: Work) -> Done | Failed:
+        report = _Reporter(lambda snapshot: self._send(Found(number, snapshot)))
+        try:
+            return Done(number, self._planner.plan(work, self._stops[number].is_set, report))
+        except Exception as error:
+            return Failed(number, _portable(error))
+
+    def _warm_up(self) -> None:
+        self._planner.warm_up()
+        with suppress(OSError):
+            self._send(Warm())
+
+    def _send(self, message: object) -> None:
+        content = packed(message)
+        with self._sending:
+            self._connection.sendall(content)
+
+
+def _portable(error: Exception) -> Exception:
+    """The error, or one that says the same, fit to travel with its traceback in a note."""
+    try:
+        pickle.loads(pickle.dumps(error))
+    except Exception:
+        error = RuntimeError(repr(error))
+    error.add_note(traceback.format_exc())
+    return error
+
+
+class _Reporter:
+    """Takes a snapshot now and then, the more rarely the longer one takes."""
+
+    def __init__(self, send: Callable[[Snapshot], None]) -> None:
+        self._send = send
+        self._next = time.monotonic() + EVERY
+
+    def __call__(self, interim: Interim) -> None:
+        began = time.monotonic()
+        if began < self._next:
+            return
+        front = rendered(interim.front(MOST_TOURS))
+        self._send(Snapshot(interim.seconds, interim.hypervolume, interim.points, front))
+        ended = time.monotonic()
+        self._next = ended + max(EVERY, (ended - began) / MOST_SHARE)
