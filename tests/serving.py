@@ -5,10 +5,11 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -163,32 +164,36 @@ class Running:
 
 
 @contextmanager
-def running(settings: Mapping[str, str]) -> Iterator[Running]:
-    """The service as a process of its own, told to end when the block does."""
+def running(settings: Mapping[str, str], ready: bool = False) -> Iterator[Running]:
+    """The service as a process of its own, which answers, or is ready, and ends with the block."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     command = [sys.executable, "-m", "service", "serve", "--port", str(port)]
-    # Nothing here waits for compiled code.
+    # Most have no use for compiled code, and need not wait for it.
     environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", **settings}
-    with subprocess.Popen(command, env=environment, stderr=subprocess.PIPE) as process:
+    with (
+        tempfile.TemporaryFile() as log,
+        subprocess.Popen(command, env=environment, stderr=log) as process,
+    ):
         service = Running(f"http://127.0.0.1:{port}", process)
         try:
-            _wait_until_live(service.url)
+            _wait_for(f"{service.url}/health/{'ready' if ready else 'live'}")
             yield service
         finally:
             process.send_signal(signal.SIGTERM)
-            _, service.log = process.communicate(timeout=30)
+            process.wait(timeout=60)
+            log.seek(0)
+            service.log = log.read()
 
 
-def _wait_until_live(url: str) -> None:
-    deadline = time.monotonic() + 30
+def _wait_for(url: str) -> None:
+    deadline = time.monotonic() + 120
     while time.monotonic() < deadline:
-        try:
-            httpx.get(f"{url}/health/live").raise_for_status()
-            return
-        except httpx.ConnectError:
-            time.sleep(0.05)
-    raise TimeoutError("the server must start within 30 s")
+        with suppress(httpx.ConnectError):
+            if httpx.get(url).status_code == 200:
+                return
+        time.sleep(0.05)
+    raise TimeoutError(f"{url} must answer within two minutes")
 
 
 def problem(response: httpx.Response, status: int, code: str) -> dict[str, Any]:
