@@ -5,9 +5,11 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
 
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 UNMATCHED = "unmatched"
+_GONE = 499  # in the log and the metrics alone: the client went away before its body had ended
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,6 +50,8 @@ class ObservedRequests:
 
         try:
             await self._app(scope, receive, send_seen)
+        except ClientDisconnect:
+            status = _GONE  # and there is nobody left to answer
         finally:
             answered = Answered(
                 request_id=scope["request_id"],

@@ -51,7 +51,13 @@ OFTEN = settings(max_examples=100, deadline=None, suppress_health_check=list(Hea
 @pytest.fixture(scope="module")
 def url() -> Iterator[str]:
     limits = replace(LIMITS, body_bytes=12 * 2**20)
-    with serving(app_of(limits=limits, edge=Edge(body_seconds=0.5))) as address:
+    with serving(app_of(limits=limits)) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def impatient() -> Iterator[str]:
+    with serving(app_of(edge=Edge(body_seconds=0.5))) as address:
         yield address
 
 
@@ -157,8 +163,8 @@ def test_nothing_compressed_is_opened(client: httpx.Client, coding: str, bomb: b
 
 
 @pytest.mark.parametrize("headers", ["Content-Length: 100", "Transfer-Encoding: chunked"])
-def test_a_body_that_never_ends_is_refused(url: str, headers: str) -> None:
-    host, port = re.findall(r"//(.*):(\d+)", url)[0]
+def test_a_body_that_never_ends_is_refused(impatient: str, headers: str) -> None:
+    host, port = re.findall(r"//(.*):(\d+)", impatient)[0]
     request = f"POST /front HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n{headers}\r\n"
     with socket.create_connection((host, int(port)), timeout=10) as connection:
         connection.sendall(f"{request}\r\n".encode())
@@ -171,14 +177,14 @@ def test_a_body_that_never_ends_is_refused(url: str, headers: str) -> None:
     assert json.loads(body)["code"] == "body-too-slow"
 
 
-def test_a_body_that_trickles_is_refused_whatever_its_pace(url: str) -> None:
+def test_a_body_that_trickles_is_refused_whatever_its_pace(impatient: str) -> None:
     def trickling() -> Iterator[bytes]:
         for _ in range(50):
             time.sleep(0.05)
             yield b"["
 
     with httpx.Client() as client:
-        answer = client.post(f"{url}/front", content=trickling(), headers=JSON)
+        answer = client.post(f"{impatient}/front", content=trickling(), headers=JSON)
     problem(answer, 408, "body-too-slow")
 
 

@@ -1,6 +1,11 @@
 """What Prometheus is told, against a live server."""
 
+import socket
+import time
+from urllib.parse import urlsplit
+
 import httpx
+import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
 from service.edge import Edge
@@ -42,6 +47,22 @@ def test_a_bug_is_counted() -> None:
     with serving(app_of(Broken())) as url:
         httpx.post(f"{url}/front", json=FRONT)
         assert samples(url)["paretour_requests_total", "POST", "/front", "500"] == 1
+
+
+def test_a_client_that_goes_away_before_its_body_has_ended_is_no_fault(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    with serving(app_of()) as url:
+        address = urlsplit(url)
+        with socket.create_connection((address.hostname, address.port)) as connection:
+            head = "POST /front HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
+            connection.sendall(f"{head}Content-Length: 100\r\n\r\n[".encode())
+        gone = ("paretour_requests_total", "POST", "/front", "499")
+        deadline = time.monotonic() + 10
+        while gone not in (counted := samples(url)) and time.monotonic() < deadline:
+            time.sleep(0.01)
+    assert counted[gone] == 1
+    assert not [record for record in caplog.records if record.exc_info]
 
 
 def test_the_queue_is_asked_whenever_prometheus_asks() -> None:
