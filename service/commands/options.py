@@ -1,0 +1,43 @@
+"""The arguments and options that several commands take."""
+
+from pathlib import Path
+from typing import Annotated
+
+from typer import Argument, Option
+
+File = Annotated[
+    Path,
+    Argument(
+        help="JSON: a request, or its coordinates. CSV: four numbers for each city, x and y in the"
+        " plane of either objective. Or, with a second file, the first objective."
+    ),
+]
+SecondFile = Annotated[
+    Path | None,
+    Argument(
+        help="The second objective. Both are CSV, x and y for each city or a matrix of costs, or"
+        " both are TSPLIB's, EUC_2D or a FULL_MATRIX."
+    ),
+]
+TimeLimit = Annotated[
+    float | None, Option(help="Seconds of search; 0 takes the network's tours.", show_default="1.0")
+]
+Angles = Annotated[
+    str | None, Option(help="Angles in degrees for the network to look along, as 10,45,80.")
+]
+Size = Annotated[int | None, Option(help="The most tours to give.", show_default="100")]
+Start = Annotated[int | None, Option(help="The city to report tours from.", show_default="0")]
+Seed = Annotated[int | None, Option(help="Of all that is random.", show_default="0")]
+ActorName = Annotated[str | None, Option("--actor", help="The network, one of `paretour actors`.")]
+Unrounded = Annotated[
+    bool,
+    Option(
+        "--unrounded",
+        help="Plan in the planes of two EUC_2D files, not with distances rounded as TSPLIB says.",
+    ),
+]
+AsJson = Annotated[bool, Option("--json", help="Print the answer as the service gives it.")]
+Url = Annotated[str | None, Option(help="A running service that shall plan, not this process.")]
+ApiKey = Annotated[
+    str | None, Option(help="For a service that asks for one.", envvar="PARETOUR_API_KEY")
+]
