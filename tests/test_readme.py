@@ -1,7 +1,10 @@
 """What the README says is what the service does."""
 
 import json
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +14,9 @@ import pytest
 from service.settings import Settings
 from tests.serving import serving_released
 
-README = (Path(__file__).parent.parent / "README.md").read_text()
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text()
+PATH = {"PYTHONPATH": str(ROOT)}
 
 
 def test_the_request_gets_the_answer() -> None:
@@ -28,6 +33,18 @@ def test_the_python_code_runs(capsys: pytest.CaptureFixture[str]) -> None:
         exec(code.replace("http://localhost:8000", address), {})
     hypervolume, *_ = capsys.readouterr().out.split()
     assert 0 < float(hypervolume) < 1
+
+
+def test_the_commands_run(tmp_path: Path) -> None:
+    request = re.findall(r"```json\n(.*?)```", README, re.DOTALL)[0]
+    (tmp_path / "cities.json").write_text(request)
+    commands = re.findall(r"^    paretour (.*)$", README, re.MULTILINE)
+    assert len(commands) >= 4
+    for command in commands:
+        line = f"{sys.executable} -m service {command}"
+        subprocess.run(line, shell=True, cwd=tmp_path, check=True, env=os.environ | PATH)
+    assert (tmp_path / "front.csv").read_text().startswith("angle,")
+    assert (tmp_path / "front.png").exists()
 
 
 def lasting(answer: dict[str, Any]) -> dict[str, Any]:
