@@ -4,7 +4,7 @@ On the paper's instances of 40, 200, 500 and 1000 cities. Seconds are those of t
 another program's load stretches little. Stores `results/networks.json`, instance by instance;
 what is stored is not measured again, so that a run may be broken off, and a later one with a
 larger `--count` adds to it. An instance of 1000 cities takes OR-Tools without limit an hour, and
-the evolutionary rivals a minute. `python -m tests.benchmarks tables` shows the table.
+the evolutionary rivals a minute.
 """
 
 import argparse
