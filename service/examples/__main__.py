@@ -6,11 +6,13 @@ from pathlib import Path
 from typing import Any
 
 from service.examples.deliveries import deliveries
+from service.examples.inspection import inspection
 
 
 def write(directory: Path) -> None:
     """Write every example into a directory."""
-    for name, request in {"city-deliveries": deliveries()}.items():
+    requests = {"city-deliveries": deliveries(), "drone-inspection": inspection()}
+    for name, request in requests.items():
         (directory / f"{name}.json").write_text(_laid_out(request))
 
 
