@@ -1,12 +1,12 @@
 """What the service counts of itself, for Prometheus."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator
+from typing import Protocol
 
 from fastapi import APIRouter
 from prometheus_client import (
     CollectorRegistry,
     Counter,
-    Gauge,
     GCCollector,
     Histogram,
     PlatformCollector,
@@ -14,14 +14,33 @@ from prometheus_client import (
     generate_latest,
 )
 from prometheus_client.exposition import CONTENT_TYPE_PLAIN_0_0_4
+from prometheus_client.metrics_core import CounterMetricFamily, GaugeMetricFamily, Metric
+from prometheus_client.registry import Collector
 from starlette.responses import Response
 
 from service.observed import Answered
+from service.rendered import Rendered
 
 _METHODS = ("GET", "HEAD", "POST", "DELETE", "OPTIONS")
 _SIZES = (20, 50, 100, 200, 500, 1000)
 _SECONDS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 _SHARES = (0.0, 0.0001, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
+
+
+class Watched(Protocol):
+    """Workers behind a queue."""
+
+    @property
+    def waiting(self) -> int:
+        """How many orders wait."""
+
+    @property
+    def working(self) -> int:
+        """How many are being worked on."""
+
+    @property
+    def lost(self) -> int:
+        """How many workers were lost and replaced."""
 
 
 class Metrics:
@@ -45,9 +64,6 @@ class Metrics:
             registry=registry,
             buckets=_SECONDS,
         )
-        self._queue = Gauge(
-            "paretour_queue_depth", "plans that wait for a worker", registry=registry
-        )
         self._planning = Histogram(
             "paretour_planning_seconds",
             "planning, by its phase and the most cities of the class",
@@ -61,9 +77,6 @@ class Metrics:
             ["cities"],
             registry=registry,
             buckets=_SHARES,
-        )
-        self._restarts = Counter(
-            "paretour_worker_restarts", "workers that ended and were replaced", registry=registry
         )
 
     def router(self) -> APIRouter:
@@ -83,21 +96,34 @@ class Metrics:
         self._requests.labels(method, answered.path, answered.status).inc()
         self._request_seconds.labels(method, answered.path).observe(answered.seconds)
 
-    def watch_queue(self, depth: Callable[[], float]) -> None:
-        """Ask how many plans wait whenever Prometheus asks."""
-        self._queue.set_function(depth)
+    def watch(self, workers: Watched) -> None:
+        """Ask how the workers are whenever Prometheus asks."""
+        self._registry.register(_WorkersCollector(workers))
 
-    def planned(self, n: int, milliseconds: Mapping[str, float], gained: float | None) -> None:
-        """Count a plan of n cities: its phases, and the hypervolume that the search gained."""
-        cities = _size_class(n)
-        for phase, each in milliseconds.items():
-            self._planning.labels(phase, cities).observe(each / 1000)
-        if gained is not None:
-            self._gained.labels(cities).observe(gained)
+    def planned(self, front: Rendered) -> None:
+        """Count a front: the phases of planning, and the hypervolume that the search gained."""
+        cities = _size_class(front.members["cities"])
+        for phase, milliseconds in front.members["timings_ms"].items():
+            self._planning.labels(phase, cities).observe(milliseconds / 1000)
+        if front.gained is not None:
+            self._gained.labels(cities).observe(front.gained)
 
-    def worker_restarted(self) -> None:
-        """Count a worker that ended and was replaced."""
-        self._restarts.inc()
+
+class _WorkersCollector(Collector):
+    def __init__(self, workers: Watched) -> None:
+        self._workers = workers
+
+    def collect(self) -> Iterator[Metric]:
+        workers = self._workers
+        yield GaugeMetricFamily(
+            "paretour_queue_depth", "fronts that wait for a worker", workers.waiting
+        )
+        yield GaugeMetricFamily(
+            "paretour_workers_busy", "workers that plan a front", workers.working
+        )
+        yield CounterMetricFamily(
+            "paretour_worker_restarts", "workers that were lost and replaced", workers.lost
+        )
 
 
 class _Exposition(Response):

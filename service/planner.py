@@ -56,7 +56,8 @@ class Front:
     """Nondominated tours, shape (m, n), and their points, shape (m, 2), by ascending first length.
 
     Of `found` nondominated tours these are the ones that were kept. No front of the instance has
-    a hypervolume above `bound`, where that was asked for. Times are in milliseconds, by phase.
+    a hypervolume above `bound`, where that was asked for. A search added `gained` to the
+    hypervolume of the tours that it set out from. Times are in milliseconds, by phase.
     """
 
     tours: NDArray[np.integer]
@@ -67,6 +68,7 @@ class Front:
     terminated: Termination | None  # none while the search goes on
     timings: dict[str, float]
     bound: float | None = None
+    gained: float | None = None
 
     @property
     def n(self) -> int:
@@ -113,14 +115,16 @@ def plan(
     Meanwhile the report is told, ten times a second, how far it has come.
     """
     clock = _Clock()
-    tours = _constructed(constructor, instance, demand.angles)
+    first = _constructed(constructor, instance, demand.angles)
     if demand.initial_tours is not None:
-        tours = np.concatenate((tours, demand.initial_tours))
+        first = np.concatenate((first, demand.initial_tours))
     clock.ends("construction")
     reference_point = _reference_point(instance, demand)
     demand = replace(demand, reference_point=reference_point)
-    tours, points, terminated = _improved(instance, tours, demand, stop, report)
+    tours, points, terminated = _improved(instance, first, demand, stop, report)
     clock.ends("improvement")
+    searched = demand.time_limit > 0
+    gained = _gained(instance, first, points, reference_point) if searched else None
     kept = best_subset(points, demand.size, reference_point)
     clock.ends("selection")
     bound = _bound(instance, reference_point) if demand.bound and not stop() else None
@@ -134,7 +138,13 @@ def plan(
         terminated=terminated,
         timings=clock.phases,
         bound=bound,
+        gained=gained,
     )
+
+
+def _gained(instance: Instance, first: Tours, points: Array, reference_point: Array) -> float:
+    before = hypervolume(tour_lengths(instance, first), reference_point)
+    return hypervolume(points, reference_point) - before
 
 
 def _bound(instance: Instance, reference_point: Array) -> float:

@@ -15,13 +15,15 @@ class Rendered:
     """A front of m tours as JSON.
 
     `members` are all the members of the answer but the tours. `tours` is the inside of the array
-    of these: tour i, whose direction is angles[i] degrees, ends before byte ends[i].
+    of these: tour i, whose direction is angles[i] degrees, ends before byte ends[i]. `gained` is
+    for whoever watches the service.
     """
 
     members: dict[str, Any]
     tours: bytes
     ends: NDArray[np.int64]
     angles: NDArray[np.float64]
+    gained: float | None = None
 
     def nearest(self, angle: float) -> bytes:
         """The tour whose direction is nearest to the angle in degrees, as a JSON object."""
@@ -51,4 +53,4 @@ def rendered(front: Front, **more: Any) -> Rendered:
     rows = zip(front.angles.tolist(), front.points.tolist(), front.tours.tolist(), strict=True)
     tours = [to_json({"angle": a, "lengths": f, "tour": tour}) for a, f, tour in rows]
     ends = np.cumsum([len(tour) + 1 for tour in tours]) - 1
-    return Rendered(members, b",".join(tours), ends, front.angles)
+    return Rendered(members, b",".join(tours), ends, front.angles, front.gained)

@@ -27,14 +27,15 @@ def build(settings: Settings) -> FastAPI:
     """The application that the settings ask for."""
     # Loaded here only to know, before anything is served, that they can be and who they are.
     actors = load_actors(settings.actors, settings.threads)
+    metrics = Metrics()
     workers = Workers(
         partial(load_planner, settings.actors, settings.threads, settings.limits),
         workers=settings.workers,
         queue=settings.queue,
         seconds=settings.request_seconds,
+        planned=metrics.planned,
     )
-    metrics = Metrics()
-    metrics.watch_queue(lambda: workers.waiting)
+    metrics.watch(workers)
     app = create_app(
         {name: actor.facts for name, actor in actors.items()},
         Store(settings.store_entries, settings.store_seconds),

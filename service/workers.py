@@ -7,12 +7,14 @@ process takes its place.
 import asyncio
 import logging
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import count
 
 from service.messages import Do, Done, Failed, Found, Started, Stop, Warm, WarmUp, Work
 from service.order import MOST_ATTEMPTS, Lost, Order, Overdue, Report, Stopped
 from service.process import MakePlanner, Process
+from service.rendered import Rendered
 
 GRACE = 0.15  # seconds for work to come to an end before its process is ended
 _PAUSE = 1.0  # seconds before a process that could not even start is replaced
@@ -46,15 +48,23 @@ class Workers:
 
     The first process compiles the search, and the others load what it has compiled; meanwhile
     all answer what the network alone can answer. No order is worked on for more than `seconds`.
+    `planned` is told of every front.
     """
 
     def __init__(
-        self, make_planner: MakePlanner, *, workers: int, queue: int, seconds: float = 90.0
+        self,
+        make_planner: MakePlanner,
+        *,
+        workers: int,
+        queue: int,
+        seconds: float = 90.0,
+        planned: Callable[[Rendered], None] = lambda _: None,
     ) -> None:
         self._make_planner = make_planner
         self._count = workers
         self._places = workers + queue
         self._seconds = seconds
+        self._planned = planned
         self._hands: list[_Hand] = []
         self._waiting: deque[Order] = deque()
         self._numbers = count()
@@ -217,6 +227,7 @@ class Workers:
                 return
             case Done(front=front) if order is not None:
                 order.done(front)
+                self._planned(front)
                 hand.order = None
             case Failed(error=error) if order is not None:
                 order.failed(error)

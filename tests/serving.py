@@ -169,8 +169,8 @@ def running(settings: Mapping[str, str], ready: bool = False) -> Iterator[Runnin
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     command = [sys.executable, "-m", "service", "serve", "--port", str(port)]
-    # Most have no use for compiled code, and need not wait for it.
-    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", **settings}
+    # Whoever does not wait until it is ready has no use for compiled code.
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "0" if ready else "1", **settings}
     with (
         tempfile.TemporaryFile() as log,
         subprocess.Popen(command, env=environment, stderr=log) as process,

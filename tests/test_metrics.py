@@ -2,15 +2,17 @@
 
 import socket
 import time
+from dataclasses import dataclass
 from urllib.parse import urlsplit
 
 import httpx
+import numpy as np
 import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
 from service.edge import Edge
 from service.metrics import Metrics
-from tests.serving import Broken, app_of, serving
+from tests.serving import Broken, app_of, running, serving
 from tests.test_app import CITIES
 
 FRONT = {"coordinates": CITIES, "time_limit": 0}
@@ -65,33 +67,44 @@ def test_a_client_that_goes_away_before_its_body_has_ended_is_no_fault(
     assert not [record for record in caplog.records if record.exc_info]
 
 
-def test_the_queue_is_asked_whenever_prometheus_asks() -> None:
+@dataclass
+class Crew:
+    """Workers that stand as they stand."""
+
+    waiting: int
+    working: int
+    lost: int
+
+
+def test_the_workers_are_asked_whenever_prometheus_asks() -> None:
+    crew = Crew(waiting=3, working=2, lost=1)
     metrics = Metrics()
-    depths = iter([3, 0])
-    metrics.watch_queue(lambda: next(depths))
-    with serving(app_of(edge=Edge(metrics=metrics))) as url:
-        assert samples(url)["paretour_queue_depth",] == 3
-        assert samples(url)["paretour_queue_depth",] == 0
-
-
-def test_plans_are_counted_by_phase_and_size_class() -> None:
-    metrics = Metrics()
-    metrics.planned(40, {"construction": 20.0, "improvement": 1000.0}, 0.02)
-    metrics.planned(50, {"construction": 30.0}, None)
-    metrics.planned(5000, {"construction": 500.0}, None)
-    with serving(app_of(edge=Edge(metrics=metrics))) as url:
-        counted = samples(url)
-    assert counted["paretour_planning_seconds_count", "50", "construction"] == 2
-    assert abs(counted["paretour_planning_seconds_sum", "50", "construction"] - 0.05) < 1e-9
-    assert counted["paretour_planning_seconds_sum", "50", "improvement"] == 1
-    assert counted["paretour_planning_seconds_count", "more", "construction"] == 1
-    assert counted["paretour_hypervolume_gained_sum", "50"] == 0.02
-
-
-def test_restarts_of_workers_are_counted() -> None:
-    metrics = Metrics()
-    metrics.worker_restarted()
+    metrics.watch(crew)
     with serving(app_of(edge=Edge(metrics=metrics))) as url:
         counted = samples(url)
+        crew.waiting = 0
+        later = samples(url)
+    assert counted["paretour_queue_depth",] == 3
+    assert counted["paretour_workers_busy",] == 2
     assert counted["paretour_worker_restarts_total",] == 1
+    assert later["paretour_queue_depth",] == 0
+
+
+def test_fronts_are_counted_by_phase_and_size_class() -> None:
+    with running({}, ready=True) as service:
+        for n, seconds in [(12, 0.05), (12, 0.0), (60, 0.0)]:
+            cities = np.random.default_rng(n).random((n, 4)).tolist()
+            request = {"coordinates": cities, "time_limit": seconds, "preferences": 5}
+            answer = httpx.post(f"{service.url}/front", json=request, timeout=60)
+            assert answer.status_code == 200
+        counted = samples(service.url)
+    for phase in ("construction", "improvement", "selection", "bound"):
+        assert counted["paretour_planning_seconds_count", "20", phase] == 2
+        assert counted["paretour_planning_seconds_count", "100", phase] == 1
+    assert counted["paretour_planning_seconds_sum", "20", "improvement"] >= 0.01
+    assert counted["paretour_hypervolume_gained_count", "20"] == 1
+    assert 0 < counted["paretour_hypervolume_gained_sum", "20"] < 1
+    assert ("paretour_hypervolume_gained_count", "100") not in counted
+    assert counted["paretour_queue_depth",] == 0
+    assert counted["paretour_worker_restarts_total",] == 0
     assert counted["process_resident_memory_bytes",] > 1e6

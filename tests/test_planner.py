@@ -1,5 +1,6 @@
 """From an instance to its front: properties against brute force."""
 
+from dataclasses import replace
 from itertools import permutations
 
 import numpy as np
@@ -125,3 +126,14 @@ def test_the_nearest_tour_is_nearest_in_scaled_objectives() -> None:
     )
     assert front.angles[1] == pytest.approx(45)
     assert [front.nearest(angle) for angle in (0, 45, 90)] == [2, 1, 0]
+
+
+def test_what_the_search_gained_is_what_it_added_to_the_first_tours(actor: Actor) -> None:
+    instance = random_instance(30)
+    demand = Demand(angles=fan(5), size=10_000)
+    first = plan(actor, instance, demand)
+    improved = plan(actor, instance, replace(demand, time_limit=0.1))
+    assert first.gained is None
+    assert improved.gained is not None
+    assert improved.gained > 0
+    assert np.isclose(improved.gained, improved.hypervolume - first.hypervolume)

@@ -52,7 +52,7 @@ def main(arguments: list[str]) -> None:
 
 def measure(cores: int, rounds: int, seconds: float) -> dict[str, Any]:
     """Answers a second, of the bare session and the server, and how long answers take."""
-    settings = {"PARETOUR_WORKERS": str(cores), "PARETOUR_THREADS": "1", "NUMBA_DISABLE_JIT": "0"}
+    settings = {"PARETOUR_WORKERS": str(cores), "PARETOUR_THREADS": "1"}
     with running(settings, ready=True) as service:
         parts = urlsplit(service.url)
         address = (str(parts.hostname), int(parts.port or 0))

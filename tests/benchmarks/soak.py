@@ -39,7 +39,7 @@ def main(arguments: list[str]) -> None:
 def soak(seconds: float, visitors: int) -> dict[str, Any]:
     """What was answered, what was lost, and how the memory went."""
     # Nothing that was accepted makes way for what came later, or it would look lost.
-    settings = {"NUMBA_DISABLE_JIT": "0", "PARETOUR_STORE_ENTRIES": "100000"}
+    settings = {"PARETOUR_STORE_ENTRIES": "100000"}
     tally = Tally()
     with running(settings, ready=True) as service, ThreadPoolExecutor(visitors) as pool:
         parts = urlsplit(service.url)
