@@ -3,7 +3,7 @@
 import argparse
 from importlib import import_module
 
-_NAMES = ("ablation", "actors", "curves", "kro", "load", "search", "soak")
+_NAMES = ("ablation", "actors", "curves", "kro", "load", "networks", "search", "soak")
 
 
 def main() -> None:
