@@ -8,6 +8,7 @@ import hashlib
 import hmac
 import logging
 import math
+import re
 import secrets
 import time
 from collections.abc import Iterable
@@ -26,6 +27,7 @@ from starlette.requests import Request
 from service.problems import Refusal
 
 ANONYMOUS = "anonymous"
+_NAME = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _LOG = logging.getLogger("paretour")
 _BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API key")
 
@@ -38,8 +40,9 @@ class KeyHash:
     digest: str
 
     def __post_init__(self) -> None:
-        if not self.caller.isidentifier():
-            raise ValueError(f"a caller must be named by letters and digits, got {self.caller!r}")
+        if not _NAME.fullmatch(self.caller):
+            sentence = "a caller must be named by 1 to 64 letters, digits, dots, dashes"
+            raise ValueError(f"{sentence}, got {self.caller!r}")
         if len(self.digest) != 64 or not set(self.digest) <= set("0123456789abcdef"):
             raise ValueError(f"the hash of {self.caller}'s key must be 64 hexadecimal digits")
 

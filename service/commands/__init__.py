@@ -6,7 +6,7 @@ Each imports what it needs where it runs: help, or the refusal of an option, wai
 from pathlib import Path
 from typing import Annotated
 
-from typer import Option, Typer
+from typer import Argument, Option, Typer
 
 from service.commands.options import (
     ActorName,
@@ -111,3 +111,13 @@ def serve(
     from service.commands.serving import run_serve
 
     run_serve(host, port, workers)
+
+
+@app.command()
+def key(
+    caller: Annotated[str, Argument(help="Who will show the key.")],
+) -> None:
+    """Make an API key for a caller, and the entry for PARETOUR_API_KEYS that lets it in."""
+    from service.commands.keys import run_key
+
+    run_key(caller)
