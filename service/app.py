@@ -14,6 +14,7 @@ from service.edge import Edge
 from service.fronts import FrontRoutes, KeptFront
 from service.pages import page_routes
 from service.problems import REFUSALS, Problem, answer_refusal, responses
+from service.reference import illustrate
 from service.schemas import ActorsAnswer, HealthAnswer, Limits
 from service.store import Store
 from service.workers import Workers
@@ -56,12 +57,25 @@ def create_app(
 
 
 class _Documented(FastAPI):
-    """An application whose OpenAPI document knows the problem document."""
+    """An application whose OpenAPI document knows the problem document, and has examples."""
 
     def openapi(self) -> dict[str, Any]:
-        document = super().openapi()
-        document["components"]["schemas"].setdefault("Problem", _problem_schema())
-        return document
+        if self.openapi_schema is None:
+            document = super().openapi()
+            document["components"]["schemas"]["Problem"] = _problem_schema()
+            _forget_default_refusals(document)
+            illustrate(document)
+        return super().openapi()
+
+
+def _forget_default_refusals(document: dict[str, Any]) -> None:
+    """Leave out what FastAPI says of every path with parameters: nothing is refused so here."""
+    for name in ("HTTPValidationError", "ValidationError"):
+        document["components"]["schemas"].pop(name, None)
+    for methods in document["paths"].values():
+        for operation in methods.values():
+            if "HTTPValidationError" in str(operation["responses"].get("422")):
+                del operation["responses"]["422"]
 
 
 def _problem_schema() -> dict[str, Any]:
