@@ -7,8 +7,8 @@ COPY pyproject.toml README.md LICENSE ./
 COPY service ./service
 COPY models ./models
 COPY export ./export
-RUN python -m venv /opt/paretour
-RUN /opt/paretour/bin/pip install --no-cache-dir .
+RUN python -m venv /opt/paretour \
+    && /opt/paretour/bin/pip install --no-cache-dir '.[tracing]'
 # Compile the search now, outside the source, where the installed package would be shadowed.
 WORKDIR /opt/paretour
 ENV NUMBA_CACHE_DIR=/var/cache/paretour

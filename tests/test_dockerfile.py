@@ -8,6 +8,7 @@ import signal
 import socket
 import subprocess
 import sys
+import sysconfig
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -33,6 +34,18 @@ def health_command() -> list[str]:
     return json.loads(only("HEALTHCHECK").partition("CMD ")[2])
 
 
+def test_hadolint_finds_nothing() -> None:
+    hadolint = shutil.which(
+        "hadolint", path=f"{sysconfig.get_path('scripts')}:{os.environ['PATH']}"
+    )
+    if hadolint is None:
+        pytest.skip("hadolint is not installed")
+    found = subprocess.run(
+        [hadolint, "--no-color", ROOT / "Dockerfile"], capture_output=True, text=True
+    )
+    assert found.returncode == 0, found.stdout
+
+
 def test_both_stages_are_slim_and_of_the_same_python() -> None:
     bases = [argument.split()[0] for name, argument in INSTRUCTIONS if name == "FROM"]
     assert len(bases) == 2
@@ -55,7 +68,7 @@ def test_the_one_place_that_is_written_belongs_to_the_user_and_outlives_a_read_o
 
 def test_nothing_of_the_factory_is_installed() -> None:
     [install] = [argument for name, argument in INSTRUCTIONS if "pip install" in argument]
-    assert install.endswith("pip install --no-cache-dir .")
+    assert install.endswith("pip install --no-cache-dir '.[tracing]'")
 
 
 def test_the_user_is_a_number_and_not_root() -> None:
