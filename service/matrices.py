@@ -1,6 +1,12 @@
 """Two matrices of costs as they travel, and every demand on them."""
 
+from collections.abc import Callable, Mapping
+from io import BytesIO
+from math import prod
+from typing import Any
+
 import numpy as np
+from numpy.lib.format import read_array_header_1_0, read_array_header_2_0, read_magic
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
@@ -8,6 +14,12 @@ from service.problems import Fault, Refusal
 
 Array = NDArray[np.float64]
 Rows = list[list[float]]
+Header = Callable[[BytesIO], tuple[tuple[int, ...], bool, np.dtype[Any]]]
+
+_HEADERS: Mapping[tuple[int, int], Header] = {
+    (1, 0): read_array_header_1_0,
+    (2, 0): read_array_header_2_0,
+}
 
 
 def stacked(matrices: list[Rows]) -> Array:
@@ -23,6 +35,38 @@ def stacked(matrices: list[Rows]) -> Array:
             sentence = f"must have {n} rows, as many as matrices/0, got {len(rows)}"
             raise _invalid(f"matrices/{m}", sentence)
     return np.array(matrices, dtype=np.float64)
+
+
+def loaded(content: bytes, most: int) -> Array:
+    """Two matrices from a file as numpy.save writes it. Its header is checked before all else.
+
+    Raises:
+        Refusal: it is no such file, not of numbers, not two square matrices, or too large.
+    """
+    stream = BytesIO(content)
+    try:
+        read_header = _HEADERS[read_magic(stream)]
+        shape, by_columns, dtype = read_header(stream)
+    except (KeyError, ValueError, EOFError):
+        raise _invalid("matrices", "must be a .npy file of version 1 or 2") from None
+    _check_header(shape, dtype, most)
+    demanded, came = prod(shape) * dtype.itemsize, len(content) - stream.tell()
+    if came != demanded:
+        raise _invalid("matrices", f"must have {demanded} bytes after its header, got {came}")
+    numbers = np.frombuffer(content, dtype, offset=stream.tell())
+    return numbers.reshape(shape, order="F" if by_columns else "C").astype(np.float64)
+
+
+def too_many_cities(name: str, limit: int, actual: int) -> Refusal:
+    """The refusal of more cities than are allowed."""
+    return Refusal(
+        413,
+        "too-many-cities",
+        f"{name} must have at most {limit} rows, got {actual}",
+        errors=[Fault(pointer=f"/{name}", detail="too many rows")],
+        limit=limit,
+        actual=actual,
+    )
 
 
 def check_costs(matrices: Array, largest: float) -> None:
@@ -44,6 +88,15 @@ def check_costs(matrices: Array, largest: float) -> None:
     else:
         demand = "must not be negative" if cost < 0 else f"must be at most {largest:g}"
     raise _invalid(f"matrices/{m}/{i}/{j}", f"{demand}, got {shown}")
+
+
+def _check_header(shape: tuple[int, ...], dtype: np.dtype[Any], most: int) -> None:
+    if dtype.kind not in "fiu" or dtype.itemsize > 8:
+        raise _invalid("matrices", f"must be of real numbers of at most 8 bytes, got {dtype}")
+    if len(shape) != 3 or shape[0] != 2 or shape[1] != shape[2] or shape[1] < 1:
+        raise _invalid("matrices", f"must have shape (2, n, n) with n at least 1, got {shape}")
+    if shape[1] > most:
+        raise too_many_cities("matrices", most, shape[1])
 
 
 def _check_square(name: str, rows: Rows) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from service.matrices import check_costs
+from service.matrices import check_costs, loaded, too_many_cities
 from service.problems import Fault, Refusal, refused_by
 from service.schemas import LARGEST, FrontRequest, Limits
 
@@ -31,8 +31,8 @@ def request_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
     return schema
 
 
-def parse_front_request(body: bytes, limits: Limits) -> FrontRequest:
-    """The request in a body.
+def parse_front_request(body: bytes, limits: Limits, matrices: bytes | None = None) -> FrontRequest:
+    """The request in a body, with the matrices of a .npy file where one came with it.
 
     Raises:
         Refusal: it is not JSON, not a front request, over a limit, or asks for what there is not.
@@ -45,6 +45,10 @@ def parse_front_request(body: bytes, limits: Limits) -> FrontRequest:
             reason = errors[0]["ctx"]["error"]
             raise Refusal(400, "malformed-json", f"the body must be JSON: {reason}") from None
         raise refused_by(errors) from None
+    if matrices is not None:
+        if "matrices" in request.model_fields_set:
+            raise _invalid("/matrices", "matrices must come once, got them as a part as well")
+        request = request.model_copy(update={"matrices": loaded(matrices, limits.cities)})
     _check_instance(request, limits)
     _check_limits(request, limits)
     defaults = _defaults_within(limits).items()
@@ -69,14 +73,7 @@ def _check_instance(request: FrontRequest, limits: Limits) -> None:
         came = "both" if given else "neither"
         raise _invalid("/coordinates", f"either coordinates or matrices are required, got {came}")
     if request.n > limits.cities:
-        raise Refusal(
-            413,
-            "too-many-cities",
-            f"{request.kind} must have at most {limits.cities} rows, got {request.n}",
-            errors=[Fault(pointer=f"/{request.kind}", detail="too many rows")],
-            limit=limits.cities,
-            actual=request.n,
-        )
+        raise too_many_cities(request.kind, limits.cities, request.n)
     check_costs(request.matrices, LARGEST)
 
 

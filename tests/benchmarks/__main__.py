@@ -3,7 +3,18 @@
 import argparse
 from importlib import import_module
 
-_NAMES = ("ablation", "actors", "curves", "kro", "load", "networks", "search", "soak")
+_NAMES = (
+    "ablation",
+    "actors",
+    "asymmetric",
+    "coverage",
+    "curves",
+    "kro",
+    "load",
+    "networks",
+    "search",
+    "soak",
+)
 
 
 def main() -> None:

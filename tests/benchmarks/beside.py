@@ -1,0 +1,127 @@
+"""Paretour beside OR-Tools on instances of two matrices.
+
+The rows: each released actor that reads matrices, alone and with half a second of search after it;
+the search alone; OR-Tools' routing solver under 100 weights, with the paper's two limits on its
+solutions. Every row gives at most 100 tours an instance, on one thread. Seconds are those of the
+processor, which another program's load does not stretch. The reference point is n times the
+scale, the largest entry of each matrix. What is stored is not measured again, so that a run may be
+broken off.
+"""
+
+import time
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+from service.actor import Actor, load_actors
+from service.front import hypervolume
+from service.improve import warm_up
+from service.instance import Instance, tour_lengths
+from service.planner import Demand, plan
+from service.preferences import fan
+from tests.benchmarks.instances import check_tours
+from tests.benchmarks.provenance import load, provenance, store
+from tests.benchmarks.rivals import ortools_routing
+from tests.benchmarks.rivals.construction import spread_weights
+
+Tours = NDArray[np.integer]
+Method = Callable[[Instance], Tours]
+
+ACTORS = Path("service/actors")
+TOURS = 100
+SECONDS = 0.5
+
+
+class _Nothing:
+    """A constructor that leaves everything to the search."""
+
+    def tours(self, instance: Instance, preferences: NDArray[np.float64]) -> NDArray[np.int64]:  # noqa: ARG002
+        return np.empty((0, instance.n), np.int64)
+
+
+def methods() -> dict[str, tuple[str, Method]]:
+    """By the name of its row, the digest of its network (or nothing) and how tours are built."""
+    rows: dict[str, tuple[str, Method]] = {}
+    for name, actor in load_actors(ACTORS, threads=1).items():
+        if actor.facts.inputs == "matrices":
+            digest = actor.facts.digest
+            rows[f"{name}, network alone"] = digest, partial(_planned, actor, 0.0)
+            rows[f"{name}, {SECONDS} s of search"] = digest, partial(_planned, actor, SECONDS)
+    rows[f"search alone, {SECONDS} s"] = "", partial(_planned, _Nothing(), SECONDS)
+    rows["OR-Tools, n_l = 10"] = "", partial(_ortools, 10)
+    rows["OR-Tools, n_l = 100"] = "", partial(_ortools, 100)
+    return rows
+
+
+def measure(benchmark: str, groups: dict[str, Sequence[Instance]], chosen: Sequence[str]) -> None:
+    """Measures the chosen methods on groups of instances, stores after each, prints the table."""
+    results = load(benchmark)
+    warm_up()
+    for row, (digest, method) in methods().items():
+        if row in chosen or not chosen:
+            for group, instances in groups.items():
+                _resume(results, benchmark, f"{group}: {row}", digest, instances, method)
+    _print_table(results, list(groups))
+
+
+def _planned(constructor: Actor | _Nothing, seconds: float, instance: Instance) -> Tours:
+    demand = Demand(angles=fan(TOURS), size=TOURS, time_limit=seconds)
+    return plan(constructor, instance, demand).tours
+
+
+def _ortools(limit: int, instance: Instance) -> Tours:
+    first, second = instance.scaled_matrices
+    weights = spread_weights(TOURS)
+    return np.array([ortools_routing.solve(w * first + v * second, limit) for w, v in weights])
+
+
+def _resume(
+    results: dict[str, Any],
+    benchmark: str,
+    key: str,
+    digest: str,
+    instances: Sequence[Instance],
+    method: Method,
+) -> None:
+    """Measures the instances that have no result yet from this network."""
+    if results.get(key, {}).get("digest") != digest:
+        results[key] = {**provenance(1), "digest": digest, "instances": []}
+    entries = results[key]["instances"]
+    left = instances[len(entries) :]
+    if left:
+        method(left[0])  # fills caches
+    for instance in tqdm(left, desc=key, leave=False):
+        entries.append(_measured(instance, method))
+        store(benchmark, results)
+
+
+def _measured(instance: Instance, method: Method) -> dict[str, float]:
+    began = time.process_time()
+    tours = method(instance)
+    seconds = time.process_time() - began
+    check_tours(tours, instance.n)
+    share = hypervolume(tour_lengths(instance, tours), instance.n * instance.scale)
+    return {"hypervolume": round(100 * share, 4), "seconds": round(seconds, 4)}
+
+
+def _print_table(results: dict[str, Any], groups: list[str]) -> None:
+    stored = (key for group in groups for key in results if key.startswith(group))
+    rows = dict.fromkeys(key.partition(": ")[2] for key in stored)
+    print("| hypervolume, %, at n times the scale | " + " | ".join(groups) + " |")
+    print("|---" * (len(groups) + 1) + "|")
+    for row in rows:
+        cells = [_cell(results.get(f"{group}: {row}")) for group in groups]
+        print(f"| {row} | " + " | ".join(cells) + " |")
+
+
+def _cell(entry: dict[str, Any] | None) -> str:
+    if entry is None:
+        return ""
+    shares = [each["hypervolume"] for each in entry["instances"]]
+    seconds = [each["seconds"] for each in entry["instances"]]
+    return f"{np.mean(shares):.2f} ± {np.std(shares):.2f} in {np.mean(seconds):.3f} s"

@@ -1,0 +1,42 @@
+"""`python -m tests.benchmarks coverage [--plot]`: the paper's coverage table, and a picture.
+
+10 maps of 64 x 64 cells a size, of the kinds of PathBench, with 40, 100 and 200 places at random:
+the first costs are lengths of shortest paths, the second are distances of random points in a
+plane. Rows, seconds and reference point are those of `beside`; the paper names none. Prints a
+table and stores `results/coverage.json`. With `--plot` it draws `results/coverage.png` instead.
+"""
+
+import argparse
+
+import numpy as np
+
+from models.maps import coverage_matrices
+from service.instance import Instance
+from tests.benchmarks import coverage_plot
+from tests.benchmarks.beside import measure
+
+SIZES = (40, 100, 200)
+COUNT = 10
+
+
+def main(arguments: list[str]) -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser("python -m tests.benchmarks coverage", description=__doc__)
+    parser.add_argument("--places", type=int, nargs="+", choices=SIZES, default=SIZES)
+    parser.add_argument("--count", type=int, default=COUNT, help="maps of each size")
+    parser.add_argument("--methods", nargs="+", default=[], help="names of rows; default: all")
+    parser.add_argument("--plot", action="store_true", help="draw the picture, measure nothing")
+    options = parser.parse_args(arguments)
+    if options.plot:
+        coverage_plot.draw()
+        return
+    groups = {
+        f"{n} places": [coverage_instance(n, seed) for seed in range(options.count)]
+        for n in options.places
+    }
+    measure("coverage", groups, options.methods)
+
+
+def coverage_instance(n: int, seed: int) -> Instance:
+    """The instance of this size and number."""
+    return Instance(matrices=coverage_matrices(np.random.default_rng([n, seed]), n))
