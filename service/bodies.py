@@ -1,21 +1,41 @@
 """JSON into and out of requests, without a detour through the framework's own parsing."""
 
+from dataclasses import dataclass
 from typing import Any
 
 from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
 
+from service.multipart import parts
 from service.problems import Refusal
 
+_PARTED = "multipart/form-data"
 
-async def json_body(request: Request, most_bytes: int) -> bytes:
-    """The request's body, no longer than allowed and said to be JSON.
+
+@dataclass(frozen=True)
+class Body:
+    """JSON, and the file that came beside it, if one did."""
+
+    json: bytes
+    upload: bytes | None = None
+
+
+async def read_body(request: Request, most_bytes: int, upload: str) -> Body:
+    """The request's body: JSON; or the part `request`, which is JSON, and the part `upload`.
 
     Raises:
         Refusal: it is too long, or of another type.
     """
-    _check_json(request)
+    kind = _checked_type(request)
+    body = await _whole_body(request, most_bytes)
+    if not kind.lower().startswith(_PARTED):
+        return Body(body)
+    found = parts(kind, body, ("request", upload))
+    return Body(found["request"], found[upload])
+
+
+async def _whole_body(request: Request, most_bytes: int) -> bytes:
     declared = request.headers.get("content-length", "")
     if declared.isdecimal() and int(declared) > most_bytes:
         raise _too_long(most_bytes, int(declared))
@@ -37,13 +57,14 @@ def json_bytes(answer: bytes, status: int = 200) -> Response:
     return Response(answer, status, media_type="application/json")
 
 
-def _check_json(request: Request) -> None:
-    given = request.headers.get("content-type")
-    if given is None or given.partition(";")[0].strip().lower() != "application/json":
-        sentence = f"Content-Type must be application/json, got {given or 'none'}"
+def _checked_type(request: Request) -> str:
+    given = request.headers.get("content-type", "")
+    if given.partition(";")[0].strip().lower() not in ("application/json", _PARTED):
+        sentence = f"Content-Type must be application/json or {_PARTED}, got {given or 'none'}"
         raise Refusal(415, "not-json", sentence)
     if (coding := request.headers.get("content-encoding", "identity").lower()) != "identity":
         raise Refusal(415, "not-plain", f"Content-Encoding must be identity, got {coding}")
+    return given
 
 
 def _too_long(limit: int, actual: int | None = None) -> Refusal:

@@ -4,7 +4,7 @@ import asyncio
 import uuid
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 from fastapi import APIRouter, Query
 from pydantic_core import to_json
@@ -12,16 +12,20 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from service.actor import ActorFacts
-from service.bodies import json_body, json_bytes
-from service.messages import Work
+from service.asked import parse
+from service.bodies import json_bytes, read_body
+from service.covering import CoverageRequest, coverage_schema
+from service.messages import Work, WorkKind
 from service.order import Order
 from service.problems import Refusal, responses
 from service.rendered import Rendered
-from service.requests import parse_front_request, request_schema
+from service.requests import request_schema
 from service.roster import choose_actor
-from service.schemas import FrontAnswer, Limits, TourAnswer, TourQuery
+from service.schemas import CoverageAnswer, FrontAnswer, Limits, TourAnswer, TourQuery
 from service.store import Expired, Store, Unknown
 from service.workers import Workers
+
+_UPLOADS: Mapping[WorkKind, str] = {"front": "matrices", "coverage": "map"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,14 +63,19 @@ class FrontRoutes:
     def router(self) -> APIRouter:
         """The paths, with what the OpenAPI document says of them."""
         router = APIRouter(tags=["fronts"])
-        schema = request_schema(self._limits, self._actors)
-        body = {"required": True, "content": {"application/json": {"schema": schema}}}
+        refusals = responses(400, 408, 413, 415, 422, 503, 504)
         router.post(
             "/front",
             response_model=FrontAnswer,
-            responses=responses(400, 408, 413, 415, 422, 503, 504),
-            openapi_extra={"requestBody": body},
+            responses=refusals,
+            openapi_extra=_body(request_schema(self._limits, self._actors)),
         )(self.plan_front)
+        router.post(
+            "/coverage",
+            response_model=CoverageAnswer,
+            responses=refusals,
+            openapi_extra=_body(coverage_schema(self._limits, self._actors)),
+        )(self.plan_coverage)
         router.get("/front/{id}", response_model=FrontAnswer, responses=responses(404, 410))(
             self.front
         )
@@ -76,12 +85,29 @@ class FrontRoutes:
         return router
 
     async def plan_front(self, request: Request) -> Response:
-        """Plan the front of tours through the cities given."""
+        """Plan the front of tours through the cities given.
+
+        Matrices may come as a .npy file of shape (2, n, n) instead: the part `matrices` of a
+        multipart/form-data body, beside the part `request` with everything else.
+        """
+        return await self._plan(request, "front")
+
+    async def plan_coverage(self, request: Request) -> Response:
+        """Plan the front of tours through places on a map, and on request their paths.
+
+        The map may come as a PNG file instead, where dark is an obstacle: the part `map` of a
+        multipart/form-data body, beside the part `request` with everything else.
+        """
+        return await self._plan(request, "coverage")
+
+    async def _plan(self, request: Request, kind: WorkKind) -> Response:
         _check_prefer(request)
         self._workers.check_open()
         self._workers.check_place()
-        body = await json_body(request, self._limits.body_bytes)
-        order = self._workers.order(self._work(body))
+        body = await read_body(request, self._limits.body_bytes, _UPLOADS[kind])
+        work = Work(kind, body.json, body.upload)
+        self._check(work)
+        order = self._workers.order(work)
         await _while_wanted(request, order, self._workers)
         kept = KeptFront(uuid.uuid4().hex, await order.front())
         self._store.put(kept.id, kept)
@@ -95,13 +121,16 @@ class FrontRoutes:
         """Give the tour of a front whose direction is nearest to an angle."""
         return self._kept(query.front).nearest(query.angle)
 
-    def _work(self, body: bytes) -> Work:
-        asked = parse_front_request(body, self._limits)
+    def _check(self, work: Work) -> None:
+        asked = parse(work, self._limits)
         choose_actor(self._actors, asked.kind, asked.named_actor)
-        asked.instance()  # which raises where there is none
-        if asked.demand().needs_compiled_code:
+        # Either raises where there is none.
+        if isinstance(asked, CoverageRequest):
+            asked.coverage()
+        else:
+            asked.instance()
+        if isinstance(asked, CoverageRequest) or asked.demand().needs_compiled_code:
             self._workers.check_warm()
-        return Work("front", body)
 
     def _kept(self, front: str | None) -> KeptFront:
         try:
@@ -111,6 +140,11 @@ class FrontRoutes:
         except Expired:
             sentence = f"front {_named(front)} was kept for a while and is no more: plan it again"
             raise Refusal(410, "front-expired", sentence) from None
+
+
+def _body(schema: dict[str, Any]) -> dict[str, Any]:
+    content = {"application/json": {"schema": schema}}
+    return {"requestBody": {"required": True, "content": content}}
 
 
 async def _while_wanted(request: Request, order: Order, workers: Workers) -> None:

@@ -4,19 +4,22 @@ import pickle
 import struct
 from asyncio import StreamReader
 from dataclasses import dataclass
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Literal
 
 from service.rendered import Rendered
+
+WorkKind = Literal["front", "coverage"]
 
 _LENGTH = struct.Struct("!Q")
 
 
 @dataclass(frozen=True)
 class Work:
-    """A front to plan: a kind of request, and its body, JSON that was checked."""
+    """A front to plan: a kind of request, its body, JSON that was checked, and what came beside."""
 
-    kind: str
+    kind: WorkKind
     body: bytes
+    upload: bytes | None = None
 
 
 @dataclass(frozen=True, eq=False)

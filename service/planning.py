@@ -1,18 +1,21 @@
 """What a worker process does with a request: from JSON to a front as JSON."""
 
+import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
+from service import improve, shortest
 from service.actor import ActorFacts, load_actors
-from service.improve import warm_up
+from service.asked import parse
+from service.coverage import survey
+from service.covering import CoverageRequest
 from service.messages import Work
 from service.planner import Constructor, Report, plan
 from service.rendered import Rendered, rendered
-from service.requests import parse_front_request
 from service.roster import choose_actor
-from service.schemas import Limits
+from service.schemas import FrontRequest, Limits
 
 
 class NamedActor(Constructor, Protocol):
@@ -32,16 +35,48 @@ class FrontPlanner:
 
     def warm_up(self) -> None:
         """Compile the search, or load it."""
-        warm_up()
+        improve.warm_up()
+        shortest.warm_up()
 
     def plan(self, work: Work, stop: Callable[[], bool], report: Report) -> Rendered:
         """The front that a request asks for."""
-        request = parse_front_request(work.body, self.limits)
-        loaded = {name: actor.facts for name, actor in self.actors.items()}
-        actor = self.actors[choose_actor(loaded, request.kind, request.named_actor)]
-        front = plan(actor, request.instance(), request.demand(), stop, report)
-        facts = {"name": actor.facts.name, "digest": actor.facts.digest}
-        return rendered(front, actor=facts)
+        match parse(work, self.limits):
+            case CoverageRequest() as asked:
+                return self._cover(asked, stop, report)
+            case asked:
+                actor = self._actor(asked)
+                front = plan(actor, asked.instance(), asked.demand(), stop, report)
+                return rendered(front, actor=_named(actor))
+
+    def _cover(self, asked: CoverageRequest, stop: Callable[[], bool], report: Report) -> Rendered:
+        actor = self._actor(asked)
+        began = time.perf_counter()
+        found = survey(asked.coverage(), self.limits.cities, stop)
+        surveyed = time.perf_counter()
+        front = plan(actor, found.instance, asked.demand(), stop, report)
+        planned = time.perf_counter()
+        paths = list(found.paths(front.tours)) if asked.paths else None
+        timings = {
+            "survey": 1000 * (surveyed - began),
+            **front.timings,
+            "paths": 1000 * (time.perf_counter() - planned),
+        }
+        return rendered(
+            replace(front, timings=timings),
+            [{"path": {"cells": path.cells.tolist(), "metres": path.metres}} for path in paths]
+            if paths
+            else None,
+            actor=_named(actor),
+            places=found.places.tolist(),
+        )
+
+    def _actor(self, asked: FrontRequest | CoverageRequest) -> NamedActor:
+        facts = {name: actor.facts for name, actor in self.actors.items()}
+        return self.actors[choose_actor(facts, asked.kind, asked.named_actor)]
+
+
+def _named(actor: NamedActor) -> dict[str, str]:
+    return {"name": actor.facts.name, "digest": actor.facts.digest}
 
 
 def load_planner(directory: Path, threads: int, limits: Limits) -> FrontPlanner:

@@ -20,6 +20,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from service.coverage import InvalidCoverage, TooManyPlaces
 from service.instance import InvalidInstance
 from service.order import Lost, Overdue, Stopped
 from service.workers import Busy, Closed, Cold
@@ -192,8 +193,20 @@ def _as_refusal(request: Request, error: Exception) -> Refusal:
             return Refusal(405, "method-not-allowed", sentence)
         case HTTPException():
             return Refusal(error.status_code, "refused", error.detail)
+        case InvalidCoverage():
+            return _invalid_coverage(error)
         case _:
             return Refusal(422, "invalid-instance", str(error))
+
+
+def _invalid_coverage(error: InvalidCoverage) -> Refusal:
+    faults = [Fault(detail=f"{part} {demand}", pointer=f"/{part}") for part, demand in error.faults]
+    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+    sentence, shown = faults[0].detail + more, faults[:_MOST_FAULTS]
+    if isinstance(error, TooManyPlaces):
+        limits = {"limit": error.limit, "actual": error.actual}
+        return Refusal(413, "too-many-cities", sentence, errors=shown, **limits)
+    return Refusal(422, "invalid-request", sentence, errors=shown)
 
 
 def _fault(error: ErrorDetails, parameters: bool) -> Fault:

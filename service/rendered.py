@@ -1,5 +1,6 @@
 """A front in the form in which it travels and is kept: JSON, written once, where it was found."""
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -37,8 +38,10 @@ class Rendered:
         return b"".join((members[:-1], b',"front":[', self.tours, b"]}"))
 
 
-def rendered(front: Front, **more: Any) -> Rendered:
-    """A front as JSON, with other members."""
+def rendered(
+    front: Front, each: Iterable[Mapping[str, Any]] | None = None, **more: Any
+) -> Rendered:
+    """A front as JSON, with other members, of each tour and of the whole."""
     members = {
         "cities": front.n,
         "points": front.found,
@@ -51,6 +54,10 @@ def rendered(front: Front, **more: Any) -> Rendered:
         **more,
     }
     rows = zip(front.angles.tolist(), front.points.tolist(), front.tours.tolist(), strict=True)
-    tours = [to_json({"angle": a, "lengths": f, "tour": tour}) for a, f, tour in rows]
+    each = each or ({} for _ in front.points)
+    tours = [
+        to_json({"angle": a, "lengths": f, "tour": tour, **others})
+        for (a, f, tour), others in zip(rows, each, strict=True)
+    ]
     ends = np.cumsum([len(tour) + 1 for tour in tours]) - 1
     return Rendered(members, b",".join(tours), ends, front.angles, front.gained)

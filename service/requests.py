@@ -1,23 +1,32 @@
 """Front requests: what they may say under given limits, and what one says."""
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from service.matrices import check_costs, loaded, too_many_cities
+from service.matrices import check_costs, invalid, loaded, too_many_cities
 from service.problems import Fault, Refusal, refused_by
-from service.schemas import LARGEST, FrontRequest, Limits
+from service.schemas import LARGEST, FrontRequest, Limits, PlanRequest
+
+Request = TypeVar("Request", bound=PlanRequest)
 
 
 def request_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
     """The JSON schema of a front request where these limits hold and these actors are loaded."""
-    schema = FrontRequest.model_json_schema()
+    schema = plan_schema(FrontRequest, limits, actors)
     fields = schema["properties"]
     schema["oneOf"] = [{"required": ["coordinates"]}, {"required": ["matrices"]}]
     fields["coordinates"]["maxItems"] = limits.cities
     rows = fields["matrices"]["items"]
     rows["minItems"], rows["maxItems"] = 1, limits.cities
+    return schema
+
+
+def plan_schema(model: type[PlanRequest], limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
+    """The JSON schema of a request where these limits hold and these actors are loaded."""
+    schema = model.model_json_schema()
+    fields = schema["properties"]
     count, angles = fields["preferences"]["oneOf"]
     count["maximum"] = angles["maxItems"] = limits.preferences
     fields["size"]["maximum"] = limits.size
@@ -37,20 +46,38 @@ def parse_front_request(body: bytes, limits: Limits, matrices: bytes | None = No
     Raises:
         Refusal: it is not JSON, not a front request, over a limit, or asks for what there is not.
     """
+    request = parsed(FrontRequest, body)
+    if matrices is not None:
+        if "matrices" in request.model_fields_set:
+            raise invalid("matrices", "must come once, got them as a part as well")
+        request = request.model_copy(update={"matrices": loaded(matrices, limits.cities)})
+    _check_instance(request, limits)
+    return within(limits, request, request.n)
+
+
+def parsed(model: type[Request], body: bytes) -> Request:
+    """What a body says.
+
+    Raises:
+        Refusal: it is not JSON, or says something else.
+    """
     try:
-        request = FrontRequest.model_validate_json(body)
+        return model.model_validate_json(body)
     except ValidationError as error:
         errors = error.errors(include_url=False)
         if errors[0]["type"] == "json_invalid":
             reason = errors[0]["ctx"]["error"]
             raise Refusal(400, "malformed-json", f"the body must be JSON: {reason}") from None
         raise refused_by(errors) from None
-    if matrices is not None:
-        if "matrices" in request.model_fields_set:
-            raise _invalid("/matrices", "matrices must come once, got them as a part as well")
-        request = request.model_copy(update={"matrices": loaded(matrices, limits.cities)})
-    _check_instance(request, limits)
-    _check_limits(request, limits)
+
+
+def within(limits: Limits, request: Request, n: int) -> Request:
+    """The request, about n cities, with defaults within the limits.
+
+    Raises:
+        Refusal: it is over a limit.
+    """
+    _check_limits(request, n, limits)
     defaults = _defaults_within(limits).items()
     given = request.model_fields_set
     return request.model_copy(update={name: v for name, v in defaults if name not in given})
@@ -71,17 +98,18 @@ def _check_instance(request: FrontRequest, limits: Limits) -> None:
     given = {"coordinates", "matrices"} & request.model_fields_set
     if len(given) != 1:
         came = "both" if given else "neither"
-        raise _invalid("/coordinates", f"either coordinates or matrices are required, got {came}")
+        sentence = f"either coordinates or matrices are required, got {came}"
+        fault = Fault(pointer="/coordinates", detail=sentence)
+        raise Refusal(422, "invalid-request", sentence, errors=[fault])
     if request.n > limits.cities:
         raise too_many_cities(request.kind, limits.cities, request.n)
-    check_costs(request.matrices, LARGEST)
+    for m, matrix in enumerate(request.matrices):
+        check_costs(matrix, f"matrices/{m}", LARGEST)
 
 
-def _check_limits(request: FrontRequest, limits: Limits) -> None:
-    n = request.n
+def _check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
     if request.start >= n:
-        sentence = f"start must be a city, 0 to {n - 1}, got {request.start}"
-        raise _invalid("/start", sentence)
+        raise invalid("start", f"must be a city, 0 to {n - 1}, got {request.start}")
     if "preferences" in request.model_fields_set:
         looked = request.preferences
         k = looked if isinstance(looked, int) else len(looked)
@@ -93,8 +121,8 @@ def _check_limits(request: FrontRequest, limits: Limits) -> None:
     _check_most("initial_tours", limits.size, len(request.initial_tours))
     for index, tour in enumerate(request.initial_tours):
         if sorted(tour) != list(range(n)):
-            sentence = f"initial_tours/{index} must visit each city, 0 to {n - 1}, once"
-            raise _invalid(f"/initial_tours/{index}", sentence)
+            demand = f"must visit each city, 0 to {n - 1}, once"
+            raise invalid(f"initial_tours/{index}", demand)
 
 
 def _check_most(name: str, limit: float, actual: float) -> None:
@@ -103,7 +131,3 @@ def _check_most(name: str, limit: float, actual: float) -> None:
             pointer=f"/{name}", detail=f"{name} must be at most {limit:g}, got {actual:g}"
         )
         raise Refusal(422, "over-limit", fault.detail, errors=[fault], limit=limit, actual=actual)
-
-
-def _invalid(pointer: str, detail: str) -> Refusal:
-    return Refusal(422, "invalid-request", detail, errors=[Fault(pointer=pointer, detail=detail)])

@@ -54,28 +54,17 @@ class Limits:
 
     body_bytes: int
     cities: int
+    cells: int
     preferences: int
     size: int
     seconds: float
 
 
-class FrontRequest(BaseModel):
-    """Cities under two objectives, and what is asked of their front.
-
-    What is empty can only be a default: none is given.
-    """
+class PlanRequest(BaseModel):
+    """What is asked of a front."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
-    coordinates: Annotated[list[Row], Field(min_length=1, fail_fast=True)] = Field(
-        default_factory=list,
-        description="a row for each city: x and y in plane 1, x and y in plane 2",
-    )
-    matrices: Matrices = Field(
-        default_factory=lambda: np.empty((2, 0, 0)),
-        description="instead of coordinates, for each objective the costs from each city (row) to"
-        " each (column); the diagonal is disregarded",
-    )
     preferences: Annotated[
         Annotated[Count, Tag("[count]")]
         | Annotated[list[Angle], Field(min_length=1, fail_fast=True), Tag("[angles]")],
@@ -112,25 +101,9 @@ class FrontRequest(BaseModel):
     seed: Whole = Field(default=0, description="of everything random in the improvement")
 
     @property
-    def kind(self) -> Kind:
-        """In what the cities are given."""
-        return "coordinates" if self.coordinates else "matrices"
-
-    @property
-    def n(self) -> int:
-        """The number of cities."""
-        return len(self.coordinates) or self.matrices.shape[1]
-
-    @property
     def named_actor(self) -> str | None:
         """The actor asked for, if one is."""
         return self.actor if "actor" in self.model_fields_set else None
-
-    def instance(self) -> Instance:
-        """The cities."""
-        if self.kind == "matrices":
-            return Instance(matrices=self.matrices)
-        return Instance(coordinates=np.array(self.coordinates, dtype=np.float64))
 
     def demand(self) -> Demand:
         """What is asked of the front."""
@@ -145,6 +118,39 @@ class FrontRequest(BaseModel):
             bound=self.bound,
             seed=self.seed,
         )
+
+
+class FrontRequest(PlanRequest):
+    """Cities under two objectives, and what is asked of their front.
+
+    What is empty can only be a default: none is given.
+    """
+
+    coordinates: Annotated[list[Row], Field(min_length=1, fail_fast=True)] = Field(
+        default_factory=list,
+        description="a row for each city: x and y in plane 1, x and y in plane 2",
+    )
+    matrices: Matrices = Field(
+        default_factory=lambda: np.empty((2, 0, 0)),
+        description="instead of coordinates, for each objective the costs from each city (row) to"
+        " each (column); the diagonal is disregarded",
+    )
+
+    @property
+    def kind(self) -> Kind:
+        """In what the cities are given."""
+        return "coordinates" if self.coordinates else "matrices"
+
+    @property
+    def n(self) -> int:
+        """The number of cities."""
+        return len(self.coordinates) or self.matrices.shape[1]
+
+    def instance(self) -> Instance:
+        """The cities."""
+        if self.kind == "matrices":
+            return Instance(matrices=self.matrices)
+        return Instance(coordinates=np.array(self.coordinates, dtype=np.float64))
 
 
 class TourQuery(BaseModel):
@@ -196,6 +202,26 @@ class FrontAnswer(BaseModel):
     actor: ActorName
     timings_ms: dict[str, float]
     terminated: Termination
+
+
+class PathItem(BaseModel):
+    """A closed way over the map, through all places in the order of a tour."""
+
+    cells: list[list[int]] = Field(description="row and column of each, the first also last")
+    metres: float
+
+
+class CoverageItem(TourItem):
+    """A tour through places on a map."""
+
+    path: PathItem | SkipJsonSchema[None] = Field(default=None, description="if `paths` asked")
+
+
+class CoverageAnswer(FrontAnswer):
+    """A front of tours through places on a map, by ascending length."""
+
+    front: list[CoverageItem]  # type: ignore[assignment]  # a list for reading only
+    places: list[list[int]] = Field(description="row and column of each")
 
 
 class ActorItem(ActorName):

@@ -52,6 +52,7 @@ class Settings(BaseSettings):
     queue: int = Field(16, ge=0, description="requests that may wait for a worker")
     max_body_bytes: int = Field(2**24, ge=1, description="the longest request body")
     max_cities: int = Field(1000, ge=1, description="the most cities of an instance")
+    max_cells: int = Field(2**20, ge=1, description="the most cells of a map")
     max_preferences: int = Field(200, ge=1, description="the most preferences of a request")
     max_size: int = Field(1000, ge=1, description="the most tours that a request may ask for")
     max_time_limit: float = Field(60.0, ge=0, description="the most seconds of improvement")
@@ -84,6 +85,7 @@ class Settings(BaseSettings):
         return Limits(
             body_bytes=self.max_body_bytes,
             cities=self.max_cities,
+            cells=self.max_cells,
             preferences=self.max_preferences,
             size=self.max_size,
             seconds=self.max_time_limit,

@@ -91,6 +91,12 @@ def between(grid: Grid, cells: Cells, stop: Callable[[], bool]) -> tuple[Array, 
     return lengths, costs
 
 
+def warm_up() -> None:
+    """Compiles the search, or loads it from the cache of an earlier process."""
+    grid = make_grid(np.ones((1, 2), np.bool_))
+    between(grid, flat(grid, np.array([[0, 0], [0, 1]])), lambda: False)
+
+
 @allocating
 def search(grid: Grid, source: int, targets: Cells) -> Reached:
     """Paths from a source to all cells that are no farther away than the farthest target."""

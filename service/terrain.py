@@ -44,7 +44,9 @@ def laid_out(region: Mask, spacing: float) -> Cells:
     The grid-based decomposition of Bormann, Jordan, Hampp and Hägele (2018): squares with sides of
     `spacing` cells are laid over the region from its upper left, and of each square the free cell
     nearest to its middle is a place. So none is farther than the diagonal of a square from one.
+    Squares smaller than a cell are as large as a cell.
     """
+    spacing = max(spacing, 1.0)
     cells = np.argwhere(region)
     # Cell centres, from the corner of the region's bounding box.
     centres = cells - cells.min(axis=0) + 0.5

@@ -229,6 +229,9 @@ class Workers:
                 order.done(front)
                 self._planned(front)
                 hand.order = None
+            case Failed() if order is not None and order.stopped:
+                order.cut_short()
+                hand.order = None
             case Failed(error=error) if order is not None:
                 order.failed(error)
                 hand.order = None

@@ -8,10 +8,12 @@ import schemathesis
 @schemathesis.hook
 def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noqa: ARG001
     """No schema can say that a matrix is square, that its costs are not negative but on the
-    diagonal, that some actors read no matrices, that a start is one of the cities, nor that a
-    tour visits each once.
+    diagonal, that some actors read no matrices, that a start is one of the cities, that a tour
+    visits each once, nor that places are free cells of a grid.
     """
     match case.body:
+        case {"grid": _} as body if case.meta.generation.mode.is_positive:
+            _make_coverable(body)
         case {"coordinates": [_, *_] as rows, **others}:
             _make_fit(case.body, len(rows), others)
         case {"matrices": [[_, *_] as rows, _] as matrices, **others} if _are_matrices(matrices):
@@ -19,6 +21,21 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
             if others.get("actor") == "pa-one":
                 case.body["actor"] = "pa-one-matrix"
             _make_fit(case.body, len(rows), others)
+
+
+def _make_coverable(body: dict[str, Any]) -> None:
+    """Replaces a task that the schema allows by one that can be done."""
+    body |= {"grid": [[0, 0], [0, 0]], "robot_radius": 0, "start": 0, "actor": "pa-one-matrix"}
+    body.pop("initial_tours", None)
+    n = 2 if "places" in body else 1
+    fit = {
+        "places": [[0, 0], [1, 1]],
+        "spacing": 1e150,
+        "second_matrix": [[1.0] * n] * n,
+        "cost_layer": [[1.0, 1.0], [1.0, 1.0]],
+        "second_coordinates": [[0.0, 1.0]] * n,
+    }
+    body |= {name: value for name, value in fit.items() if name in body}
 
 
 def _make_fit(body: dict[str, Any], n: int, others: dict[str, Any]) -> None:

@@ -32,7 +32,7 @@ from service.settings import Settings
 from service.store import Store
 from service.workers import Workers
 
-LIMITS = Limits(body_bytes=100_000, cities=50, preferences=20, size=30, seconds=0.2)
+LIMITS = Limits(body_bytes=100_000, cities=50, cells=900, preferences=20, size=30, seconds=0.2)
 
 
 def facts_of(name: str, inputs: Kind) -> ActorFacts:

@@ -567,4 +567,4 @@ def test_schemathesis_finds_nothing(url: str, tmp_path: Path) -> None:
         check=False,
     )
     assert found.returncode == 0, found.stdout
-    assert "7 selected / 7 total" in found.stdout
+    assert "8 selected / 8 total" in found.stdout

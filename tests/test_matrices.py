@@ -1,9 +1,11 @@
 """Matrices of costs in POST /front, against a live server."""
 
+import io
 import json
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import httpx
 import numpy as np
@@ -67,15 +69,15 @@ UNPROCESSABLE = [
     (f"[{SQUARE}]", "", "must have 2 items or more, got 1"),
     (f"[{SQUARE}, {SQUARE}, {SQUARE}]", "", "must have 2 items or fewer, got 3"),
     (f"[{SQUARE}, 7]", "/1", "must be a valid array, got 7"),
-    ("[[], []]", "/0", "must have a row for each city, got none"),
-    (f"[{SQUARE}, []]", "/1", "must have a row for each city, got none"),
+    ("[[], []]", "/0", "must have a row of numbers or more, got none"),
+    (f"[{SQUARE}, [[], [], []]]", "/1", "must have a row of numbers or more, got none"),
     (f"[{SQUARE}, [[0, 1], [1, 0]]]", "/1", "must have 3 rows, as many as matrices/0, got 2"),
     (f"[[[0, 1], [1, 0], [2, 3]], {SQUARE}]", "/0", "must be square, got 3 rows of 2 numbers"),
     (f"[[[0], 7, [2]], {SQUARE}]", "/0/1", "must be a valid array, got 7"),
     (
         f"[{SQUARE}, [[0, 1, 2], [1, 0], [2, 3, 0]]]",
         "/1/1",
-        "must have 3 numbers, one for each row, got 2",
+        "must have 3 numbers, as the first, got 2",
     ),
 ]
 UNPROCESSABLE_COSTS = [
@@ -164,3 +166,114 @@ def test_two_matrices_of_500_cities_are_within_the_default_limits() -> None:
         request = {"matrices": costs.tolist(), "preferences": 1, "time_limit": 0}
         answer = httpx.post(f"{url}/front", json=request, timeout=60)
     assert answer.json()["cities"] == 500
+
+
+def npy(matrices: np.ndarray) -> bytes:
+    stream = io.BytesIO()
+    np.save(stream, matrices)
+    return stream.getvalue()
+
+
+def post_parts(client: httpx.Client, content: bytes, /, **request: Any) -> httpx.Response:
+    parts = {"request": (None, json.dumps(request)), "matrices": ("costs.npy", content)}
+    return client.post("/front", files=parts)
+
+
+@pytest.mark.parametrize(
+    "uploaded",
+    [
+        COSTS,
+        np.asfortranarray(COSTS),
+        COSTS.astype(">f8"),
+        (100 * COSTS).astype(np.int32),
+        COSTS.astype(np.float32),
+    ],
+)
+def test_matrices_may_come_as_a_file(client: httpx.Client, uploaded: np.ndarray) -> None:
+    request = {"time_limit": 0, "preferences": 5, "start": 2}
+    found = post_parts(client, npy(uploaded), **request)
+    assert found.status_code == 200, found.text
+    as_rows = uploaded.astype(np.float64).tolist()
+    expected = client.post("/front", json={"matrices": as_rows, **request})
+    assert found.json()["front"] == expected.json()["front"]
+
+
+def _declared(header: bytes) -> bytes:
+    return b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header
+
+
+HUGE = b"{'descr': '<f8', 'fortran_order': False, 'shape': (2, 1000000, 1000000)}"
+NOT_PICKLED = np.array([[[None]], [[None]]], dtype=object)
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (b"", "matrices must be a .npy file of version 1 or 2"),
+        (b"PK\x03\x04 a zip", "matrices must be a .npy file of version 1 or 2"),
+        (_declared(b"{'descr': __import__('os')}"), "must be a .npy file of version 1 or 2"),
+        (npy(NOT_PICKLED), "must be of real numbers of at most 8 bytes, got object"),
+        (npy(COSTS * 1j), "must be of real numbers of at most 8 bytes, got complex128"),
+        (npy(COSTS[0]), "must have shape (2, n, n) with n at least 1, got (12, 12)"),
+        (npy(COSTS[:, :3]), "must have shape (2, n, n) with n at least 1, got (2, 3, 12)"),
+        (npy(COSTS[:, :0, :0]), "must have shape (2, n, n) with n at least 1, got (2, 0, 0)"),
+        (npy(COSTS)[:-8], "must have 2304 bytes after its header, got 2296"),
+        (npy(COSTS - 0.9), "must not be negative, got -"),
+        (npy(np.where(COSTS > 0.5, np.nan, COSTS)), "must be a finite number, got NaN"),
+    ],
+)
+def test_a_file_that_is_not_two_matrices_is_named(
+    client: httpx.Client, content: bytes, sentence: str
+) -> None:
+    document = problem(post_parts(client, content), 422, "invalid-request")
+    assert document["errors"][0]["pointer"].startswith("/matrices")
+    assert sentence in document["detail"]
+
+
+def test_a_file_that_declares_too_many_cities_is_refused_by_its_header(
+    client: httpx.Client,
+) -> None:
+    document = problem(post_parts(client, _declared(HUGE)), 413, "too-many-cities")
+    assert (document["limit"], document["actual"]) == (LIMITS.cities, 1_000_000)
+
+
+@pytest.mark.parametrize(
+    ("request_", "sentence"),
+    [
+        ({"matrices": COSTS.tolist()}, "matrices must come once"),
+        ({"coordinates": [[0, 0, 0, 0]]}, "either coordinates or matrices are required, got both"),
+    ],
+)
+def test_cities_may_not_come_beside_the_file(
+    client: httpx.Client, request_: dict[str, Any], sentence: str
+) -> None:
+    answer = post_parts(client, npy(COSTS), **request_)
+    assert sentence in problem(answer, 422, "invalid-request")["detail"]
+
+
+MULTIPART = "multipart/form-data; boundary=x"
+PART = 'Content-Disposition: form-data; name="{}"'
+
+
+def multipart(*names: str, end: str = "--x--\r\n") -> str:
+    return "".join(f"--x\r\n{PART.format(name)}\r\n\r\n{{}}\r\n" for name in names) + end
+
+
+@pytest.mark.parametrize(
+    ("kind", "body", "status", "sentence"),
+    [
+        (MULTIPART, multipart("request"), 422, "the part matrices is required"),
+        (MULTIPART, multipart("matrices"), 422, "the part request is required"),
+        (MULTIPART, multipart("request", "map"), 422, "must be request and matrices, once each"),
+        (MULTIPART, multipart("request", "request"), 422, "once each, got 'request'"),
+        (MULTIPART, multipart("request", "matrices", end=""), 400, "before its last boundary"),
+        (MULTIPART, "{}", 400, "the body must be multipart/form-data"),
+        ("multipart/form-data", multipart("request"), 400, "the body must be multipart/form-data"),
+    ],
+)
+def test_parts_that_are_not_as_they_should_be_are_named(
+    client: httpx.Client, kind: str, body: str, status: int, sentence: str
+) -> None:
+    answer = client.post("/front", content=body, headers={"Content-Type": kind})
+    code = "malformed-multipart" if status == 400 else "invalid-parts"
+    assert sentence in problem(answer, status, code)["detail"]
