@@ -8,11 +8,13 @@ import time
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime, timedelta
 from email.utils import format_datetime
+from io import BytesIO
 from typing import Any
 
 import httpx
 import numpy as np
 import pytest
+from PIL import Image
 
 from service.client import AsyncClient, Client, Refused
 from service.client.calls import Calls
@@ -117,6 +119,37 @@ def test_a_front_is_what_the_service_answers(url: str, connect: Connect) -> None
     assert found.hypervolume == answer["hypervolume"]
     assert (found.status, found.actor, found.points) == ("done", "pa-one", answer["points"])
     assert found.document.keys() == answer.keys()
+
+
+def test_matrices_that_are_an_array_are_planned_as_those_that_are_rows(
+    url: str, connect: Connect
+) -> None:
+    matrices = np.random.default_rng(4).random((2, 9, 9))
+    client = connect(url)
+    as_array = client.front(matrices=matrices, time_limit=0)
+    as_rows = client.front(matrices=matrices.tolist(), time_limit=0)
+    assert as_array.actor == "pa-one-matrix"
+    np.testing.assert_array_equal(as_array.tours, as_rows.tours)
+    np.testing.assert_array_equal(as_array.lengths, as_rows.lengths)
+
+
+def test_places_on_a_map_become_a_front_with_paths(url: str, connect: Connect) -> None:
+    grid = np.zeros((6, 8))
+    grid[2, :5] = 1
+    picture = BytesIO()
+    Image.fromarray((255 * (1 - grid)).astype(np.uint8)).save(picture, "PNG")
+    layer = np.random.default_rng(0).random((6, 8))
+    asked = {"cell_size": 0.5, "spacing": 1.0, "cost_layer": layer, "paths": True, "time_limit": 0}
+    found = connect(url).coverage(grid=grid, **asked)
+    assert found.tours.shape[1] == len(found.places)
+    for index, path in enumerate(found.paths):
+        assert path.metres == pytest.approx(found.lengths[index, 0])
+        assert set(map(tuple, found.places)) <= set(map(tuple, path.cells))
+    assert found.nearest(45).path in found.paths
+    of_picture = connect(url).coverage(picture.getvalue(), **asked)
+    np.testing.assert_array_equal(of_picture.tours, found.tours)
+    tour = connect(url).tour(45, front=of_picture.id)
+    np.testing.assert_array_equal(tour.path.cells, of_picture.nearest(45).path.cells)
 
 
 def test_the_tour_at_an_angle_is_that_of_the_front(url: str, connect: Connect) -> None:

@@ -16,8 +16,10 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
+from PIL import Image
 
 from service.client import Client
+from tests.artifacts import by_row_sums
 from tests.serving import serving_released
 
 ROOT = Path(__file__).parent.parent
@@ -26,9 +28,16 @@ COMMAND = [sys.executable, "-m", "service"]
 Ended = subprocess.CompletedProcess[str]
 
 
-def paretour(*arguments: object) -> Ended:
+def paretour(*arguments: object, **settings: str) -> Ended:
     command = [*COMMAND, *map(str, arguments)]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300)
+    return subprocess.run(
+        command,
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env={**os.environ, **settings},
+    )
 
 
 @pytest.fixture(scope="module")
@@ -110,6 +119,26 @@ def test_the_tour_at_an_angle_is_the_nearest_of_the_front(cities: Path) -> None:
     assert "angle" in as_text.stderr
 
 
+def test_a_picture_of_a_map_is_covered_as_its_grid_is(tmp_path: Path) -> None:
+    grid = np.zeros((6, 8), dtype=np.uint8)
+    grid[2, :5] = 1
+    layer = np.random.default_rng(0).random((6, 8))
+    request = {"grid": grid.tolist(), "cost_layer": layer.tolist(), "cell_size": 0.5, "spacing": 1}
+    (tmp_path / "map.json").write_text(json.dumps(request))
+    Image.fromarray(255 * (1 - grid)).save(tmp_path / "map.png")
+    np.savetxt(tmp_path / "people.csv", layer, delimiter=",", fmt="%.17g")
+    by_row_sums(tmp_path / "sums.onnx")
+    given = ["--cost-layer", tmp_path / "people.csv", "--cell-size=0.5", "--spacing=1"]
+    of_grid, of_picture = (
+        paretour("coverage", *asked, "--json", "--paths", PARETOUR_ACTORS=str(tmp_path))
+        for asked in ([tmp_path / "map.json"], [tmp_path / "map.png", *given])
+    )
+    answer = json.loads(of_picture.stdout)
+    assert found(answer) == found(json.loads(of_grid.stdout))
+    assert answer["terminated"] == "converged"
+    assert all(item["path"]["metres"] > 0 for item in answer["front"])
+
+
 def test_the_actors_are_those_of_the_service(url: str) -> None:
     here = paretour("actors", "--json")
     there = paretour("actors", "--json", "--url", url)
@@ -128,6 +157,8 @@ WRONG = [
     (["front", EXAMPLE, "--plot", "front.txt"], "--plot must end in one of"),
     (["front", EXAMPLE, "--plot", "none/front.png"], "in a directory that is there"),
     (["tour", EXAMPLE], "Missing option"),
+    (["coverage", "none.png"], "none.png: No such file"),
+    (["coverage", "README.md"], "README.md: must be JSON"),
 ]
 
 

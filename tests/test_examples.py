@@ -11,7 +11,8 @@ import httpx
 import numpy as np
 import pytest
 
-from tests.serving import serving_released
+from service.settings import Settings
+from tests.serving import app_of, serving
 
 EXAMPLES = Path(__file__).parent.parent / "service/examples"
 INDEX: list[dict[str, Any]] = json.loads((EXAMPLES / "index.json").read_text())
@@ -19,7 +20,7 @@ INDEX: list[dict[str, Any]] = json.loads((EXAMPLES / "index.json").read_text())
 
 @pytest.fixture(scope="module")
 def url() -> Iterator[str]:
-    with serving_released() as address:
+    with serving(app_of(limits=Settings().limits)) as address:
         yield address
 
 

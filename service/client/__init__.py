@@ -11,19 +11,25 @@ clients only carry it to and fro. Nothing else of the service is needed.
 """
 
 from service.client.asynchronous import AsyncClient, AsyncJob
+from service.client.plans import Plan, coverage_plan, front_plan
 from service.client.refused import Refused
 from service.client.sync import Client, Job
-from service.client.values import Actor, Front, FrontRequest, Progress, Tour
+from service.client.values import Actor, CoverageRequest, Front, FrontRequest, Path, Progress, Tour
 
 __all__ = [
     "Actor",
     "AsyncClient",
     "AsyncJob",
     "Client",
+    "CoverageRequest",
     "Front",
     "FrontRequest",
     "Job",
+    "Path",
+    "Plan",
     "Progress",
     "Refused",
     "Tour",
+    "coverage_plan",
+    "front_plan",
 ]

@@ -9,7 +9,8 @@ from httpx_sse import aconnect_sse
 
 from service.client.calls import Call, Calls, identity
 from service.client.following import Following
-from service.client.values import Actor, Front, FrontRequest, Progress, Tour
+from service.client.plans import Plan, coverage_plan, front_plan
+from service.client.values import Actor, CoverageRequest, Front, FrontRequest, Progress, Tour
 
 T = TypeVar("T")
 
@@ -39,11 +40,29 @@ class AsyncClient:
 
     async def front(self, **request: Unpack[FrontRequest]) -> Front:
         """The front of the cities, once its time limit is over or nothing more is found."""
-        return await self._driver.make(self._calls.front(request))
+        return await self.plan(front_plan(request))
+
+    async def coverage(self, png: bytes | None = None, **request: Unpack[CoverageRequest]) -> Front:
+        """The front of the places on a map, the content of a PNG file unless it is the grid."""
+        return await self.plan(coverage_plan(request, png))
 
     async def submit(self, **request: Unpack[FrontRequest]) -> "AsyncJob":
         """Have a front planned without waiting for it."""
-        return self.job(await self._driver.make(self._calls.submit(request)))
+        return await self.post(front_plan(request))
+
+    async def submit_coverage(
+        self, png: bytes | None = None, **request: Unpack[CoverageRequest]
+    ) -> "AsyncJob":
+        """Have places on a map planned without waiting for it."""
+        return await self.post(coverage_plan(request, png))
+
+    async def plan(self, plan: Plan) -> Front:
+        """The front of whatever a plan says."""
+        return await self._driver.make(self._calls.plan(plan))
+
+    async def post(self, plan: Plan) -> "AsyncJob":
+        """Have whatever a plan says planned without waiting for it."""
+        return self.job(await self._driver.make(self._calls.submit(plan)))
 
     def job(self, front: str) -> "AsyncJob":
         """The job that plans, or planned, the front with this id."""

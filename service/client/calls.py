@@ -4,45 +4,34 @@ A call is a generator: it yields what to ask, is sent the answer, and returns wh
 A driver, which waits or awaits, is all that it takes to make one.
 """
 
-import json
 from collections.abc import Generator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import httpx
 
 from service.client.following import Following
+from service.client.plans import Plan
 from service.client.refused import ASK_AGAIN, Refused, pause_before_next, refusal
-from service.client.values import FINAL, Actor, Front, FrontRequest, Tour, front_of, tour_of
+from service.client.values import FINAL, Actor, Front, Tour, front_of, tour_of
 
 T = TypeVar("T")
-_USUAL_TIME_LIMIT = 1.0  # what the service takes where a request says nothing
-_BOUND_SECONDS = 5.0  # what it takes at most to prove a bound
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Ask:
-    """What to ask, how many seconds from now, and how many seconds to wait for the answer."""
+    """What to ask, how many seconds to wait for the answer, and how many before asking."""
 
     method: str
     path: str
-    content: bytes | None = None
-    params: Mapping[str, Any] | None = None
-    headers: Mapping[str, str] = field(default_factory=dict)
+    said: Mapping[str, Any]
     timeout: float
     after: float = 0.0
 
     @property
     def request(self) -> dict[str, Any]:
         """What httpx is told of it."""
-        return {
-            "method": self.method,
-            "url": self.path,
-            "content": self.content,
-            "params": self.params,
-            "headers": self.headers,
-            "timeout": self.timeout,
-        }
+        return {"method": self.method, "url": self.path, "timeout": self.timeout, **self.said}
 
 
 Call = Generator[Ask, httpx.Response, T]
@@ -59,15 +48,14 @@ class Calls:
     timeout: float
     patience: float
 
-    def front(self, request: FrontRequest) -> Call[Front]:
-        """Plan a front and wait for it."""
-        return front_of((yield from self._ask(self._plan(request))).json())
+    def plan(self, plan: Plan) -> Call[Front]:
+        """Have a front planned, and wait for it."""
+        return front_of((yield from self._post(plan, self.timeout + plan.seconds)).json())
 
-    def submit(self, request: FrontRequest) -> Call[str]:
+    def submit(self, plan: Plan) -> Call[str]:
         """Have a front planned; the job's id."""
-        ask = replace(self._plan(request), timeout=self.timeout)
-        ask = replace(ask, headers={**ask.headers, "Prefer": "respond-async"})
-        return (yield from self._ask(ask)).json()["id"]
+        answer = yield from self._post(plan, self.timeout, Prefer="respond-async")
+        return answer.json()["id"]
 
     def stored(self, front: str) -> Call[Front]:
         """A front as it is by now."""
@@ -118,22 +106,15 @@ class Calls:
         raise refusal(answer)
 
     def _get(self, path: str, params: Mapping[str, Any] | None = None) -> Call[httpx.Response]:
-        ask = Ask(method="GET", path=path, params=params, timeout=self.timeout)
-        return (yield from self._ask(ask))
+        return (yield from self._ask(Ask("GET", path, {"params": params}, timeout=self.timeout)))
 
     def _delete(self, front: str) -> Ask:
-        return Ask(method="DELETE", path=_path(front), timeout=self.timeout)
+        return Ask("DELETE", _path(front), {}, timeout=self.timeout)
 
-    def _plan(self, request: FrontRequest) -> Ask:
-        search = request.get("time_limit", _USUAL_TIME_LIMIT)
-        bound = _BOUND_SECONDS if request.get("bound") else 0.0
-        return Ask(
-            method="POST",
-            path="/front",
-            content=json.dumps(request, default=_plain).encode(),
-            headers={"Content-Type": "application/json"},
-            timeout=self.timeout + search + bound,
-        )
+    def _post(self, plan: Plan, timeout: float, **headers: str) -> Call[httpx.Response]:
+        body = plan.body
+        said = {**body, "headers": {**body.get("headers", {}), **headers}}
+        return (yield from self._ask(Ask("POST", plan.path, said, timeout=timeout)))
 
 
 def identity(api_key: str | None) -> dict[str, str]:
@@ -143,8 +124,3 @@ def identity(api_key: str | None) -> dict[str, str]:
 
 def _path(front: str) -> str:
     return f"/front/{front}"
-
-
-def _plain(array: Any) -> Any:
-    """What JSON has for an array, or for a number of one."""
-    return array.tolist()

@@ -9,7 +9,8 @@ from httpx_sse import connect_sse
 
 from service.client.calls import Call, Calls, identity
 from service.client.following import Following
-from service.client.values import Actor, Front, FrontRequest, Progress, Tour
+from service.client.plans import Plan, coverage_plan, front_plan
+from service.client.values import Actor, CoverageRequest, Front, FrontRequest, Progress, Tour
 
 T = TypeVar("T")
 
@@ -44,11 +45,29 @@ class Client:
 
     def front(self, **request: Unpack[FrontRequest]) -> Front:
         """The front of the cities, once its time limit is over or nothing more is found."""
-        return self._driver.make(self._calls.front(request))
+        return self.plan(front_plan(request))
+
+    def coverage(self, png: bytes | None = None, **request: Unpack[CoverageRequest]) -> Front:
+        """The front of the places on a map, the content of a PNG file unless it is the grid."""
+        return self.plan(coverage_plan(request, png))
 
     def submit(self, **request: Unpack[FrontRequest]) -> "Job":
         """Have a front planned without waiting for it."""
-        return self.job(self._driver.make(self._calls.submit(request)))
+        return self.post(front_plan(request))
+
+    def submit_coverage(
+        self, png: bytes | None = None, **request: Unpack[CoverageRequest]
+    ) -> "Job":
+        """Have places on a map planned without waiting for it."""
+        return self.post(coverage_plan(request, png))
+
+    def plan(self, plan: Plan) -> Front:
+        """The front of whatever a plan says."""
+        return self._driver.make(self._calls.plan(plan))
+
+    def post(self, plan: Plan) -> "Job":
+        """Have whatever a plan says planned without waiting for it."""
+        return self.job(self._driver.make(self._calls.submit(plan)))
 
     def job(self, front: str) -> "Job":
         """The job that plans, or planned, the front with this id."""

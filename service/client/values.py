@@ -13,11 +13,9 @@ FINAL = ("done", "cancelled", "failed")
 Status = Literal["queued", "running", "done", "cancelled", "failed"]
 
 
-class FrontRequest(TypedDict, total=False):
-    """The members of a request to POST /front, whose documentation says what each means."""
+class PlanRequest(TypedDict, total=False):
+    """What any request may ask of a front. The service's documentation says what each means."""
 
-    coordinates: ArrayLike
-    matrices: ArrayLike
     preferences: int | ArrayLike
     time_limit: float
     size: int
@@ -29,6 +27,27 @@ class FrontRequest(TypedDict, total=False):
     seed: int
 
 
+class FrontRequest(PlanRequest, total=False):
+    """The members of a request to POST /front: coordinates or matrices, and how to plan."""
+
+    coordinates: ArrayLike
+    matrices: ArrayLike
+
+
+class CoverageRequest(PlanRequest, total=False):
+    """The members of a request to POST /coverage: a map, places, a second objective."""
+
+    grid: ArrayLike
+    cell_size: float
+    robot_radius: float
+    places: ArrayLike
+    spacing: float
+    second_matrix: ArrayLike
+    cost_layer: ArrayLike
+    second_coordinates: ArrayLike
+    paths: bool
+
+
 @dataclass(frozen=True, kw_only=True)
 class Progress:
     """How far a job has come: hypervolume and number of points, so many seconds into its search."""
@@ -38,14 +57,26 @@ class Progress:
     points: int
 
 
+@dataclass(frozen=True, eq=False)
+class Path:
+    """The cells of a map, rows and columns, shape (m, 2), that a tour leads over and back."""
+
+    cells: NDArray[np.int64]
+    metres: float
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Tour:
-    """A tour of the front with this id: cities, shape (n,), both lengths, and its angle."""
+    """A tour of the front with this id: cities, shape (n,), both lengths, and its angle.
+
+    Over a map it visits places, and has a path where paths were asked for.
+    """
 
     front: str
     angle: float
     lengths: Array
     tour: NDArray[np.int64]
+    path: Path | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -53,7 +84,8 @@ class Front:
     """Tours, shape (m, n), with lengths, shape (m, 2), and angles in degrees, shape (m,).
 
     They ascend by their first length. Of `points` nondominated tours found these are the ones
-    returned. `document` is the answer as it came, with every member.
+    returned. Over a map, cities are `places`, rows and columns, shape (n, 2), and each tour has a
+    path where paths were asked for. `document` is the answer as it came, with every member.
     """
 
     id: str
@@ -68,6 +100,8 @@ class Front:
     scale: Array
     actor: str
     terminated: Literal["converged", "time_limit", "cancelled"] | None
+    places: NDArray[np.int64] | None
+    paths: tuple[Path, ...] | None
     document: Mapping[str, Any]
 
     def nearest(self, angle: float) -> Tour:
@@ -82,6 +116,7 @@ class Front:
             angle=float(self.angles[index]),
             lengths=self.lengths[index],
             tour=self.tours[index],
+            path=None if self.paths is None else self.paths[index],
         )
 
 
@@ -102,11 +137,12 @@ class Actor:
 def front_of(document: Mapping[str, Any]) -> Front:
     """The front in an answer."""
     items: Sequence[Mapping[str, Any]] = document["front"]
-    tours = np.array([item["tour"] for item in items], dtype=np.int64)
+    tours = _whole([item["tour"] for item in items])
+    paths = tuple(path for item in items if (path := _path_of(item)) is not None)
     return Front(
         id=document["id"],
         status=document.get("status", "done"),
-        tours=_fixed(tours.reshape(len(items), document["cities"])),
+        tours=tours.reshape(len(items), document["cities"]),
         lengths=_floats([item["lengths"] for item in items]).reshape(-1, 2),
         angles=_floats([item["angle"] for item in items]),
         points=document["points"],
@@ -116,6 +152,8 @@ def front_of(document: Mapping[str, Any]) -> Front:
         scale=_floats(document["scale"]),
         actor=document["actor"]["name"],
         terminated=document["terminated"],
+        places=_whole(document["places"]) if "places" in document else None,
+        paths=paths or None,
         document=document,
     )
 
@@ -126,8 +164,19 @@ def tour_of(document: Mapping[str, Any]) -> Tour:
         front=document["front"],
         angle=document["angle"],
         lengths=_floats(document["lengths"]),
-        tour=_fixed(np.array(document["tour"], dtype=np.int64)),
+        tour=_whole(document["tour"]),
+        path=_path_of(document),
     )
+
+
+def _path_of(item: Mapping[str, Any]) -> Path | None:
+    if "path" not in item:
+        return None
+    return Path(_whole(item["path"]["cells"]), item["path"]["metres"])
+
+
+def _whole(values: Any) -> NDArray[np.int64]:
+    return _fixed(np.array(values, dtype=np.int64))
 
 
 def _floats(values: Any) -> Array:

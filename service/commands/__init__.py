@@ -12,8 +12,10 @@ from service.commands.options import (
     ActorName,
     Angles,
     ApiKey,
+    AsCsv,
     AsJson,
     File,
+    Plot,
     SecondFile,
     Seed,
     Size,
@@ -47,18 +49,18 @@ def front(  # noqa: PLR0913  an option each
     actor: ActorName = None,
     unrounded: Unrounded = False,
     as_json: AsJson = False,
-    as_csv: Annotated[bool, Option("--csv", help="Print a line for each tour.")] = False,
-    plot: Annotated[Path | None, Option(help="Draw the front into this file.")] = None,
+    as_csv: AsCsv = False,
+    plot: Plot = None,
     url: Url = None,
     api_key: ApiKey = None,
 ) -> None:
     """Plan the front of tours through the cities of a file, or of one for each objective."""
-    from service.commands.asking import Asked, Planner
+    from service.commands.asking import Cities, Planner
     from service.commands.run import Shown, run_front
 
     options = {"time_limit": time_limit, "size": size, "start": start, "seed": seed, "actor": actor}
     run_front(
-        Asked(file=file, file2=file2, unrounded=unrounded, angles=angles, options=options),
+        Cities(file=file, file2=file2, unrounded=unrounded, angles=angles, options=options),
         Planner(url, api_key),
         Shown(as_json=as_json, as_csv=as_csv, plot=plot),
     )
@@ -82,12 +84,64 @@ def tour(  # noqa: PLR0913  an option each
     api_key: ApiKey = None,
 ) -> None:
     """Plan a front and print its tour nearest to an angle."""
-    from service.commands.asking import Asked, Planner
+    from service.commands.asking import Cities, Planner
     from service.commands.run import run_tour
 
     options = {"time_limit": time_limit, "start": start, "seed": seed, "actor": actor}
-    asked = Asked(file=file, file2=file2, unrounded=unrounded, options=options)
+    asked = Cities(file=file, file2=file2, unrounded=unrounded, options=options)
     run_tour(asked, Planner(url, api_key), angle, as_json)
+
+
+@app.command()
+def coverage(  # noqa: PLR0913  an option each
+    file: Annotated[
+        Path,
+        Argument(
+            metavar="MAP", help="PNG, dark where there are obstacles; or JSON, a whole request."
+        ),
+    ],
+    cell_size: Annotated[float | None, Option(help="Metres that a pixel is wide.")] = None,
+    robot_radius: Annotated[float | None, Option(help="In metres.", show_default="0")] = None,
+    spacing: Annotated[
+        float | None, Option(help="A place is visited in each square of so many metres.")
+    ] = None,
+    cost_layer: Annotated[
+        Path | None, Option(help="The second objective: CSV, a cost for each pixel.")
+    ] = None,
+    paths: Annotated[
+        bool | None, Option("--paths", help="Have the cells of each tour's path, with --json.")
+    ] = None,
+    time_limit: TimeLimit = None,
+    size: Size = None,
+    start: Start = None,
+    seed: Seed = None,
+    actor: ActorName = None,
+    as_json: AsJson = False,
+    as_csv: AsCsv = False,
+    plot: Plot = None,
+    url: Url = None,
+    api_key: ApiKey = None,
+) -> None:
+    """Plan the front of tours of a robot through places all over a map."""
+    from service.commands.asking import Map, Planner
+    from service.commands.run import Shown, run_front
+
+    options = {
+        "cell_size": cell_size,
+        "robot_radius": robot_radius,
+        "spacing": spacing,
+        "paths": paths,
+        "time_limit": time_limit,
+        "size": size,
+        "start": start,
+        "seed": seed,
+        "actor": actor,
+    }
+    run_front(
+        Map(file=file, cost_layer=cost_layer, options=options),
+        Planner(url, api_key),
+        Shown(as_json=as_json, as_csv=as_csv, plot=plot),
+    )
 
 
 @app.command()

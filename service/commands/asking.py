@@ -3,40 +3,56 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, cast
 
 from rich.console import Console
 
-from service.client import Actor, Client, Front
+from service.client import (
+    Actor,
+    Client,
+    CoverageRequest,
+    Front,
+    FrontRequest,
+    Plan,
+    coverage_plan,
+    front_plan,
+)
 from service.commands.exits import Wrong
-from service.commands.reading import Request, read_request
+from service.commands.reading import read_layer, read_map, read_request
 from service.commands.there import plan_there
+
+Options = Mapping[str, Any]
+
+
+class Asked(Protocol):
+    """What files and options ask for together."""
+
+    def plan(self) -> Plan:
+        """What is to be planned.
+
+        Raises:
+            NotRead: a file is nothing that can be planned.
+            OSError: there is no such file.
+            Wrong: an option says nothing.
+        """
 
 
 @dataclass(frozen=True, kw_only=True)
-class Asked:
-    """What files say, and options instead: those that are None leave it to the files."""
+class Cities:
+    """Cities in a file, or one for each objective; options that are None leave it to the file."""
 
     file: Path
     file2: Path | None
     unrounded: bool
     angles: str | None = None
-    options: Mapping[str, Any]
+    options: Options
 
-    def request(self) -> Request:
-        """Both, as a request.
-
-        Raises:
-            NotRead: a file is nothing that can be planned.
-            Wrong: there is no such file, or the angles are none.
-        """
+    def plan(self) -> Plan:
+        """The cities' front."""
         files = [self.file] if self.file2 is None else [self.file, self.file2]
+        read = read_request(files, unrounded=self.unrounded)
         given = {**self.options, "preferences": self._angles()}
-        try:
-            read = read_request(files, unrounded=self.unrounded)
-        except OSError as error:
-            raise Wrong(f"{error.filename}: {error.strerror}") from None
-        return {**read, **{name: value for name, value in given.items() if value is not None}}
+        return front_plan(cast(FrontRequest, {**read, **_without_none(given)}))
 
     def _angles(self) -> list[float] | None:
         try:
@@ -44,6 +60,26 @@ class Asked:
         except ValueError:
             sentence = f"--angles must be numbers with commas between, got {self.angles!r}"
             raise Wrong(sentence) from None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Map:
+    """A map in a file, costs on it in another; options that are None leave it to the file."""
+
+    file: Path
+    cost_layer: Path | None
+    options: Options
+
+    def plan(self) -> Plan:
+        """The front of places on the map."""
+        read, png = read_map(self.file)
+        layer = None if self.cost_layer is None else read_layer(self.cost_layer)
+        given = _without_none({**self.options, "cost_layer": layer})
+        return coverage_plan(cast(CoverageRequest, {**read, **given}), png)
+
+
+def _without_none(options: Options) -> dict[str, Any]:
+    return {name: value for name, value in options.items() if value is not None}
 
 
 @dataclass(frozen=True)
@@ -56,14 +92,14 @@ class Planner:
     url: str | None
     api_key: str | None
 
-    def plan(self, request: Request, stderr: Console) -> Front:
-        """The front that a request asks for."""
+    def front(self, plan: Plan, stderr: Console) -> Front:
+        """The front that is to be planned."""
         if self.url is not None:
             with Client(self.url, api_key=self.api_key) as client:
-                return plan_there(client, request, stderr)
+                return plan_there(client, plan, stderr)
         from service.commands.here import plan_here
 
-        return plan_here(request, stderr)
+        return plan_here(plan, stderr)
 
     def actors(self) -> tuple[Actor, ...]:
         """The networks to choose from."""

@@ -30,6 +30,8 @@ def explaining() -> Iterator[None]:
         yield
     except (Wrong, NotRead) as error:
         raise ended(str(error), WRONG) from None
+    except (FileNotFoundError, PermissionError, IsADirectoryError) as error:
+        raise ended(f"{error.filename}: {error.strerror}", WRONG) from None
     except Refused as error:
         faulty = 400 <= error.status < 500 and error.status not in _NOT_THE_REQUEST
         raise ended(str(error), WRONG if faulty else UNAVAILABLE) from None

@@ -3,15 +3,13 @@
 import json
 from dataclasses import asdict
 
-from pydantic_core import to_json
 from rich.console import Console
 
 from service.actor import load_actors
-from service.client import Actor, Front
+from service.client import Actor, Front, Plan
 from service.client.values import front_of
 from service.commands.configured import configured, loaded
 from service.commands.exits import Wrong
-from service.commands.reading import Request
 from service.commands.watching import interruptible, watching
 from service.instance import InvalidInstance
 from service.messages import Work
@@ -19,21 +17,24 @@ from service.planning import load_planner
 from service.problems import Refusal
 
 
-def plan_here(request: Request, stderr: Console) -> Front:
+def plan_here(plan: Plan, stderr: Console) -> Front:
     """The front, as the service would answer it, or what was found when Ctrl-C was pressed."""
     planner = loaded(lambda its: load_planner(its.actors, its.threads, its.limits), configured())
-    time_limit = request.get("time_limit", 1.0)
-    if time_limit != 0 or request.get("bound"):
+    if plan.seconds != 0:
         with stderr.status("loading the search; the first time it is compiled, for half a minute"):
             planner.warm_up()
-    work = Work("front", to_json(request))
-    with interruptible() as stop, watching(stderr, time_limit) as tell:
+    with interruptible() as stop, watching(stderr, plan) as tell:
         try:
-            found = planner.plan(work, stop, tell)
+            found = planner.plan(_work(plan), stop, tell)
         except (Refusal, InvalidInstance) as error:
             raise Wrong(str(error)) from None
     status = "cancelled" if stop() else "done"
     return front_of(json.loads(found.json(id="", status=status)))
+
+
+def _work(plan: Plan) -> Work:
+    upload = None if plan.file is None else plan.file.content
+    return Work("coverage" if plan.path == "/coverage" else "front", plan.json, upload)
 
 
 def actors_here() -> tuple[Actor, ...]:

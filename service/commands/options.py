@@ -37,6 +37,8 @@ Unrounded = Annotated[
     ),
 ]
 AsJson = Annotated[bool, Option("--json", help="Print the answer as the service gives it.")]
+AsCsv = Annotated[bool, Option("--csv", help="Print a line for each tour.")]
+Plot = Annotated[Path | None, Option(help="Draw the front into this file.")]
 Url = Annotated[str | None, Option(help="A running service that shall plan, not this process.")]
 ApiKey = Annotated[
     str | None, Option(help="For a service that asks for one.", envvar="PARETOUR_API_KEY")

@@ -37,7 +37,29 @@ def read_request(files: Sequence[Path], *, unrounded: bool = False) -> Request:
         raise NotRead(f"both files must have as many numbers, got {sizes}")
     if first.shape[1] == 2:
         return {"coordinates": np.concatenate((first, second), axis=1).tolist()}
-    return {"matrices": [first.tolist(), second.tolist()]}
+    return {"matrices": np.stack((first, second))}
+
+
+def read_map(path: Path) -> tuple[Request, bytes | None]:
+    """What a JSON file says, a request with its grid; or nothing, and the content of a PNG file.
+
+    Raises:
+        NotRead: neither; the message names the file.
+        OSError: no such file.
+    """
+    if path.suffix == ".png":
+        return {}, path.read_bytes()
+    return _read(path, lambda path: _json(path.read_text())), None
+
+
+def read_layer(path: Path) -> Array:
+    """The costs on a map, as many as it has cells, from a CSV file.
+
+    Raises:
+        NotRead: it is none; the message names the file.
+        OSError: no such file.
+    """
+    return _read(path, _table)
 
 
 def _read(path: Path, read: Callable[[Path], T]) -> T:

@@ -30,7 +30,7 @@ def run_front(asked: Asked, planner: Planner, shown: Shown) -> None:
         if shown.as_json and shown.as_csv:
             raise Wrong("a front is printed as --json or as --csv, not as both")
         draw = None if shown.plot is None else _drawing(shown.plot)
-        front = planner.plan(asked.request(), _STDERR)
+        front = planner.front(asked.plan(), _STDERR)
         _print(front, shown)
         if draw is not None:
             draw(front)
@@ -40,7 +40,7 @@ def run_front(asked: Asked, planner: Planner, shown: Shown) -> None:
 def run_tour(asked: Asked, planner: Planner, angle: float, as_json: bool) -> None:
     """Plan a front and print the tour nearest to an angle."""
     with explaining():
-        front = planner.plan(asked.request(), _STDERR)
+        front = planner.front(asked.plan(), _STDERR)
     tour = front.nearest(angle)
     echo(showing.tour_as_json(tour) if as_json else showing.tour_as_text(tour.tour))
     _STDERR.print(showing.tour_in_words(tour), highlight=False)

@@ -10,6 +10,8 @@ from typing import Any, Protocol
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from service.client import Plan
+
 
 class Heard(Protocol):
     """How far a search has come."""
@@ -28,8 +30,8 @@ class Heard(Protocol):
 
 
 @contextmanager
-def watching(stderr: Console, time_limit: float) -> Iterator[Callable[[Heard], None]]:
-    """A bar over the time limit, where somebody looks, and whom to tell of progress."""
+def watching(stderr: Console, plan: Plan) -> Iterator[Callable[[Heard], None]]:
+    """A bar over the time that a plan takes, where somebody looks, and whom to tell of progress."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -38,7 +40,7 @@ def watching(stderr: Console, time_limit: float) -> Iterator[Callable[[Heard], N
     )
     hidden = not stderr.is_terminal
     with Progress(*columns, console=stderr, transient=True, disable=hidden) as bar:
-        task = bar.add_task("planning", total=time_limit, found="")
+        task = bar.add_task("planning", total=plan.seconds, found="")
 
         def tell(heard: Heard) -> None:
             found = f"hypervolume {heard.hypervolume:.2%}, {heard.points} tours"

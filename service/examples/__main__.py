@@ -7,11 +7,16 @@ from typing import Any
 
 from service.examples.deliveries import deliveries
 from service.examples.inspection import inspection
+from service.examples.warehouse import cleaning
 
 
 def write(directory: Path) -> None:
     """Write every example into a directory."""
-    requests = {"city-deliveries": deliveries(), "drone-inspection": inspection()}
+    requests = {
+        "city-deliveries": deliveries(),
+        "drone-inspection": inspection(),
+        "warehouse-cleaning": cleaning(),
+    }
     for name, request in requests.items():
         (directory / f"{name}.json").write_text(_laid_out(request))
 
