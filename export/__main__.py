@@ -41,32 +41,32 @@ def describe(model: ModelProto, trained: Trained) -> None:
         model,
         {
             "name": config.network.name,
-            "inputs": "coordinates",
+            "inputs": trained.actor.reads,
             "config": json.dumps(as_plain(config)),
             "commit": _commit(),
             "steps": str(trained.step),
             "seconds": f"{trained.seconds:.0f}",
             "sizes": json.dumps([config.least_cities, config.most_cities]),
             "angles": json.dumps([0, 90]),
-            "figures": json.dumps(_hypervolumes(model)),
+            "figures": json.dumps(_hypervolumes(model, trained.actor.reads)),
         },
     )
 
 
-def _hypervolumes(model: ModelProto) -> dict[str, float]:
+def _hypervolumes(model: ModelProto, reads: str) -> dict[str, float]:
     """Mean hypervolume on the validation instances, reference point (n, n), by cities."""
     running = session(model)
     return {
         str(validation.cities): round(
             mean_hypervolume(
-                lambda cities, preferences: torch.from_numpy(
-                    onnx_tours(running, cities[0], preferences)
+                lambda instances, preferences: torch.from_numpy(
+                    onnx_tours(running, instances[0], preferences)
                 )[None],
                 validation,
             ),
             5,
         )
-        for validation in validation_sets(COUNTS, torch.device("cpu"))
+        for validation in validation_sets(reads, COUNTS, torch.device("cpu"))
     }
 
 

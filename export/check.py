@@ -10,7 +10,7 @@ from torch import Generator, Tensor
 from models.groups import grouped
 from models.networks import Actor
 from models.rollout import log_likelihoods_by_city
-from models.sampling import fan_of_preferences, uniform_cities
+from models.sampling import fan_of_preferences, uniform_instances
 from models.validation import greedy_tours
 
 CITIES = (3, 7, 40, 200, 1000)
@@ -31,10 +31,11 @@ def session(model: ModelProto) -> onnxruntime.InferenceSession:
 
 
 def onnx_tours(
-    running: onnxruntime.InferenceSession, cities: Tensor, preferences: Tensor
+    running: onnxruntime.InferenceSession, instance: Tensor, preferences: Tensor
 ) -> NDArray[np.int64]:
-    """The tours, shape (k, n), of cities (n, 4) and preferences (k, 2)."""
-    inputs = {"cities": cities.numpy(), "preferences": preferences.numpy()}
+    """The tours, shape (k, n), of an instance as the file reads it and preferences (k, 2)."""
+    name = running.get_inputs()[0].name
+    inputs = {name: instance.numpy(), "preferences": preferences.numpy()}
     tours: NDArray[np.int64] = running.run(["tours"], inputs)[0]
     return tours
 
@@ -49,17 +50,23 @@ def compare(actor: Actor, model: ModelProto) -> None:
     _check_dimensions(model)
     running = session(model)
     for n in CITIES:
-        cities = uniform_cities(1, n, Generator().manual_seed(n), torch.device("cpu"))
+        generator = Generator().manual_seed(n)
+        instance = uniform_instances(actor.reads, 1, n, generator, torch.device("cpu"))
         for k in PREFERENCES:
             preferences = fan_of_preferences(k, torch.device("cpu"))
-            expected = greedy_tours(actor, cities, preferences)[0]
-            tours = torch.from_numpy(onnx_tours(running, cities[0], preferences))
+            expected = greedy_tours(actor, instance, preferences)[0]
+            tours = torch.from_numpy(onnx_tours(running, instance[0], preferences))
             if not torch.equal(tours, expected):
-                _check_ties(actor, cities, preferences, (tours, expected))
+                _check_ties(actor, instance, preferences, (tours, expected))
 
 
 def _check_dimensions(model: ModelProto) -> None:
-    expected = {"cities": ["n", 4], "preferences": ["k", 2], "tours": ["k", "n"]}
+    expected = {
+        "cities": ["n", 4],
+        "matrices": [2, "n", "n"],
+        "preferences": ["k", 2],
+        "tours": ["k", "n"],
+    }
     for value in (*model.graph.input, *model.graph.output):
         shape = [d.dim_param or d.dim_value for d in value.type.tensor_type.shape.dim]
         if shape != expected[value.name]:
@@ -67,12 +74,12 @@ def _check_dimensions(model: ModelProto) -> None:
 
 
 def _check_ties(
-    actor: Actor, cities: Tensor, preferences: Tensor, both: tuple[Tensor, Tensor]
+    actor: Actor, instance: Tensor, preferences: Tensor, both: tuple[Tensor, Tensor]
 ) -> None:
     """Raises unless, wherever two tours part, torch finds both next cities all but as likely."""
     rows, members, places = grouped(preferences, actor.groups)
     with torch.no_grad():
-        memory, conditioning = actor.remember(cities, rows), actor.decoder.condition(rows)
+        memory, conditioning = actor.remember(instance, rows), actor.decoder.condition(rows)
         likelihoods = [
             log_likelihoods_by_city(actor, memory, conditioning, tours[None, members])[0, places]
             for tours in both

@@ -17,15 +17,17 @@ from torch.export import Dim
 
 from models.decoder import Moment
 from models.groups import grouped
+from models.instances import city_number
 from models.networks import Actor, Conditioning, Memory
 
 # Sizes to trace at: no other axis has them, so each axis shows whether it is n or k.
 _N, _K = 11, 35
 _STATE = ("recent", "first", "visited")
+_INPUTS = {"coordinates": "cities", "matrices": "matrices"}  # by what an actor reads
 
 
 class _Encode(nn.Module):
-    """From cities and preferences to all that decoding needs and the state before its first step.
+    """From an instance and preferences to all that decoding needs, and the state before a step.
 
     The state is the last three cities, the first city and the visited cities of each tour.
     """
@@ -34,14 +36,14 @@ class _Encode(nn.Module):
         super().__init__()
         self.actor = actor
 
-    def forward(self, cities: Tensor, preferences: Tensor) -> tuple[Tensor, ...]:
+    def forward(self, instance: Tensor, preferences: Tensor) -> tuple[Tensor, ...]:
         grouping = grouped(preferences, self.actor.groups)
-        memory = self.actor.remember(cities[None], grouping.rows)
+        memory = self.actor.remember(instance[None], grouping.rows)
         rows = self.actor.decoder.condition(grouping.rows)
-        nowhere = torch.zeros_like(grouping.members) + cities.shape[0]  # (r,)
+        nowhere = torch.zeros_like(grouping.members) + city_number(instance)  # (r,)
         at = nowhere if self.actor.decoder.chooses_first else torch.zeros_like(nowhere)
         recent = torch.stack((at, nowhere, nowhere), dim=-1)
-        visited = torch.arange(cities.shape[0]) == at[:, None]
+        visited = torch.arange(city_number(instance)) == at[:, None]
         return *memory, *rows, grouping.places, recent, at.clone(), visited
 
 
@@ -69,18 +71,23 @@ class _Step(nn.Module):
 
 
 def to_onnx(actor: Actor) -> ModelProto:
-    """The actor as one graph: cities (n, 4) and preferences (k, 2) to greedy tours (k, n)."""
-    cities, preferences = torch.rand(_N, 4), torch.rand(_K, 2)
+    """The actor as one graph: an instance and preferences (k, 2) to greedy tours (k, n).
+
+    The instance is cities (n, 4) or matrices (2, n, n), whichever the actor reads.
+    """
+    name = _INPUTS[actor.reads]
+    instance = torch.rand(_N, 4) if name == "cities" else torch.rand(2, _N, _N)
+    preferences = torch.rand(_K, 2)
     with torch.no_grad():
         grouped_preferences = grouped(preferences, actor.groups).rows
-        memory = actor.remember(cities[None], grouped_preferences)
+        memory = actor.remember(instance[None], grouped_preferences)
         rows = actor.decoder.condition(grouped_preferences)
-        state = _Encode(actor)(cities, preferences)[-3:]
+        state = _Encode(actor)(instance, preferences)[-3:]
     tables = [f"memory_{i}" for i in range(len(memory))] + [f"rows_{i}" for i in range(len(rows))]
     encode = _exported(
         _Encode(actor),
-        (cities, preferences),
-        ["cities", "preferences"],
+        (instance, preferences),
+        [name, "preferences"],
         [*tables, "places", *_STATE],
     )
     step = _exported(
@@ -127,7 +134,7 @@ def _joined(
 ) -> ModelProto:
     body, constants = _loop_body(step.graph, set(tables))
     trips = [
-        helper.make_node("Shape", ["cities"], ["n_cities"], start=0, end=1),
+        helper.make_node("Shape", [encode.graph.input[0].name], ["n_cities"], start=-2, end=-1),
         helper.make_node("Sub", ["n_cities", "given_cities"], ["trips"]),
         helper.make_node("Squeeze", ["trips"], ["trip_count"]),
     ]

@@ -42,7 +42,7 @@ def new_run(config: TrainingConfig, device: torch.device) -> Run:
     actor = build(config.network, config.seed).to(device)
     with torch.random.fork_rng():
         torch.manual_seed(config.seed + 1)
-        critic = Critic(config.network).to(device)
+        critic = Critic(config.network, actor.reads).to(device)
     return Run(
         config=config,
         device=device,

@@ -5,6 +5,7 @@ from dataclasses import Field, asdict, dataclass, field, fields
 from typing import Any, TypeVar
 
 T = TypeVar("T")
+NAMES = ("pa-one", "pa-one-matrix", "pa-at", "pa-ean", "pa-ad")
 
 
 def setting(default: Any, meaning: str) -> Any:
@@ -16,7 +17,7 @@ def setting(default: Any, meaning: str) -> Any:
 class NetworkConfig:
     """Which actor, and how large."""
 
-    name: str = setting("pa-one", "pa-one, pa-at or pa-ean")
+    name: str = setting("pa-one", f"one of {', '.join(NAMES)}")
     width: int = setting(128, "features of a city")
     heads: int = setting(8, "attention heads")
     layers: int = setting(5, "encoder layers")
@@ -25,11 +26,11 @@ class NetworkConfig:
     preference_layers: int = setting(1, "0 leaves the preference out, as in the paper's ablation")
 
     def __post_init__(self) -> None:
-        if self.name not in ("pa-one", "pa-at", "pa-ean"):
-            raise ValueError(f"name must be pa-one, pa-at or pa-ean, got {self.name}")
+        if self.name not in NAMES:
+            raise ValueError(f"name must be one of {', '.join(NAMES)}, got {self.name}")
         if self.width % self.heads:
             raise ValueError(f"width {self.width} must be a multiple of heads {self.heads}")
-        least = 1 if self.name == "pa-one" else 0
+        least = 1 if self.name.startswith("pa-one") else 0
         if not least <= self.preference_layers <= 1:
             raise ValueError(
                 f"preference_layers of {self.name} must be from {least} to 1, "

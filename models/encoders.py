@@ -8,21 +8,22 @@ weights. Distances are in units of 1 / sqrt(n), near the spacing of n cities in 
 that neighbourhoods look alike at every n.
 """
 
+from collections.abc import Sequence
+
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
+
+from models.instances import distance_matrices
 
 
 def plane_distances(cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b 2 n n"]:
     """Distances in each plane, in units of 1 / sqrt(n).
 
-    Written without Python arithmetic on n and without cdist, both of which would freeze n when
-    the network is exported.
+    Written without Python arithmetic on n, which would freeze it when the network is exported.
     """
-    x, y = cities.transpose(1, 2)[:, 0::2], cities.transpose(1, 2)[:, 1::2]  # (b, 2, n)
-    squares = (x[..., :, None] - x[..., None, :]) ** 2 + (y[..., :, None] - y[..., None, :]) ** 2
-    root = torch.ones_like(x[:, :1]).sum(dim=-1).sqrt()  # sqrt(n), (b, 1)
-    return squares.sqrt() * root[..., None, None]
+    root = torch.ones_like(cities[:, :, 0]).sum(dim=-1).sqrt()  # sqrt(n), (b,)
+    return distance_matrices(cities) * root[:, None, None, None]
 
 
 class SelfAttention(nn.Module):
@@ -70,15 +71,15 @@ class _Alike(nn.Module):
 class AttentionEncoder(nn.Module):
     """Kool et al.: attention and feed-forward, each with a skip and then batch normalisation."""
 
-    def __init__(self, width: int, heads: int, layers: int, hidden: int) -> None:
+    def __init__(self, given: int, width: int, heads: int, layers: int, hidden: int) -> None:
         super().__init__()
-        self.embed = nn.Linear(4, width)
+        self.embed = nn.Linear(given, width)
         self.layers = nn.ModuleList(
             PostNormLayer(SelfAttention(width, heads), width, hidden) for _ in range(layers)
         )
 
-    def forward(self, cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b n d"]:
-        """Features of the cities."""
+    def forward(self, cities: Float[Tensor, "b n g"]) -> Float[Tensor, "b n d"]:
+        """Features of the cities, from what is given of each."""
         features: Tensor = self.embed(cities)
         for layer in self.layers:
             features = layer(features)
@@ -95,7 +96,7 @@ class PostNormLayer(nn.Module):
         self.norms = nn.ModuleList(nn.BatchNorm1d(width) for _ in range(2))
 
     def forward(self, features: Float[Tensor, "b n d"]) -> Float[Tensor, "b n d"]:
-        """Features one layer deeper."""
+        """Features of the cities, each in view of all."""
         features = self._normalised(0, features + self.attend(features))
         return self._normalised(1, features + self.think(features))
 
@@ -113,7 +114,9 @@ class DistanceAwareEncoder(nn.Module):
     def __init__(self, width: int, heads: int, layers: int, hidden: int) -> None:
         super().__init__()
         self.embed = nn.Linear(10, width)
-        self.layers = nn.ModuleList(_PreNormLayer(width, heads, hidden) for _ in range(layers))
+        self.layers = nn.ModuleList(
+            FadingLayer(width, heads, hidden, _KINDS) for _ in range(layers)
+        )
         self.norm = nn.LayerNorm(width)
 
     def forward(
@@ -135,17 +138,30 @@ class DistanceAwareEncoder(nn.Module):
         return normalised
 
 
-class _PreNormLayer(nn.Module):
-    def __init__(self, width: int, heads: int, hidden: int) -> None:
+# How fast each kind of head fades at first: with distance in plane 1, in plane 2, by weight.
+_KINDS = ((2.0, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 3.0), (0.0, 0.0, 0.0))
+
+
+class FadingLayer(nn.Module):
+    """Attention whose heads fade, each at rates of its own, as several measures of nearness fall.
+
+    The kinds of head, rows of first rates by measure, take turns.
+    """
+
+    def __init__(
+        self, width: int, heads: int, hidden: int, kinds: Sequence[Sequence[float]]
+    ) -> None:
         super().__init__()
         self.attend = SelfAttention(width, heads)
         self.think = feedforward(width, width, hidden)
         self.norms = nn.ModuleList(nn.LayerNorm(width) for _ in range(2))
-        # At first a quarter of the heads each: near in plane 1, in plane 2, by weight, everywhere.
-        kinds = torch.tensor([[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0], [0.0, 0.0, 0.0]])
-        self.fading = nn.Parameter(kinds.repeat((heads + 3) // 4, 1)[:heads])  # (h, 3)
+        turns = [kinds[head % len(kinds)] for head in range(heads)]
+        self.fading = nn.Parameter(torch.tensor(turns))  # (h, m)
 
-    def forward(self, features: Tensor, nearness: Tensor) -> Tensor:
+    def forward(
+        self, features: Float[Tensor, "b n d"], nearness: Float[Tensor, "b m n n"]
+    ) -> Float[Tensor, "b n d"]:
+        """Features of the cities, each in view of those near it."""
         # As a product it is one pass over (b, h, n, n), the largest thing there is.
         bias = (self.fading @ nearness.flatten(2)).unflatten(2, nearness.shape[2:])
         features = features + self.attend(self.norms[0](features), bias)

@@ -10,11 +10,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import torch
 from numpy.random import Generator
 from numpy.typing import NDArray
 from tqdm import tqdm
 
 from models.config import add_options, from_options, setting
+from models.instances import closed, distance_matrices
+from models.maps import coverage_matrices
 from service.improve import improve
 from service.instance import Instance
 from service.preferences import from_angles, weights
@@ -26,6 +29,7 @@ Array = NDArray[np.float64]
 class ExpertConfig:
     """What the shards hold."""
 
+    kind: str = setting("coordinates", "coordinates, or matrices of several kinds")
     instances: int = setting(200, "instances of a shard")
     preferences: int = setting(40, "preferences of a shard, a tour of each instance for each")
     least_cities: int = setting(20, "least cities of an instance; all of a shard have as many")
@@ -34,12 +38,19 @@ class ExpertConfig:
     iterations_per_city: int = setting(50, "iterations of the search for each city")
     seed: int = setting(1, "of the instances and the search")
 
+    def __post_init__(self) -> None:
+        if self.kind not in ("coordinates", "matrices"):
+            raise ValueError(f"kind must be coordinates or matrices, got {self.kind}")
+
 
 @dataclass(frozen=True, eq=False)
 class Shard:
-    """Cities (m, n, 4), preferences (k, 2) by ascending angle, and their tours (m, k, n)."""
+    """Instances, preferences (k, 2) by ascending angle, and their tours (m, k, n).
 
-    cities: NDArray[np.float32]
+    The instances are cities (m, n, 4) or matrices (m, 2, n, n).
+    """
+
+    instances: NDArray[np.float32]
     preferences: NDArray[np.float32]
     tours: NDArray[np.int16]
 
@@ -47,12 +58,17 @@ class Shard:
     def load(cls, path: Path) -> "Shard":
         """The shard at path."""
         with np.load(path) as stored:
-            return cls(stored["cities"], stored["preferences"], stored["tours"])
+            return cls(stored["instances"], stored["preferences"], stored["tours"])
 
     def save(self, path: Path) -> None:
         """Writes the shard whole or not at all."""
         unfinished = path.with_suffix(".part.npz")
-        np.savez(unfinished, cities=self.cities, preferences=self.preferences, tours=self.tours)
+        np.savez(
+            unfinished,
+            instances=self.instances,
+            preferences=self.preferences,
+            tours=self.tours,
+        )
         unfinished.rename(path)
 
 
@@ -62,20 +78,26 @@ def make_shard(config: ExpertConfig, number: int) -> Shard:
     n = int(generator.integers(config.least_cities, config.most_cities + 1))
     shares = (np.arange(config.preferences) + generator.random(config.preferences)) * 90
     preferences = from_angles(shares / config.preferences)
-    cities = np.stack([_cities(n, config.clustered, generator) for _ in range(config.instances)])
+    draw = _cities if config.kind == "coordinates" else _matrices
+    instances = np.stack([draw(n, config.clustered, generator) for _ in range(config.instances)])
     iterations = config.iterations_per_city * n
-    tours = [expert_tours(each, preferences, iterations, number) for each in cities]
+    tours = [expert_tours(each, preferences, iterations, number) for each in instances]
     return Shard(
-        cities.astype(np.float32), preferences.astype(np.float32), np.stack(tours).astype(np.int16)
+        instances.astype(np.float32),
+        preferences.astype(np.float32),
+        np.stack(tours).astype(np.int16),
     )
 
 
 def expert_tours(
-    cities: Array, preferences: Array, iterations: int, seed: int
+    given: Array, preferences: Array, iterations: int, seed: int
 ) -> NDArray[np.integer]:
-    """For each preference the best tour, under its weights, of the front that the search finds."""
-    nothing = np.empty((0, len(cities)), dtype=np.int64)
-    instance = Instance(coordinates=cities)
+    """For each preference the best tour, under its weights, of the front that the search finds.
+
+    What is given is cities (n, 4) or matrices (2, n, n).
+    """
+    instance = Instance(coordinates=given) if given.ndim == 2 else Instance(matrices=given)
+    nothing = np.empty((0, instance.n), dtype=np.int64)
     found = improve(instance, nothing, iterations=iterations, seed=seed)
     costs = found.points @ weights(preferences).T  # (p, k)
     return found.tours[costs.argmin(axis=0)]
@@ -93,6 +115,25 @@ def _cities(n: int, clustered: float, generator: Generator) -> Array:
             plane = (plane - plane.min(axis=0)) / np.ptp(plane, axis=0).max()
         planes.append(plane)
     return np.concatenate(planes, axis=1)
+
+
+def _matrices(n: int, clustered: float, generator: Generator) -> Array:
+    """Costs of every step: distances in planes or on maps, or entries without a plane."""
+    match generator.choice(("planes", "map", "entries", "closed"), p=(0.4, 0.3, 0.15, 0.15)):
+        case "planes":
+            cities = torch.from_numpy(_cities(n, clustered, generator))
+            return distance_matrices(cities[None])[0].numpy()
+        case "map":
+            return coverage_matrices(generator, n)
+        case "closed":
+            return closed(torch.from_numpy(_entries(n, generator))).numpy()
+    return _entries(n, generator)
+
+
+def _entries(n: int, generator: Generator) -> Array:
+    entries = generator.random((2, n, n))
+    entries[:, np.arange(n), np.arange(n)] = 0.0
+    return entries
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -9,12 +9,16 @@ from jaxtyping import Float, Int
 from torch import Generator, Tensor
 
 from models.expert import Shard
+from models.instances import are_matrices
 
 
 class Batch(NamedTuple):
-    """Instances, preferences by ascending angle, and for each a tour from several starts."""
+    """Instances, cities (b, n, 4) or matrices (b, 2, n, n), and tours of each.
 
-    cities: Float[Tensor, "b n 4"]
+    Preferences are by ascending angle; for each there is a tour from several starts.
+    """
+
+    instances: Tensor
     preferences: Float[Tensor, "k 2"]
     tours: Int[Tensor, "b ks n"]
 
@@ -36,16 +40,19 @@ class Labels:
         if not paths:
             raise FileNotFoundError(f"{self._folder} must hold shards, got none")
         shard = self._load(paths[_below(len(paths), generator)])
-        some = torch.randperm(len(shard.cities), generator=generator)[:instances].numpy()
+        some = torch.randperm(len(shard.instances), generator=generator)[:instances].numpy()
         members = _one_of_each_stretch(len(shard.preferences), preferences, generator).numpy()
         batch = Batch(
-            torch.from_numpy(shard.cities[some]),
+            torch.from_numpy(shard.instances[some]),
             torch.from_numpy(shard.preferences[members]),
             torch.from_numpy(shard.tours[some][:, members]).long(),
         )
-        batch = batch._replace(cities=_mirrored(batch.cities, generator))
+        if not are_matrices(batch.instances):
+            batch = batch._replace(instances=_mirrored(batch.instances, generator))
         if _below(2, generator):
             batch = _exchanged(batch)
+        if _below(2, generator):
+            batch = _turned_back(batch)
         tours = batch.tours.repeat_interleave(starts, dim=1)
         return batch._replace(tours=_begun_anywhere(tours, generator))
 
@@ -72,16 +79,21 @@ def _mirrored(cities: Float[Tensor, "b n 4"], generator: Generator) -> Float[Ten
 
 def _exchanged(batch: Batch) -> Batch:
     """The same with the planes exchanged: preference a becomes 90 degrees minus a."""
-    return Batch(
-        batch.cities.roll(2, dims=-1),
-        batch.preferences.flip(0, 1),
-        batch.tours.flip(1),
-    )
+    if are_matrices(batch.instances):
+        instances = batch.instances.flip(1)
+    else:
+        instances = batch.instances.roll(2, dims=-1)
+    return Batch(instances, batch.preferences.flip(0, 1), batch.tours.flip(1))
+
+
+def _turned_back(batch: Batch) -> Batch:
+    """The same with every step the other way: what it costs, and the tours."""
+    turned = batch.instances.mT if are_matrices(batch.instances) else batch.instances
+    return batch._replace(instances=turned, tours=batch.tours.flip(-1))
 
 
 def _begun_anywhere(tours: Int[Tensor, "b r n"], generator: Generator) -> Int[Tensor, "b r n"]:
-    """Each tour from a city and in a direction at random."""
+    """Each tour from a city at random."""
     b, r, n = tours.shape
     start = torch.randint(n, (b, r, 1), generator=generator)
-    step = 1 - 2 * torch.randint(2, (b, r, 1), generator=generator)
-    return tours.gather(-1, (start + step * torch.arange(n)) % n)
+    return tours.gather(-1, (start + torch.arange(n)) % n)

@@ -11,6 +11,7 @@ from models.decoder import AttentionDecoder, AttentionMemory, OneDecoder, OneMem
 from models.ean import EANDecoder, EANEncoder, EANMemory
 from models.encoders import AttentionEncoder, DistanceAwareEncoder, plane_distances
 from models.lagrangian import weights
+from models.matrix_encoders import AdjacencyEncoder, MatrixEncoder, spacing, unit_matrices
 
 # Named tuples of tensors, of a kind that only the actor's own decoder reads.
 Memory = Any
@@ -21,11 +22,12 @@ class AttentionActor(nn.Module):
     """PA-AT: the attention network with a preference encoder, as the paper describes it."""
 
     groups = 1
+    reads = "coordinates"
 
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
         self.encoder = AttentionEncoder(
-            config.width, config.heads, config.layers, config.feedforward
+            4, config.width, config.heads, config.layers, config.feedforward
         )
         self.decoder = AttentionDecoder(
             config.width, config.heads, config.clip, config.preference_layers
@@ -44,6 +46,7 @@ class EANActor(nn.Module):
     """PA-EAN: Encode, Attend, Navigate with a preference encoder, as the paper describes it."""
 
     groups = 1
+    reads = "coordinates"
 
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
@@ -66,6 +69,7 @@ class OneActor(nn.Module):
     """
 
     groups = 5
+    reads = "coordinates"
 
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
@@ -91,11 +95,66 @@ class OneActor(nn.Module):
         return self.decoder.remember(features, distances)
 
 
-Actor = AttentionActor | EANActor | OneActor
+class AdjacencyActor(nn.Module):
+    """PA-AD: PA-AT behind a graph encoder that reads matrices of costs."""
+
+    groups = 1
+    reads = "matrices"
+
+    def __init__(self, config: NetworkConfig) -> None:
+        super().__init__()
+        self.encoder = AdjacencyEncoder(
+            config.width, config.heads, config.layers, config.feedforward
+        )
+        self.decoder = AttentionDecoder(
+            config.width, config.heads, config.clip, config.preference_layers
+        )
+
+    def remember(
+        self,
+        matrices: Float[Tensor, "b 2 n n"],
+        preferences: Float[Tensor, "k 2"],  # noqa: ARG002, the encoder does without
+    ) -> AttentionMemory:
+        """What decoding needs of the instances, computed once."""
+        return self.decoder.remember(self.encoder(unit_matrices(matrices)))
+
+
+class OneMatrixActor(nn.Module):
+    """PA-One for matrices of costs, which need not be symmetric; the decoder is PA-One's."""
+
+    groups = 5
+    reads = "matrices"
+
+    def __init__(self, config: NetworkConfig) -> None:
+        super().__init__()
+        self.encoder = MatrixEncoder(config.width, config.heads, config.layers, config.feedforward)
+        self.decoder = OneDecoder(config.width, config.heads, config.clip)
+
+    def remember(
+        self, matrices: Float[Tensor, "b 2 n n"], preferences: Float[Tensor, "k 2"]
+    ) -> OneMemory:
+        """What decoding needs of the instances, computed once for each group of preferences.
+
+        The preferences come as `models.groups` lays them out.
+        """
+        middles = preferences.unflatten(0, (self.groups, -1)).mean(dim=1)
+        scaled = unit_matrices(matrices)
+        unit = spacing(scaled)
+        features = self.encoder(
+            scaled.repeat_interleave(self.groups, dim=0),
+            unit.repeat_interleave(self.groups, dim=0),
+            weights(middles).repeat(len(matrices), 1),
+        )
+        return self.decoder.remember(features, scaled / unit)
+
+
+Actor = AttentionActor | EANActor | AdjacencyActor | OneActor | OneMatrixActor
 ACTORS: dict[str, type[Actor]] = {
     "pa-at": AttentionActor,
     "pa-ean": EANActor,
+    "pa-ad": AdjacencyActor,
     "pa-one": OneActor,
+    "pa-one-matrix": OneMatrixActor,
 }
 
 

@@ -6,12 +6,22 @@ import torch
 from jaxtyping import Float, Int
 from torch import Generator, Tensor
 
+from models.instances import distance_matrices
+
 
 def uniform_cities(
     count: int, cities: int, generator: Generator, device: torch.device
 ) -> Float[Tensor, "b n 4"]:
     """Cities uniform in the unit square of each plane; columns 0-1 are plane 1, 2-3 plane 2."""
     return torch.rand(count, cities, 4, generator=generator).to(device)
+
+
+def uniform_instances(
+    reads: str, count: int, cities: int, generator: Generator, device: torch.device
+) -> Tensor:
+    """Uniform cities as an actor reads them: coordinates, or matrices of their distances."""
+    drawn = uniform_cities(count, cities, generator, device)
+    return drawn if reads == "coordinates" else distance_matrices(drawn)
 
 
 def city_count(least: int, most: int, generator: Generator) -> int:

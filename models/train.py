@@ -26,6 +26,7 @@ from models.checkpoint import (
     start_from,
 )
 from models.config import NetworkConfig, TrainingConfig, add_options, from_options
+from models.instances import city_number, tour_lengths
 from models.labels import Labels
 from models.lagrangian import ascended, lagrangian, violation, weighted_sum
 from models.networks import Memory
@@ -42,14 +43,13 @@ from models.sampling import (
     distinct_starts,
     fan_of_preferences,
     spread_preferences,
-    uniform_cities,
+    uniform_instances,
 )
 from models.validation import (
     COUNTS,
     ValidationSet,
     greedy_tours,
     mean_hypervolume,
-    tour_lengths,
     validation_sets,
 )
 
@@ -80,20 +80,24 @@ def policy_gradient_step(run: Run) -> Step:
     """One iteration of Algorithm 1, for all instances and preferences at once."""
     config = run.config
     run.actor.train()
-    cities = _sample_instances(run)
+    instances = _sample_instances(run)
     preferences = _preferences(run)
     starts = distinct_starts(
-        config.instances, cities.shape[1], config.starts, run.instance_generator, run.device
+        config.instances,
+        city_number(instances),
+        config.starts,
+        run.instance_generator,
+        run.device,
     ).repeat(1, config.preferences)
 
     with _precision(run.device):
-        memory = run.actor.remember(cities, preferences)
+        memory = run.actor.remember(instances, preferences)
         rows = repeated(run.actor.decoder.condition(preferences), config.starts)
         choose = sampling(run.sampling_generator)
         tours = roll_out(run.actor, _detached(memory), rows, starts, choose)
         likelihoods = log_likelihoods(run.actor, memory, rows, tours)
 
-    points = tour_lengths(cities, tours)
+    points = tour_lengths(instances, tours)
     each = preferences.repeat_interleave(config.starts, dim=0)
     if config.objective == "lagrangian":
         multipliers = run.multipliers.repeat_interleave(config.starts)
@@ -101,7 +105,7 @@ def policy_gradient_step(run: Run) -> Step:
     else:
         objectives = weighted_sum(points, each)
 
-    advantages = objectives - _baseline(run, cities, preferences, objectives)
+    advantages = objectives - _baseline(run, instances, preferences, objectives)
     loss = (advantages * likelihoods).mean()
     _learn(run, loss)
 
@@ -124,18 +128,19 @@ def imitate(run: Run, labels: Labels) -> Step:
     """One step towards the expert: the loss is what a city of its tours costs in likelihood."""
     config = run.config
     run.actor.train()
-    cities, preferences, tours = (
+    instances, preferences, tours = (
         part.to(run.device)
         for part in labels.batch(
             config.instances, config.preferences, config.starts, run.instance_generator
         )
     )
     with _precision(run.device):
-        memory = run.actor.remember(cities, preferences)
+        memory = run.actor.remember(instances, preferences)
         rows = repeated(run.actor.decoder.condition(preferences), config.starts)
         loss = -log_likelihoods_by_city(run.actor, memory, rows, tours).mean()
     _learn(run, loss)
-    points, each = tour_lengths(cities, tours), preferences.repeat_interleave(config.starts, dim=0)
+    points = tour_lengths(instances, tours)
+    each = preferences.repeat_interleave(config.starts, dim=0)
     return Step(
         loss=loss.item(),
         objective=weighted_sum(points, each).mean().item(),
@@ -147,7 +152,7 @@ def imitate(run: Run, labels: Labels) -> Step:
 def _sample_instances(run: Run) -> Tensor:
     config, generator = run.config, run.instance_generator
     n = city_count(config.least_cities, config.most_cities, generator)
-    return uniform_cities(config.instances, n, generator, run.device)
+    return uniform_instances(run.actor.reads, config.instances, n, generator, run.device)
 
 
 def _preferences(run: Run) -> Tensor:
@@ -157,12 +162,12 @@ def _preferences(run: Run) -> Tensor:
     return spread_preferences(run.config.preferences, run.instance_generator, run.device)
 
 
-def _baseline(run: Run, cities: Tensor, preferences: Tensor, objectives: Tensor) -> Tensor:
+def _baseline(run: Run, instances: Tensor, preferences: Tensor, objectives: Tensor) -> Tensor:
     """What to expect of each tour: the critic's word, or the mean over the starts."""
     if run.config.baseline == "shared":
         by_start = objectives.unflatten(1, (run.config.preferences, run.config.starts))
         return by_start.mean(dim=-1, keepdim=True).expand_as(by_start).flatten(1)
-    predicted: Tensor = run.critic(cities, preferences)
+    predicted: Tensor = run.critic(instances, preferences)
     _descend(run, run.critic_optimizer, run.critic, ((predicted - objectives) ** 2).mean())
     return predicted.detach()
 
@@ -215,7 +220,8 @@ def main(arguments: list[str] | None = None) -> None:
         if options.initial:
             start_from(run, load_weights(options.initial).actor)
     labels = Labels(options.labels) if options.labels else None
-    train(run, run.config.steps, validation_sets(COUNTS, device), options.out, labels)
+    validation = validation_sets(run.actor.reads, COUNTS, device)
+    train(run, run.config.steps, validation, options.out, labels)
 
 
 def _parser() -> argparse.ArgumentParser:

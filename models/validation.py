@@ -8,9 +8,10 @@ from jaxtyping import Float, Int
 from torch import Generator, Tensor
 
 from models.groups import grouped
+from models.instances import tour_lengths
 from models.networks import Actor
 from models.rollout import greedily, roll_out
-from models.sampling import fan_of_preferences, uniform_cities
+from models.sampling import fan_of_preferences, uniform_instances
 from service.front import hypervolume
 
 _SEED = 20_220_303  # apart from the seeds of training and from the instances of the paper
@@ -23,38 +24,33 @@ class ValidationSet:
     """Fixed instances of one size."""
 
     cities: int
-    instances: Float[Tensor, "b n 4"]
+    instances: Tensor
 
 
-def validation_sets(counts: dict[int, int], device: torch.device) -> list[ValidationSet]:
+def validation_sets(
+    reads: str, counts: dict[int, int], device: torch.device
+) -> list[ValidationSet]:
     """For each number of cities, as many uniform instances as are asked for; always the same."""
     return [
-        ValidationSet(n, uniform_cities(count, n, Generator().manual_seed(_SEED + n), device))
+        ValidationSet(
+            n, uniform_instances(reads, count, n, Generator().manual_seed(_SEED + n), device)
+        )
         for n, count in counts.items()
     ]
 
 
-def tour_lengths(
-    cities: Float[Tensor, "b n 4"], tours: Int[Tensor, "b r n"]
-) -> Float[Tensor, "b r 2"]:
-    """Both lengths of each closed tour."""
-    b, r, n = tours.shape
-    visited = cities.gather(1, tours.reshape(b, -1, 1).expand(-1, -1, 4)).view(b, r, n, 2, 2)
-    return (visited - visited.roll(1, dims=2)).norm(dim=-1).sum(dim=2)
-
-
 @torch.no_grad()
 def greedy_tours(
-    actor: Actor, cities: Float[Tensor, "b n 4"], preferences: Float[Tensor, "k 2"]
+    actor: Actor, instances: Tensor, preferences: Float[Tensor, "k 2"]
 ) -> Int[Tensor, "b k n"]:
     """The greedy tour of each instance and preference."""
     rows, _, places = grouped(preferences, actor.groups)
-    starts = torch.zeros(len(cities), len(rows), dtype=torch.long, device=cities.device)
-    memory = actor.remember(cities, rows)
+    starts = torch.zeros(len(instances), len(rows), dtype=torch.long, device=instances.device)
+    memory = actor.remember(instances, rows)
     return roll_out(actor, memory, actor.decoder.condition(rows), starts, greedily)[:, places]
 
 
-# Tours (b, k, n) of instances (b, n, 4) and preferences (k, 2), whoever builds them.
+# Tours (b, k, n) of instances and preferences (k, 2), whoever builds them.
 Build = Callable[[Tensor, Tensor], Tensor]
 
 
@@ -62,8 +58,8 @@ def mean_hypervolume(build: Build, validation: ValidationSet) -> float:
     """Mean over the instances, reference point (n, n), of fronts of 100 preferences."""
     preferences = fan_of_preferences(_PREFERENCES, validation.instances.device)
     shares = []
-    for cities in validation.instances.split(1):
-        points = tour_lengths(cities, build(cities, preferences))[0].cpu()
+    for instance in validation.instances.split(1):
+        points = tour_lengths(instance, build(instance, preferences))[0].cpu()
         reference_point = torch.full((2,), float(validation.cities), dtype=torch.float64)
         shares.append(hypervolume(points.double().numpy(), reference_point.numpy()))
     return sum(shares) / len(shares)
