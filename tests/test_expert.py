@@ -1,5 +1,6 @@
 """Expert tours, and the batches that are drawn from them."""
 
+from dataclasses import replace
 from itertools import permutations
 from pathlib import Path
 
@@ -12,8 +13,8 @@ from models import expert, train
 from models.checkpoint import new_run
 from models.config import NetworkConfig, TrainingConfig
 from models.expert import ExpertConfig, expert_tours
+from models.instances import tour_lengths
 from models.labels import Labels
-from models.validation import tour_lengths
 from service import instance
 from service.instance import Instance
 from service.preferences import fan, from_angles, weights
@@ -45,9 +46,9 @@ def test_the_expert_finds_the_best_tour_for_each_preference() -> None:
 
 def test_a_shard_follows_from_seed_and_number() -> None:
     first, again = (expert.make_shard(SMALL, 3) for _ in range(2))
-    assert np.array_equal(first.cities, again.cities)
+    assert np.array_equal(first.instances, again.instances)
     assert np.array_equal(first.tours, again.tours)
-    assert not np.array_equal(first.cities, expert.make_shard(SMALL, 4).cities)
+    assert not np.array_equal(first.instances, expert.make_shard(SMALL, 4).instances)
 
 
 def test_the_command_makes_only_the_shards_that_are_missing(folder: Path, tmp_path: Path) -> None:
@@ -60,19 +61,32 @@ def test_the_command_makes_only_the_shards_that_are_missing(folder: Path, tmp_pa
     assert (tmp_path / "shard-00001.npz").exists()
 
 
-def test_turning_mirroring_and_exchanging_planes_changes_no_length(folder: Path) -> None:
+@pytest.fixture(scope="module")
+def matrices(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("matrices")
+    config = replace(SMALL, kind="matrices", instances=12)
+    for number in range(2):
+        expert.make_shard(config, number).save(path / f"shard-{number:05}.npz")
+    return path
+
+
+@pytest.mark.parametrize("kind", ["folder", "matrices"])
+def test_turning_mirroring_and_exchanging_planes_changes_no_length(
+    kind: str, request: pytest.FixtureRequest
+) -> None:
+    folder = request.getfixturevalue(kind)
     shards = [expert.Shard.load(path) for path in sorted(folder.iterdir())]
     known = set()
     for shard in shards:
         tours = torch.from_numpy(shard.tours).long()
-        known |= rounded(tour_lengths(torch.from_numpy(shard.cities), tours))
+        known |= rounded(tour_lengths(torch.from_numpy(shard.instances), tours))
     for seed in range(20):
         batch = Labels(folder).batch(4, 5, 3, Generator().manual_seed(seed))
         assert batch.tours.shape == (4, 15, 9)
         assert (batch.tours.sort(dim=-1).values == torch.arange(9)).all()
         angles = torch.atan2(batch.preferences[:, 1], batch.preferences[:, 0])
         assert (angles.diff() > 0).all()
-        found = rounded(tour_lengths(batch.cities, batch.tours))
+        found = rounded(tour_lengths(batch.instances, batch.tours))
         assert all(pair in known or pair[::-1] in known for pair in found)
 
 
@@ -80,11 +94,17 @@ def rounded(points: torch.Tensor) -> set[tuple[float, ...]]:
     return {tuple(round(x, 3) for x in point) for point in points.flatten(0, 1).tolist()}
 
 
+def test_shards_of_matrices_hold_those_that_differ_by_direction(matrices: Path) -> None:
+    shards = [expert.Shard.load(path).instances for path in matrices.iterdir()]
+    symmetric = np.concatenate([(each == each.swapaxes(2, 3)).all((1, 2, 3)) for each in shards])
+    assert 0 < symmetric.sum() < len(symmetric)
+
+
 def test_a_tour_short_in_the_first_length_belongs_to_a_steep_preference(folder: Path) -> None:
     """In every batch, also with the planes exchanged."""
     for seed in range(10):
         batch = Labels(folder).batch(6, 10, 1, Generator().manual_seed(seed))
-        points = tour_lengths(batch.cities, batch.tours).mean(dim=0)
+        points = tour_lengths(batch.instances, batch.tours).mean(dim=0)
         assert points[-1, 0] < points[0, 0]
         assert points[-1, 1] > points[0, 1]
 

@@ -21,7 +21,7 @@ def small(name: str) -> Actor:
     return build(config, seed=2).eval()
 
 
-@pytest.fixture(scope="module", params=["pa-at", "pa-ean", "pa-one"])
+@pytest.fixture(scope="module", params=["pa-at", "pa-ean", "pa-ad", "pa-one", "pa-one-matrix"])
 def exported(request: pytest.FixtureRequest) -> tuple[Actor, ModelProto]:
     actor = small(request.param)
     return actor, to_onnx(actor)
@@ -53,6 +53,8 @@ def test_a_file_with_a_frozen_size_is_refused(exported: tuple[Actor, ModelProto]
     actor, model = exported
     frozen = ModelProto()
     frozen.CopyFrom(model)
-    frozen.graph.input[0].type.tensor_type.shape.dim[0].dim_value = 11
-    with pytest.raises(Mismatch, match=r"cities must have shape \['n', 4\], got \[11, 4\]"):
+    frozen.graph.input[0].type.tensor_type.shape.dim[-2].dim_value = 11
+    with pytest.raises(
+        Mismatch, match=r"(cities|matrices) must have shape \[.*'n', .*\], got .*11"
+    ):
         compare(actor, frozen)

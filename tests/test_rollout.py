@@ -14,7 +14,7 @@ from models.sampling import fan_of_preferences, uniform_cities
 from models.validation import greedy_tours
 
 CPU = torch.device("cpu")
-NAMES = ("pa-at", "pa-ean", "pa-one")
+NAMES = ("pa-at", "pa-ean", "pa-ad", "pa-one", "pa-one-matrix")
 
 
 def small(name: str, preference_layers: int = 1) -> Actor:
@@ -36,9 +36,17 @@ def cities(count: int, n: int, seed: int = 0) -> Tensor:
     return uniform_cities(count, n, Generator().manual_seed(seed), CPU)
 
 
+def given(actor: Actor, count: int, n: int) -> Tensor:
+    """Instances as the actor reads them; matrices are asymmetric."""
+    if actor.reads == "coordinates":
+        return cities(count, n)
+    return torch.rand(count, 2, n, n, generator=Generator().manual_seed(0))
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_sampled_tours_visit_every_city_once(name: str) -> None:
-    actor, instances = small(name), cities(3, 9)
+    actor = small(name)
+    instances = given(actor, 3, 9)
     preferences = fan_of_preferences(5, CPU)
     memory, rows = actor.remember(instances, preferences), actor.decoder.condition(preferences)
     starts = torch.arange(15).reshape(3, 5) % 9
@@ -48,7 +56,8 @@ def test_sampled_tours_visit_every_city_once(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_likelihoods_of_all_tours_add_to_one(name: str) -> None:
-    actor, instances = small(name), cities(2, 5)
+    actor = small(name)
+    instances = given(actor, 2, 5)
     free = actor.decoder.chooses_first
     orders = [order for order in permutations(range(5)) if free or order[0] == 0]
     tours = torch.tensor(orders).expand(2, -1, -1)
@@ -62,7 +71,8 @@ def test_the_likelihoods_of_all_tours_add_to_one(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_sampling_draws_tours_as_often_as_their_likelihood_says(name: str) -> None:
-    actor, instances = small(name), cities(1, 4)
+    actor = small(name)
+    instances = given(actor, 1, 4)
     many = 4000
     preferences = fan_of_preferences(5, CPU)
     memory, rows = actor.remember(instances, preferences), actor.decoder.condition(preferences)
@@ -78,11 +88,16 @@ def test_sampling_draws_tours_as_often_as_their_likelihood_says(name: str) -> No
 
 @pytest.mark.parametrize("name", NAMES)
 def test_numbering_the_cities_otherwise_changes_no_tour(name: str) -> None:
-    actor, instances = small(name), cities(1, 12)
+    actor = small(name)
+    instances = given(actor, 1, 12)
     order = torch.cat((torch.zeros(1), 1 + torch.randperm(11, generator=Generator()))).long()
     preferences = fan_of_preferences(4, CPU)
     tours = greedy_tours(actor, instances, preferences)
-    renumbered = greedy_tours(actor, instances[:, order], preferences)
+    if actor.reads == "coordinates":
+        other = instances[:, order]
+    else:
+        other = instances[:, :, order][..., order]
+    renumbered = greedy_tours(actor, other, preferences)
     assert torch.equal(order[renumbered], tours)
 
 
@@ -131,3 +146,23 @@ def test_pa_at_adds_the_preference_to_the_features_of_every_city() -> None:
 
 def test_greedy_takes_the_first_of_equals() -> None:
     assert greedily(torch.tensor([[[0.0, 1.0, 1.0]]])).item() == 1
+
+
+def test_what_a_step_to_oneself_costs_changes_no_tour_from_matrices() -> None:
+    for name in ("pa-ad", "pa-one-matrix"):
+        actor = small(name)
+        matrices = given(actor, 2, 10)
+        other = matrices + 5 * torch.eye(10)
+        preferences = fan_of_preferences(5, CPU)
+        tours = greedy_tours(actor, matrices, preferences)
+        assert torch.equal(greedy_tours(actor, other, preferences), tours)
+
+
+def test_the_unit_of_the_costs_changes_no_tour_from_matrices() -> None:
+    for name in ("pa-ad", "pa-one-matrix"):
+        actor = small(name)
+        matrices = given(actor, 2, 10)
+        other = matrices * torch.tensor([1024.0, 0.25])[:, None, None]
+        preferences = fan_of_preferences(5, CPU)
+        tours = greedy_tours(actor, matrices, preferences)
+        assert torch.equal(greedy_tours(actor, other, preferences), tours)
