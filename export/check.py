@@ -1,5 +1,7 @@
 """Whether an ONNX file does what the actor in torch does."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import onnxruntime
 import torch
@@ -40,8 +42,8 @@ def onnx_tours(
     return tours
 
 
-def compare(actor: Actor, model: ModelProto) -> None:
-    """Builds tours both ways for every number of cities and preferences above.
+def compare(actor: Actor, model: ModelProto, sizes: Sequence[int] = CITIES) -> None:
+    """Builds tours both ways for every number of cities given and of preferences above.
 
     Raises:
         Mismatch: some tour differs, and not from a tie on. A dimension of the graph's interface
@@ -49,7 +51,7 @@ def compare(actor: Actor, model: ModelProto) -> None:
     """
     _check_dimensions(model)
     running = session(model)
-    for n in CITIES:
+    for n in sizes:
         generator = Generator().manual_seed(n)
         instance = uniform_instances(actor.reads, 1, n, generator, torch.device("cpu"))
         for k in PREFERENCES:

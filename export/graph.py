@@ -17,7 +17,6 @@ from torch.export import Dim
 
 from models.decoder import Moment
 from models.groups import grouped
-from models.instances import city_number
 from models.networks import Actor, Conditioning, Memory
 
 # Sizes to trace at: no other axis has them, so each axis shows whether it is n or k.
@@ -40,10 +39,11 @@ class _Encode(nn.Module):
         grouping = grouped(preferences, self.actor.groups)
         memory = self.actor.remember(instance[None], grouping.rows)
         rows = self.actor.decoder.condition(grouping.rows)
-        nowhere = torch.zeros_like(grouping.members) + city_number(instance)  # (r,)
+        n = instance.shape[-2]
+        nowhere = torch.zeros_like(grouping.members) + n  # (r,)
         at = nowhere if self.actor.decoder.chooses_first else torch.zeros_like(nowhere)
         recent = torch.stack((at, nowhere, nowhere), dim=-1)
-        visited = torch.arange(city_number(instance)) == at[:, None]
+        visited = torch.arange(n) == at[:, None]
         return *memory, *rows, grouping.places, recent, at.clone(), visited
 
 

@@ -1,4 +1,7 @@
-"""Instances as tensors, of either kind: cities (b, n, 4), or matrices of costs (b, 2, n, n)."""
+"""Instances as tensors, of either kind: cities (b, n, 4), or matrices of costs (b, 2, n, n).
+
+The last axis but one has the cities of both.
+"""
 
 import torch
 from jaxtyping import Float, Int
@@ -8,11 +11,6 @@ from torch import Tensor
 def are_matrices(instances: Tensor) -> bool:
     """Whether the instances are given by what each step costs, not by where the cities are."""
     return instances.ndim == 4
-
-
-def city_number(instances: Tensor) -> int:
-    """How many cities each instance has."""
-    return instances.shape[-2]
 
 
 def distance_matrices(cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b 2 n n"]:

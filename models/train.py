@@ -26,7 +26,7 @@ from models.checkpoint import (
     start_from,
 )
 from models.config import NetworkConfig, TrainingConfig, add_options, from_options
-from models.instances import city_number, tour_lengths
+from models.instances import tour_lengths
 from models.labels import Labels
 from models.lagrangian import ascended, lagrangian, violation, weighted_sum
 from models.networks import Memory
@@ -84,7 +84,7 @@ def policy_gradient_step(run: Run) -> Step:
     preferences = _preferences(run)
     starts = distinct_starts(
         config.instances,
-        city_number(instances),
+        instances.shape[-2],
         config.starts,
         run.instance_generator,
         run.device,
