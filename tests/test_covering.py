@@ -5,6 +5,7 @@ import json
 import struct
 import zlib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import httpx
@@ -12,7 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.serving import LIMITS, Shuffler, app_of, problem, serving
+from tests.serving import LIMITS, Shuffler, app_of, planner_of, problem, serving, workers_of
 
 JSON = {"Content-Type": "application/json"}
 GRID = [
@@ -227,6 +228,15 @@ def test_too_many_places_are_413(client: httpx.Client) -> None:
 def test_without_an_actor_of_matrices_there_is_no_coverage() -> None:
     with serving(app_of(Shuffler())) as url:
         problem(httpx.post(f"{url}/coverage", json=TASK), 422, "no-actor")
+
+
+def test_before_the_search_is_compiled_there_is_no_coverage(tmp_path: Path) -> None:
+    warm = tmp_path / "warm"
+    app = app_of(workers=workers_of(planner_of(warm=warm)))
+    with serving(app, warm=False) as url:
+        answer = httpx.post(f"{url}/coverage", json=changed(time_limit=0))
+        problem(answer, 503, "warming-up")
+        warm.touch()
 
 
 def png(grid: Any, mode: str = "L") -> bytes:

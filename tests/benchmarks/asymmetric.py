@@ -5,32 +5,25 @@ inequality, each the length of the shortest way there. Rows, seconds and referen
 of `beside`. Prints a table and stores `results/asymmetric.json`.
 """
 
-import argparse
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import floyd_warshall
 
 from service.instance import Instance
-from tests.benchmarks.beside import measure
+from tests.benchmarks.beside import measure, parser
 
 SIZES = (20, 50, 100, 200)
-COUNT = 10
 
 
 def main(arguments: list[str]) -> None:
     """The command line."""
-    parser = argparse.ArgumentParser("python -m tests.benchmarks asymmetric", description=__doc__)
-    parser.add_argument("--cities", type=int, nargs="+", choices=SIZES, default=SIZES)
-    parser.add_argument("--count", type=int, default=COUNT, help="instances of each kind and size")
-    parser.add_argument("--methods", nargs="+", default=[], help="names of rows; default: all")
-    options = parser.parse_args(arguments)
+    options = parser("asymmetric", __doc__, SIZES, "cities").parse_args(arguments)
     groups = {
         f"{n} cities, {kind}": [asymmetric(kind, n, seed) for seed in range(options.count)]
         for kind in ("uniform", "closed")
-        for n in options.cities
+        for n in options.sizes
     }
-    measure("asymmetric", groups, options.methods)
+    measure("asymmetric", groups, options)
 
 
 def asymmetric(kind: str, n: int, seed: int) -> Instance:

@@ -1,15 +1,16 @@
 """Paretour beside OR-Tools on instances of two matrices.
 
-The rows: each released actor that reads matrices, alone and with half a second of search after it;
-the search alone; OR-Tools' routing solver under 100 weights, with the paper's two limits on its
-solutions. Every row gives at most 100 tours an instance, on one thread. Seconds are those of the
-processor, which another program's load does not stretch. The reference point is n times the
-scale, the largest entry of each matrix. What is stored is not measured again, so that a run may be
-broken off.
+The rows: each actor of a directory that reads matrices, by default the released ones, alone and
+with half a second of search after it; the search alone; OR-Tools' routing solver under 100
+weights, with the paper's two limits on its solutions. Every row gives at most 100 tours an
+instance, on one thread. Seconds are those of the processor, which another program's load does not
+stretch. The reference point is n times the scale, the largest entry of each matrix. What is stored
+is not measured again, so that a run may be broken off.
 """
 
+import argparse
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,7 @@ Tours = NDArray[np.integer]
 Method = Callable[[Instance], Tours]
 
 ACTORS = Path("service/actors")
+COUNT = 10
 TOURS = 100
 SECONDS = 0.5
 
@@ -44,10 +46,22 @@ class _Nothing:
         return np.empty((0, instance.n), np.int64)
 
 
-def methods() -> dict[str, tuple[str, Method]]:
+def parser(
+    name: str, about: str | None, sizes: Sequence[int], unit: str
+) -> argparse.ArgumentParser:
+    """The command line that such a benchmark has, for sizes counted in a unit."""
+    made = argparse.ArgumentParser(f"python -m tests.benchmarks {name}", description=about)
+    made.add_argument(f"--{unit}", dest="sizes", type=int, nargs="+", choices=sizes, default=sizes)
+    made.add_argument("--count", type=int, default=COUNT, help="instances of each size and kind")
+    made.add_argument("--methods", nargs="+", default=[], help="names of rows; default: all")
+    made.add_argument("--actors", type=Path, default=ACTORS, help="directory of ONNX files")
+    return made
+
+
+def methods(actors: Path) -> dict[str, tuple[str, Method]]:
     """By the name of its row, the digest of its network (or nothing) and how tours are built."""
     rows: dict[str, tuple[str, Method]] = {}
-    for name, actor in load_actors(ACTORS, threads=1).items():
+    for name, actor in load_actors(actors, threads=1).items():
         if actor.facts.inputs == "matrices":
             digest = actor.facts.digest
             rows[f"{name}, network alone"] = digest, partial(_planned, actor, 0.0)
@@ -58,12 +72,14 @@ def methods() -> dict[str, tuple[str, Method]]:
     return rows
 
 
-def measure(benchmark: str, groups: dict[str, Sequence[Instance]], chosen: Sequence[str]) -> None:
-    """Measures the chosen methods on groups of instances, stores after each, prints the table."""
+def measure(
+    benchmark: str, groups: Mapping[str, Sequence[Instance]], options: argparse.Namespace
+) -> None:
+    """Measures methods on groups of instances, stores after each, prints the table."""
     results = load(benchmark)
     warm_up()
-    for row, (digest, method) in methods().items():
-        if row in chosen or not chosen:
+    for row, (digest, method) in methods(options.actors).items():
+        if row in options.methods or not options.methods:
             for group, instances in groups.items():
                 _resume(results, benchmark, f"{group}: {row}", digest, instances, method)
     _print_table(results, list(groups))

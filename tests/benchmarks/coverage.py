@@ -6,35 +6,29 @@ plane. Rows, seconds and reference point are those of `beside`; the paper names 
 table and stores `results/coverage.json`. With `--plot` it draws `results/coverage.png` instead.
 """
 
-import argparse
-
 import numpy as np
 
 from models.maps import coverage_matrices
 from service.instance import Instance
 from tests.benchmarks import coverage_plot
-from tests.benchmarks.beside import measure
+from tests.benchmarks.beside import measure, parser
 
 SIZES = (40, 100, 200)
-COUNT = 10
 
 
 def main(arguments: list[str]) -> None:
     """The command line."""
-    parser = argparse.ArgumentParser("python -m tests.benchmarks coverage", description=__doc__)
-    parser.add_argument("--places", type=int, nargs="+", choices=SIZES, default=SIZES)
-    parser.add_argument("--count", type=int, default=COUNT, help="maps of each size")
-    parser.add_argument("--methods", nargs="+", default=[], help="names of rows; default: all")
-    parser.add_argument("--plot", action="store_true", help="draw the picture, measure nothing")
-    options = parser.parse_args(arguments)
+    command = parser("coverage", __doc__, SIZES, "places")
+    command.add_argument("--plot", action="store_true", help="draw the picture, measure nothing")
+    options = command.parse_args(arguments)
     if options.plot:
         coverage_plot.draw()
         return
     groups = {
         f"{n} places": [coverage_instance(n, seed) for seed in range(options.count)]
-        for n in options.places
+        for n in options.sizes
     }
-    measure("coverage", groups, options.methods)
+    measure("coverage", groups, options)
 
 
 def coverage_instance(n: int, seed: int) -> Instance:
