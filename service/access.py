@@ -13,6 +13,7 @@ import secrets
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass
+from importlib.util import find_spec
 from typing import Self
 
 from fastapi import Depends, Security
@@ -27,6 +28,7 @@ from starlette.requests import Request
 from service.problems import Refusal
 
 ANONYMOUS = "anonymous"
+_REDIS_SECONDS = 0.5  # that a request waits for Redis at most
 _NAME = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _LOG = logging.getLogger("paretour")
 _BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API key")
@@ -64,6 +66,9 @@ class Rates:
 
     They are counted in memory, or in Redis for all replicas together. Where Redis does not answer,
     nobody is held up: a rate is a protection, and must not be an outage.
+
+    Raises:
+        ValueError: what Redis needs is not installed.
     """
 
     def __init__(self, rate: str, redis_url: str | None = None) -> None:
@@ -130,7 +135,15 @@ class Access:
 def _storage(redis_url: str | None) -> MemoryStorage | RedisStorage:
     if redis_url is None:
         return MemoryStorage()
-    return RedisStorage(f"async+{redis_url}", wrap_exceptions=True, implementation="redispy")
+    if find_spec("redis") is None:
+        raise ValueError("PARETOUR_REDIS_URL needs the extra paretour[cluster]")
+    return RedisStorage(
+        f"async+{redis_url}",
+        wrap_exceptions=True,
+        implementation="redispy",
+        socket_connect_timeout=_REDIS_SECONDS,
+        socket_timeout=_REDIS_SECONDS,
+    )
 
 
 def _digest(key: str) -> str:

@@ -43,7 +43,7 @@ def build(settings: Settings) -> FastAPI:
         settings.limits,
         _version(),
         Edge(
-            access=Access(settings.api_keys, Rates(settings.rate)),
+            access=Access(settings.api_keys, Rates(settings.rate, settings.redis_url)),
             metrics=metrics,
             origins=settings.origins,
             body_seconds=settings.body_seconds,

@@ -70,6 +70,9 @@ class Settings(BaseSettings):
     rate: Annotated[str, AfterValidator(_rate)] = Field(
         "1000/minute", description="requests that each caller with a key may make"
     )
+    redis_url: str | None = Field(
+        None, description="Redis, where rates are counted for all replicas together"
+    )
     origins: Words = Field(
         (), description="origins whose pages may call (CORS), with commas between; or *"
     )

@@ -4,12 +4,14 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import httpx
 import pytest
 
 from service.access import Access, KeyHash, Rates, new_key
 from service.edge import Edge
+from tests.redis_server import redis_server
 from tests.serving import app_of, problem, running, serving
 from tests.test_app import CITIES
 
@@ -170,3 +172,14 @@ def test_the_command_makes_no_key_for_a_name_that_no_entry_can_hold() -> None:
         "a caller must be named by 1 to 64 letters, digits, dots, dashes, got 'the lab'"
         in made.stderr
     )
+
+
+def test_replicas_count_together_in_redis_and_go_on_without_it(tmp_path: Path) -> None:
+    with redis_server(tmp_path) as redis:
+        edges = [Edge(access=Access(HASHES, Rates("3/hour", redis.url))) for _ in range(2)]
+        with serving(app_of(edge=edges[0])) as one, serving(app_of(edge=edges[1])) as other:
+            counted = [httpx.get(f"{url}/actors", headers=bearing(LAB)) for url in (one, other) * 2]
+            assert [answer.status_code for answer in counted] == [200, 200, 200, 429]
+            assert 3500 < int(counted[3].headers["retry-after"]) <= 3600
+            redis.end()
+            assert httpx.get(f"{one}/actors", headers=bearing(LAB)).status_code == 200

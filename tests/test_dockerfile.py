@@ -68,7 +68,7 @@ def test_the_one_place_that_is_written_belongs_to_the_user_and_outlives_a_read_o
 
 def test_nothing_of_the_factory_is_installed() -> None:
     [install] = [argument for name, argument in INSTRUCTIONS if "pip install" in argument]
-    assert install.endswith("pip install --no-cache-dir '.[tracing]'")
+    assert install.endswith("pip install --no-cache-dir '.[cluster,tracing]'")
 
 
 def test_the_user_is_a_number_and_not_root() -> None:
