@@ -23,6 +23,7 @@ class NetworkConfig:
     layers: int = setting(5, "encoder layers")
     feedforward: int = setting(512, "hidden features of an encoder layer")
     clip: float = setting(10.0, "bound on the pointer's logits before distances are taken off")
+    graph_layers: int = setting(3, "of PA-AD's graph encoder; 0 leaves out all but its features")
     preference_layers: int = setting(1, "0 leaves the preference out, as in the paper's ablation")
 
     def __post_init__(self) -> None:

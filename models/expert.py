@@ -92,14 +92,15 @@ def make_shard(config: ExpertConfig, number: int) -> Shard:
 def expert_tours(
     given: Array, preferences: Array, iterations: int, seed: int
 ) -> NDArray[np.integer]:
-    """For each preference the best tour, under its weights, of the front that the search finds.
+    """For each preference the best tour of the front that the search finds.
 
+    The best is that with the least weighted sum of scaled lengths.
     What is given is cities (n, 4) or matrices (2, n, n).
     """
     instance = Instance(coordinates=given) if given.ndim == 2 else Instance(matrices=given)
     nothing = np.empty((0, instance.n), dtype=np.int64)
     found = improve(instance, nothing, iterations=iterations, seed=seed)
-    costs = found.points @ weights(preferences).T  # (p, k)
+    costs = (found.points / instance.scale) @ weights(preferences).T  # (p, k)
     return found.tours[costs.argmin(axis=0)]
 
 

@@ -111,9 +111,9 @@ class _MixingLayer(nn.Module):
 class AdjacencyEncoder(nn.Module):
     """PA-AD's whole encoder: the graph encoder, then Kool et al.'s layers over both objectives."""
 
-    def __init__(self, width: int, heads: int, layers: int, hidden: int) -> None:
+    def __init__(self, width: int, heads: int, graph_layers: int, layers: int, hidden: int) -> None:
         super().__init__()
-        self.graph = GraphEncoder(width, heads, layers, hidden)
+        self.graph = GraphEncoder(width, heads, graph_layers, hidden)
         self.layers = nn.ModuleList(
             PostNormLayer(SelfAttention(width, heads), width, hidden) for _ in range(layers)
         )

@@ -104,7 +104,11 @@ class AdjacencyActor(nn.Module):
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
         self.encoder = AdjacencyEncoder(
-            config.width, config.heads, config.layers, config.feedforward
+            config.width,
+            config.heads,
+            config.graph_layers,
+            config.layers,
+            config.feedforward,
         )
         self.decoder = AttentionDecoder(
             config.width, config.heads, config.clip, config.preference_layers

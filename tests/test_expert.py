@@ -33,14 +33,15 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_expert_finds_the_best_tour_for_each_preference() -> None:
-    """Against all tours of eight cities."""
-    cities = np.random.default_rng(4).random((8, 4))
+    """Against all tours of eight cities, one length in units fifty times as small."""
+    cities = np.random.default_rng(4).random((8, 4)) * (50, 50, 1, 1)
     preferences = from_angles(fan(7))
     every = np.array([(0, *rest) for rest in permutations(range(1, 8))])
     this = Instance(coordinates=cities)
-    best = (instance.tour_lengths(this, every) @ weights(preferences).T).min(axis=0)
+    every_point = instance.tour_lengths(this, every) / this.scale
+    best = (every_point @ weights(preferences).T).min(axis=0)
     found = expert_tours(cities, preferences, iterations=2000, seed=0)
-    lengths = instance.tour_lengths(this, found)
+    lengths = instance.tour_lengths(this, found) / this.scale
     assert (lengths * weights(preferences)).sum(axis=1) == pytest.approx(best)
 
 
