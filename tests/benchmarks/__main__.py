@@ -7,13 +7,18 @@ _NAMES = (
     "ablation",
     "actors",
     "asymmetric",
+    "concave",
     "coverage",
     "curves",
+    "fronts",
     "kro",
+    "layers",
     "load",
     "networks",
     "search",
     "soak",
+    "tables",
+    "training",
 )
 
 
