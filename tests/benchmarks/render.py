@@ -30,9 +30,9 @@ either axis as the reference point unless another is named: mean and deviation o
 which are the paper's own. Methods give 100 tours, one for each preference or weight; the
 evolutionary ones give their front, and Paretour's search as many tours as its row says.
 
-Printed seconds are of {printed.HARDWARE}. Ours are of the
-processor, on one thread of the machines named below the table; a star marks those taken while
-other programs wanted the same processor, which makes them too long.
+Printed seconds: {printed.HARDWARE}.
+Ours are of the processor, on one thread of the machines named below the table; a star marks those
+taken while other programs wanted the same processor, which makes them too long.
 
 `python -m tests.benchmarks tables` measures what is missing and writes this page.
 """
