@@ -21,7 +21,7 @@ from tests.benchmarks.provenance import RESULTS, load
 from tests.benchmarks.resumed import resume
 
 SIZES = (40, 500)
-ROUNDS = 20_000  # of the search, some seconds at 500 cities
+ROUNDS = 200_000  # of the search, some seconds at 500 cities
 PARETOUR = "Paretour's search"
 STYLES = {
     "NSGA-II (20K)": ("#8b5fbf", "."),
