@@ -13,10 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from service.front import nondominated
-from service.improve import improve
+from service.improve import best_subset, improve
 from service.instance import Instance, tour_lengths
 from tests.benchmarks.instances import paper_instances
-from tests.benchmarks.methods import Method, Points, methods
+from tests.benchmarks.methods import TOURS, Method, Points, methods
 from tests.benchmarks.provenance import RESULTS, load
 from tests.benchmarks.resumed import resume
 
@@ -53,7 +53,8 @@ def main(arguments: list[str]) -> None:
 
 def _searched(instance: Instance) -> Points:
     nothing = np.empty((0, instance.n), np.int32)
-    return tour_lengths(instance, improve(instance, nothing, iterations=ROUNDS).tours)
+    points = tour_lengths(instance, improve(instance, nothing, iterations=ROUNDS).tours)
+    return points[best_subset(points, TOURS, np.full(2, float(instance.n)))]
 
 
 def _points(method: Method, instance: Instance) -> list[list[float]]:
