@@ -12,7 +12,7 @@ import httpx
 import pytest
 
 from service.settings import Settings
-from tests.serving import serving_released
+from tests.serving import app_of, serving_released
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
@@ -68,3 +68,16 @@ def test_every_setting_is_described() -> None:
         assert f"| `{variable}` |" in README
         assert field.description is not None
         assert field.description in README
+
+
+def test_every_status_that_the_service_may_answer_with_is_described() -> None:
+    paths = app_of().openapi()["paths"]
+    promised = {
+        status
+        for operations in paths.values()
+        for operation in operations.values()
+        for status in operation["responses"]
+    }
+    table = README.partition("| status | when |")[2].partition("\n\n")[0]
+    described = set(re.findall(r"\b[45]\d\d\b", table))
+    assert {status for status in promised if status >= "400"} <= described
