@@ -1,7 +1,9 @@
-"""`python -m tests.benchmarks NAME ...`: runs the benchmark of that name."""
+"""`python -m tests.benchmarks NAME ...`: runs the benchmark of that name, writes RESULTS.md anew."""
 
 import argparse
 from importlib import import_module
+
+from tests.benchmarks import render
 
 _NAMES = (
     "ablation",
@@ -28,6 +30,7 @@ def main() -> None:
     parser.add_argument("name", choices=_NAMES)
     options, rest = parser.parse_known_args()
     import_module(f"tests.benchmarks.{options.name}").main(rest)
+    render.PAGE.write_text(render.page())
 
 
 if __name__ == "__main__":

@@ -1,23 +1,20 @@
-"""`python -m tests.benchmarks tables`: measures what is missing, and writes RESULTS.md.
+"""`python -m tests.benchmarks tables`: measures what the page of results is missing.
 
-Every part stores what it measures and goes on where it stopped. The long rows of the main table
+The page, RESULTS.md, is written anew after every benchmark; `--render` does that alone. Every part stores what it measures and goes on where it stopped. The long rows of the main table
 take days over all instances: `--count` says how many instances a row gets at most.
 """
 
 import argparse
-
-from tests.benchmarks import render
 
 
 def main(arguments: list[str]) -> None:
     """The command line."""
     parser = argparse.ArgumentParser("python -m tests.benchmarks tables", description=__doc__)
     parser.add_argument("--count", type=int, default=25, help="instances of each size")
-    parser.add_argument("--render", action="store_true", help="write the page, measure nothing")
+    parser.add_argument("--render", action="store_true", help="measure nothing")
     options = parser.parse_args(arguments)
     if not options.render:
         _measure(str(options.count))
-    render.PAGE.write_text(render.page())
 
 
 def _measure(count: str) -> None:
