@@ -1,4 +1,4 @@
-"""`python -m tests.benchmarks NAME ...`: runs the benchmark of that name, writes RESULTS.md anew."""
+"""`python -m tests.benchmarks NAME ...`: runs a benchmark, and writes RESULTS.md anew."""
 
 import argparse
 from importlib import import_module

@@ -1,7 +1,8 @@
 """`python -m tests.benchmarks tables`: measures what the page of results is missing.
 
-The page, RESULTS.md, is written anew after every benchmark; `--render` does that alone. Every part stores what it measures and goes on where it stopped. The long rows of the main table
-take days over all instances: `--count` says how many instances a row gets at most.
+The page, RESULTS.md, is written anew after every benchmark; `--render` does nothing else. Every
+part stores what it measures and goes on where it stopped. The long rows of the main table take
+days over all instances: `--count` says how many instances a row gets at most.
 """
 
 import argparse
