@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from tqdm import tqdm
 
 from service.actor import Actor, load_actors
 from service.front import hypervolume
@@ -26,9 +25,10 @@ from service.instance import Instance, tour_lengths
 from service.planner import Demand, plan
 from service.preferences import fan
 from tests.benchmarks.instances import check_tours
-from tests.benchmarks.provenance import load, provenance, store
+from tests.benchmarks.provenance import load
 from tests.benchmarks.rivals import ortools_routing
 from tests.benchmarks.rivals.construction import spread_weights
+from tests.benchmarks.rows import resume
 
 Tours = NDArray[np.integer]
 Method = Callable[[Instance], Tours]
@@ -76,13 +76,12 @@ def measure(
     benchmark: str, groups: Mapping[str, Sequence[Instance]], options: argparse.Namespace
 ) -> None:
     """Measures methods on groups of instances, stores after each, prints the table."""
-    results = load(benchmark)
     warm_up()
     for row, (digest, method) in methods(options.actors).items():
         if row in options.methods or not options.methods:
             for group, instances in groups.items():
-                _resume(results, benchmark, f"{group}: {row}", digest, instances, method)
-    _print_table(results, list(groups))
+                resume(benchmark, f"{group}: {row}", digest, instances, partial(_measured, method))
+    _print_table(load(benchmark), list(groups))
 
 
 def _planned(constructor: Actor | _Nothing, seconds: float, instance: Instance) -> Tours:
@@ -96,27 +95,7 @@ def _ortools(limit: int, instance: Instance) -> Tours:
     return np.array([ortools_routing.solve(w * first + v * second, limit) for w, v in weights])
 
 
-def _resume(
-    results: dict[str, Any],
-    benchmark: str,
-    key: str,
-    digest: str,
-    instances: Sequence[Instance],
-    method: Method,
-) -> None:
-    """Measures the instances that have no result yet from this network."""
-    if results.get(key, {}).get("digest") != digest:
-        results[key] = {**provenance(1), "digest": digest, "instances": []}
-    entries = results[key]["instances"]
-    left = instances[len(entries) :]
-    if left:
-        method(left[0])  # fills caches
-    for instance in tqdm(left, desc=key, leave=False):
-        entries.append(_measured(instance, method))
-        store(benchmark, results)
-
-
-def _measured(instance: Instance, method: Method) -> dict[str, float]:
+def _measured(method: Method, instance: Instance) -> dict[str, float]:
     began = time.process_time()
     tours = method(instance)
     seconds = time.process_time() - began

@@ -16,9 +16,9 @@ from service.front import nondominated
 from service.improve import best_subset, improve
 from service.instance import Instance, tour_lengths
 from tests.benchmarks.instances import paper_instances
-from tests.benchmarks.methods import TOURS, Method, Points, methods
+from tests.benchmarks.methods import methods
 from tests.benchmarks.provenance import RESULTS, load
-from tests.benchmarks.resumed import resume
+from tests.benchmarks.rows import TOURS, Method, Points, resume
 
 SIZES = (40, 500)
 ROUNDS = 200_000  # of the search, some seconds at 500 cities

@@ -18,9 +18,7 @@ from models.validation import greedy_tours
 from service.instance import Instance, tour_lengths
 from service.preferences import fan, from_angles
 from tests.benchmarks.instances import COUNT, SIZES, check_tours, paper_instances
-from tests.benchmarks.methods import TOURS, Method, Points
-from tests.benchmarks.networks import measured
-from tests.benchmarks.resumed import resume
+from tests.benchmarks.rows import TOURS, Method, Points, measured, resume
 from tests.benchmarks.training import CHECKPOINTS
 
 

@@ -9,7 +9,6 @@ from collections.abc import Callable
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -29,25 +28,16 @@ from tests.benchmarks.rivals.construction import (
     spread_weights,
 )
 from tests.benchmarks.rivals.evolutionary import moead, nsga2
+from tests.benchmarks.rows import TOURS, Method, Points
 
-Points = NDArray[np.float64]
 Tours = NDArray[np.integer]
 
 ACTORS = Path("service/actors")
 DRL_MOA = Path("models/checkpoints/drl-moa.pt")
-TOURS = 100
 POPULATION = 100
 EVALUATIONS = {"20K": 20_000, "80K": 80_000}
 SOLUTION_LIMITS = {"no limit": None, "n_l = 10": 10, "n_l = 100": 100}
 NETWORKS = {"PA-EAN": "pa-ean", "PA-AT": "pa-at", "PA-One": "pa-one"}
-
-
-class Method(NamedTuple):
-    """How points are found; whether the first time takes longer; the digest of a network."""
-
-    find: Callable[[Instance], Points]
-    fills_caches: bool = False
-    digest: str = ""
 
 
 def methods() -> dict[str, Method]:

@@ -8,25 +8,22 @@ the evolutionary rivals a minute.
 """
 
 import argparse
-import time
 from functools import partial
-from typing import Any
 
-from service.front import hypervolume
 from service.instance import Instance
-from tests.benchmarks.instances import COUNT, SIZES, paper_instances, reference_points
-from tests.benchmarks.methods import Method, methods
-from tests.benchmarks.resumed import resume
+from tests.benchmarks.instances import COUNT, SIZES, paper_instances
+from tests.benchmarks.methods import methods
+from tests.benchmarks.rows import measured, resume
 
 
 def main(arguments: list[str]) -> None:
     """The command line."""
+    known = methods()
     parser = argparse.ArgumentParser("python -m tests.benchmarks networks", description=__doc__)
-    parser.add_argument("--rows", nargs="+", help="names of rows; default: all")
+    parser.add_argument("--rows", nargs="+", choices=known, help="default: all")
     parser.add_argument("--cities", type=int, nargs="+", choices=SIZES, default=SIZES)
     parser.add_argument("--count", type=int, default=COUNT, help="instances of each size")
     options = parser.parse_args(arguments)
-    known = methods()
     tiny = Instance(coordinates=paper_instances(10, 1)[0])
     for row in options.rows or known:
         if known[row].fills_caches:
@@ -36,13 +33,3 @@ def main(arguments: list[str]) -> None:
         for row in options.rows or known:
             method = known[row]
             resume("networks", f"{n} {row}", method.digest, instances, partial(measured, method))
-
-
-def measured(method: Method, instance: Instance) -> dict[str, Any]:
-    """Seconds, and the hypervolume in per cent by reference point."""
-    began = time.process_time()
-    points = method.find(instance)
-    seconds = time.process_time() - began
-    corners = reference_points(instance.n).items()
-    shares = {name: round(100 * hypervolume(points, corner), 4) for name, corner in corners}
-    return {"seconds": round(seconds, 4), "hypervolume": shares}

@@ -1,13 +1,40 @@
-"""Measurements that may be broken off: what is stored is not measured again."""
+"""Rows of tables: how an instance is measured, and how a row that was broken off goes on."""
 
 import os
+import time
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
 from tqdm import tqdm
 
+from service.front import hypervolume
 from service.instance import Instance
+from tests.benchmarks.instances import reference_points
 from tests.benchmarks.provenance import load, provenance, store
+
+Points = NDArray[np.float64]
+
+TOURS = 100  # of a front
+
+
+class Method(NamedTuple):
+    """How points are found; whether the first time takes longer; the digest of a network."""
+
+    find: Callable[[Instance], Points]
+    fills_caches: bool = False
+    digest: str = ""
+
+
+def measured(method: Method, instance: Instance) -> dict[str, Any]:
+    """Seconds, and the hypervolume in per cent by reference point."""
+    began = time.process_time()
+    points = method.find(instance)
+    seconds = time.process_time() - began
+    corners = reference_points(instance.n).items()
+    shares = {name: round(100 * hypervolume(points, corner), 4) for name, corner in corners}
+    return {"seconds": round(seconds, 4), "hypervolume": shares}
 
 
 def resume(
