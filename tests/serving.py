@@ -187,13 +187,13 @@ def running(settings: Mapping[str, str], ready: bool = False) -> Iterator[Runnin
 
 
 def _wait_for(url: str) -> None:
-    deadline = time.monotonic() + 120
+    deadline = time.monotonic() + 300
     while time.monotonic() < deadline:
         with suppress(httpx.ConnectError):
             if httpx.get(url).status_code == 200:
                 return
         time.sleep(0.05)
-    raise TimeoutError(f"{url} must answer within two minutes")
+    raise TimeoutError(f"{url} must answer within five minutes")
 
 
 def problem(response: httpx.Response, status: int, code: str) -> dict[str, Any]:
