@@ -18,9 +18,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from service.access import Access, KeyHash, new_key
 from service.client import Client
+from service.edge import Edge
 from tests.artifacts import by_row_sums
-from tests.serving import serving_released
+from tests.serving import app_of, serving, serving_released
 
 ROOT = Path(__file__).parent.parent
 EXAMPLE = ROOT / "service/examples/city-deliveries.json"
@@ -180,6 +182,18 @@ def test_a_service_that_is_not_there_ends_with_3(cities: Path) -> None:
     ended = paretour("front", cities, "--url", "http://127.0.0.1:1")
     assert (ended.returncode, ended.stdout) == (3, "")
     assert "does not answer" in ended.stderr
+
+
+def test_a_key_is_given_by_option_or_by_variable(cities: Path) -> None:
+    key, digest = new_key()
+    edge = Edge(access=Access([KeyHash(caller="me", digest=digest)]))
+    with serving(app_of(edge=edge)) as address:
+        asked = ("front", cities, "--time-limit", 0, "--url", address)
+        assert paretour(*asked, "--api-key", key).returncode == 0
+        assert paretour(*asked, PARETOUR_API_KEY=key).returncode == 0
+        refused = paretour(*asked, "--api-key", digest)
+    assert refused.returncode == 3
+    assert "(unauthorized)" in refused.stderr
 
 
 def test_without_matplotlib_a_plot_is_refused_before_anything_is_planned(cities: Path) -> None:
