@@ -36,6 +36,11 @@ class ActorFacts:
     config: Any
     figures: Any
 
+    @property
+    def named(self) -> dict[str, str]:
+        """Which it is, as an answer says it."""
+        return {"name": self.name, "digest": self.digest}
+
     def serves(self, kind: Kind) -> bool:
         """Whether it can build tours for instances of this kind: coordinates have distances."""
         return self.inputs in ("matrices", kind)

@@ -9,9 +9,12 @@ from fastapi import APIRouter, FastAPI
 from starlette.responses import Response
 
 from service.actor import ActorFacts
+from service.answers import Answers
 from service.bodies import json_response
 from service.edge import Edge
-from service.fronts import FrontRoutes, KeptFront
+from service.fronts import FrontRoutes
+from service.jobs import Jobs
+from service.kept import KeptRoutes
 from service.pages import page_routes
 from service.problems import REFUSALS, Problem, answer_refusal, responses
 from service.reference import illustrate
@@ -22,7 +25,7 @@ from service.workers import Workers
 
 def create_app(
     actors: Mapping[str, ActorFacts],
-    store: Store[KeptFront],
+    store: Store,
     workers: Workers,
     limits: Limits,
     version: str,
@@ -30,12 +33,16 @@ def create_app(
 ) -> FastAPI:
     """The application. It starts the workers and closes them when it shuts down."""
     edge = edge or Edge()
+    jobs = Jobs(workers, store)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         await workers.start()
+        await jobs.start()
         yield
         await workers.close()
+        await jobs.close()
+        await store.close()
 
     app = _Documented(
         title="Paretour",
@@ -49,7 +56,9 @@ def create_app(
         docs_url=None,
         redoc_url=None,
     )
-    app.include_router(FrontRoutes(actors, store, workers, limits).router(), **edge.guard)
+    fronts = FrontRoutes(actors, workers, Answers(workers, jobs, store), limits)
+    app.include_router(fronts.router(), **edge.guard)
+    app.include_router(KeptRoutes(store, jobs).router(), **edge.guard)
     app.include_router(_actor_router(actors), **edge.guard)
     app.include_router(edge.metrics.router(), **edge.guard)
     app.include_router(_HealthRoutes(workers).router())

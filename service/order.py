@@ -10,7 +10,6 @@ from service.messages import Snapshot, Work
 from service.rendered import Rendered
 
 MOST_ATTEMPTS = 2
-Report = Callable[[Snapshot], None]
 
 
 class Lost(Exception):
@@ -26,12 +25,12 @@ class Overdue(Exception):
 
 
 class Order:
-    """Work, who is told of its progress, and in the end its front.
+    """Work, who is told when it is begun and when it has come further, and in the end its front.
 
     A patient one has its time limit from when it is begun, another from when it is handed in.
     """
 
-    def __init__(self, number: int, work: Work, report: Report, patient: bool) -> None:
+    def __init__(self, number: int, work: Work, tell: Callable[[], None], patient: bool) -> None:
         self.number = number
         self.work = work
         self.patient = patient
@@ -39,7 +38,7 @@ class Order:
         self.stopped: type[Stopped | Overdue] | None = None
         self.snapshot: Snapshot | None = None
         self.timer: TimerHandle | None = None
-        self._report = report
+        self._tell = tell
         self._future: Future[Rendered] = asyncio.get_running_loop().create_future()
         self._handed_in = perf_counter()
 
@@ -58,10 +57,15 @@ class Order:
         """
         return await asyncio.shield(self._future)
 
+    def begin(self) -> None:
+        """Take note that a worker is at it, for the first time or once more."""
+        self.attempts += 1
+        self._tell()
+
     def hear(self, snapshot: Snapshot) -> None:
         """Take note of how far the work has come."""
         self.snapshot = snapshot
-        self._report(snapshot)
+        self._tell()
 
     def done(self, front: Rendered) -> None:
         """End with a front."""

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 from service import improve, shortest
 from service.actor import ActorFacts, load_actors
@@ -13,7 +13,7 @@ from service.coverage import survey
 from service.covering import CoverageRequest
 from service.messages import Work
 from service.planner import Constructor, Report, plan
-from service.rendered import Rendered, rendered
+from service.rendered import Rendered, Sketch, rendered, sketched
 from service.roster import choose_actor
 from service.schemas import FrontRequest, Limits
 
@@ -38,22 +38,29 @@ class FrontPlanner:
         improve.warm_up()
         shortest.warm_up()
 
-    def plan(self, work: Work, stop: Callable[[], bool], report: Report) -> Rendered:
+    def plan(
+        self, work: Work, stop: Callable[[], bool], report: Callable[[Sketch], None]
+    ) -> Rendered:
         """The front that a request asks for."""
         match parse(work, self.limits):
             case CoverageRequest() as asked:
                 return self._cover(asked, stop, report)
             case asked:
                 actor = self._actor(asked)
-                front = plan(actor, asked.instance(), asked.demand(), stop, report)
-                return rendered(front, actor=_named(actor))
+                named = actor.facts.named
+                sketch = _sketching(report, actor=named)
+                front = plan(actor, asked.instance(), asked.demand(), stop, sketch)
+                return rendered(front, actor=named)
 
-    def _cover(self, asked: CoverageRequest, stop: Callable[[], bool], report: Report) -> Rendered:
+    def _cover(
+        self, asked: CoverageRequest, stop: Callable[[], bool], report: Callable[[Sketch], None]
+    ) -> Rendered:
         actor = self._actor(asked)
         began = time.perf_counter()
         found = survey(asked.coverage(), self.limits.cities, stop)
         surveyed = time.perf_counter()
-        front = plan(actor, found.instance, asked.demand(), stop, report)
+        more = {"actor": actor.facts.named, "places": found.places.tolist()}
+        front = plan(actor, found.instance, asked.demand(), stop, _sketching(report, **more))
         planned = time.perf_counter()
         paths = list(found.paths(front.tours)) if asked.paths else None
         timings = {
@@ -66,8 +73,7 @@ class FrontPlanner:
             [{"path": {"cells": path.cells.tolist(), "metres": path.metres}} for path in paths]
             if paths
             else None,
-            actor=_named(actor),
-            places=found.places.tolist(),
+            **more,
         )
 
     def _actor(self, asked: FrontRequest | CoverageRequest) -> NamedActor:
@@ -75,8 +81,8 @@ class FrontPlanner:
         return self.actors[choose_actor(facts, asked.kind, asked.named_actor)]
 
 
-def _named(actor: NamedActor) -> dict[str, str]:
-    return {"name": actor.facts.name, "digest": actor.facts.digest}
+def _sketching(report: Callable[[Sketch], None], **more: Any) -> Report:
+    return lambda interim: report(sketched(interim, **more))
 
 
 def load_planner(directory: Path, threads: int, limits: Limits) -> FrontPlanner:

@@ -23,11 +23,13 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from service.coverage import InvalidCoverage, TooManyPlaces
 from service.instance import InvalidInstance
 from service.order import Lost, Overdue, Stopped
+from service.store import Mismatch
 from service.workers import Busy, Closed, Cold
 
 MEDIA_TYPE = "application/problem+json"
 _SAFE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _MOST_FAULTS = 20
+_BUG = "this is a fault of the service, not of the request"
 
 
 class Fault(BaseModel):
@@ -79,15 +81,15 @@ class Refusal(Exception):
             "actual": actual,
         }
 
-    def response(self, request_id: str) -> Response:
+    def document(self, request_id: str) -> dict[str, Any]:
         """The problem document."""
         members = {name: value for name, value in self.members.items() if value is not None}
-        return Response(
-            to_json({**members, "request_id": request_id}),
-            self.status,
-            headers=self.headers,
-            media_type=MEDIA_TYPE,
-        )
+        return {**members, "request_id": request_id}
+
+    def response(self, request_id: str) -> Response:
+        """The answer."""
+        document = to_json(self.document(request_id))
+        return Response(document, self.status, headers=self.headers, media_type=MEDIA_TYPE)
 
 
 def refused_by(errors: Sequence[ErrorDetails], parameters: bool = False) -> Refusal:
@@ -114,14 +116,26 @@ async def answer_refusal(request: Request, error: Exception) -> Response:
     response = _as_refusal(request, error).response(request.scope["request_id"])
     if isinstance(error, HTTPException):
         response.headers.update(error.headers or {})
+        if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
+            response.headers["Allow"] = _allowed(request, error)
     return response
 
 
-_UNAVAILABLE: dict[type[Exception], tuple[int, str, str]] = {
+def _allowed(request: Request, error: HTTPException) -> str:
+    """All methods of this path; the framework names those of the first route to it alone."""
+    documented = request.app.openapi()["paths"]
+    methods = documented.get(getattr(request.scope.get("route"), "path", None))
+    if methods is None:
+        return (error.headers or {}).get("Allow", "")
+    return ", ".join(sorted(method.upper() for method in methods))
+
+
+_SENTENCES: dict[type[Exception], tuple[int, str, str]] = {
     Busy: (503, "queue-full", "the queue must have a free place, and all are taken: ask again"),
     Closed: (503, "shutting-down", "the server is shutting down"),
     Lost: (503, "worker-lost", "the work must leave its worker alive, and two were lost over it"),
     Stopped: (503, "stopped", "the work was stopped before there was a front"),
+    Mismatch: (422, "idempotency-mismatch", "an Idempotency-Key must be of one body, got another"),
     Overdue: (504, "overdue", "the work must end in time, and there was no front yet"),
     Cold: (
         503,
@@ -129,7 +143,24 @@ _UNAVAILABLE: dict[type[Exception], tuple[int, str, str]] = {
         "the search is being compiled, once: ask again, or for the network alone with time_limit 0",
     ),
 }
-REFUSALS = (Refusal, HTTPException, RequestValidationError, InvalidInstance, *_UNAVAILABLE)
+REFUSALS = (Refusal, HTTPException, RequestValidationError, InvalidInstance, *_SENTENCES)
+
+
+def problem_of(error: Exception, request_id: str) -> dict[str, Any]:
+    """The problem document of work that failed."""
+    return _of_work(error).document(request_id)
+
+
+def _of_work(error: Exception) -> Refusal:
+    match error:
+        case Refusal():
+            return error
+        case InvalidInstance():
+            return Refusal(422, "invalid-instance", str(error))
+        case _ if type(error) in _SENTENCES:
+            return Refusal(*_SENTENCES[type(error)])
+        case _:
+            return Refusal(500, "internal-error", _BUG)
 
 
 class RequestIds:
@@ -170,33 +201,27 @@ class RequestIds:
             self._log.exception("request %s failed", request_id)
             if started:
                 raise
-            bug = Refusal(
-                500, "internal-error", "this is a fault of the service, not of the request"
-            )
+            bug = Refusal(500, "internal-error", _BUG)
             await bug.response(request_id)(scope, receive, send_with_id)
 
 
 def _as_refusal(request: Request, error: Exception) -> Refusal:
     path = _cut(request.url.path)
-    if type(error) in _UNAVAILABLE:
-        return Refusal(*_UNAVAILABLE[type(error)])
     match error:
-        case Refusal():
-            return error
         case RequestValidationError():
             return refused_by(error.errors(), parameters=True)
         case HTTPException(status_code=404):
             return Refusal(404, "no-such-path", f"there is nothing at {path}; /docs says what is")
-        case HTTPException(status_code=405, headers=headers):
-            allowed = (headers or {}).get("Allow")
-            sentence = f"{path} must be asked with {allowed}, got {_cut(request.method)}"
+        case HTTPException(status_code=405):
+            allowed, came = _allowed(request, error), _cut(request.method)
+            sentence = f"{path} must be asked with {allowed}, got {came}"
             return Refusal(405, "method-not-allowed", sentence)
         case HTTPException():
             return Refusal(error.status_code, "refused", error.detail)
         case InvalidCoverage():
             return _invalid_coverage(error)
         case _:
-            return Refusal(422, "invalid-instance", str(error))
+            return _of_work(error)
 
 
 def _invalid_coverage(error: InvalidCoverage) -> Refusal:

@@ -1,6 +1,6 @@
 """A front in the form in which it travels and is kept: JSON, written once, where it was found."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from service.planner import Front
+from service.planner import Front, Interim
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,5 +59,25 @@ def rendered(
         to_json({"angle": a, "lengths": f, "tour": tour, **others})
         for (a, f, tour), others in zip(rows, each, strict=True)
     ]
-    ends = np.cumsum([len(tour) + 1 for tour in tours]) - 1
+    ends = np.cumsum([len(tour) + 1 for tour in tours], dtype=np.int64) - 1
     return Rendered(members, b",".join(tours), ends, front.angles, front.gained)
+
+
+@dataclass(frozen=True, eq=False)
+class Sketch:
+    """How far a search has come. `front` writes the best so many tours found so far."""
+
+    seconds: float
+    hypervolume: float
+    points: int
+    front: Callable[[int], Rendered]
+
+
+def sketched(interim: Interim, **more: Any) -> Sketch:
+    """What a search reports, of which the front is written, with other members, if it is asked."""
+    return Sketch(
+        interim.seconds,
+        interim.hypervolume,
+        interim.points,
+        lambda size: rendered(interim.front(size), **more),
+    )

@@ -1,7 +1,7 @@
 """What travels over HTTP."""
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,8 @@ from service.instance import Instance, Kind
 from service.matrices import stacked
 from service.planner import Demand, Termination
 from service.preferences import fan
+from service.problems import Problem
+from service.record import Status
 
 # Between these, lengths and hypervolumes neither overflow nor vanish.
 LARGEST = 1e150
@@ -189,7 +191,8 @@ class FrontAnswer(BaseModel):
     """A front of tours, by ascending first length."""
 
     id: str
-    status: Literal["done"]
+    status: Status
+    problem: Problem | SkipJsonSchema[None] = Field(default=None, description="why it failed")
     cities: int
     front: list[TourItem]
     points: int = Field(description="nondominated points found; front holds at most `size`")
@@ -197,11 +200,20 @@ class FrontAnswer(BaseModel):
     hypervolume_bound: float | None = Field(
         description="what no front of this instance exceeds, where `bound` asked for it"
     )
-    reference_point: Annotated[list[float], Field(min_length=2, max_length=2)]
-    scale: Annotated[list[float], Field(min_length=2, max_length=2)]
+    reference_point: Annotated[list[float], Field(min_length=2, max_length=2)] | None = Field(
+        description="null while the places on a map are looked for, as is the scale"
+    )
+    scale: Annotated[list[float], Field(min_length=2, max_length=2)] | None
     actor: ActorName
     timings_ms: dict[str, float]
-    terminated: Termination
+    terminated: Termination | None = Field(description="null while the planning goes on")
+
+
+class AcceptedAnswer(BaseModel):
+    """Where a front will be found."""
+
+    id: str
+    status: Status
 
 
 class PathItem(BaseModel):

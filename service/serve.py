@@ -18,7 +18,7 @@ from service.logs import logging_config
 from service.metrics import Metrics
 from service.planning import load_planner
 from service.settings import Settings
-from service.store import Store
+from service.sqlite import SqliteStore
 from service.tracing import trace
 from service.workers import Workers
 
@@ -38,7 +38,7 @@ def build(settings: Settings) -> FastAPI:
     metrics.watch(workers)
     app = create_app(
         {name: actor.facts for name, actor in actors.items()},
-        Store(settings.store_entries, settings.store_seconds),
+        SqliteStore(settings.store, entries=settings.store_entries, max_age=settings.store_seconds),
         workers,
         settings.limits,
         _version(),

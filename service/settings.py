@@ -60,6 +60,9 @@ class Settings(BaseSettings):
         90.0, gt=0, description="when a request is ended with the best front so far"
     )
     drain_seconds: int = Field(20, ge=0, description="time to finish what is under way at SIGTERM")
+    store: str = Field(
+        ":memory:", description="file of fronts and jobs, which then outlive the service"
+    )
     store_entries: int = Field(256, ge=1, description="fronts kept for later questions")
     store_seconds: float = Field(3600.0, gt=0, description="how long a front is kept")
 

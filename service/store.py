@@ -1,77 +1,58 @@
-"""Fronts kept in memory for later questions, bounded in number and age."""
+"""Where fronts are kept for later questions, bounded in number and age, each caller's apart."""
 
-import time
-from collections import OrderedDict
-from collections.abc import Callable
-from typing import Generic, TypeVar
+from typing import Protocol
 
-T = TypeVar("T")
+from service.record import Record
 
 
 class Unknown(LookupError):
-    """Nothing was ever kept under this key, or so long ago that it is forgotten."""
+    """The caller never had anything under this id, or so long ago that it is forgotten."""
 
 
 class Expired(LookupError):
-    """What was kept under this key has made way: it was too old, or the store was full."""
+    """What the caller had under this id has made way: it was too old, or the store was full."""
 
 
-class Store(Generic[T]):
-    """At most `entries` values, none older than `max_age` seconds; the oldest makes way.
+class Mismatch(Exception):
+    """The caller has used this idempotency key for another body."""
 
-    Of what has made way it remembers the last `tombstones` keys. Not for use by several threads
-    at once: everything happens on the event loop.
-    """
 
-    def __init__(
-        self,
-        entries: int,
-        max_age: float,
-        tombstones: int = 10_000,
-        clock: Callable[[], float] = time.monotonic,
-    ) -> None:
-        self._entries = entries
-        self._max_age = max_age
-        self._tombstones = tombstones
-        self._clock = clock
-        self._kept: OrderedDict[str, tuple[float, T]] = OrderedDict()
-        self._gone: OrderedDict[str, None] = OrderedDict()
+class Store(Protocol):
+    """Keeps records. What is not finished never makes way."""
 
-    def put(self, key: str, value: T) -> None:
-        """Keep a value under a key that has not been used before."""
-        self._kept[key] = (self._clock(), value)
-        self._forget()
+    async def put(self, record: Record) -> None:
+        """Keep a record, in place of an earlier one with its id."""
 
-    def get(self, key: str) -> T:
-        """The value under the key.
+    async def admit(self, record: Record) -> Record:
+        """Keep a new record, or give the one that the caller has already under its key.
+
+        One that failed gives up its key, so that a repeat is a new try.
 
         Raises:
-            Unknown: nothing was kept under it.
+            Mismatch: that one is of another body.
+        """
+
+    async def get(self, caller: str, id: str) -> Record:  # noqa: A002
+        """The caller's record with this id.
+
+        Raises:
+            Unknown: there was none.
             Expired: it has made way.
         """
-        self._forget()
-        if key in self._kept:
-            return self._kept[key][1]
-        raise Expired(key) if key in self._gone else Unknown(key)
 
-    def latest(self) -> T:
-        """The value put last.
+    async def latest(self, caller: str) -> Record:
+        """The caller's record that was finished last.
 
         Raises:
             Unknown: there never was one.
             Expired: it has made way.
         """
-        self._forget()
-        if self._kept:
-            return next(reversed(self._kept.values()))[1]
-        raise Expired if self._gone else Unknown
 
-    def _forget(self) -> None:
-        oldest_allowed = self._clock() - self._max_age
-        while self._kept and (
-            len(self._kept) > self._entries or next(iter(self._kept.values()))[0] < oldest_allowed
-        ):
-            key, _ = self._kept.popitem(last=False)
-            self._gone[key] = None
-        while len(self._gone) > self._tombstones:
-            self._gone.popitem(last=False)
+    async def forget(self, record: Record) -> None:
+        """Keep the record no longer, and nothing in its place."""
+
+    async def unfinished(self) -> list[Record]:
+        """All records that still need work, the oldest first."""
+
+    async def close(self) -> None:
+        """Let go of what the store is kept in."""

@@ -26,8 +26,7 @@ from service.messages import (
     packed,
     received_now,
 )
-from service.planner import Interim
-from service.rendered import Rendered, rendered
+from service.rendered import Rendered, Sketch
 
 MOST_TOURS = 100  # of a snapshot
 EVERY = 0.25  # seconds between two snapshots
@@ -41,7 +40,7 @@ class Planner(Protocol):
         """Compile what can be compiled, or load it."""
 
     def plan(
-        self, work: Work, stop: Callable[[], bool], report: Callable[[Interim], None]
+        self, work: Work, stop: Callable[[], bool], report: Callable[[Sketch], None]
     ) -> Rendered:
         """The front that is asked for."""
 
@@ -126,11 +125,11 @@ class _Reporter:
         self._send = send
         self._next = time.monotonic() + EVERY
 
-    def __call__(self, interim: Interim) -> None:
+    def __call__(self, sketch: Sketch) -> None:
         began = time.monotonic()
         if began < self._next:
             return
-        front = rendered(interim.front(MOST_TOURS))
-        self._send(Snapshot(interim.seconds, interim.hypervolume, interim.points, front))
+        front = sketch.front(MOST_TOURS)
+        self._send(Snapshot(sketch.seconds, sketch.hypervolume, sketch.points, front))
         ended = time.monotonic()
         self._next = ended + max(EVERY, (ended - began) / MOST_SHARE)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import count
 
 from service.messages import Do, Done, Failed, Found, Started, Stop, Warm, WarmUp, Work
-from service.order import MOST_ATTEMPTS, Lost, Order, Overdue, Report, Stopped
+from service.order import MOST_ATTEMPTS, Lost, Order, Overdue, Stopped
 from service.process import MakePlanner, Process
 from service.rendered import Rendered
 
@@ -146,7 +146,9 @@ class Workers:
         if not any(hand.warm for hand in self._hands):
             raise Cold
 
-    def order(self, work: Work, report: Report = lambda _: None, patient: bool = False) -> Order:
+    def order(
+        self, work: Work, tell: Callable[[], None] = lambda: None, patient: bool = False
+    ) -> Order:
         """Hand in work.
 
         Raises:
@@ -155,7 +157,7 @@ class Workers:
         """
         self.check_open()
         self.check_place()
-        order = Order(next(self._numbers), work, report, patient)
+        order = Order(next(self._numbers), work, tell, patient)
         if not patient:
             self._limit(order)
         self._waiting.append(order)
@@ -252,7 +254,7 @@ class Workers:
             able = hand.warm if self._was_warm else hand.started
             if able and hand.order is None and self._waiting:
                 order = self._waiting.popleft()
-                order.attempts += 1
                 hand.order = order
+                order.begin()
                 self._limit(order)
                 hand.process.send(Do(order.number, order.work))

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from service.messages import Work
-from service.planner import Front, Interim
-from service.rendered import Rendered, rendered
+from service.planner import Front
+from service.rendered import Rendered, Sketch, rendered
 from service.workers import Workers
 
 
@@ -32,7 +32,7 @@ class Puppet:
             time.sleep(0.01)
 
     def plan(
-        self, work: Work, stop: Callable[[], bool], report: Callable[[Interim], None]
+        self, work: Work, stop: Callable[[], bool], report: Callable[[Sketch], None]
     ) -> Rendered:
         match work.body:
             case b"fail":
@@ -49,7 +49,7 @@ class Puppet:
                 began = time.monotonic()
                 while True:
                     seconds = time.monotonic() - began
-                    report(Interim(seconds, 0.5, 7, lambda _: front(None)))
+                    report(Sketch(seconds, 0.5, 7, lambda _: rendered(front(None))))
                     time.sleep(0.01)
         return rendered(front("converged"))
 

@@ -29,7 +29,7 @@ from service.process import MakePlanner
 from service.schemas import Limits
 from service.serve import build
 from service.settings import Settings
-from service.store import Store
+from service.sqlite import IN_MEMORY, SqliteStore
 from service.workers import Workers
 
 LIMITS = Limits(body_bytes=100_000, cities=50, cells=900, preferences=20, size=30, seconds=0.2)
@@ -114,14 +114,14 @@ def workers_of(
 
 def app_of(
     *actors: NamedActor,
-    store: Store | None = None,
+    store: SqliteStore | None = None,
     workers: Workers | None = None,
     limits: Limits = LIMITS,
     edge: Edge | None = None,
 ) -> FastAPI:
     return create_app(
         {actor.facts.name: actor.facts for actor in actors or ACTORS},
-        store or Store(entries=100, max_age=60),
+        store or SqliteStore(IN_MEMORY, entries=100, max_age=60),
         workers or workers_of(planner_of(*actors, limits=limits)),
         limits,
         "test",

@@ -20,7 +20,7 @@ from service.planner import Front
 from service.rendered import rendered
 from service.serve import build
 from service.settings import Settings
-from service.store import Store
+from service.sqlite import IN_MEMORY, SqliteStore
 from tests.serving import (
     LIMITS,
     Broken,
@@ -384,12 +384,6 @@ def test_a_request_that_takes_too_long_for_any_front_is_504(tmp_path: Path) -> N
         problem(answer, 504, "overdue")
 
 
-def test_asynchronous_answers_are_not_there_yet(client: httpx.Client) -> None:
-    headers = {"Prefer": "handling=strict, respond-async; wait=10"}
-    answer = client.post("/front", json={"coordinates": CITIES}, headers=headers)
-    assert "respond-async" in problem(answer, 422, "not-available")["detail"]
-
-
 def test_an_actor_that_is_not_loaded_is_named(client: httpx.Client) -> None:
     answer = client.post("/front", json={"coordinates": CITIES, "actor": "pa-two"})
     document = problem(answer, 422, "unknown-actor")
@@ -426,7 +420,7 @@ def test_a_tour_before_any_front_is_404() -> None:
 
 
 def test_a_front_that_has_made_way_is_410() -> None:
-    with serving(app_of(store=Store(entries=1, max_age=60))) as url:
+    with serving(app_of(store=SqliteStore(IN_MEMORY, entries=1, max_age=60))) as url:
         first, _ = (httpx.post(f"{url}/front", json={"coordinates": CITIES}) for _ in range(2))
         key = first.json()["id"]
         problem(httpx.get(f"{url}/front/{key}"), 410, "front-expired")
@@ -434,7 +428,7 @@ def test_a_front_that_has_made_way_is_410() -> None:
 
 
 def test_a_front_that_is_too_old_is_410() -> None:
-    with serving(app_of(store=Store(entries=1, max_age=1e-9))) as url:
+    with serving(app_of(store=SqliteStore(IN_MEMORY, entries=1, max_age=1e-9))) as url:
         httpx.post(f"{url}/front", json={"coordinates": CITIES})
         problem(httpx.get(f"{url}/tour?angle=3"), 410, "front-expired")
 
@@ -567,4 +561,4 @@ def test_schemathesis_finds_nothing(url: str, tmp_path: Path) -> None:
         check=False,
     )
     assert found.returncode == 0, found.stdout
-    assert "8 selected / 8 total" in found.stdout
+    assert "10 selected / 10 total" in found.stdout

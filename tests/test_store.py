@@ -1,8 +1,19 @@
 """Fronts kept for later, and how they make way."""
 
+import asyncio
+from collections.abc import Awaitable, Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
 import pytest
 
-from service.store import Expired, Store, Unknown
+from service.messages import Work
+from service.record import Record
+from service.rendered import rendered
+from service.sqlite import IN_MEMORY, SqliteStore
+from service.store import Expired, Mismatch, Unknown
+from tests.puppet import front
 
 
 class Clock:
@@ -15,49 +26,169 @@ class Clock:
         return self.now
 
 
-def test_what_was_put_is_given_again() -> None:
-    store: Store[int] = Store(entries=2, max_age=60)
-    store.put("a", 1)
-    store.put("b", 2)
-    assert (store.get("a"), store.get("b"), store.latest()) == (1, 2, 2)
+def record(id_: str, caller: str = "us", **more: Any) -> Record:
+    given = {"status": "done", "request_id": "r", "front": rendered(front("converged"))}
+    return Record(id=id_, caller=caller, **{**given, **more})
 
 
-def test_a_key_never_used_is_unknown() -> None:
-    store: Store[int] = Store(entries=2, max_age=60)
-    with pytest.raises(Unknown):
-        store.get("a")
-    with pytest.raises(Unknown):
-        store.latest()
+def job(id_: str, **more: Any) -> Record:
+    return record(id_, **{"status": "queued", "work": Work("front", b"{}", b"\0"), **more})
+
+
+def run(test: Callable[[SqliteStore], Awaitable[None]], **options: Any) -> None:
+    async def with_store() -> None:
+        store = SqliteStore(IN_MEMORY, **{"entries": 2, "max_age": 60, **options})
+        await test(store)
+        await store.close()
+
+    asyncio.run(with_store())
+
+
+def test_what_was_put_is_given_again_as_it_was() -> None:
+    async def test(store: SqliteStore) -> None:
+        a, b = record("a"), record("b", problem={"code": "overdue"})
+        await store.put(a)
+        await store.put(b)
+        kept = await store.get("us", "a")
+        assert (kept.json(), kept.front.nearest(30)) == (a.json(), a.front.nearest(30))
+        assert (await store.latest("us")).json() == b.json()
+
+    run(test)
+
+
+def test_an_id_never_used_is_unknown() -> None:
+    async def test(store: SqliteStore) -> None:
+        with pytest.raises(Unknown):
+            await store.get("us", "a")
+        with pytest.raises(Unknown):
+            await store.latest("us")
+
+    run(test)
+
+
+def test_a_caller_sees_its_own_alone() -> None:
+    async def test(store: SqliteStore) -> None:
+        await store.put(record("a", caller="us"))
+        await store.put(record("b", caller="them"))
+        assert (await store.latest("us")).id == "a"
+        with pytest.raises(Unknown):
+            await store.get("them", "a")
+        await store.put(record("c", caller="them"))
+        # It has made way, which is nobody else's business.
+        with pytest.raises(Expired):
+            await store.get("us", "a")
+        with pytest.raises(Unknown):
+            await store.get("them", "a")
+
+    run(test)
 
 
 def test_the_oldest_makes_way_when_the_store_is_full() -> None:
-    store: Store[int] = Store(entries=2, max_age=60)
-    for number, key in enumerate("abc"):
-        store.put(key, number)
-    with pytest.raises(Expired):
-        store.get("a")
-    assert (store.get("b"), store.get("c")) == (1, 2)
+    async def test(store: SqliteStore) -> None:
+        for id_ in "abc":
+            await store.put(record(id_))
+        with pytest.raises(Expired):
+            await store.get("us", "a")
+        assert [(await store.get("us", id_)).id for id_ in "bc"] == ["b", "c"]
+
+    run(test)
 
 
 def test_asking_for_a_front_does_not_keep_it_longer() -> None:
     clock = Clock()
-    store: Store[int] = Store(entries=2, max_age=60, clock=clock)
-    store.put("a", 1)
-    clock.now = 60
-    assert store.get("a") == 1
-    clock.now = 61
-    with pytest.raises(Expired):
-        store.get("a")
-    with pytest.raises(Expired):
-        store.latest()
+
+    async def test(store: SqliteStore) -> None:
+        await store.put(record("a"))
+        clock.now = 60
+        assert (await store.get("us", "a")).id == "a"
+        clock.now = 61
+        with pytest.raises(Expired):
+            await store.get("us", "a")
+        with pytest.raises(Expired):
+            await store.latest("us")
+
+    run(test, clock=clock)
 
 
 def test_only_so_many_of_the_gone_are_remembered() -> None:
-    store: Store[int] = Store(entries=1, max_age=60, tombstones=2)
-    for number, key in enumerate("abcd"):
-        store.put(key, number)
-    with pytest.raises(Unknown):
-        store.get("a")
-    for key in "bc":
-        with pytest.raises(Expired):
-            store.get(key)
+    async def test(store: SqliteStore) -> None:
+        for id_ in "abcd":
+            await store.put(record(id_))
+        with pytest.raises(Unknown):
+            await store.get("us", "a")
+        for id_ in "bc":
+            with pytest.raises(Expired):
+                await store.get("us", id_)
+
+    run(test, entries=1, tombstones=2)
+
+
+def test_what_is_forgotten_leaves_nothing() -> None:
+    async def test(store: SqliteStore) -> None:
+        await store.put(record("a"))
+        await store.forget(record("a"))
+        with pytest.raises(Unknown):
+            await store.get("us", "a")
+
+    run(test)
+
+
+def test_unfinished_work_never_makes_way_and_its_front_counts_as_new_when_it_is_done() -> None:
+    clock = Clock()
+
+    async def test(store: SqliteStore) -> None:
+        await store.put(job("a"))
+        clock.now = 100
+        for id_ in "bcd":
+            await store.put(record(id_))
+        [unfinished] = await store.unfinished()
+        assert (unfinished.id, unfinished.work) == ("a", Work("front", b"{}", b"\0"))
+        assert (await store.latest("us")).id == "d"
+        await store.put(replace(unfinished, status="done", work=None))
+        assert (await store.latest("us")).id == "a"
+        assert await store.unfinished() == []
+
+    run(test, clock=clock)
+
+
+def test_a_key_gives_the_record_that_it_was_first_used_for() -> None:
+    async def test(store: SqliteStore) -> None:
+        first = job("a", key="k", digest="1")
+        assert await store.admit(first) is first
+        assert (await store.admit(job("b", key="k", digest="1"))).id == "a"
+        with pytest.raises(Mismatch):
+            await store.admit(job("c", key="k", digest="2"))
+        other = job("d", caller="them", key="k", digest="2")
+        assert await store.admit(other) is other
+        await store.put(replace(first, status="done", work=None))
+        assert (await store.admit(job("e", key="k", digest="1"))).status == "done"
+        await store.forget(first)
+        assert (await store.admit(job("f", key="k", digest="2"))).id == "f"
+        await store.put(job("f", key="k", digest="2", status="failed"))
+        assert (await store.admit(job("g", key="k", digest="2"))).id == "g"
+        assert (await store.get("us", "f")).status == "failed"
+
+    run(test)
+
+
+def test_what_is_in_a_file_is_there_after_a_restart(tmp_path: Path) -> None:
+    path = str(tmp_path / "folder" / "fronts.sqlite")
+
+    async def test() -> None:
+        store = SqliteStore(path, entries=2, max_age=60)
+        await store.put(record("a"))
+        await store.put(job("b"))
+        with pytest.raises(ValueError, match="must be a file of its own"):
+            SqliteStore(path, entries=2, max_age=60)
+        await store.close()
+        again = SqliteStore(path, entries=2, max_age=60)
+        assert (await again.get("us", "a")).json() == record("a").json()
+        assert [each.id for each in await again.unfinished()] == ["b"]
+        await again.close()
+
+    asyncio.run(test())
+
+
+def test_a_store_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=f"store must be a file of its own, {tmp_path} is not"):
+        SqliteStore(str(tmp_path), entries=1, max_age=1)

@@ -100,13 +100,12 @@ def test_work_that_does_not_listen_is_ended_and_its_process_replaced() -> None:
 def test_work_that_takes_too_long_ends_with_the_best_front_so_far(patient: bool) -> None:
     async def test(workers: Workers) -> None:
         await workers.order(work(), patient=True).front()
-        told: list[int] = []
-        order = workers.order(
-            work(b"report and hang"), lambda snapshot: told.append(snapshot.points), patient
-        )
+        told: list[None] = []
+        order = workers.order(work(b"report and hang"), lambda: told.append(None), patient)
         found = (await order.front()).members
         assert (found["terminated"], found["points"]) == ("time_limit", 1)
-        assert set(told) == {7}
+        # That it was begun, and what was found.
+        assert len(told) > 1
 
     run(test, seconds=2.0)
 

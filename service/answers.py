@@ -1,0 +1,140 @@
+"""How a front that is asked for is answered: at once or later, and to a repeat the same."""
+
+import asyncio
+import hashlib
+import uuid
+from dataclasses import replace
+from http import HTTPStatus
+
+from pydantic_core import to_json
+from starlette.requests import Request
+from starlette.responses import Response
+
+from service.bodies import json_bytes, json_response
+from service.jobs import Jobs
+from service.messages import Work
+from service.order import Order
+from service.problems import MEDIA_TYPE, Fault, Refusal
+from service.record import Record
+from service.rendered import Rendered
+from service.store import Store
+from service.workers import Workers
+
+_LONGEST_KEY = 255
+
+
+def caller_of(request: Request) -> str:
+    """Who asks; all that shows no key is one caller."""
+    return str(request.scope.get("caller", "anonymous"))
+
+
+class Answers:
+    """Hands work to the workers, and fronts to those who asked."""
+
+    def __init__(self, workers: Workers, jobs: Jobs, store: Store) -> None:
+        self._workers = workers
+        self._jobs = jobs
+        self._store = store
+
+    def check_place(self, request: Request) -> None:
+        """Nothing, if more work is taken. A repeat may need no place.
+
+        Raises:
+            Busy: the queue is full.
+            Closed: no more work is taken.
+        """
+        self._workers.check_open()
+        if _key(request) is None:
+            self._workers.check_place()
+
+    async def answer(self, request: Request, work: Work, nothing_yet: Rendered) -> Response:
+        """The front, or where it will be found.
+
+        Work without an idempotency key ends when the client goes away. With one the client is
+        expected to come back, so that the work goes on.
+        """
+        record = Record(
+            id=uuid.uuid4().hex,
+            caller=caller_of(request),
+            request_id=request.scope["request_id"],
+            status="queued",
+            front=nothing_yet,
+            work=work,
+            key=_key(request),
+            digest=_digest(work),
+        )
+        if _wants_it_later(request):
+            return _accepted(self._jobs.state(await self._begun(record)).record)
+        if record.key is not None:
+            return _finished(request, await self._jobs.finished(await self._begun(record)))
+        return _finished(request, await self._now(request, record))
+
+    async def _now(self, request: Request, record: Record) -> Record:
+        assert record.work is not None
+        order = self._workers.order(record.work)
+        await self._while_wanted(request, order)
+        record = replace(record, status="done", front=await order.front(), work=None)
+        await self._store.put(record)
+        return record
+
+    async def _begun(self, record: Record) -> Record:
+        """The record, or the earlier one of which it is a repeat."""
+        kept = await self._store.admit(record)
+        if kept.id == record.id:
+            try:
+                self._jobs.begin(record)
+            except Exception:
+                await self._store.forget(record)
+                raise
+        return kept
+
+    async def _while_wanted(self, request: Request, order: Order) -> None:
+        """Wait for the order's end, and stop it as soon as the client has gone away."""
+        working = asyncio.ensure_future(order.front())
+        leaving = asyncio.ensure_future(_left(request))
+        try:
+            await asyncio.wait((working, leaving), return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._workers.stop(order)
+            working.cancel()
+            leaving.cancel()
+
+
+async def _left(request: Request) -> None:
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
+
+
+def _accepted(record: Record) -> Response:
+    answer = json_response({"id": record.id, "status": record.status}, 202)
+    answer.headers["Location"] = f"/front/{record.id}"
+    answer.headers["Preference-Applied"] = "respond-async"
+    return answer
+
+
+def _finished(request: Request, record: Record) -> Response:
+    if record.problem is None:
+        return json_bytes(record.json())
+    # Which may be the problem of a request that this one repeats.
+    problem = {**record.problem, "request_id": request.scope["request_id"]}
+    status: int = problem["status"]
+    headers = {"Retry-After": "1"} if status == HTTPStatus.SERVICE_UNAVAILABLE else {}
+    return Response(to_json(problem), status, headers, MEDIA_TYPE)
+
+
+def _wants_it_later(request: Request) -> bool:
+    preferences = ",".join(request.headers.getlist("prefer")).lower().split(",")
+    return "respond-async" in (each.partition(";")[0].strip() for each in preferences)
+
+
+def _key(request: Request) -> str | None:
+    key = request.headers.get("idempotency-key")
+    if key is not None and not 0 < len(key) <= _LONGEST_KEY:
+        sentence = f"Idempotency-Key must have 1 to {_LONGEST_KEY} characters, got {len(key)}"
+        raise Refusal(422, "invalid-request", sentence, errors=[Fault(detail=sentence)])
+    return key
+
+
+def _digest(work: Work) -> str:
+    parts = (work.kind.encode(), work.body, work.upload or b"")
+    return hashlib.sha256(b"\0".join(parts)).hexdigest()

@@ -1,0 +1,164 @@
+"""Work that outlives the request that asked for it, on the workers of this process."""
+
+import asyncio
+import logging
+from collections.abc import AsyncIterator, Coroutine
+from dataclasses import dataclass, replace
+
+from service.messages import Snapshot
+from service.order import Order, Stopped
+from service.problems import problem_of
+from service.record import Record, Status
+from service.store import Store
+from service.workers import Busy, Closed, Cold, Workers
+
+_PAUSE = 0.5  # seconds between two tries to take up the work of an earlier process
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """How a job stands: its record as of now, and how far a search that goes on has come."""
+
+    record: Record
+    progress: Snapshot | None = None
+
+
+class _Job:
+    """A record that is worked on, and whoever waits for it to change."""
+
+    def __init__(self, record: Record, workers: Workers) -> None:
+        assert record.work is not None
+        self._record = record
+        self._changed = asyncio.Event()
+        self.ended = False
+        self.order: Order = workers.order(record.work, self._tell, patient=True)
+
+    @property
+    def state(self) -> State:
+        """How it stands."""
+        if self._record.finished:
+            return State(self._record)
+        snapshot = self.order.snapshot
+        status: Status = "running" if self.order.attempts else "queued"
+        front = snapshot.front if snapshot else self._record.front
+        return State(replace(self._record, status=status, front=front), snapshot)
+
+    async def change(self) -> None:
+        """Wait until it stands differently."""
+        await self._changed.wait()
+
+    def end(self, record: Record) -> None:
+        """This is what became of it."""
+        self._record = record
+        self.ended = True
+        self._tell()
+
+    def _tell(self) -> None:
+        told, self._changed = self._changed, asyncio.Event()
+        told.set()
+
+
+class Jobs:
+    """Does the work of records, and keeps what comes of it in the store.
+
+    What is unfinished when the service ends stays in the store, and is begun again by the next
+    service that has that store.
+    """
+
+    def __init__(self, workers: Workers, store: Store) -> None:
+        self._workers = workers
+        self._store = store
+        self._jobs: dict[str, _Job] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._log = logging.getLogger("paretour")
+
+    async def start(self) -> None:
+        """Take up what an earlier process has left unfinished."""
+        if unfinished := await self._store.unfinished():
+            self._spawn(self._resume(unfinished))
+
+    async def close(self) -> None:
+        """Leave the work where it is; the workers have been closed."""
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+
+    def begin(self, record: Record) -> None:
+        """Begin the work of a record that is in the store.
+
+        Raises:
+            Busy: the queue is full.
+            Closed: no more work is taken.
+        """
+        job = self._jobs[record.id] = _Job(record, self._workers)
+        self._spawn(self._see_through(record, job))
+
+    def state(self, record: Record) -> State:
+        """How the job of a record stands."""
+        job = self._jobs.get(record.id)
+        return job.state if job else State(record)
+
+    async def states(self, record: Record) -> AsyncIterator[State]:
+        """How it stands now, and after each change, until it is finished."""
+        job = self._jobs.get(record.id)
+        while job is not None and not job.ended:
+            changing = asyncio.ensure_future(job.change())
+            yield job.state
+            await changing
+        yield job.state if job else State(record)
+
+    async def finished(self, record: Record) -> Record:
+        """What becomes of a record in the end."""
+        async for state in self.states(record):
+            record = state.record
+        return record
+
+    async def cancel(self, record: Record) -> Record:
+        """End the work of a record at once; what was found so far is kept."""
+        if job := self._jobs.get(record.id):
+            self._workers.stop(job.order)
+        return await self.finished(record)
+
+    def _spawn(self, work: Coroutine[None, None, None]) -> None:
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _resume(self, unfinished: list[Record]) -> None:
+        for record in unfinished:
+            while True:
+                try:
+                    self._workers.check_warm()
+                    self.begin(record)
+                    break
+                except (Busy, Cold):
+                    await asyncio.sleep(_PAUSE)
+
+    async def _see_through(self, record: Record, job: _Job) -> None:
+        try:
+            ended = await self._ended(record, job.order)
+            await self._store.put(ended)
+            job.end(ended)
+        except Closed:
+            job.end(record)
+        finally:
+            del self._jobs[record.id]
+
+    async def _ended(self, record: Record, order: Order) -> Record:
+        try:
+            front = await order.front()
+            stopped = order.stopped is Stopped
+            return replace(
+                record, status="cancelled" if stopped else "done", front=front, work=None
+            )
+        except Stopped:
+            members = {**record.front.members, "terminated": "cancelled"}
+            nothing = replace(record.front, members=members)
+            return replace(record, status="cancelled", front=nothing, work=None)
+        except Closed:
+            raise
+        except Exception as error:
+            self._log.warning("front %s failed", record.id, exc_info=error)
+            front = order.snapshot.front if order.snapshot else record.front
+            problem = problem_of(error, record.request_id)
+            return replace(record, status="failed", front=front, problem=problem, work=None)
