@@ -8,7 +8,8 @@ COPY service ./service
 COPY models ./models
 COPY export ./export
 RUN python -m venv /opt/paretour \
-    && /opt/paretour/bin/pip install --no-cache-dir '.[cluster,tracing]'
+    && /opt/paretour/bin/pip install --no-cache-dir '.[cluster,tracing]' \
+    && mkdir /var/lib/paretour
 # Compile the search now, outside the source, where the installed package would be shadowed.
 WORKDIR /opt/paretour
 ENV NUMBA_CACHE_DIR=/var/cache/paretour
@@ -18,6 +19,8 @@ RUN ["/opt/paretour/bin/python", "-c", "from service import improve, shortest; i
 FROM python:3.11-slim
 COPY --from=build /opt/paretour /opt/paretour
 COPY --from=build --chown=10001:10001 /var/cache/paretour /var/cache/paretour
+# Where a volume may be mounted that fronts outlive the container in, as PARETOUR_STORE says.
+COPY --from=build --chown=10001:10001 /var/lib/paretour /var/lib/paretour
 # Nothing else is written: not even bytecode, which pip has compiled.
 ENV PATH=/opt/paretour/bin:$PATH \
     PYTHONDONTWRITEBYTECODE=1 \

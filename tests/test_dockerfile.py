@@ -66,9 +66,14 @@ def test_the_one_place_that_is_written_belongs_to_the_user_and_outlives_a_read_o
     assert ("ENV", f"NUMBA_CACHE_DIR={cache}") in INSTRUCTIONS
 
 
+def test_the_volume_of_fronts_belongs_to_the_user() -> None:
+    [store] = [argument for name, argument in FINAL if name == "COPY" and "/var/lib" in argument]
+    assert f"--chown={only('USER')} " in store
+
+
 def test_nothing_of_the_factory_is_installed() -> None:
     [install] = [argument for name, argument in INSTRUCTIONS if "pip install" in argument]
-    assert install.endswith("pip install --no-cache-dir '.[cluster,tracing]'")
+    assert "pip install --no-cache-dir '.[cluster,tracing]' " in install
 
 
 def test_the_user_is_a_number_and_not_root() -> None:
