@@ -183,3 +183,17 @@ def test_replicas_count_together_in_redis_and_go_on_without_it(tmp_path: Path) -
             assert 3500 < int(counted[3].headers["retry-after"]) <= 3600
             redis.end()
             assert httpx.get(f"{one}/actors", headers=bearing(LAB)).status_code == 200
+
+
+def test_a_front_is_there_for_its_caller_alone(url: str) -> None:
+    planned = httpx.post(f"{url}/front", json=FRONT, headers=bearing(DISPATCH)).json()["id"]
+    asked = [("GET", f"/front/{planned}"), ("GET", f"/front/{planned}/events")]
+    asked += [("GET", f"/tour?angle=30&front={planned}"), ("DELETE", f"/front/{planned}")]
+    for method, path in asked:
+        answer = httpx.request(method, url + path, headers=bearing(LAB))
+        problem(answer, 404, "unknown-front")
+    latest = httpx.get(f"{url}/tour?angle=30", headers=bearing(LAB))
+    assert latest.json().get("front") != planned
+    for method, path in asked:
+        answer = httpx.request(method, url + path, headers=bearing(DISPATCH_NEXT))
+        assert answer.status_code in (200, 204)
