@@ -43,7 +43,9 @@ def pointed(
             cities, rows, judge, visited
         )
     else:
-        quotients = torch.reciprocal(1 + cities[:, None] * rows[:, :, None]) @ judge
+        quotients = torch.reciprocal(1 + cities[:, None] * rows[:, :, None])
+        # A matrix of one column: ONNX Runtime multiplies by a vector at half the speed.
+        quotients = (quotients @ judge[:, None]).squeeze(-1)
     return judge.sum() - 2 * quotients
 
 
