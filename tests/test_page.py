@@ -3,15 +3,18 @@
 import json
 import re
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
 
 import httpx
+import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
 
 from service.serve import build
 from service.settings import Settings
-from tests.serving import serving
+from tests.serving import app_of, serving
 
 CHROMIUM = Path("/usr/bin/chromium")
 SERVICE = Path(__file__).parent.parent / "service"
@@ -105,12 +108,53 @@ def test_a_pinned_tour_stays_beside_the_selected_one(page: Page) -> None:
 
 
 @needs_browser
-def test_what_is_planned_can_be_stopped(page: Page) -> None:
+def test_what_was_found_stays_when_the_search_is_stopped(page: Page) -> None:
     page.get_by_label("Seconds of search").fill("50")
     page.get_by_role("button", name="Plan").click()
+    expect(page.locator("#status")).to_contain_text("improving")
     page.get_by_role("button", name="Stop").click()
-    expect(page.locator("#status")).to_contain_text("Stopped")
+    expect(page.locator("#status")).to_contain_text("Stopped: ")
+    expect(page.get_by_label(re.compile("A front of [0-9]+ tours"))).to_be_visible()
     expect(page.get_by_role("button", name="Plan")).to_be_enabled()
+
+
+@needs_browser
+def test_a_link_opens_the_same_front_with_its_cities(page: Page, browser: Browser) -> None:
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Copy link").click()
+    expect(page.get_by_text("Copied")).to_be_visible()
+    front = page.locator("#front-chart").get_attribute("aria-label")
+    other = browser.new_page()
+    other.goto(page.evaluate("navigator.clipboard.readText()"))
+    expect(other.locator("#count")).to_have_text("61 cities")
+    shown = other.locator("#front-chart")
+    expect(shown).to_have_attribute(
+        "aria-label", (front or "").replace("distance", "length 1").replace("risk", "length 2")
+    )
+    other.goto(page.url.partition("#")[0] + "#front=none")
+    expect(other.locator("#request-fault")).to_have_text("There is no front 'none'.")
+    other.close()
+
+
+@needs_browser
+def test_a_picture_of_a_map_is_covered(browser: Browser) -> None:
+    with serving(app_of(limits=Settings().limits)) as address:
+        page = browser.new_page()
+        page.goto(address)
+        walls = np.full((20, 30), 255, dtype=np.uint8)
+        walls[5:15, 12:14] = 0
+        picture = BytesIO()
+        Image.fromarray(walls).save(picture, "PNG")
+        given = {"name": "map.png", "mimeType": "image/png", "buffer": picture.getvalue()}
+        page.get_by_label("Open files").set_input_files([given])
+        expect(page.get_by_text("A grid of 20 by 30 cells")).to_be_visible()
+        expect(page.get_by_label("Metres a cell")).to_have_value("0.05")
+        page.get_by_label("Seconds of search").fill("0.1")
+        page.get_by_role("button", name="Plan").click()
+        expect(page.locator("#status")).to_contain_text("Done", timeout=60 * SECOND)
+        expect(page.locator("#grid")).to_be_visible()
+        expect(page.locator("#plane-1")).to_be_hidden()
+        page.close()
 
 
 @needs_browser

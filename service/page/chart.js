@@ -94,7 +94,7 @@ function options(element) {
     cursor: { show: false },
     padding: [12, 12, 0, 0],
     scales: { x: { time: false, range: roomy }, y: { range: roomy } },
-    axes: [axis(UNNAMED[0], 40), axis(UNNAMED[1], 64)],
+    axes: [axis(UNNAMED[0], 28), axis(UNNAMED[1], 64)],
     series: [{}, line("alone", 1, 4), line("improved", 1.5, 5)],
   };
 }

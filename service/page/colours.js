@@ -5,5 +5,11 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 export const colour = (name) =>
   getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
+/** Red, green and blue, 0 to 255, of a colour that the style sheet writes as #rrggbb. */
+export function rgb(name) {
+  const [red, green, blue] = colour(name).match(/[0-9a-f]{2}/gi);
+  return [red, green, blue].map((part) => parseInt(part, 16));
+}
+
 /** Calls back whenever the page turns from light to dark or back. */
 export const onSchemeChange = (draw) => dark.addEventListener("change", draw);

@@ -1,33 +1,44 @@
-/** The settings of a request: what each is called, and what is wrong with it. */
+/** The settings of a request: what each is called, and which requests have it. */
 
 const FIELDS = [
+  { name: "cell_size", label: "Metres a cell", where: "coverage" },
+  { name: "robot_radius", label: "Robot’s radius, m", where: "coverage" },
+  { name: "spacing", label: "Places apart, m", where: "coverage" },
   { name: "time_limit", label: "Seconds of search", value: "3" },
   { name: "size", label: "Tours", value: "100" },
-  { name: "preferences", label: "Directions of the network", value: "100", more: true },
-  { name: "start", label: "Start city", value: "0", more: true },
-  { name: "seed", label: "Seed", value: "0", more: true },
+  { name: "preferences", label: "Directions of the network", value: "100", where: "more" },
+  { name: "start", label: "Start city", value: "0", where: "more" },
+  { name: "seed", label: "Seed", value: "0", where: "more" },
 ];
 
 export class Fields {
   #form;
+  #coverage;
 
-  constructor(form, shown, more) {
+  constructor(form) {
     this.#form = form;
-    for (const field of FIELDS) (field.more ? more : shown).append(made(field));
+    this.#coverage = form.querySelector("#coverage-fields");
+    for (const field of FIELDS) {
+      const place = field.where ? `#${field.where}-fields` : "#fields";
+      form.querySelector(place).append(made(field));
+    }
   }
 
-  /** The members that are filled in. What is no number stays as it is, for the service to name. */
+  /** What is filled in. What is no number stays as it is, for the service to name. */
   get members() {
-    const given = FIELDS.map(({ name }) => [name, this.#form[name].value.trim()]);
+    const asked = FIELDS.filter(({ where }) => where !== "coverage" || !this.#coverage.hidden);
+    const given = asked.map(({ name }) => [name, this.#form[name].value.trim()]);
     return Object.fromEntries(
       given.filter(([, text]) => text).map(([name, text]) => [name, numberOr(text)]),
     );
   }
 
   /** Takes the settings that a request names, and gives back its other members. */
-  take(request) {
+  take(request, kind) {
     const rest = { ...request };
-    for (const { name } of FIELDS) {
+    this.#coverage.hidden = kind !== "grid";
+    for (const { name, where } of FIELDS) {
+      if (where === "coverage") this.#form[name].value = "";
       if (typeof request[name] !== "number") continue;
       this.#form[name].value = request[name];
       delete rest[name];
@@ -41,7 +52,7 @@ function numberOr(text) {
   return Number.isNaN(number) ? text : number;
 }
 
-function made({ name, label, value }) {
+function made({ name, label, value = "" }) {
   const field = document.createElement("div");
   field.className = "field";
   const caption = Object.assign(document.createElement("label"), { htmlFor: name, textContent: label });

@@ -2,21 +2,26 @@
 
 import { length, share } from "./numbers.js";
 
-export function showFigures(list, alone, answer) {
-  list.replaceChildren(...(answer ? figures(alone, answer).flatMap(pair) : pair(["Front", "none yet"])));
+/** Fills two lists: what the front is worth, and what else is known of it. */
+export function showFigures(list, more, alone, answer) {
+  list.replaceChildren(...worth(alone, answer).flatMap(pair));
+  more.replaceChildren(...(answer ? known(answer) : []).flatMap(pair));
 }
 
-function figures(alone, answer) {
-  const seconds = (answer.timings_ms.total ?? 0) / 1000;
-  return [
-    ["Front", share(answer.hypervolume)],
-    ["Network alone", share(alone.hypervolume)],
-    ["Reference point", answer.reference_point.map(length).join(", ")],
-    ["Tours", `${answer.front.length} of ${answer.points.toLocaleString("en")} found`],
-    ["Time", `${seconds.toFixed(2)} s, ${ENDS[answer.terminated] ?? "still searching"}`],
-    ["Network", answer.actor.name],
-  ];
-}
+const worth = (alone, answer) => [
+  ["Front", answer ? share(answer.hypervolume) : "–"],
+  ["Network alone", alone ? share(alone.hypervolume) : "–"],
+];
+
+const known = (answer) => [
+  ["Reference point", answer.reference_point.map(length).join(", ")],
+  ["Tours", `${answer.front.length} of ${answer.points.toLocaleString("en")} found`],
+  ["Time", answer.terminated ? took(answer) : "still searching"],
+  ["Network", answer.actor.name],
+];
+
+const took = ({ timings_ms, terminated }) =>
+  `${((timings_ms.total ?? 0) / 1000).toFixed(2)} s, ${ENDS[terminated] ?? terminated}`;
 
 const ENDS = {
   converged: "converged",

@@ -1,14 +1,29 @@
 /** Files that people bring, as the members of a request. */
 
 import { rowsOf } from "./cities.js";
+import { OBJECTIVES, coverageOf } from "./image.js";
+import { UNNAMED } from "./objectives.js";
 import { isTsplib, pair } from "./tsplib.js";
 
-/** The members of a request that the files say. A file that cannot be read is an Error. */
+/**
+ * The members of a request that the files say, and what its objectives are called. A file that
+ * cannot be read is an Error.
+ */
 export async function read(files) {
+  if (files.length === 1 && files[0].type.startsWith("image/")) {
+    return { members: await coverageOf(files[0]), objectives: OBJECTIVES };
+  }
+  return { members: membersOf(await textsOf(files)), objectives: UNNAMED };
+}
+
+async function textsOf(files) {
   const texts = await Promise.all(
     [...files].map(async (file) => ({ name: file.name, text: await file.text() })),
   );
-  texts.sort((one, other) => (one.name < other.name ? -1 : 1));
+  return texts.sort((one, other) => (one.name < other.name ? -1 : 1));
+}
+
+function membersOf(texts) {
   if (texts.length === 2) return pair(texts);
   if (texts.length > 2) throw new Error(`one file is wanted, or two of TSPLIB, got ${texts.length}`);
   const [{ name, text }] = texts;

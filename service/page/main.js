@@ -5,87 +5,108 @@ import { csv, curl, download } from "./exports.js";
 import { clearFaults, showFault, showFaults } from "./faults.js";
 import { Fields } from "./fields.js";
 import { read } from "./files.js";
+import { described, kindOf, requestFor } from "./instance.js";
+import { fragment, linked } from "./link.js";
 import { counted } from "./numbers.js";
 import { UNNAMED } from "./objectives.js";
 import { Placing } from "./placing.js";
-import { plan } from "./planning.js";
+import { Planning } from "./planning.js";
 import { Result } from "./result.js";
 import { Service } from "./service.js";
 
 const element = (id) => document.getElementById(id);
 const form = element("request");
-const fields = new Fields(form, element("fields"), element("more-fields"));
+const fields = new Fields(form);
 const service = new Service(() => element("key").value.trim());
 const placing = new Placing(element("place"), element("place-help"), placed);
 const result = new Result((plane, place) => placing.clicked(plane, place));
 
-let rest = {}; // members of the request that have no field here
-let running = null; // the AbortController of the plan under way
-let answer = null;
+let members = {}; // of the request, those that are neither typed nor set here
+let planning = null; // what is under way
+let answer = null; // the best front so far
 
-function request() {
-  return { path: "front", body: { coordinates: rowsOf(element("cities").value), ...rest, ...fields.members } };
-}
+const request = () => requestFor(members, fields.members, element("cities").value);
 
-/** Takes the members of a request into the form, and shows its cities under their objectives. */
-function open(members, objectives = UNNAMED) {
-  result.name(objectives);
-  const { coordinates = [], ...others } = fields.take(members);
-  rest = others;
+/** Takes a request into the form, and shows its cities under their objectives. */
+function open(asked, objectives = UNNAMED) {
+  const { coordinates = [], ...others } = fields.take(asked, kindOf(asked));
+  members = others;
+  const typed = kindOf(asked) === "coordinates";
+  element("typed").hidden = element("place").hidden = !typed;
+  element("brought").hidden = typed;
+  element("brought").textContent = typed ? "" : described(asked);
+  element("order").open = kindOf(asked) === "matrices";
   element("cities").value = textOf(coordinates);
+  result.name(objectives);
   edited();
 }
 
 /** Whatever was planned is not of these cities. */
 function edited(fit = true) {
-  halt();
+  leave();
   clearFaults();
+  say("");
   const rows = rowsOf(element("cities").value);
   element("count").textContent = counted(rows.length, "city", "cities");
-  result.clear(rows.filter(isCity), fit);
+  result.clear({ ...members, coordinates: rows.filter(isCity) }, fit);
   answered(null);
 }
 
 function placed(row) {
-  const rows = [...rowsOf(element("cities").value), row];
-  element("cities").value = textOf(rows);
+  element("cities").value = textOf([...rowsOf(element("cities").value), row]);
   edited(false);
 }
 
 function answered(found) {
   answer = found;
-  for (const id of ["json", "csv"]) element(id).disabled = !found;
+  for (const id of ["link", "json", "csv"]) element(id).disabled = !found;
 }
 
+/** Said once, however often it comes: screen readers read each change. */
 function say(text) {
   if (element("status").textContent !== text) element("status").textContent = text;
 }
 
 const SAID = {
-  "warming-up": "This is the network’s front. The search is being compiled, which happens once and takes half a minute: the front improves as soon as it is ready.",
-  improving: "This is the network’s front; the search is improving it.",
-  done: "",
+  "warming-up":
+    "The search is being compiled, once, for about half a minute. The network’s front is shown as soon as there is one, and improves by itself.",
+  queued: "This is the network’s front; the search waits for its turn.",
+  running: "The search is improving the network’s front.",
 };
 
-async function run() {
-  halt();
-  running = new AbortController();
-  const { signal } = running;
+/** Shows what comes of a plan; `states` asks a planning for it. */
+async function run(states) {
+  leave();
+  const mine = (planning = new Planning(service));
   clearFaults();
   busy(true);
   say("The network is building its front.");
   try {
-    for await (const state of plan(service, request(), signal)) {
-      if (signal.aborted) break;
-      result.show(state.alone, state.answer);
-      answered(state.answer);
-      say(SAID[state.stage] || ended(state.answer));
+    for await (const state of states(mine)) {
+      if (mine.left) return;
+      show(state);
     }
   } catch (error) {
-    if (!signal.aborted) fail(error);
+    if (!mine.left) fail(error);
   } finally {
-    if (running?.signal === signal) busy(false);
+    if (planning === mine) busy(false);
   }
+}
+
+function show(state) {
+  if (state.answer) {
+    result.show(state);
+    answered(state.answer);
+  }
+  say(SAID[state.stage] ?? ended(state));
+}
+
+const plan = () => run((mine) => mine.plan(request()));
+
+function leave() {
+  planning?.leave();
+  planning = null;
+  busy(false);
 }
 
 function busy(yes) {
@@ -94,19 +115,15 @@ function busy(yes) {
   form.setAttribute("aria-busy", String(yes));
 }
 
-function halt() {
-  running?.abort();
-  busy(false);
+async function stop() {
+  say("Stopped.");
+  await planning?.stop().catch(fail);
 }
 
-function stop() {
-  halt();
-  say(answer ? "Stopped: this is the network’s front." : "Stopped.");
-}
-
-function ended({ front, points }) {
+function ended({ stage, answer: { front, points } }) {
+  const found = `${counted(points, "tour", "tours")} found`;
   const shown = front.length < points ? `, the best ${front.length} of them shown` : "";
-  return `Done: ${counted(points, "tour", "tours")} found${shown}.`;
+  return `${stage === "cancelled" ? "Stopped" : "Done"}: ${found}${shown}.`;
 }
 
 function fail(error) {
@@ -118,9 +135,9 @@ function fail(error) {
 async function openFiles(files) {
   if (!files.length) return;
   try {
-    open(await read(files));
-    element("example").value = "";
-    say("");
+    const { members, objectives } = await read(files);
+    open(members, objectives);
+    forgetExample();
   } catch (error) {
     showFault("file", error.message);
   }
@@ -128,13 +145,29 @@ async function openFiles(files) {
 
 async function openExample() {
   const example = examples.find(({ file }) => file === element("example").value);
+  element("about").textContent = example?.about ?? "";
   if (!example) return;
   try {
     open(await service.get(`examples/${example.file}`), example.objectives);
-    await run();
   } catch (error) {
     fail(error);
   }
+  await plan();
+}
+
+function forgetExample() {
+  element("example").value = "";
+  element("about").textContent = "";
+}
+
+/** Opens the front that the address names; false where it names none. */
+async function openLinked() {
+  const link = await linked(location.hash);
+  if (!link) return false;
+  forgetExample();
+  open(link.request ?? {});
+  await run((mine) => mine.follow(link.id));
+  return true;
 }
 
 async function copy(text, button) {
@@ -144,19 +177,28 @@ async function copy(text, button) {
   setTimeout(() => (button.textContent = label), 1500);
 }
 
+async function copyLink(button) {
+  history.replaceState(null, "", await fragment(answer.id, request().body));
+  await copy(location.href, button);
+}
+
 form.addEventListener("submit", (event) => {
   event.preventDefault();
-  run();
+  plan();
 });
 element("stop").addEventListener("click", stop);
 element("cities").addEventListener("input", () => edited());
-element("clear").addEventListener("click", () => open({}));
+element("clear").addEventListener("click", () => {
+  forgetExample();
+  open({});
+});
 element("example").addEventListener("change", openExample);
 element("file").addEventListener("change", (event) => {
   openFiles([...event.target.files]);
   event.target.value = "";
 });
 element("curl").addEventListener("click", (event) => copy(curl(request()), event.target));
+element("link").addEventListener("click", (event) => copyLink(event.target));
 element("json").addEventListener("click", () =>
   download("front.json", "application/json", JSON.stringify(answer)),
 );
@@ -168,8 +210,9 @@ addEventListener("drop", (event) => {
   element("drop").classList.remove("over");
   openFiles([...event.dataTransfer.files]);
 });
+addEventListener("hashchange", openLinked);
 
-const examples = (await service.get("examples/index.json")).filter(({ path }) => path === "/front");
+const examples = await service.get("examples/index.json");
 element("example").append(...examples.map(({ file, title }) => new Option(title, file)));
 element("example").value = examples[0].file;
-await openExample();
+if (!(await openLinked())) await openExample();

@@ -4,7 +4,8 @@ const LENGTH = new Intl.NumberFormat("en", { maximumSignificantDigits: 6 });
 const DIFFERENCE = new Intl.NumberFormat("en", {
   style: "percent",
   signDisplay: "exceptZero",
-  maximumFractionDigits: 2,
+  minimumFractionDigits: 1,
+  maximumFractionDigits: 1,
 });
 
 export const length = (value) => (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e9 ? value.toPrecision(4) : LENGTH.format(value));

@@ -1,33 +1,109 @@
 /** From a request to its front: first the network's alone, then the one that the search improves. */
 
+import { Problem } from "./service.js";
+
+const GLANCE = 300; // milliseconds from one look at a growing front to the next
 const MOST_WAIT = 5; // seconds between two attempts
+const FINAL = ["done", "cancelled", "failed"];
 
 /**
- * What there is to show, as it comes: `{ stage, alone, answer }`.
- *
- * `alone` is the front of the network, `answer` the best so far. Stages: "warming-up", where the
- * search is not compiled yet, "improving", and "done".
+ * A front being planned. What there is to show comes as `{ stage, alone, answer, growth }`: the
+ * front of the network alone, where it is known, the best so far, and how that grew, a row of
+ * seconds and hypervolume each. Stages: "warming-up", where the search is not compiled yet,
+ * "queued", "running", "done" and "cancelled".
  */
-export async function* plan(service, request, signal) {
-  const { initial_tours, bound, ...body } = request.body;
-  const alone = await service.post(request.path, { ...body, time_limit: 0 }, signal);
-  if (request.body.time_limit === 0) {
-    yield { stage: "done", alone, answer: alone };
-    return;
+export class Planning {
+  #service;
+  #left = new AbortController();
+  #id = null; // of the job, while there is one
+  #own = false; // whether the job was begun here
+
+  constructor(service) {
+    this.#service = service;
   }
-  yield { stage: "improving", alone, answer: alone };
-  for (;;) {
-    try {
-      const answer = await service.post(request.path, request.body, signal);
-      yield { stage: "done", alone, answer };
-      return;
-    } catch (error) {
-      if (error.code !== "warming-up") throw error;
-      yield { stage: "warming-up", alone, answer: alone };
-      await pause(Math.min(error.retryAfter ?? 1, MOST_WAIT), signal);
+
+  async *plan(request) {
+    const { initial_tours, bound, ...body } = request.body;
+    const first = { path: request.path, body: { ...body, time_limit: 0 } };
+    for await (const alone of this.#patiently(first)) {
+      if (!alone) yield { stage: "warming-up", alone: null, answer: null };
+      else if (request.body.time_limit === 0) yield { stage: "done", alone, answer: alone, growth: [] };
+      else yield* this.#improved(request, alone);
+    }
+  }
+
+  async *#improved(request, alone) {
+    yield { stage: "running", alone, answer: alone, growth: [] };
+    for await (const job of this.#patiently(request, { Prefer: "respond-async" })) {
+      this.#own = true;
+      if (job) yield* this.follow(job.id, alone);
+      else yield { stage: "warming-up", alone, answer: alone, growth: [] };
+    }
+  }
+
+  /** What becomes of a front that the service has already. */
+  async *follow(id, alone = null) {
+    this.#id = id;
+    const path = `front/${id}`;
+    const growth = alone ? [[0, alone.hypervolume]] : [];
+    let answer = await this.#service.get(path, this.#signal);
+    while (!FINAL.includes(answer.status)) {
+      let looked = performance.now();
+      for await (const [name, data] of this.#service.events(`${path}/events`, this.#signal)) {
+        if (name === "progress" && data.hypervolume > 0) growth.push([data.seconds, data.hypervolume]);
+        if (FINAL.includes(data.status)) break;
+        if (performance.now() < looked + GLANCE) continue;
+        answer = await this.#service.get(path, this.#signal);
+        looked = performance.now();
+        yield { stage: answer.status, alone, answer: grown(alone, answer), growth };
+      }
+      answer = await this.#service.get(path, this.#signal);
+      // A stream that ended before the job did was cut off somewhere between.
+      if (!FINAL.includes(answer.status)) await pause(1, this.#signal);
+    }
+    this.#id = null;
+    if (answer.status === "failed") throw new Problem(answer.problem);
+    yield { stage: answer.status, alone, answer: grown(alone, answer), growth };
+  }
+
+  /** Ends the plan with the best front so far, or with none where there is no job yet. */
+  async stop() {
+    if (this.#id) await this.#service.delete(`front/${this.#id}`);
+    else this.#left.abort();
+  }
+
+  /** Nobody waits for the front any more; a job that was begun here ends. */
+  leave() {
+    this.#left.abort();
+    if (this.#id && this.#own) this.#service.delete(`front/${this.#id}`).catch(() => {});
+  }
+
+  get left() {
+    return this.#signal.aborted;
+  }
+
+  get #signal() {
+    return this.#left.signal;
+  }
+
+  /** The answer to a request, after a null for each time that the service is not warm yet. */
+  async *#patiently(request, headers) {
+    for (;;) {
+      try {
+        yield await this.#service.post(request, this.#signal, headers);
+        return;
+      } catch (error) {
+        if (error.code !== "warming-up") throw error;
+        yield null;
+        await pause(Math.min(error.retryAfter ?? 1, MOST_WAIT), this.#signal);
+      }
     }
   }
 }
+
+/** Until the search has found something, the network's front is the best there is. */
+const grown = (alone, answer) =>
+  answer.front.length || !alone ? answer : { ...alone, id: answer.id, terminated: answer.terminated };
 
 function pause(seconds, signal) {
   return new Promise((resolve, reject) => {

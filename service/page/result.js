@@ -3,17 +3,19 @@
 import { FrontChart } from "./chart.js";
 import { compare } from "./comparison.js";
 import { showFigures } from "./figures.js";
+import { Growth } from "./growth.js";
+import { Maps } from "./maps.js";
 import { length } from "./numbers.js";
 import { UNNAMED, titled } from "./objectives.js";
-import { Planes } from "./planes.js";
 import { AngleSlider } from "./slider.js";
 import { nearest } from "./tours.js";
 
 const element = (id) => document.getElementById(id);
 
 export class Result {
-  #planes;
+  #maps;
   #chart;
+  #growth;
   #slider;
   #front = [];
   #angle = null; // wanted by the viewer, in degrees
@@ -22,14 +24,16 @@ export class Result {
   #frame = 0;
   #objectives = UNNAMED;
 
-  /** @param {(plane: number, place: number[]) => void} onClick told where a map was clicked */
+  /** @param {(plane: number, place: number[]) => void} onClick told where a plane was clicked */
   constructor(onClick) {
     const onSelect = (index) => this.#choose(index);
-    this.#planes = new Planes([element("plane-1"), element("plane-2")], onClick);
+    this.#maps = new Maps(onClick);
     this.#chart = new FrontChart(element("front-chart"), onSelect);
+    this.#growth = new Growth(element("growth"));
     this.#slider = new AngleSlider(element("angle"), element("angle-shown"), onSelect);
     element("pin").addEventListener("click", () => this.#pin());
-    this.clear([]);
+    element("order").addEventListener("toggle", () => this.#order());
+    this.clear({});
   }
 
   /** What the two lengths are called from now on. */
@@ -43,27 +47,30 @@ export class Result {
     });
   }
 
-  /** Cities without a front. */
-  clear(rows, fit = true) {
-    this.#planes.show(rows, fit);
+  /** An instance without a front. */
+  clear(instance, fit = true) {
+    cancelAnimationFrame(this.#frame);
+    this.#maps.show(instance, fit);
     this.#front = [];
-    this.#angle = null; // wanted by the viewer, in degrees
+    this.#angle = null;
     this.#selected = this.#pinned = null;
     this.#chart.show([], []);
+    this.#growth.show([]);
     this.#slider.show([]);
-    this.#chart.mark("pinned", null);
     this.#drawPin();
     this.#draw();
-    showFigures(element("figures"), null, null);
+    showFigures(element("figures"), element("more-figures"), null, null);
   }
 
-  /** The fronts of the network alone and of the search, of the cities that are shown. */
-  show(alone, answer) {
+  /** The front of the network alone, where it is known, and the best so far. */
+  show({ alone, answer, growth }) {
     this.#front = answer.front;
-    this.#chart.show(alone.front, answer.front);
+    this.#chart.show(alone?.front ?? [], answer.front);
+    this.#growth.show(growth);
     this.#slider.show(answer.front);
-    this.#select(nearest(this.#front, this.#angle ?? middle(this.#front)));
-    showFigures(element("figures"), alone, answer);
+    this.#maps.place(answer.places);
+    if (this.#front.length) this.#select(nearest(this.#front, this.#angle ?? middle(this.#front)));
+    showFigures(element("figures"), element("more-figures"), alone, answer);
   }
 
   #choose(index) {
@@ -87,21 +94,26 @@ export class Result {
 
   #drawPin() {
     element("pin").textContent = this.#pinned ? "Unpin" : "Pin to compare";
-    element("pin").setAttribute("aria-pressed", String(this.#pinned !== null));
     this.#chart.mark("pinned", this.#pinned?.lengths ?? null);
-    this.#planes.draw("pinned", this.#pinned?.tour ?? null);
+    this.#maps.draw("pinned", this.#pinned);
   }
 
   #draw() {
     const selected = this.#selected;
     element("pin").disabled = !selected;
     this.#chart.mark("selected", selected?.lengths ?? null);
-    this.#planes.draw("selected", selected?.tour ?? null);
+    this.#maps.draw("selected", selected);
     compare(element("comparison"), this.#objectives, selected, this.#pinned);
     for (const objective of [0, 1]) {
       const said = selected ? length(selected.lengths[objective]) : "";
       element(`length-${objective + 1}`).textContent = said;
     }
+    this.#order();
+  }
+
+  #order() {
+    if (!element("order").open) return;
+    element("order").querySelector("p").textContent = this.#selected?.tour.join(" → ") ?? "";
   }
 }
 

@@ -1,5 +1,7 @@
 /** The service, as this page asks it. */
 
+import { EventSourceParserStream } from "./vendor/eventsource-parser/stream.js";
+
 /** Why the service refused, or that it did not answer at all. */
 export class Problem extends Error {
   constructor({ code, detail, errors = [] }, retryAfter = null) {
@@ -20,10 +22,33 @@ export class Service {
     return (await this.ask(path, { signal })).json();
   }
 
-  async post(path, body, signal) {
-    const headers = { "Content-Type": "application/json" };
-    const options = { method: "POST", headers, body: JSON.stringify(body), signal };
+  /** The answer to a request; with `Prefer: respond-async` among the headers, that of its job. */
+  async post({ path, body }, signal, headers = {}) {
+    const options = { method: "POST", body: JSON.stringify(body), signal };
+    options.headers = { "Content-Type": "application/json", ...headers };
     return (await this.ask(path, options)).json();
+  }
+
+  async delete(path) {
+    await this.ask(path, { method: "DELETE" });
+  }
+
+  /** The events of a stream as `[name, data]`, until it ends or breaks. */
+  async *events(path, signal) {
+    const response = await this.ask(path, { signal });
+    const events = response.body
+      .pipeThrough(new TextDecoderStream())
+      .pipeThrough(new EventSourceParserStream());
+    const reader = events.getReader();
+    try {
+      for (;;) {
+        const { done, value } = await reader.read().catch(broken);
+        if (done) return;
+        yield [value.event, JSON.parse(value.data)];
+      }
+    } finally {
+      reader.cancel().catch(() => {});
+    }
   }
 
   /** The response, where it is one of success; a Problem is thrown otherwise. */
@@ -34,6 +59,12 @@ export class Service {
     if (!response.ok) throw await problem(response);
     return response;
   }
+}
+
+/** A connection that was lost ends a stream like any other end; leaving it is no end. */
+function broken(error) {
+  if (error.name === "AbortError") throw error;
+  return { done: true };
 }
 
 async function reached(path, options) {
