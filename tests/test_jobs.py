@@ -100,6 +100,22 @@ def test_a_front_asked_for_later_is_the_one_that_would_have_been_answered(
     assert tour["front"] == found["id"]
 
 
+def test_coverage_may_be_asked_for_later_as_well(client: httpx.Client) -> None:
+    request = {
+        "grid": [[0] * 12] * 12,
+        "cell_size": 0.5,
+        "places": [[row, 5 * row % 12] for row in range(12)],
+        "second_coordinates": [row[:2] for row in CITIES[:12]],
+        "paths": True,
+        "time_limit": 0.05,
+    }
+    answer = client.post("/coverage", json=request, headers=LATER)
+    assert answer.status_code == 202
+    found = ended(client, answer.headers["location"])
+    assert (found["status"], found["places"]) == ("done", request["places"])
+    assert all(item["path"]["metres"] > 0 for item in found["front"])
+
+
 def test_a_wrong_request_is_refused_at_once(client: httpx.Client) -> None:
     answer = client.post("/front", json={**SHORT, "size": 0}, headers=LATER)
     problem(answer, 422, "invalid-request")
