@@ -62,7 +62,8 @@ class FrontPlanner:
         more = {"actor": actor.facts.named, "places": found.places.tolist()}
         front = plan(actor, found.instance, asked.demand(), stop, _sketching(report, **more))
         planned = time.perf_counter()
-        paths = list(found.paths(front.tours)) if asked.paths else None
+        # Who stops the work is not kept waiting.
+        paths = list(found.paths(front.tours)) if asked.paths and not stop() else None
         timings = {
             "survey": 1000 * (surveyed - began),
             **front.timings,

@@ -155,6 +155,8 @@ def _of_work(error: Exception) -> Refusal:
     match error:
         case Refusal():
             return error
+        case InvalidCoverage():
+            return _invalid_coverage(error)
         case InvalidInstance():
             return Refusal(422, "invalid-instance", str(error))
         case _ if type(error) in _SENTENCES:

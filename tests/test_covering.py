@@ -3,8 +3,10 @@
 import io
 import json
 import struct
+import time
 import zlib
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -315,3 +317,62 @@ def test_an_image_that_is_no_map_is_named(
 def test_a_grid_may_not_come_beside_the_map(client: httpx.Client) -> None:
     document = problem(post_map(client, png(GRID), grid=GRID), 422, "invalid-request")
     assert document["detail"] == "grid must come once, got it as the part map as well"
+
+
+LATER = {"Prefer": "respond-async"}
+
+
+def ended(client: httpx.Client, front: str) -> dict[str, Any]:
+    """The front once nothing about it will change."""
+    while (body := client.get(front).json())["status"] in ("queued", "running"):
+        time.sleep(0.02)
+    return body
+
+
+def test_a_front_of_places_may_be_found_later(client: httpx.Client) -> None:
+    accepted = client.post("/coverage", json=changed(paths=True), headers=LATER)
+    assert accepted.status_code == 202
+    assert accepted.headers["preference-applied"] == "respond-async"
+    body = ended(client, accepted.headers["location"])
+    assert (body["status"], body["places"]) == ("done", PLACES)
+    assert all(item["path"]["cells"] for item in body["front"])
+
+
+def test_a_front_that_cannot_be_found_later_says_why(client: httpx.Client) -> None:
+    task = changed(grid=WALLED, places=[[0, 0], [0, 3]], second_coordinates=POINTS[:2])
+    accepted = client.post("/coverage", json=task, headers=LATER)
+    body = ended(client, accepted.headers["location"])
+    assert (body["status"], body["front"]) == ("failed", [])
+    assert (body["problem"]["status"], body["problem"]["code"]) == (422, "invalid-request")
+    assert body["problem"]["errors"][0]["pointer"] == "/places/1"
+
+
+@pytest.fixture(scope="module")
+def patient() -> Iterator[httpx.Client]:
+    """A client of a service that allows what takes long."""
+    limits = replace(LIMITS, body_bytes=2**24, cities=1000, cells=2**20, seconds=600.0)
+    with serving(app_of(limits=limits)) as url, httpx.Client(base_url=url, timeout=60) as client:
+        yield client
+
+
+def test_a_survey_that_takes_long_can_be_cancelled(patient: httpx.Client) -> None:
+    places = np.random.default_rng(0).integers(1000, size=(1000, 2)).tolist()
+    task = {"cell_size": 1, "places": places, "second_coordinates": places}
+    files = {"request": (None, json.dumps(task)), "map": png(np.zeros((1000, 1000)))}
+    front = patient.post("/coverage", files=files, headers=LATER).headers["location"]
+    while patient.get(front).json()["status"] == "queued":
+        time.sleep(0.02)
+    body = patient.delete(front).json()
+    assert (body["status"], body["front"]) == ("cancelled", [])
+
+
+def test_a_search_that_is_cancelled_keeps_what_it_has_found(patient: httpx.Client) -> None:
+    places = np.random.default_rng(1).integers(40, size=(150, 2)).tolist()
+    task = {"cell_size": 1, "places": places, "second_coordinates": places, "paths": True}
+    task |= {"grid": [[0] * 40] * 40, "time_limit": 600, "second_coordinates": places[::-1]}
+    front = patient.post("/coverage", json=task, headers=LATER).headers["location"]
+    while not patient.get(front).json()["front"]:
+        time.sleep(0.02)
+    body = patient.delete(front).json()
+    assert (body["status"], body["places"]) == ("cancelled", places)
+    assert sorted(body["front"][0]["tour"]) == list(range(150))
