@@ -22,7 +22,7 @@ from service.access import Access, KeyHash, new_key
 from service.client import Client
 from service.edge import Edge
 from tests.artifacts import by_row_sums
-from tests.serving import app_of, serving, serving_released
+from tests.serving import Shuffler, app_of, serving, serving_released
 
 ROOT = Path(__file__).parent.parent
 EXAMPLE = ROOT / "service/examples/city-deliveries.json"
@@ -206,9 +206,11 @@ def test_without_matplotlib_a_plot_is_refused_before_anything_is_planned(cities:
     assert "pip install 'paretour[plot]'" in ended.stderr
 
 
-def test_ctrl_c_ends_the_search_with_the_best_front_so_far() -> None:
+@pytest.mark.parametrize("by_service", [False, True])
+def test_ctrl_c_ends_the_search_with_the_best_front_so_far(url: str, by_service: bool) -> None:
     terminal, its_end = pty.openpty()
     command = [*COMMAND, "front", str(EXAMPLE), "--json", "--time-limit", "60"]
+    command += ["--url", url] if by_service else []
     with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=its_end) as running:
         os.close(its_end)
         shown = b""
@@ -223,6 +225,19 @@ def test_ctrl_c_ends_the_search_with_the_best_front_so_far() -> None:
     assert time.monotonic() - began < 30
     assert (answer["status"], answer["terminated"]) == ("cancelled", "cancelled")
     assert len(answer["front"]) > 10
+
+
+def test_ctrl_c_before_there_is_a_front_ends_with_130(cities: Path, tmp_path: Path) -> None:
+    with serving(app_of(Shuffler(gate=tmp_path / "gate"))) as address:
+        command = [*COMMAND, "front", str(cities), "--url", address, "--time-limit", "0"]
+        with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE) as running:
+            while not (tmp_path / "gate.started").exists():
+                time.sleep(0.05)
+            running.send_signal(signal.SIGINT)
+            assert running.stdout is not None
+            assert running.stdout.read() == b""
+        (tmp_path / "gate").touch()
+    assert running.returncode == 130
 
 
 def test_help_waits_for_nothing_heavy() -> None:
