@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from email.utils import format_datetime
 from io import BytesIO
@@ -19,10 +20,11 @@ from PIL import Image
 from service.client import AsyncClient, Client, Refused
 from service.client.calls import Calls
 from service.client.refused import pause_before_next
-from tests.serving import app_of, serving
+from tests.serving import LIMITS, app_of, serving
 from tests.waiting import Waiting
 
 CITIES = np.random.default_rng(3).random((12, 4))
+MANY = np.random.default_rng(4).random((50, 4))
 FRONT = {
     "id": "f",
     "status": "done",
@@ -105,6 +107,39 @@ def progress(hypervolume: float) -> tuple[str, dict[str, Any]]:
 def url() -> Iterator[str]:
     with serving(app_of()) as address:
         yield address
+
+
+@pytest.fixture(scope="module")
+def patient_url() -> Iterator[str]:
+    """Of a service with which a search may take a minute."""
+    with serving(app_of(limits=replace(LIMITS, seconds=60))) as address:
+        yield address
+
+
+def test_a_job_of_the_service_is_followed_to_its_end(patient_url: str, connect: Connect) -> None:
+    job = connect(patient_url).submit(coordinates=MANY, time_limit=1.5)
+    heard = list(job.progress())
+    found = job.result()
+    assert heard
+    assert (np.diff([progress.hypervolume for progress in heard]) >= 0).all()
+    assert (found.id, found.status) == (job.id, "done")
+    assert found.points >= heard[0].points > 0
+
+
+def test_a_job_of_the_service_is_cancelled_and_forgotten(
+    patient_url: str, connect: Connect
+) -> None:
+    job = connect(patient_url).submit(coordinates=MANY, time_limit=60)
+    for progress in job.progress():
+        assert progress.points > 0
+        break
+    found = job.cancel()
+    assert (found.status, found.terminated) == ("cancelled", "cancelled")
+    assert len(found.tours) > 0
+    assert job.result().hypervolume == found.hypervolume
+    job.forget()
+    with pytest.raises(Refused, match="unknown-front"):
+        job.front()
 
 
 def test_a_front_is_what_the_service_answers(url: str, connect: Connect) -> None:

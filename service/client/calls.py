@@ -64,7 +64,7 @@ class Calls:
     def result(self, front: str) -> Call[Front]:
         """A front that is final, or the refusal that it failed with."""
         answer = yield from self._get(_path(front))
-        if answer.json().get("status") == "failed":
+        if answer.json()["status"] == "failed":
             raise Refused(answer.json()["problem"])
         return front_of(answer.json())
 

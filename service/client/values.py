@@ -141,7 +141,7 @@ def front_of(document: Mapping[str, Any]) -> Front:
     paths = tuple(path for item in items if (path := _path_of(item)) is not None)
     return Front(
         id=document["id"],
-        status=document.get("status", "done"),
+        status=document["status"],
         tours=tours.reshape(len(items), document["cities"]),
         lengths=_floats([item["lengths"] for item in items]).reshape(-1, 2),
         angles=_floats([item["angle"] for item in items]),
