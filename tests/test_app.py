@@ -539,13 +539,20 @@ def _seconds(front: Front) -> float:
     return time.perf_counter() - began
 
 
-def test_the_released_actor_plans_over_http() -> None:
+def test_the_released_actors_plan_over_http() -> None:
+    steps = np.random.default_rng(3).random((2, 9, 9)).tolist()
     with serving(build(Settings(workers=1)), warm=False) as url:
-        request = {"coordinates": CITIES, "preferences": 20, "time_limit": 0}
-        body = httpx.post(f"{url}/front", json=request, timeout=30).json()
-        [facts] = httpx.get(f"{url}/actors").json()["actors"]
-        assert body["actor"]["digest"] == facts["digest"]
-        assert len(body["front"]) > 1
+        released = httpx.get(f"{url}/actors").json()["actors"]
+        digests = {facts["name"]: facts["digest"] for facts in released}
+        for given, name in (
+            ({"coordinates": CITIES}, "pa-one"),
+            ({"matrices": steps}, "pa-one-matrix"),
+            ({"coordinates": CITIES, "actor": "pa-at"}, "pa-at"),
+        ):
+            request = {**given, "preferences": 20, "time_limit": 0}
+            body = httpx.post(f"{url}/front", json=request, timeout=30).json()
+            assert body["actor"] == {"name": name, "digest": digests[name]}
+            assert len(body["front"]) > 1
 
 
 def test_schemathesis_finds_nothing(url: str, tmp_path: Path) -> None:
