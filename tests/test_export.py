@@ -28,13 +28,13 @@ def exported(request: pytest.FixtureRequest) -> tuple[Actor, ModelProto]:
 
 
 def test_the_file_builds_the_tours_that_torch_builds(exported: tuple[Actor, ModelProto]) -> None:
-    compare(*exported, sizes=(3, 7, 40, 100))
+    compare(*exported, sizes=(3, 7, 40))
 
 
 @pytest.mark.parametrize("path", sorted(ACTORS.glob("*.onnx")), ids=lambda path: path.stem)
 def test_the_released_file_builds_the_tours_of_the_released_checkpoint(path: Path) -> None:
     trained = load_weights(ROOT / f"models/checkpoints/{path.stem}.pt")
-    compare(trained.actor, onnx.load(path))
+    compare(trained.actor, onnx.load(path), sizes=(3, 40, 200))  # the export itself goes further
 
 
 def test_a_file_with_other_weights_is_refused(exported: tuple[Actor, ModelProto]) -> None:
