@@ -28,7 +28,7 @@ def main(arguments: list[str] | None = None) -> None:
     model = to_onnx(trained.actor)
     compare(trained.actor, model)
     describe(model, trained)
-    out = options.out or Path("service/actors") / f"{trained.config.network.name}.onnx"
+    out = options.out or Path("service/actors") / f"{trained.config.network.label}.onnx"
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_bytes(model.SerializeToString())
     print(f"{out}: tours equal torch's; hypervolume {_property(model, 'figures')}")
@@ -40,7 +40,7 @@ def describe(model: ModelProto, trained: Trained) -> None:
     helper.set_model_props(
         model,
         {
-            "name": config.network.name,
+            "name": config.network.label,
             "inputs": trained.actor.reads,
             "config": json.dumps(as_plain(config)),
             "commit": _commit(),

@@ -38,6 +38,12 @@ class NetworkConfig:
                 f"got {self.preference_layers}"
             )
 
+    @property
+    def label(self) -> str:
+        """The name, with the paper's minus where a part is left out as in its ablations."""
+        graphless = self.name == "pa-ad" and self.graph_layers == 0
+        return self.name + ("-" if graphless or self.preference_layers == 0 else "")
+
 
 @dataclass(frozen=True, kw_only=True)
 class TrainingConfig:

@@ -157,3 +157,16 @@ def test_a_configuration_survives_storage() -> None:
     assert from_plain(json.loads(json.dumps(as_plain(config)))) == config
     with pytest.raises(ValueError, match="fields must be"):
         from_plain({**as_plain(config), "surprise": 1})
+
+
+@pytest.mark.parametrize(
+    ("changes", "label"),
+    [
+        ({"name": "pa-ad"}, "pa-ad"),
+        ({"name": "pa-ad", "graph_layers": 0}, "pa-ad-"),
+        ({"name": "pa-at", "preference_layers": 0}, "pa-at-"),
+        ({"name": "pa-one", "graph_layers": 0}, "pa-one"),
+    ],
+)
+def test_an_ablation_is_labelled_as_the_paper_does(changes: dict[str, object], label: str) -> None:
+    assert NetworkConfig(**changes).label == label
