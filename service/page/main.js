@@ -24,6 +24,7 @@ const result = new Result((plane, place) => placing.clicked(plane, place));
 let members = {}; // of the request, those that are neither typed nor set here
 let planning = null; // what is under way
 let answer = null; // the best front so far
+let frame = 0; // in which what was typed is drawn, 0 where all of it is
 
 const request = () => requestFor(members, fields.members, element("cities").value);
 
@@ -43,6 +44,8 @@ function open(asked, objectives = UNNAMED) {
 
 /** Whatever was planned is not of these cities. */
 function edited(fit = true) {
+  cancelAnimationFrame(frame);
+  frame = 0;
   leave();
   clearFaults();
   say("");
@@ -50,6 +53,11 @@ function edited(fit = true) {
   element("count").textContent = counted(rows.length, "city", "cities");
   result.clear({ ...members, coordinates: rows.filter(isCity) }, fit);
   answered(null);
+}
+
+/** Between two frames, however much is typed, it is drawn once. */
+function typed() {
+  frame ||= requestAnimationFrame(() => edited());
 }
 
 function placed(row) {
@@ -76,6 +84,7 @@ const SAID = {
 
 /** Shows what comes of a plan; `states` asks a planning for it. */
 async function run(states) {
+  if (frame) edited();
   leave();
   const mine = (planning = new Planning(service));
   clearFaults();
@@ -187,7 +196,7 @@ form.addEventListener("submit", (event) => {
   plan();
 });
 element("stop").addEventListener("click", stop);
-element("cities").addEventListener("input", () => edited());
+element("cities").addEventListener("input", typed);
 element("clear").addEventListener("click", () => {
   forgetExample();
   open({});
