@@ -24,12 +24,14 @@ const result = new Result((plane, place) => placing.clicked(plane, place));
 let members = {}; // of the request, those that are neither typed nor set here
 let planning = null; // what is under way
 let answer = null; // the best front so far
+let opened = 0; // how many requests were, so that none takes the place of a later one
 let frame = 0; // in which what was typed is drawn, 0 where all of it is
 
 const request = () => requestFor(members, fields.members, element("cities").value);
 
 /** Takes a request into the form, and shows its cities under their objectives. */
 function open(asked, objectives = UNNAMED) {
+  opened += 1;
   const { coordinates = [], ...others } = fields.take(asked, kindOf(asked));
   members = others;
   const typed = kindOf(asked) === "coordinates";
@@ -125,7 +127,6 @@ function busy(yes) {
 }
 
 async function stop() {
-  say("Stopped.");
   await planning?.stop().catch(fail);
 }
 
@@ -156,8 +157,11 @@ async function openExample() {
   const example = examples.find(({ file }) => file === element("example").value);
   element("about").textContent = example?.about ?? "";
   if (!example) return;
+  const before = opened;
   try {
-    open(await service.get(`examples/${example.file}`), example.objectives);
+    const asked = await service.get(`examples/${example.file}`);
+    if (opened > before) return;
+    open(asked, example.objectives);
   } catch (error) {
     fail(error);
   }
@@ -223,5 +227,7 @@ addEventListener("hashchange", openLinked);
 
 const examples = await service.get("examples/index.json");
 element("example").append(...examples.map(({ file, title }) => new Option(title, file)));
-element("example").value = examples[0].file;
-if (!(await openLinked())) await openExample();
+if (!(await openLinked()) && !opened) {
+  element("example").value = examples[0].file;
+  await openExample();
+}

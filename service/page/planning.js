@@ -17,6 +17,7 @@ export class Planning {
   #left = new AbortController();
   #id = null; // of the job, while there is one
   #own = false; // whether the job was begun here
+  #stopped = null; // the front as it was when it was to be stopped
 
   constructor(service) {
     this.#service = service;
@@ -44,8 +45,18 @@ export class Planning {
   /** What becomes of a front that the service has already. */
   async *follow(id, alone = null) {
     this.#id = id;
-    const path = `front/${id}`;
     const growth = alone ? [[0, alone.hypervolume]] : [];
+    try {
+      yield* this.#followed(`front/${id}`, alone, growth);
+    } catch (error) {
+      if (error.code !== "unknown-front" || !this.#stopped) throw error;
+      // It ended between the look and the stop, which forgot it.
+      this.#id = null;
+      yield { stage: "cancelled", alone, answer: grown(alone, this.#stopped), growth };
+    }
+  }
+
+  async *#followed(path, alone, growth) {
     let answer = await this.#service.get(path, this.#signal);
     while (!FINAL.includes(answer.status)) {
       let looked = performance.now();
@@ -68,14 +79,24 @@ export class Planning {
 
   /** Ends the plan with the best front so far, or with none where there is no job yet. */
   async stop() {
-    if (this.#id) await this.#service.delete(`front/${this.#id}`);
+    if (this.#id) await this.#end(`front/${this.#id}`);
     else this.#left.abort();
+  }
+
+  /** Ends a job. One that is done stays as it is: to delete it would be to forget its front. */
+  async #end(path) {
+    const answer = await this.#service.get(path);
+    if (FINAL.includes(answer.status)) return;
+    this.#stopped = answer;
+    await this.#service.delete(path).catch((error) => {
+      if (error.code !== "unknown-front") throw error;
+    });
   }
 
   /** Nobody waits for the front any more; a job that was begun here ends. */
   leave() {
     this.#left.abort();
-    if (this.#id && this.#own) this.#service.delete(`front/${this.#id}`).catch(() => {});
+    if (this.#id && this.#own) this.#end(`front/${this.#id}`).catch(() => {});
   }
 
   get left() {
