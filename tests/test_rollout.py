@@ -88,10 +88,13 @@ def test_sampling_draws_tours_as_often_as_their_likelihood_says(name: str) -> No
 
 @pytest.mark.parametrize("name", NAMES)
 def test_numbering_the_cities_otherwise_changes_no_tour(name: str) -> None:
-    actor = small(name)
-    instances = given(actor, 1, 12)
+    # Sums in another order round otherwise, which is more than the cities of a PA-AD without
+    # training differ by. PA-EAN's compiled pointer knows single precision alone.
+    precision = torch.float32 if name == "pa-ean" else torch.float64
+    actor = small(name).to(precision)
+    instances = given(actor, 1, 12).to(precision)
     order = torch.cat((torch.zeros(1), 1 + torch.randperm(11, generator=Generator()))).long()
-    preferences = fan_of_preferences(4, CPU)
+    preferences = fan_of_preferences(4, CPU).to(precision)
     tours = greedy_tours(actor, instances, preferences)
     if actor.reads == "coordinates":
         other = instances[:, order]
