@@ -98,8 +98,10 @@ def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> N
 def test_a_pinned_tour_stays_beside_the_selected_one(page: Page) -> None:
     slider = page.get_by_role("slider", name="Angle")
     slider.press("Home")
+    drawn(page)
     page.get_by_role("button", name="Pin to compare").click()
     slider.press("End")
+    drawn(page)
     selected, pinned, difference = page.get_by_role("row", name="Risk").get_by_role("cell").all()
     assert number(selected) < number(pinned)
     expect(difference).to_contain_text("-")
@@ -266,8 +268,13 @@ def bring(page: Page, files: dict[str, str]) -> None:
     page.get_by_label("Open files").set_input_files(given)
 
 
+def drawn(page: Page) -> None:
+    """Waits for the next frame, in which the page draws what was asked of it in this one."""
+    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
 def figure(page: Page, name: str) -> float:
-    page.wait_for_timeout(50)  # drawn with the next frame
+    drawn(page)
     return number(page.get_by_role("row", name=name).get_by_role("cell").first)
 
 
