@@ -351,10 +351,10 @@ def test_before_the_search_is_compiled_only_the_network_answers(tmp_path: Path) 
 
 
 def test_a_client_that_goes_away_frees_its_worker() -> None:
-    limits = replace(LIMITS, seconds=600.0)
+    limits = replace(LIMITS, seconds=600.0, cities=300)
     workers = workers_of(planner_of(limits=limits), queue=0, seconds=700)
     with serving(app_of(workers=workers, limits=limits)) as address:
-        cities = np.random.default_rng(0).random((50, 4)).tolist()
+        cities = np.random.default_rng(0).random((300, 4)).tolist()
         with pytest.raises(httpx.ReadTimeout):
             httpx.post(
                 f"{address}/front", json={"coordinates": cities, "time_limit": 600}, timeout=1
@@ -366,10 +366,10 @@ def test_a_client_that_goes_away_frees_its_worker() -> None:
 
 
 def test_a_request_that_takes_too_long_is_answered_with_what_was_found() -> None:
-    limits = replace(LIMITS, seconds=600.0)
+    limits = replace(LIMITS, seconds=600.0, cities=300)
     workers = workers_of(planner_of(limits=limits), seconds=1)
     with serving(app_of(workers=workers, limits=limits)) as address:
-        cities = np.random.default_rng(0).random((50, 4)).tolist()
+        cities = np.random.default_rng(0).random((300, 4)).tolist()
         request = {"coordinates": cities, "time_limit": 600}
         answer = httpx.post(f"{address}/front", json=request, timeout=60)
         assert (answer.status_code, answer.json()["terminated"]) == (200, "time_limit")

@@ -24,7 +24,7 @@ from tests.serving import LIMITS, app_of, serving
 from tests.waiting import Waiting
 
 CITIES = np.random.default_rng(3).random((12, 4))
-MANY = np.random.default_rng(4).random((50, 4))
+MANY = np.random.default_rng(4).random((300, 4))
 FRONT = {
     "id": "f",
     "status": "done",
@@ -112,7 +112,7 @@ def url() -> Iterator[str]:
 @pytest.fixture(scope="module")
 def patient_url() -> Iterator[str]:
     """Of a service with which a search may take a minute."""
-    with serving(app_of(limits=replace(LIMITS, seconds=60))) as address:
+    with serving(app_of(limits=replace(LIMITS, seconds=60, cities=300))) as address:
         yield address
 
 

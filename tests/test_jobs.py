@@ -32,11 +32,12 @@ from tests.serving import (
     workers_of,
 )
 
-CITIES = np.random.default_rng(5).random((50, 4)).tolist()
+# So many that no search of theirs has converged within seconds.
+CITIES = np.random.default_rng(5).random((300, 4)).tolist()
 LONG = {"coordinates": CITIES, "time_limit": 600}
 SHORT = {"coordinates": CITIES[:12], "time_limit": 0.05}
 LATER = {"Prefer": "handling=strict, respond-async; wait=10"}
-PATIENT = replace(LIMITS, seconds=600.0)
+PATIENT = replace(LIMITS, seconds=600.0, cities=300)
 
 
 @contextmanager
