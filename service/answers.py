@@ -3,7 +3,6 @@
 import asyncio
 import hashlib
 import uuid
-from dataclasses import replace
 from http import HTTPStatus
 
 from pydantic_core import to_json
@@ -11,14 +10,12 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from service.bodies import json_bytes, json_response
-from service.jobs import Jobs
+from service.engine import Engine, finished
 from service.messages import Work
-from service.order import Order
 from service.problems import MEDIA_TYPE, Fault, Refusal
 from service.record import Record
 from service.rendered import Rendered
 from service.store import Store
-from service.workers import Workers
 
 _LONGEST_KEY = 255
 
@@ -29,23 +26,22 @@ def caller_of(request: Request) -> str:
 
 
 class Answers:
-    """Hands work to the workers, and fronts to those who asked."""
+    """Hands work to the engine, and fronts to those who asked."""
 
-    def __init__(self, workers: Workers, jobs: Jobs, store: Store) -> None:
-        self._workers = workers
-        self._jobs = jobs
+    def __init__(self, engine: Engine, store: Store) -> None:
+        self._engine = engine
         self._store = store
 
-    def check_place(self, request: Request) -> None:
+    async def check_place(self, request: Request) -> None:
         """Nothing, if more work is taken. A repeat may need no place.
 
         Raises:
             Busy: the queue is full.
             Closed: no more work is taken.
         """
-        self._workers.check_open()
+        await self._engine.check_open()
         if _key(request) is None:
-            self._workers.check_place()
+            await self._engine.check_place()
 
     async def answer(self, request: Request, work: Work, nothing_yet: Rendered) -> Response:
         """The front, or where it will be found.
@@ -64,40 +60,28 @@ class Answers:
             digest=_digest(work),
         )
         if _wants_it_later(request):
-            return _accepted(self._jobs.state(await self._begun(record)).record)
+            return _accepted(self._engine.state(await self._begun(record)).record)
         if record.key is not None:
-            return _finished(request, await self._jobs.finished(await self._begun(record)))
+            return _finished(request, await finished(self._engine, await self._begun(record)))
         return _finished(request, await self._now(request, record))
 
     async def _now(self, request: Request, record: Record) -> Record:
-        assert record.work is not None
-        order = self._workers.order(record.work)
-        await self._while_wanted(request, order)
-        record = replace(record, status="done", front=await order.front(), work=None)
-        await self._store.put(record)
-        return record
+        leaving = asyncio.ensure_future(_left(request))
+        try:
+            return await self._engine.at_once(record, leaving)
+        finally:
+            leaving.cancel()
 
     async def _begun(self, record: Record) -> Record:
         """The record, or the earlier one of which it is a repeat."""
         kept = await self._store.admit(record)
         if kept.id == record.id:
             try:
-                self._jobs.begin(record)
+                await self._engine.begin(record)
             except Exception:
                 await self._store.forget(record)
                 raise
         return kept
-
-    async def _while_wanted(self, request: Request, order: Order) -> None:
-        """Wait for the order's end, and stop it as soon as the client has gone away."""
-        working = asyncio.ensure_future(order.front())
-        leaving = asyncio.ensure_future(_left(request))
-        try:
-            await asyncio.wait((working, leaving), return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            self._workers.stop(order)
-            working.cancel()
-            leaving.cancel()
 
 
 async def _left(request: Request) -> None:

@@ -12,36 +12,32 @@ from service.actor import ActorFacts
 from service.answers import Answers
 from service.bodies import json_response
 from service.edge import Edge
+from service.engine import Engine
 from service.fronts import FrontRoutes
-from service.jobs import Jobs
 from service.kept import KeptRoutes
 from service.pages import page_routes
 from service.problems import REFUSALS, Problem, answer_refusal, responses
 from service.reference import illustrate
 from service.schemas import ActorsAnswer, HealthAnswer, Limits
 from service.store import Store
-from service.workers import Workers
 
 
 def create_app(
     actors: Mapping[str, ActorFacts],
     store: Store,
-    workers: Workers,
+    engine: Engine,
     limits: Limits,
     version: str,
     edge: Edge | None = None,
 ) -> FastAPI:
-    """The application. It starts the workers and closes them when it shuts down."""
+    """The application. It starts the engine and closes it when it shuts down."""
     edge = edge or Edge()
-    jobs = Jobs(workers, store)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
-        await workers.start()
-        await jobs.start()
+        await engine.start()
         yield
-        await workers.close()
-        await jobs.close()
+        await engine.close()
         await store.close()
 
     app = _Documented(
@@ -56,12 +52,12 @@ def create_app(
         docs_url=None,
         redoc_url=None,
     )
-    fronts = FrontRoutes(actors, workers, Answers(workers, jobs, store), limits)
+    fronts = FrontRoutes(actors, engine, Answers(engine, store), limits)
     app.include_router(fronts.router(), **edge.guard)
-    app.include_router(KeptRoutes(store, jobs).router(), **edge.guard)
+    app.include_router(KeptRoutes(store, engine).router(), **edge.guard)
     app.include_router(_actor_router(actors), **edge.guard)
     app.include_router(edge.metrics.router(), **edge.guard)
-    app.include_router(_HealthRoutes(workers).router())
+    app.include_router(_HealthRoutes(engine).router())
     return app
 
 
@@ -108,8 +104,8 @@ def _actor_router(actors: Mapping[str, ActorFacts]) -> APIRouter:
 class _HealthRoutes:
     """How the service is. These are open to all: an orchestrator has no key."""
 
-    def __init__(self, workers: Workers) -> None:
-        self._workers = workers
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
 
     def router(self) -> APIRouter:
         """The paths, with what the OpenAPI document says of them."""
@@ -126,5 +122,5 @@ class _HealthRoutes:
 
     async def ready(self) -> Response:
         """Whether the process takes work of every kind."""
-        self._workers.check_ready()
+        await self._engine.check_ready()
         return json_response({"status": "ready"})

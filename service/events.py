@@ -7,7 +7,7 @@ from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
 from pydantic_core import to_json
 from starlette.responses import StreamingResponse
 
-from service.jobs import State
+from service.engine import State
 from service.messages import Snapshot
 from service.record import Record
 

@@ -12,13 +12,13 @@ from service.answers import Answers
 from service.asked import nothing_yet, parse
 from service.bodies import read_body
 from service.covering import CoverageRequest, coverage_schema
+from service.engine import Engine
 from service.messages import Work, WorkKind
 from service.problems import responses
 from service.rendered import Rendered
 from service.requests import request_schema
 from service.roster import choose_actor
 from service.schemas import AcceptedAnswer, CoverageAnswer, FrontAnswer, Limits
-from service.workers import Workers
 
 _UPLOADS: Mapping[WorkKind, str] = {"front": "matrices", "coverage": "map"}
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
@@ -26,17 +26,17 @@ _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
 
 
 class FrontRoutes:
-    """Checks what is asked for, and has it planned on the workers."""
+    """Checks what is asked for, and has it planned."""
 
     def __init__(
         self,
         actors: Mapping[str, ActorFacts],
-        workers: Workers,
+        engine: Engine,
         answers: Answers,
         limits: Limits,
     ) -> None:
         self._actors = actors
-        self._workers = workers
+        self._engine = engine
         self._answers = answers
         self._limits = limits
 
@@ -78,18 +78,18 @@ class FrontRoutes:
         return await self._plan(request, "coverage")
 
     async def _plan(self, request: Request, kind: WorkKind) -> Response:
-        self._answers.check_place(request)
+        await self._answers.check_place(request)
         body = await read_body(request, self._limits.body_bytes, _UPLOADS[kind])
         work = Work(kind, body.json, body.upload)
-        return await self._answers.answer(request, work, self._nothing_yet(work))
+        return await self._answers.answer(request, work, await self._nothing_yet(work))
 
-    def _nothing_yet(self, work: Work) -> Rendered:
+    async def _nothing_yet(self, work: Work) -> Rendered:
         """The front before anything is found, if it is known that it can be planned."""
         asked = parse(work, self._limits)
         actor = self._actors[choose_actor(self._actors, asked.kind, asked.named_actor)]
         nothing = nothing_yet(asked, actor.named)
         if isinstance(asked, CoverageRequest) or asked.demand().needs_compiled_code:
-            self._workers.check_warm()
+            await self._engine.check_warm()
         return nothing
 
 

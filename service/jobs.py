@@ -2,25 +2,18 @@
 
 import asyncio
 import logging
+from asyncio import Future
 from collections.abc import AsyncIterator, Coroutine
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from service.messages import Snapshot
+from service.engine import Busy, Closed, Cold, Standing, State, finished
 from service.order import Order, Stopped
 from service.problems import problem_of
 from service.record import Record, Status
 from service.store import Store
-from service.workers import Busy, Closed, Cold, Workers
+from service.workers import Workers
 
 _PAUSE = 0.5  # seconds between two tries to take up the work of an earlier process
-
-
-@dataclass(frozen=True, eq=False)
-class State:
-    """How a job stands: its record as of now, and how far a search that goes on has come."""
-
-    record: Record
-    progress: Snapshot | None = None
 
 
 class _Job:
@@ -73,28 +66,60 @@ class Jobs:
         self._log = logging.getLogger("paretour")
 
     async def start(self) -> None:
-        """Take up what an earlier process has left unfinished."""
+        """Start the workers, and take up what an earlier process has left unfinished."""
+        await self._workers.start()
         if unfinished := await self._store.unfinished():
             self._spawn(self._resume(unfinished))
 
     async def close(self) -> None:
-        """Leave the work where it is; the workers have been closed."""
+        """Close the workers, and leave the work where it is."""
+        await self._workers.close()
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
-    def begin(self, record: Record) -> None:
-        """Begin the work of a record that is in the store.
+    async def standing(self) -> Standing:
+        """How it is, for whoever watches."""
+        workers = self._workers
+        return Standing(waiting=workers.waiting, working=workers.working, lost=workers.lost)
 
-        Raises:
-            Busy: the queue is full.
-            Closed: no more work is taken.
-        """
+    async def check_open(self) -> None:
+        """Nothing, if work is taken."""
+        self._workers.check_open()
+
+    async def check_place(self) -> None:
+        """Nothing, if there is a place for one more front."""
+        self._workers.check_place()
+
+    async def check_warm(self) -> None:
+        """Nothing, if work may need compiled code."""
+        self._workers.check_warm()
+
+    async def check_ready(self) -> None:
+        """Nothing, if work of every kind is taken."""
+        self._workers.check_ready()
+
+    async def at_once(self, record: Record, left: Future[None]) -> Record:
+        """What becomes of work that somebody waits for, until he has left."""
+        assert record.work is not None
+        order = self._workers.order(record.work)
+        working = asyncio.ensure_future(order.front())
+        try:
+            await asyncio.wait((working, left), return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._workers.stop(order)
+            working.cancel()
+        record = replace(record, status="done", front=await order.front(), work=None)
+        await self._store.put(record)
+        return record
+
+    async def begin(self, record: Record) -> None:
+        """Begin the work of a record that is in the store, whoever waits."""
         job = self._jobs[record.id] = _Job(record, self._workers)
         self._spawn(self._see_through(record, job))
 
     def state(self, record: Record) -> State:
-        """How the job of a record stands."""
+        """How a record from the store stands."""
         job = self._jobs.get(record.id)
         return job.state if job else State(record)
 
@@ -107,17 +132,11 @@ class Jobs:
             await changing
         yield job.state if job else State(record)
 
-    async def finished(self, record: Record) -> Record:
-        """What becomes of a record in the end."""
-        async for state in self.states(record):
-            record = state.record
-        return record
-
     async def cancel(self, record: Record) -> Record:
         """End the work of a record at once; what was found so far is kept."""
         if job := self._jobs.get(record.id):
             self._workers.stop(job.order)
-        return await self.finished(record)
+        return await finished(self, record)
 
     def _spawn(self, work: Coroutine[None, None, None]) -> None:
         task = asyncio.create_task(work)
@@ -129,7 +148,7 @@ class Jobs:
             while True:
                 try:
                     self._workers.check_warm()
-                    self.begin(record)
+                    await self.begin(record)
                     break
                 except (Busy, Cold):
                     await asyncio.sleep(_PAUSE)

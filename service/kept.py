@@ -9,8 +9,8 @@ from starlette.responses import Response, StreamingResponse
 
 from service.answers import caller_of
 from service.bodies import json_bytes
+from service.engine import Engine
 from service.events import event_stream
-from service.jobs import Jobs
 from service.problems import Refusal, responses
 from service.record import Record
 from service.schemas import FrontAnswer, TourAnswer, TourQuery
@@ -20,9 +20,9 @@ from service.store import Expired, Store, Unknown
 class KeptRoutes:
     """Each caller is told of its own fronts alone."""
 
-    def __init__(self, store: Store, jobs: Jobs) -> None:
+    def __init__(self, store: Store, engine: Engine) -> None:
         self._store = store
-        self._jobs = jobs
+        self._engine = engine
 
     def router(self) -> APIRouter:
         """The paths, with what the OpenAPI document says of them."""
@@ -55,11 +55,11 @@ class KeptRoutes:
         if record.finished:
             await self._store.forget(record)
             return Response(status_code=204)
-        return json_bytes((await self._jobs.cancel(record)).json())
+        return json_bytes((await self._engine.cancel(record)).json())
 
     async def events(self, request: Request, id: str) -> Response:  # noqa: A002
         """Tell how the planning of a front goes, until it has ended."""
-        return event_stream(self._jobs.states(await self._record(request, id)))
+        return event_stream(self._engine.states(await self._record(request, id)))
 
     async def tour(self, request: Request, query: Annotated[TourQuery, Query()]) -> Response:
         """Give the tour of a front whose direction is nearest to an angle."""
@@ -74,7 +74,7 @@ class KeptRoutes:
         caller, store = caller_of(request), self._store
         try:
             kept = store.latest(caller) if front is None else store.get(caller, front)
-            return self._jobs.state(await kept).record
+            return self._engine.state(await kept).record
         except Unknown:
             _refuse_unknown(front)
         except Expired:

@@ -18,6 +18,7 @@ from prometheus_client.metrics_core import CounterMetricFamily, GaugeMetricFamil
 from prometheus_client.registry import Collector
 from starlette.responses import Response
 
+from service.engine import Standing
 from service.observed import Answered
 from service.rendered import Rendered
 
@@ -28,19 +29,10 @@ _SHARES = (0.0, 0.0001, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
 
 
 class Watched(Protocol):
-    """Workers behind a queue."""
+    """What plans fronts."""
 
-    @property
-    def waiting(self) -> int:
-        """How many orders wait."""
-
-    @property
-    def working(self) -> int:
-        """How many are being worked on."""
-
-    @property
-    def lost(self) -> int:
-        """How many workers were lost and replaced."""
+    async def standing(self) -> Standing:
+        """How it is."""
 
 
 class Metrics:
@@ -71,6 +63,9 @@ class Metrics:
             registry=registry,
             buckets=_SECONDS,
         )
+        self._watched: Watched | None = None
+        self._workers = _WorkersCollector()
+        registry.register(self._workers)
         self._gained = Histogram(
             "paretour_hypervolume_gained",
             "share of the reference box that the search added to what it was given",
@@ -87,6 +82,8 @@ class Metrics:
 
     async def exposition(self) -> Response:
         """Everything counted, in the text format of Prometheus."""
+        if self._watched is not None:
+            self._workers.standing = await self._watched.standing()
         return _Exposition(generate_latest(self._registry))
 
     def answered(self, answered: Answered) -> None:
@@ -96,9 +93,9 @@ class Metrics:
         self._requests.labels(method, answered.path, answered.status).inc()
         self._request_seconds.labels(method, answered.path).observe(answered.seconds)
 
-    def watch(self, workers: Watched) -> None:
+    def watch(self, watched: Watched) -> None:
         """Ask how the workers are whenever Prometheus asks."""
-        self._registry.register(_WorkersCollector(workers))
+        self._watched = watched
 
     def planned(self, front: Rendered) -> None:
         """Count a front: the phases of planning, and the hypervolume that the search gained."""
@@ -110,11 +107,12 @@ class Metrics:
 
 
 class _WorkersCollector(Collector):
-    def __init__(self, workers: Watched) -> None:
-        self._workers = workers
+    def __init__(self) -> None:
+        self.standing: Standing | None = None
 
     def collect(self) -> Iterator[Metric]:
-        workers = self._workers
+        if (workers := self.standing) is None:
+            return
         yield GaugeMetricFamily(
             "paretour_queue_depth", "fronts that wait for a worker", workers.waiting
         )

@@ -21,10 +21,10 @@ from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.coverage import InvalidCoverage, TooManyPlaces
+from service.engine import Busy, Closed, Cold
 from service.instance import InvalidInstance
 from service.order import Lost, Overdue, Stopped
 from service.store import Mismatch
-from service.workers import Busy, Closed, Cold
 
 MEDIA_TYPE = "application/problem+json"
 _SAFE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")

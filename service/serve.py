@@ -14,6 +14,7 @@ from service.access import Access, Rates
 from service.actor import load_actors
 from service.app import create_app
 from service.edge import Edge
+from service.jobs import Jobs
 from service.logs import logging_config
 from service.metrics import Metrics
 from service.planning import load_planner
@@ -35,11 +36,15 @@ def build(settings: Settings) -> FastAPI:
         seconds=settings.request_seconds,
         planned=metrics.planned,
     )
-    metrics.watch(workers)
+    store = SqliteStore(
+        settings.store, entries=settings.store_entries, max_age=settings.store_seconds
+    )
+    jobs = Jobs(workers, store)
+    metrics.watch(jobs)
     app = create_app(
         {name: actor.facts for name, actor in actors.items()},
-        SqliteStore(settings.store, entries=settings.store_entries, max_age=settings.store_seconds),
-        workers,
+        store,
+        jobs,
         settings.limits,
         _version(),
         Edge(

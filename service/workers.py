@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import count
 
+from service.engine import Busy, Closed, Cold
 from service.messages import Do, Done, Failed, Found, Started, Stop, Warm, WarmUp, Work
 from service.order import MOST_ATTEMPTS, Lost, Order, Overdue, Stopped
 from service.process import MakePlanner, Process
@@ -18,18 +19,6 @@ from service.rendered import Rendered
 
 GRACE = 0.15  # seconds for work to come to an end before its process is ended
 _PAUSE = 1.0  # seconds before a process that could not even start is replaced
-
-
-class Busy(Exception):
-    """As many wait as may wait."""
-
-
-class Closed(Exception):
-    """The service is shutting down."""
-
-
-class Cold(Exception):
-    """The search is still being compiled, which happens once, or loaded."""
 
 
 @dataclass(eq=False)

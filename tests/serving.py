@@ -24,6 +24,7 @@ from service.actor import ActorFacts
 from service.app import create_app
 from service.edge import Edge
 from service.instance import Instance, Kind
+from service.jobs import Jobs
 from service.planning import FrontPlanner, NamedActor
 from service.process import MakePlanner
 from service.schemas import Limits
@@ -119,10 +120,12 @@ def app_of(
     limits: Limits = LIMITS,
     edge: Edge | None = None,
 ) -> FastAPI:
+    store = store or SqliteStore(IN_MEMORY, entries=100, max_age=60)
+    workers = workers or workers_of(planner_of(*actors, limits=limits))
     return create_app(
         {actor.facts.name: actor.facts for actor in actors or ACTORS},
-        store or SqliteStore(IN_MEMORY, entries=100, max_age=60),
-        workers or workers_of(planner_of(*actors, limits=limits)),
+        store,
+        Jobs(workers, store),
         limits,
         "test",
         edge,

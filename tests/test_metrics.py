@@ -11,6 +11,7 @@ import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
 from service.edge import Edge
+from service.engine import Standing
 from service.metrics import Metrics
 from tests.serving import Broken, app_of, running, serving
 from tests.test_app import CITIES
@@ -71,18 +72,19 @@ def test_a_client_that_goes_away_before_its_body_has_ended_is_no_fault(
 class Crew:
     """Workers that stand as they stand."""
 
-    waiting: int
-    working: int
-    lost: int
+    now: Standing
+
+    async def standing(self) -> Standing:
+        return self.now
 
 
 def test_the_workers_are_asked_whenever_prometheus_asks() -> None:
-    crew = Crew(waiting=3, working=2, lost=1)
+    crew = Crew(Standing(waiting=3, working=2, lost=1))
     metrics = Metrics()
     metrics.watch(crew)
     with serving(app_of(edge=Edge(metrics=metrics))) as url:
         counted = samples(url)
-        crew.waiting = 0
+        crew.now = Standing(waiting=0, working=2, lost=1)
         later = samples(url)
     assert counted["paretour_queue_depth",] == 3
     assert counted["paretour_workers_busy",] == 2

@@ -12,8 +12,9 @@ from typing import Any
 
 import pytest
 
+from service.engine import Busy, Closed, Cold
 from service.order import Lost, Overdue, Stopped
-from service.workers import Busy, Closed, Cold, Workers
+from service.workers import Workers
 from tests.puppet import Puppet, work, working
 
 ROOT = Path(__file__).parent.parent
