@@ -24,7 +24,7 @@ from service.coverage import InvalidCoverage, TooManyPlaces
 from service.engine import Busy, Closed, Cold
 from service.instance import InvalidInstance
 from service.order import Lost, Overdue, Stopped
-from service.store import Mismatch
+from service.store import Mismatch, Unavailable
 
 MEDIA_TYPE = "application/problem+json"
 _SAFE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
@@ -136,6 +136,7 @@ _SENTENCES: dict[type[Exception], tuple[int, str, str]] = {
     Lost: (503, "worker-lost", "the work must leave its worker alive, and two were lost over it"),
     Stopped: (503, "stopped", "the work was stopped before there was a front"),
     Mismatch: (422, "idempotency-mismatch", "an Idempotency-Key must be of one body, got another"),
+    Unavailable: (503, "store-unavailable", "what fronts are kept in must answer, and does not"),
     Overdue: (504, "overdue", "the work must end in time, and there was no front yet"),
     Cold: (
         503,

@@ -1,32 +1,22 @@
 """The store in a file, so that it outlives the process, or in memory: SQLite either way."""
 
 import asyncio
-import json
 import sqlite3
-import zlib
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from time import time
-from typing import Any, TypeVar
+from typing import TypeVar
 
-import numpy as np
-from pydantic_core import to_json
-
-from service.messages import Work
+from service.columns import COLUMNS, columns, record_of
 from service.record import Record
-from service.rendered import Rendered
 from service.store import Expired, Mismatch, Unknown
 
 T = TypeVar("T")
 IN_MEMORY = ":memory:"
-_LEVEL = 1  # of compression: digits shrink to half of their size, quickly
-_COLUMNS = (
-    "id, caller, request_id, status, key, digest, problem,"
-    " members, tours, ends, angles, kind, body, upload"
-)
+_COLUMNS = ", ".join(COLUMNS)
 _SCHEMA = f"""
 PRAGMA locking_mode = EXCLUSIVE;
 PRAGMA journal_mode = WAL;
@@ -117,7 +107,7 @@ class SqliteStore:
 
     def _put(self, record: Record) -> None:
         self._delete(record.id)
-        values = _row(record)
+        values = columns(record).values()
         places = ", ".join("?" * (len(values) + 1))
         insert = f"INSERT INTO front (kept, {_COLUMNS}) VALUES ({places})"
         self._database.execute(insert, (self._clock(), *values))
@@ -145,7 +135,7 @@ class SqliteStore:
 
     def _all(self, where: str, *values: str) -> list[Record]:
         rows = self._database.execute(f"SELECT {_COLUMNS} FROM front WHERE {where}", values)
-        return [_record(row) for row in rows]
+        return [record_of(dict(zip(COLUMNS, row, strict=True))) for row in rows]
 
     def _delete(self, id: str) -> None:  # noqa: A002
         self._database.execute("DELETE FROM front WHERE id = ?", (id,))
@@ -165,42 +155,3 @@ def _opened(path: str) -> sqlite3.Connection:
     database = sqlite3.connect(path, check_same_thread=False, timeout=1)
     database.executescript(_SCHEMA)
     return database
-
-
-def _row(record: Record) -> tuple[Any, ...]:
-    front, work = record.front, record.work
-    return (
-        record.id,
-        record.caller,
-        record.request_id,
-        record.status,
-        record.key,
-        record.digest,
-        to_json(record.problem),
-        to_json(front.members),
-        zlib.compress(front.tours, _LEVEL),
-        front.ends.tobytes(),
-        front.angles.tobytes(),
-        *((work.kind, work.body, work.upload) if work else (None, None, None)),
-    )
-
-
-def _record(row: tuple[Any, ...]) -> Record:
-    (id_, caller, request_id, status, key, digest, problem), rest = row[:7], row[7:]
-    members, tours, ends, angles, *work = rest
-    return Record(
-        id=id_,
-        caller=caller,
-        request_id=request_id,
-        status=status,
-        key=key,
-        digest=digest,
-        problem=json.loads(problem),
-        front=Rendered(
-            json.loads(members),
-            zlib.decompress(tours),
-            np.frombuffer(ends, np.int64),
-            np.frombuffer(angles, np.float64),
-        ),
-        work=Work(*work) if work[0] is not None else None,
-    )

@@ -17,6 +17,10 @@ class Mismatch(Exception):
     """The caller has used this idempotency key for another body."""
 
 
+class Unavailable(Exception):
+    """What the records are kept in does not answer."""
+
+
 class Store(Protocol):
     """Keeps records. What is not finished never makes way."""
 

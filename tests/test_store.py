@@ -1,19 +1,26 @@
 """Fronts kept for later, and how they make way."""
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
+from redis.asyncio import Redis
 
+from service.cluster.store import RedisStore
 from service.messages import Work
 from service.record import Record
 from service.rendered import rendered
 from service.sqlite import IN_MEMORY, SqliteStore
-from service.store import Expired, Mismatch, Unknown
+from service.store import Expired, Mismatch, Store, Unavailable, Unknown
 from tests.puppet import front
+from tests.redis_server import redis_server
+
+Run = Callable[..., None]
 
 
 class Clock:
@@ -35,17 +42,41 @@ def job(id_: str, **more: Any) -> Record:
     return record(id_, **{"status": "queued", "work": Work("front", b"{}", b"\0"), **more})
 
 
-def run(test: Callable[[SqliteStore], Awaitable[None]], **options: Any) -> None:
-    async def with_store() -> None:
-        store = SqliteStore(IN_MEMORY, **{"entries": 2, "max_age": 60, **options})
-        await test(store)
-        await store.close()
-
-    asyncio.run(with_store())
+@asynccontextmanager
+async def sqlite_store(**options: Any) -> AsyncIterator[Store]:
+    store = SqliteStore(IN_MEMORY, **options)
+    yield store
+    await store.close()
 
 
-def test_what_was_put_is_given_again_as_it_was() -> None:
-    async def test(store: SqliteStore) -> None:
+@asynccontextmanager
+async def redis_store(url: str, **options: Any) -> AsyncIterator[Store]:
+    redis = Redis.from_url(url)
+    await redis.flushall()
+    store = RedisStore(redis, **options)
+    yield store
+    await store.close()
+
+
+@pytest.fixture(params=["sqlite", "redis"])
+def run(request: pytest.FixtureRequest) -> Run:
+    """Runs a test with a store of either kind."""
+    stores = sqlite_store
+    if request.param == "redis":
+        stores = partial(redis_store, request.getfixturevalue("redis").url)
+
+    def run(test: Callable[[Store], Awaitable[None]], **options: Any) -> None:
+        async def with_store() -> None:
+            async with stores(**{"entries": 2, "max_age": 60, **options}) as store:
+                await test(store)
+
+        asyncio.run(with_store())
+
+    return run
+
+
+def test_what_was_put_is_given_again_as_it_was(run: Run) -> None:
+    async def test(store: Store) -> None:
         a, b = record("a"), record("b", problem={"code": "overdue"})
         await store.put(a)
         await store.put(b)
@@ -56,8 +87,8 @@ def test_what_was_put_is_given_again_as_it_was() -> None:
     run(test)
 
 
-def test_an_id_never_used_is_unknown() -> None:
-    async def test(store: SqliteStore) -> None:
+def test_an_id_never_used_is_unknown(run: Run) -> None:
+    async def test(store: Store) -> None:
         with pytest.raises(Unknown):
             await store.get("us", "a")
         with pytest.raises(Unknown):
@@ -66,8 +97,8 @@ def test_an_id_never_used_is_unknown() -> None:
     run(test)
 
 
-def test_a_caller_sees_its_own_alone() -> None:
-    async def test(store: SqliteStore) -> None:
+def test_a_caller_sees_its_own_alone(run: Run) -> None:
+    async def test(store: Store) -> None:
         await store.put(record("a", caller="us"))
         await store.put(record("b", caller="them"))
         assert (await store.latest("us")).id == "a"
@@ -83,8 +114,8 @@ def test_a_caller_sees_its_own_alone() -> None:
     run(test)
 
 
-def test_the_oldest_makes_way_when_the_store_is_full() -> None:
-    async def test(store: SqliteStore) -> None:
+def test_the_oldest_makes_way_when_the_store_is_full(run: Run) -> None:
+    async def test(store: Store) -> None:
         for id_ in "abc":
             await store.put(record(id_))
         with pytest.raises(Expired):
@@ -94,10 +125,10 @@ def test_the_oldest_makes_way_when_the_store_is_full() -> None:
     run(test)
 
 
-def test_asking_for_a_front_does_not_keep_it_longer() -> None:
+def test_asking_for_a_front_does_not_keep_it_longer(run: Run) -> None:
     clock = Clock()
 
-    async def test(store: SqliteStore) -> None:
+    async def test(store: Store) -> None:
         await store.put(record("a"))
         clock.now = 60
         assert (await store.get("us", "a")).id == "a"
@@ -110,8 +141,8 @@ def test_asking_for_a_front_does_not_keep_it_longer() -> None:
     run(test, clock=clock)
 
 
-def test_only_so_many_of_the_gone_are_remembered() -> None:
-    async def test(store: SqliteStore) -> None:
+def test_only_so_many_of_the_gone_are_remembered(run: Run) -> None:
+    async def test(store: Store) -> None:
         for id_ in "abcd":
             await store.put(record(id_))
         with pytest.raises(Unknown):
@@ -123,8 +154,8 @@ def test_only_so_many_of_the_gone_are_remembered() -> None:
     run(test, entries=1, tombstones=2)
 
 
-def test_what_is_forgotten_leaves_nothing() -> None:
-    async def test(store: SqliteStore) -> None:
+def test_what_is_forgotten_leaves_nothing(run: Run) -> None:
+    async def test(store: Store) -> None:
         await store.put(record("a"))
         await store.forget(record("a"))
         with pytest.raises(Unknown):
@@ -133,10 +164,12 @@ def test_what_is_forgotten_leaves_nothing() -> None:
     run(test)
 
 
-def test_unfinished_work_never_makes_way_and_its_front_counts_as_new_when_it_is_done() -> None:
+def test_unfinished_work_never_makes_way_and_its_front_counts_as_new_when_it_is_done(
+    run: Run,
+) -> None:
     clock = Clock()
 
-    async def test(store: SqliteStore) -> None:
+    async def test(store: Store) -> None:
         await store.put(job("a"))
         clock.now = 100
         for id_ in "bcd":
@@ -151,8 +184,8 @@ def test_unfinished_work_never_makes_way_and_its_front_counts_as_new_when_it_is_
     run(test, clock=clock)
 
 
-def test_a_key_gives_the_record_that_it_was_first_used_for() -> None:
-    async def test(store: SqliteStore) -> None:
+def test_a_key_gives_the_record_that_it_was_first_used_for(run: Run) -> None:
+    async def test(store: Store) -> None:
         first = job("a", key="k", digest="1")
         assert await store.admit(first) is first
         assert (await store.admit(job("b", key="k", digest="1"))).id == "a"
@@ -192,3 +225,14 @@ def test_what_is_in_a_file_is_there_after_a_restart(tmp_path: Path) -> None:
 def test_a_store_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=f"store must be a file of its own, {tmp_path} is not"):
         SqliteStore(str(tmp_path), entries=1, max_age=1)
+
+
+def test_a_store_that_does_not_answer_is_unavailable(tmp_path: Path) -> None:
+    async def test() -> None:
+        with redis_server(tmp_path) as redis:
+            async with redis_store(redis.url, entries=1, max_age=1) as store:
+                redis.end()
+                with pytest.raises(Unavailable):
+                    await store.get("us", "a")
+
+    asyncio.run(test())
