@@ -6,18 +6,22 @@ from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 import torch
-from torch import Generator, Tensor, nn
+from torch import Generator, Tensor
 from torch.optim import Adam
 from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
 from models.config import TrainingConfig, as_plain, from_plain
 from models.critic import Critic
+from models.encoders import FadingLayer
 from models.networks import Actor, build
 
 
 @dataclass
 class Run:
-    """A training run: weights, optimisers, multipliers, generators, and how far it has come."""
+    """A training run: weights, optimisers, multipliers, generators, and how far it has come.
+
+    Products are computed in its precision; weights and losses are of float32.
+    """
 
     config: TrainingConfig
     device: torch.device
@@ -31,6 +35,7 @@ class Run:
     sampling_generator: Generator
     step: int = 0
     seconds: float = 0.0
+    precision: torch.dtype = torch.float32
 
 
 _STATEFUL = ("actor", "averaged", "critic", "optimizer", "critic_optimizer")
@@ -117,7 +122,22 @@ def averaged_actor(run: Run) -> Actor:
     return cast(Actor, run.averaged.module)
 
 
-def start_from(run: Run, weights: nn.Module) -> None:
-    """Gives a run at its beginning the weights of another actor of the same shape."""
-    run.actor.load_state_dict(weights.state_dict())
-    averaged_actor(run).load_state_dict(weights.state_dict())
+def start_from(run: Run, weights: Actor) -> None:
+    """Gives a run at its beginning the weights of another actor: one of its shape, or shallower.
+
+    The layers that the shallower one lacks change nothing at first.
+    """
+    state = weights.state_dict()
+    if len(run.actor.encoder.layers) > len(weights.encoder.layers):
+        state = _silenced(run.actor, len(weights.encoder.layers)) | state
+    run.actor.load_state_dict(state)
+    averaged_actor(run).load_state_dict(state)
+
+
+def _silenced(actor: Actor, depth: int) -> dict[str, Tensor]:
+    """The weights of an actor of which the encoder's layers from depth on add nothing."""
+    for layer in actor.encoder.layers[depth:]:
+        if not isinstance(layer, FadingLayer):
+            raise ValueError(f"{type(actor).__name__} must begin from weights of as many layers")
+        layer.silence()
+    return actor.state_dict()

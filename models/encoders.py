@@ -158,6 +158,12 @@ class FadingLayer(nn.Module):
         turns = [kinds[head % len(kinds)] for head in range(heads)]
         self.fading = nn.Parameter(torch.tensor(turns))  # (h, m)
 
+    def silence(self) -> None:
+        """Makes the layer give back the features as they came, until it is trained."""
+        for last in (self.attend.merge, self.think[-1]):
+            for weights in last.parameters():
+                nn.init.zeros_(weights)
+
     def forward(
         self, features: Float[Tensor, "b n d"], nearness: Float[Tensor, "b m n n"]
     ) -> Float[Tensor, "b n d"]:

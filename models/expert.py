@@ -18,6 +18,7 @@ from tqdm import tqdm
 from models.config import add_options, from_options, setting
 from models.instances import closed, distance_matrices
 from models.maps import coverage_matrices
+from models.planes import KINDS
 from service.improve import improve
 from service.instance import Instance
 from service.preferences import from_angles, weights
@@ -34,13 +35,17 @@ class ExpertConfig:
     preferences: int = setting(40, "preferences of a shard, a tour of each instance for each")
     least_cities: int = setting(20, "least cities of an instance; all of a shard have as many")
     most_cities: int = setting(100, "most cities of an instance")
-    clustered: float = setting(0.25, "share of planes that are clustered; the others are uniform")
+    shaped: float = setting(
+        0.5, "share of planes that are clusters, boxes or streets; the others are uniform"
+    )
     iterations_per_city: int = setting(50, "iterations of the search for each city")
     seed: int = setting(1, "of the instances and the search")
 
     def __post_init__(self) -> None:
         if self.kind not in ("coordinates", "matrices"):
             raise ValueError(f"kind must be coordinates or matrices, got {self.kind}")
+        if not 0 <= self.shaped <= 1:
+            raise ValueError(f"shaped must be from 0 to 1, got {self.shaped}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +84,7 @@ def make_shard(config: ExpertConfig, number: int) -> Shard:
     shares = (np.arange(config.preferences) + generator.random(config.preferences)) * 90
     preferences = from_angles(shares / config.preferences)
     draw = _cities if config.kind == "coordinates" else _matrices
-    instances = np.stack([draw(n, config.clustered, generator) for _ in range(config.instances)])
+    instances = np.stack([draw(n, config.shaped, generator) for _ in range(config.instances)])
     iterations = config.iterations_per_city * n
     tours = [expert_tours(each, preferences, iterations, number) for each in instances]
     return Shard(
@@ -104,25 +109,19 @@ def expert_tours(
     return found.tours[costs.argmin(axis=0)]
 
 
-def _cities(n: int, clustered: float, generator: Generator) -> Array:
-    """Cities in the unit squares of both planes, each plane uniform or in Gaussian clusters."""
-    planes = []
-    for _ in range(2):
-        plane = generator.random((n, 2))
-        if generator.random() < clustered:
-            centres = generator.random((generator.integers(2, 8), 2))
-            plane = centres[generator.integers(len(centres), size=n)]
-            plane = plane + generator.normal(scale=0.07, size=(n, 2))
-            plane = (plane - plane.min(axis=0)) / np.ptp(plane, axis=0).max()
-        planes.append(plane)
-    return np.concatenate(planes, axis=1)
+def _cities(n: int, shaped: float, generator: Generator) -> Array:
+    """Cities in the unit squares of both planes, each plane of a kind of its own."""
+    names = list(KINDS)
+    shares = [1 - shaped] + [shaped / (len(names) - 1)] * (len(names) - 1)
+    kinds = generator.choice(names, p=shares, size=2)
+    return np.concatenate([KINDS[kind](n, generator) for kind in kinds], axis=1)
 
 
-def _matrices(n: int, clustered: float, generator: Generator) -> Array:
+def _matrices(n: int, shaped: float, generator: Generator) -> Array:
     """Costs of every step: distances in planes or on maps, or entries without a plane."""
     match generator.choice(("planes", "map", "entries", "closed"), p=(0.4, 0.3, 0.15, 0.15)):
         case "planes":
-            cities = torch.from_numpy(_cities(n, clustered, generator))
+            cities = torch.from_numpy(_cities(n, shaped, generator))
             return distance_matrices(cities[None])[0].numpy()
         case "map":
             return coverage_matrices(generator, n)

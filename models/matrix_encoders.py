@@ -120,7 +120,7 @@ class AdjacencyEncoder(nn.Module):
 
     def forward(self, matrices: Float[Tensor, "b 2 n n"]) -> Float[Tensor, "b n d"]:
         """Features of the cities."""
-        features: Tensor = self.graph(matrices)
+        features: Tensor = self.graph(unit_matrices(matrices))
         for layer in self.layers:
             features = layer(features)
         return features

@@ -18,10 +18,28 @@ Memory = Any
 Conditioning = Any
 
 
-class AttentionActor(nn.Module):
-    """PA-AT: the attention network with a preference encoder, as the paper describes it."""
+class _AlikeForAll(nn.Module):
+    """An actor that encodes an instance once, for all preferences alike."""
 
     groups = 1
+    encoder: AttentionEncoder | EANEncoder | AdjacencyEncoder
+    decoder: AttentionDecoder | EANDecoder
+
+    def remember(
+        self,
+        instances: Tensor,
+        preferences: Float[Tensor, "k 2"],  # noqa: ARG002, the encoder does without
+    ) -> AttentionMemory | EANMemory:
+        """What decoding needs of the instances, computed once.
+
+        They are cities (b, n, 4) or matrices (b, 2, n, n), whichever the actor reads.
+        """
+        return self.decoder.remember(self.encoder(instances))
+
+
+class AttentionActor(_AlikeForAll):
+    """PA-AT: the attention network with a preference encoder, as the paper describes it."""
+
     reads = "coordinates"
 
     def __init__(self, config: NetworkConfig) -> None:
@@ -33,19 +51,10 @@ class AttentionActor(nn.Module):
             config.width, config.heads, config.clip, config.preference_layers
         )
 
-    def remember(
-        self,
-        cities: Float[Tensor, "b n 4"],
-        preferences: Float[Tensor, "k 2"],  # noqa: ARG002, the encoder does without
-    ) -> AttentionMemory:
-        """What decoding needs of the instances, computed once."""
-        return self.decoder.remember(self.encoder(cities))
 
-
-class EANActor(nn.Module):
+class EANActor(_AlikeForAll):
     """PA-EAN: Encode, Attend, Navigate with a preference encoder, as the paper describes it."""
 
-    groups = 1
     reads = "coordinates"
 
     def __init__(self, config: NetworkConfig) -> None:
@@ -53,13 +62,24 @@ class EANActor(nn.Module):
         self.encoder = EANEncoder(config.width, config.heads, config.layers, config.feedforward)
         self.decoder = EANDecoder(config.width, config.clip, config.preference_layers)
 
-    def remember(
-        self,
-        cities: Float[Tensor, "b n 4"],
-        preferences: Float[Tensor, "k 2"],  # noqa: ARG002, the encoder does without
-    ) -> EANMemory:
-        """What decoding needs of the instances, computed once."""
-        return self.decoder.remember(self.encoder(cities))
+
+class AdjacencyActor(_AlikeForAll):
+    """PA-AD: PA-AT behind a graph encoder that reads matrices of costs."""
+
+    reads = "matrices"
+
+    def __init__(self, config: NetworkConfig) -> None:
+        super().__init__()
+        self.encoder = AdjacencyEncoder(
+            config.width,
+            config.heads,
+            config.graph_layers,
+            config.layers,
+            config.feedforward,
+        )
+        self.decoder = AttentionDecoder(
+            config.width, config.heads, config.clip, config.preference_layers
+        )
 
 
 class OneActor(nn.Module):
@@ -93,34 +113,6 @@ class OneActor(nn.Module):
             weights(middles).repeat(len(cities), 1),
         )
         return self.decoder.remember(features, distances)
-
-
-class AdjacencyActor(nn.Module):
-    """PA-AD: PA-AT behind a graph encoder that reads matrices of costs."""
-
-    groups = 1
-    reads = "matrices"
-
-    def __init__(self, config: NetworkConfig) -> None:
-        super().__init__()
-        self.encoder = AdjacencyEncoder(
-            config.width,
-            config.heads,
-            config.graph_layers,
-            config.layers,
-            config.feedforward,
-        )
-        self.decoder = AttentionDecoder(
-            config.width, config.heads, config.clip, config.preference_layers
-        )
-
-    def remember(
-        self,
-        matrices: Float[Tensor, "b 2 n n"],
-        preferences: Float[Tensor, "k 2"],  # noqa: ARG002, the encoder does without
-    ) -> AttentionMemory:
-        """What decoding needs of the instances, computed once."""
-        return self.decoder.remember(self.encoder(unit_matrices(matrices)))
 
 
 class OneMatrixActor(nn.Module):

@@ -90,7 +90,7 @@ def policy_gradient_step(run: Run) -> Step:
         run.device,
     ).repeat(1, config.preferences)
 
-    with _precision(run.device):
+    with _precision(run):
         memory = run.actor.remember(instances, preferences)
         rows = repeated(run.actor.decoder.condition(preferences), config.starts)
         choose = sampling(run.sampling_generator)
@@ -134,7 +134,7 @@ def imitate(run: Run, labels: Labels) -> Step:
             config.instances, config.preferences, config.starts, run.instance_generator
         )
     )
-    with _precision(run.device):
+    with _precision(run):
         memory = run.actor.remember(instances, preferences)
         rows = repeated(run.actor.decoder.condition(preferences), config.starts)
         loss = -log_likelihoods_by_city(run.actor, memory, rows, tours).mean()
@@ -199,8 +199,10 @@ def _learning_rate(run: Run) -> float:
     return config.learning_rate * (1 + math.cos(math.pi * min(1.0, done))) / 2
 
 
-def _precision(device: torch.device) -> AbstractContextManager[object]:
-    return torch.autocast("cuda", torch.bfloat16) if device.type == "cuda" else nullcontext()
+def _precision(run: Run) -> AbstractContextManager[object]:
+    if run.precision == torch.float32:
+        return nullcontext()
+    return torch.autocast(run.device.type, run.precision)
 
 
 def _detached(memory: Memory) -> Memory:
@@ -219,6 +221,7 @@ def main(arguments: list[str] | None = None) -> None:
         run = new_run(from_options(TrainingConfig, options, network=network), device)
         if options.initial:
             start_from(run, load_weights(options.initial).actor)
+    run.precision = getattr(torch, options.precision)
     labels = Labels(options.labels) if options.labels else None
     validation = validation_sets(run.actor.reads, COUNTS, device)
     train(run, run.config.steps, validation, options.out, labels)
@@ -227,7 +230,13 @@ def main(arguments: list[str] | None = None) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser("python -m models.train", description=__doc__)
     parser.add_argument("--out", type=Path, required=True, help="folder of the run")
-    parser.add_argument("--device", default="cpu", help="cpu or cuda (bfloat16 there)")
+    parser.add_argument("--device", default="cpu", help="cpu or cuda")
+    parser.add_argument(
+        "--precision",
+        choices=("float32", "bfloat16"),
+        default="float32",
+        help="of products; bfloat16 is faster on a GPU, and on a CPU that has instructions for it",
+    )
     parser.add_argument("--initial", type=Path, help="checkpoint whose weights a new run takes")
     parser.add_argument("--labels", type=Path, help="folder of shards, for imitation")
     add_options(parser, NetworkConfig)

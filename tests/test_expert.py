@@ -15,6 +15,7 @@ from models.config import NetworkConfig, TrainingConfig
 from models.expert import ExpertConfig, expert_tours
 from models.instances import tour_lengths
 from models.labels import Labels
+from models.planes import KINDS
 from service import instance
 from service.instance import Instance
 from service.preferences import fan, from_angles, weights
@@ -133,3 +134,28 @@ def test_imitation_without_labels_is_refused(tmp_path: Path) -> None:
         train.train(run, 1, [], tmp_path)
     with pytest.raises(FileNotFoundError, match="must hold shards, got none"):
         Labels(tmp_path).batch(1, 5, 1, Generator())
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_of_plane_fills_the_unit_square_in_its_own_way(kind: str) -> None:
+    cities = KINDS[kind](300, np.random.default_rng(2))
+    assert cities.shape == (300, 2)
+    assert cities.min() >= 0
+    assert cities.max() <= 1
+    extent = np.sort(np.ptp(cities, axis=0))
+    on_streets = [len(np.unique(cities[:, axis])) < 299 for axis in (0, 1)]
+    spacing = np.sqrt(((cities[:, None] - cities) ** 2).sum(-1) + 9 * np.eye(300)).min(axis=1)
+    match kind:
+        case "uniform":
+            assert extent[0] > 0.9
+        case "clustered":
+            assert spacing.mean() < 0.02
+        case "stretched":
+            assert extent[0] < 0.9
+        case "streets":
+            assert all(on_streets)
+
+
+def test_a_share_that_is_none_is_refused() -> None:
+    with pytest.raises(ValueError, match="shaped must be from 0 to 1, got 2.0"):
+        ExpertConfig(shaped=2.0)

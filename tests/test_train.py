@@ -2,14 +2,16 @@
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import torch
 
 from models import train
-from models.checkpoint import load_weights, new_run, resume, save
+from models.checkpoint import averaged_actor, load_weights, new_run, resume, save, start_from
 from models.config import NAMES, NetworkConfig, TrainingConfig, as_plain, from_plain
+from models.sampling import fan_of_preferences, uniform_cities
 from models.validation import validation_sets
 
 CPU = torch.device("cpu")
@@ -170,3 +172,41 @@ def test_a_configuration_survives_storage() -> None:
 )
 def test_an_ablation_is_labelled_as_the_paper_does(changes: dict[str, object], label: str) -> None:
     assert NetworkConfig(**changes).label == label
+
+
+@torch.no_grad()
+def test_a_deeper_network_begins_as_the_one_it_grew_from() -> None:
+    grown = new_run(small_config(network=replace(SMALL, layers=3)), CPU)
+    shallow = new_run(small_config(seed=9), CPU).actor.eval()
+    start_from(grown, shallow)
+    sampled = uniform_cities(2, 9, torch.Generator().manual_seed(1), CPU)
+    preferences = fan_of_preferences(5, CPU)
+    for actor in (grown.actor, averaged_actor(grown)):
+        for table, expected in zip(
+            actor.eval().remember(sampled, preferences),
+            shallow.remember(sampled, preferences),
+            strict=True,
+        ):
+            torch.testing.assert_close(table, expected)
+    policy_gradient = train.policy_gradient_step
+    before = [weights.clone() for weights in grown.actor.encoder.layers[2].parameters()]
+    with torch.enable_grad():
+        policy_gradient(grown)
+        policy_gradient(grown)
+    after = grown.actor.encoder.layers[2].parameters()
+    assert all((b != a).any() for b, a in zip(before, after, strict=True))
+
+
+def test_only_a_network_that_can_stay_what_it_was_grows() -> None:
+    network = replace(SMALL, name="pa-at")
+    grown = new_run(small_config(network=replace(network, layers=2)), CPU)
+    with pytest.raises(ValueError, match="must begin from weights of as many layers"):
+        start_from(grown, new_run(small_config(network=network), CPU).actor)
+
+
+def test_products_of_less_precision_train_as_well(tmp_path: Path) -> None:
+    command = ["--out", str(tmp_path), "--precision", "bfloat16", "--steps", "2"]
+    small = ["--width", "16", "--heads", "2", "--layers", "1", "--feedforward", "32"]
+    train.main([*command, *small, "--instances", "2", "--starts", "2", "--preferences", "5"])
+    weights = load_weights(tmp_path / "weights.pt").actor.state_dict()
+    assert all(each.isfinite().all() and each.dtype == torch.float32 for each in weights.values())
