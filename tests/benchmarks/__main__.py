@@ -18,6 +18,7 @@ _NAMES = (
     "load",
     "networks",
     "search",
+    "shapes",
     "soak",
     "tables",
     "training",

@@ -40,8 +40,8 @@ taken while other programs wanted the same processor, which makes them too long.
 
 def page() -> str:
     """All of it."""
-    sections = (INTRODUCTION, _main(), _training(), _coverage(), _layers(), _concave(), _fronts())
-    return "\n".join(sections)
+    paper = (_main(), _training(), _coverage(), _layers(), _concave(), _fronts())
+    return "\n".join((INTRODUCTION, *paper, _shapes()))
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -234,4 +234,18 @@ def _fronts() -> str:
     return (
         "## Fronts\n\n`python -m tests.benchmarks fronts`: the paper's first instance of each "
         "size.\n\n![Fronts at 40 and 500 cities](results/fronts.png)\n"
+    )
+
+
+def _shapes() -> str:
+    stored = load("shapes")
+    rows = dict.fromkeys(key.partition(": ")[2] for key in stored)
+    groups = dict.fromkeys(key.partition(": ")[0] for key in stored)
+    cells = [
+        [group, *(_covered(stored.get(f"{group}: {row}")) for row in rows)] for group in groups
+    ]
+    return (
+        "## Planes of other shapes\n\nNot in the paper: `python -m tests.benchmarks shapes`, the "
+        "reference point n times the scale,\nthe network alone beside construction heuristics.\n\n"
+        f"{table(['', *rows], cells)}"
     )
