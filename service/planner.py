@@ -13,6 +13,7 @@ from service.front import hypervolume, nondominated
 from service.improve import Progress, best_subset, hypervolume_bound, improve
 from service.instance import Instance, tour_lengths
 from service.preferences import angles, from_angles
+from service.symmetries import symmetries
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
@@ -33,7 +34,8 @@ class Demand:
 
     The search that improves it has `time_limit` seconds; at 0 there is none. The caller may bring
     tours, shape (m, n), that the front shall dominate or equal. Without a reference point it is
-    n times the scale: where every step costs a whole unit.
+    n times the scale: where every step costs a whole unit. The network builds its tours from so
+    many of the symmetries of the cities' coordinates.
     """
 
     angles: Array
@@ -44,11 +46,13 @@ class Demand:
     initial_tours: Tours | None = None
     bound: bool = False
     seed: int = 0
+    augment: int = 1
 
     @property
     def needs_compiled_code(self) -> bool:
         """Whether more than the network is asked for."""
-        return self.time_limit > 0 or self.bound or len(self.angles) > self.size
+        built = len(self.angles) * self.augment
+        return self.time_limit > 0 or self.bound or built > self.size
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,7 +119,7 @@ def plan(
     Meanwhile the report is told, ten times a second, how far it has come.
     """
     clock = _Clock()
-    first = _constructed(constructor, instance, demand.angles)
+    first = _constructed(constructor, instance, demand, stop)
     if demand.initial_tours is not None:
         first = np.concatenate((first, demand.initial_tours))
     clock.ends("construction")
@@ -191,11 +195,19 @@ def _interim(instance: Instance, demand: Demand, progress: Progress) -> Interim:
     return Interim(progress.seconds, progress.hypervolume, progress.points, front)
 
 
-def _constructed(constructor: Constructor, instance: Instance, degrees: Array) -> Tours:
+def _constructed(
+    constructor: Constructor, instance: Instance, demand: Demand, stop: Callable[[], bool]
+) -> Tours:
     # Of one or two cities there is one tour, and no network was trained on them.
     if instance.n <= 2:
         return np.arange(instance.n, dtype=np.int64)[np.newaxis]
-    return constructor.tours(instance, from_angles(degrees))
+    preferences = from_angles(demand.angles)
+    tours = []
+    for seen in symmetries(instance, demand.augment):
+        tours.append(constructor.tours(seen, preferences))
+        if stop():
+            break
+    return np.concatenate(tours)
 
 
 def _reference_point(instance: Instance, demand: Demand) -> Array:

@@ -17,6 +17,7 @@ def request_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
     schema = plan_schema(FrontRequest, limits, actors)
     fields = schema["properties"]
     schema["oneOf"] = [{"required": ["coordinates"]}, {"required": ["matrices"]}]
+    schema["dependentSchemas"] = {"matrices": {"properties": {"augment": {"const": 1}}}}
     fields["coordinates"]["maxItems"] = limits.cities
     rows = fields["matrices"]["items"]
     rows["minItems"], rows["maxItems"] = 1, limits.cities
@@ -101,6 +102,9 @@ def _check_instance(request: FrontRequest, limits: Limits) -> None:
         sentence = f"either coordinates or matrices are required, got {came}"
         fault = Fault(pointer="/coordinates", detail=sentence)
         raise Refusal(422, "invalid-request", sentence, errors=[fault])
+    if request.kind == "matrices" and request.augment > 1:
+        demand = "must be 1 for matrices, which cannot be turned or mirrored"
+        raise invalid("augment", f"{demand}, got {request.augment}")
     if request.n > limits.cities:
         raise too_many_cities(request.kind, limits.cities, request.n)
     for m, matrix in enumerate(request.matrices):

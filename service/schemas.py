@@ -1,6 +1,6 @@
 """What travels over HTTP."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from service.planner import Demand, Termination
 from service.preferences import fan
 from service.problems import Problem
 from service.record import Status
+from service.symmetries import MOST
 
 # Between these, lengths and hypervolumes neither overflow nor vanish.
 LARGEST = 1e150
@@ -138,6 +139,12 @@ class FrontRequest(PlanRequest):
         " each (column); the diagonal is disregarded",
     )
 
+    augment: Annotated[int, Field(ge=1, le=MOST), BeforeValidator(_whole)] = Field(
+        default=1,
+        description="of how many symmetries of the coordinates the network builds tours, each in a"
+        " call of its own",
+    )
+
     @property
     def kind(self) -> Kind:
         """In what the cities are given."""
@@ -153,6 +160,10 @@ class FrontRequest(PlanRequest):
         if self.kind == "matrices":
             return Instance(matrices=self.matrices)
         return Instance(coordinates=np.array(self.coordinates, dtype=np.float64))
+
+    def demand(self) -> Demand:
+        """What is asked of the front."""
+        return replace(super().demand(), augment=self.augment)
 
 
 class TourQuery(BaseModel):

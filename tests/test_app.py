@@ -188,6 +188,8 @@ UNPROCESSABLE_MEMBERS = [
     ('"reference_point": [0, 1]', "/reference_point/0", "must be at least 1e-150, got 0"),
     ('"reference_point": null', "/reference_point", "must be a valid array, got null"),
     ('"actor": 1', "/actor", "actor must be a valid string, got 1"),
+    ('"augment": 0', "/augment", "augment must be at least 1, got 0"),
+    ('"augment": 9', "/augment", "augment must be at most 8, got 9"),
     ('"seed": -1', "/seed", "seed must be at least 0, got -1"),
     ('"cities": 1', "/cities", "cities is not a field that this request has"),
     ('"a/b~c": 1', "/a~1b~0c", "is not a field that this request has"),

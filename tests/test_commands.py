@@ -63,7 +63,7 @@ def found(answer: dict[str, Any]) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     "options",
-    [{"time_limit": 0}, {"time_limit": 60, "seed": 3, "start": 2}],
+    [{"time_limit": 0, "augment": 3}, {"time_limit": 60, "seed": 3, "start": 2}],
     ids=["network", "converged"],
 )
 def test_every_way_to_ask_gives_the_same_front(

@@ -133,6 +133,13 @@ def test_an_actor_of_matrices_serves_coordinates_where_it_is_asked_to(client: ht
     assert client.post("/front", json=request).json()["actor"]["name"] == "pa-one-matrix"
 
 
+def test_matrices_have_no_symmetries(client: httpx.Client) -> None:
+    answer = client.post("/front", json={"matrices": COSTS.tolist(), "augment": 8})
+    document = problem(answer, 422, "invalid-request")
+    assert document["errors"][0]["pointer"] == "/augment"
+    assert "must be 1 for matrices" in document["detail"]
+
+
 def test_where_no_actor_reads_matrices_they_are_refused() -> None:
     with serving(app_of(Shuffler())) as url:
         request = {"matrices": COSTS.tolist()}

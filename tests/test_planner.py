@@ -15,6 +15,7 @@ from service.instance import Instance, tour_lengths
 from service.planner import Demand, Front, plan
 from service.preferences import fan
 from service.settings import Settings
+from service.symmetries import symmetries
 
 SMALL = (
     st.integers(1, 7)
@@ -137,3 +138,29 @@ def test_what_the_search_gained_is_what_it_added_to_the_first_tours(actor: Actor
     assert improved.gained is not None
     assert improved.gained > 0
     assert np.isclose(improved.gained, improved.hypervolume - first.hypervolume)
+
+
+@given(SMALL, st.integers(1, 8))
+def test_symmetries_change_no_length_and_are_all_different(instance: Instance, count: int) -> None:
+    seen = list(symmetries(instance, count))
+    tours = Everything().tours(instance, fan(1))
+    for each in seen:
+        np.testing.assert_allclose(tour_lengths(each, tours), tour_lengths(instance, tours))
+    crooked = Instance(coordinates=np.array([[0.0, 0, 0, 0], [1, 3, 2, 7]]))
+    views = [each.scaled_coordinates.tobytes() for each in symmetries(crooked, count)]
+    assert len(set(views)) == count
+
+
+@pytest.mark.parametrize("n", [40, 200])
+def test_with_more_symmetries_a_front_is_no_worse(actor: Actor, n: int) -> None:
+    instance, demand = random_instance(n), Demand(angles=fan(20), size=100)
+    once, often = (plan(actor, instance, replace(demand, augment=count)) for count in (1, 8))
+    check(often, instance)
+    assert often.hypervolume > once.hypervolume
+
+
+def test_a_plan_that_is_stopped_looks_at_no_further_symmetry(actor: Actor) -> None:
+    demand = Demand(angles=fan(20), size=100, augment=8)
+    stopped = plan(actor, random_instance(40), demand, stop=lambda: True)
+    at_once = plan(actor, random_instance(40), replace(demand, augment=1))
+    np.testing.assert_array_equal(stopped.points, at_once.points)

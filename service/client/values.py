@@ -32,6 +32,7 @@ class FrontRequest(PlanRequest, total=False):
 
     coordinates: ArrayLike
     matrices: ArrayLike
+    augment: int
 
 
 class CoverageRequest(PlanRequest, total=False):

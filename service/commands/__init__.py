@@ -14,6 +14,7 @@ from service.commands.options import (
     ApiKey,
     AsCsv,
     AsJson,
+    Augment,
     File,
     Plot,
     SecondFile,
@@ -47,6 +48,7 @@ def front(  # noqa: PLR0913  an option each
     start: Start = None,
     seed: Seed = None,
     actor: ActorName = None,
+    augment: Augment = None,
     unrounded: Unrounded = False,
     as_json: AsJson = False,
     as_csv: AsCsv = False,
@@ -59,6 +61,7 @@ def front(  # noqa: PLR0913  an option each
     from service.commands.run import Shown, run_front
 
     options = {"time_limit": time_limit, "size": size, "start": start, "seed": seed, "actor": actor}
+    options["augment"] = augment
     run_front(
         Cities(file=file, file2=file2, unrounded=unrounded, angles=angles, options=options),
         Planner(url, api_key),
@@ -78,6 +81,7 @@ def tour(  # noqa: PLR0913  an option each
     start: Start = None,
     seed: Seed = None,
     actor: ActorName = None,
+    augment: Augment = None,
     unrounded: Unrounded = False,
     as_json: AsJson = False,
     url: Url = None,
@@ -88,6 +92,7 @@ def tour(  # noqa: PLR0913  an option each
     from service.commands.run import run_tour
 
     options = {"time_limit": time_limit, "start": start, "seed": seed, "actor": actor}
+    options["augment"] = augment
     asked = Cities(file=file, file2=file2, unrounded=unrounded, options=options)
     run_tour(asked, Planner(url, api_key), angle, as_json)
 

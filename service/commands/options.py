@@ -27,6 +27,9 @@ Angles = Annotated[
 ]
 Size = Annotated[int | None, Option(help="The most tours to give.", show_default="100")]
 Start = Annotated[int | None, Option(help="The city to report tours from.", show_default="0")]
+Augment = Annotated[
+    int | None, Option(help="How many symmetries of the cities the network sees.", show_default="1")
+]
 Seed = Annotated[int | None, Option(help="Of all that is random.", show_default="0")]
 ActorName = Annotated[str | None, Option("--actor", help="The network, one of `paretour actors`.")]
 Unrounded = Annotated[
