@@ -10,22 +10,18 @@ import httpx
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
+from playwright.sync_api import Browser, Locator, Page, expect
 
 from service.serve import build
 from service.settings import Settings
+from tests.browsing import CHROMIUM, DESK, PHONE, WITHOUT, chromium, done, drawn, opened
 from tests.serving import app_of, serving
 
-CHROMIUM = Path("/usr/bin/chromium")
 SERVICE = Path(__file__).parent.parent / "service"
-DESK, PHONE = 1440, 390
-SECOND = 1000.0
 CITIES = "0, 0, 5, 5\n3.1, 0.4, 9, 1\n5.2, 2, 2, 8\n4, 5.5, 7, 7\n1, 4.2, 1, 2\n2.5, 2.5, 6, 0"
 
 at_both_widths = pytest.mark.parametrize("width", [DESK, PHONE])
-needs_browser = pytest.mark.skipif(
-    not CHROMIUM.exists(), reason="these need Debian's Chromium: apt-get install chromium"
-)
+needs_browser = pytest.mark.skipif(not CHROMIUM.exists(), reason=WITHOUT)
 
 
 @pytest.fixture(scope="module")
@@ -38,8 +34,8 @@ def address() -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        yield playwright.chromium.launch(executable_path=CHROMIUM)
+    with chromium() as browser:
+        yield browser
 
 
 @pytest.fixture
@@ -50,17 +46,10 @@ def width() -> int:
 
 @pytest.fixture
 def page(width: int, browser: Browser, address: str) -> Iterator[Page]:
-    """The page with its first example planned; whatever the browser complains of is a failure."""
-    page = browser.new_page(viewport={"width": width, "height": 900})
-    complaints: list[str] = []
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
-    page.goto(address)
-    expect(page.locator("#status")).to_contain_text("Done", timeout=60 * SECOND)
-    yield page
-    page.close()
-    # Chromium writes a line for each refusal of the service, which the page has shown.
-    assert [each for each in complaints if "responded with a status of 4" not in each] == []
+    """The page with its first example planned."""
+    with opened(browser, address, width) as page:
+        done(page)
+        yield page
 
 
 @needs_browser
@@ -69,12 +58,6 @@ def test_the_page_opens_with_an_example_and_its_front(page: Page) -> None:
     expect(page.get_by_label("A front of 100 tours: distance from")).to_be_visible()
     expect(page.locator("#count")).to_have_text("61 cities")
     expect(page.locator("#figures")).to_contain_text("Network alone")
-
-
-@needs_browser
-@at_both_widths
-def test_nothing_sticks_out_at_either_width(page: Page, width: int) -> None:
-    assert page.evaluate("document.documentElement.scrollWidth") == width
 
 
 @needs_browser
@@ -153,7 +136,7 @@ def test_a_picture_of_a_map_is_covered(browser: Browser) -> None:
         expect(page.get_by_label("Metres a cell")).to_have_value("0.05")
         page.get_by_label("Seconds of search").fill("0.1")
         page.get_by_role("button", name="Plan").click()
-        expect(page.locator("#status")).to_contain_text("Done", timeout=60 * SECOND)
+        done(page)
         expect(page.locator("#grid")).to_be_visible()
         expect(page.locator("#plane-1")).to_be_hidden()
         page.close()
@@ -266,11 +249,6 @@ def test_the_reference_needs_nothing_from_elsewhere(browser: Browser, address: s
 def bring(page: Page, files: dict[str, str]) -> None:
     given = [{"name": n, "mimeType": "text/plain", "buffer": t.encode()} for n, t in files.items()]
     page.get_by_label("Open files").set_input_files(given)
-
-
-def drawn(page: Page) -> None:
-    """Waits for the next frame, in which the page draws what was asked of it in this one."""
-    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
 def figure(page: Page, name: str) -> float:

@@ -2,8 +2,16 @@
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
-export const colour = (name) =>
-  getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+const known = new Map();
+dark.addEventListener("change", () => known.clear());
+
+/** The colour of a name. To ask the browser again in every frame would have it compute all styles. */
+export function colour(name) {
+  if (!known.has(name)) {
+    known.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  }
+  return known.get(name);
+}
 
 /** Red, green and blue, 0 to 255, of a colour that the style sheet writes as #rrggbb. */
 export function rgb(name) {

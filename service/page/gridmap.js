@@ -2,9 +2,10 @@
 
 import "./vendor/leaflet/leaflet.js";
 import { colour, onSchemeChange, rgb } from "./colours.js";
+import { flatMap } from "./flatmap.js";
+import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
-const BY_FINGER = matchMedia("(pointer: coarse)").matches;
 const TINT = 0.55; // how much of a cell's colour the dearest cost takes
 
 export class GridMap {
@@ -14,23 +15,13 @@ export class GridMap {
   #image = null;
   #places = L.featureGroup();
   #renderer = L.canvas({ padding: 0.2 });
-  #lines = {};
+  #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
 
   constructor(element) {
     this.#element = element;
-    this.#map = L.map(element, {
-      crs: L.CRS.Simple,
-      attributionControl: false,
-      zoomControl: !BY_FINGER,
-      zoomSnap: 0,
-      minZoom: -5,
-      maxZoom: 8,
-      scrollWheelZoom: false,
-      dragging: !BY_FINGER,
-    });
+    this.#map = flatMap(element, { minZoom: -5, maxZoom: 8 });
     this.#map.setView([0, 0], 0);
-    this.#lines.pinned = this.#line({ weight: 2, dashArray: "5 5" });
-    this.#lines.selected = this.#line({ weight: 2.5 });
+    for (const line of Object.values(this.#lines)) line.addTo(this.#map);
     this.#places.addTo(this.#map);
     new ResizeObserver(() => this.#fit()).observe(element);
     onSchemeChange(() => this.#grid && this.#colour());
@@ -55,19 +46,14 @@ export class GridMap {
 
   /** Draws the path of a tour as "selected" or "pinned"; null takes it away. */
   draw(name, item) {
-    this.#lines[name].setLatLngs((item?.path?.cells ?? []).map(middle));
-  }
-
-  #line(style) {
-    return L.polyline([], { renderer: this.#renderer, interactive: false, ...style }).addTo(this.#map);
+    this.#lines[name].show(turns(item?.path?.cells ?? []).map(middle));
   }
 
   #colour() {
     this.#image?.remove();
-    this.#image = L.imageOverlay(drawn(this.#grid), this.#bounds, { className: "cells" }).addTo(this.#map);
+    const style = { className: "cells", pane: "tilePane" };
+    this.#image = L.imageOverlay(drawn(this.#grid), this.#bounds, style).addTo(this.#map);
     this.#places.setStyle({ fillColor: colour("ink") });
-    this.#lines.selected.setStyle({ color: colour("selected") });
-    this.#lines.pinned.setStyle({ color: colour("pinned") });
   }
 
   #fit() {
@@ -83,6 +69,13 @@ export class GridMap {
 
 /** Rows go down the map, columns to the right. */
 const middle = ([row, column]) => [-row - 0.5, column + 0.5];
+
+/** Of a path's cells, its ends and those where it turns. */
+const turns = (cells) =>
+  cells.filter(([row, column], at) => {
+    const [before, after] = [cells[at - 1], cells[at + 1]];
+    return !before || !after || 2 * row !== before[0] + after[0] || 2 * column !== before[1] + after[1];
+  });
 
 /** The address of an image with a pixel for each cell. */
 function drawn({ grid, costs }) {

@@ -8,7 +8,11 @@ const DIFFERENCE = new Intl.NumberFormat("en", {
   maximumFractionDigits: 1,
 });
 
-export const length = (value) => (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e9 ? value.toPrecision(4) : LENGTH.format(value));
+export function length(value) {
+  const size = Math.abs(value);
+  return size && (size < 1e-3 || size >= 1e9) ? value.toPrecision(4) : LENGTH.format(value);
+}
+
 export const degrees = (angle) => `${angle.toFixed(1)}°`;
 export const share = (value) => `${(100 * value).toFixed(2)} %`;
 export const difference = (value, beside) => (beside === 0 ? "" : DIFFERENCE.format(value / beside - 1));

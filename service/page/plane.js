@@ -2,45 +2,29 @@
 
 import "./vendor/leaflet/leaflet.js";
 import { colour, onSchemeChange } from "./colours.js";
+import { flatMap } from "./flatmap.js";
 import { Frame } from "./frame.js";
+import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
-const BY_FINGER = matchMedia("(pointer: coarse)").matches;
 
 export class Plane {
   #map;
   #frame = Frame.around([]);
   #cities;
   #renderer = L.canvas({ padding: 0.2 });
-  #start;
-  #highlight;
-  #lines = {};
+  #start = ring("start", 18);
+  #highlight = ring("highlight", 16);
+  #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
   #places = [];
 
   /** @param {{ onHover: (city: number | null) => void, onClick: (place: number[]) => void }} told */
   constructor(element, { onHover, onClick }) {
-    this.#map = L.map(element, {
-      crs: L.CRS.Simple,
-      attributionControl: false,
-      zoomControl: !BY_FINGER,
-      zoomSnap: 0,
-      zoomDelta: 0.5,
-      minZoom: -3,
-      maxZoom: 12,
-      scrollWheelZoom: false, // the wheel scrolls the page
-      doubleClickZoom: false,
-      dragging: !BY_FINGER, // and so does one finger
-    });
-    this.#map.createPane("tours").style.zIndex = 350;
-    const beneath = L.canvas({ pane: "tours", padding: 0.2 });
-    this.#lines.pinned = line(beneath, { weight: 2, dashArray: "5 5" }).addTo(this.#map);
-    this.#lines.selected = line(beneath, { weight: 2 }).addTo(this.#map);
+    this.#map = flatMap(element, { zoomDelta: 0.5, minZoom: -3, maxZoom: 12, doubleClickZoom: false });
+    for (const line of Object.values(this.#lines)) line.addTo(this.#map);
     this.#cities = L.featureGroup().addTo(this.#map);
     this.#cities.on("mouseover", (event) => onHover(event.sourceTarget.city));
     this.#cities.on("mouseout", () => onHover(null));
-    const above = { renderer: L.canvas({ pane: "tooltipPane" }), interactive: false };
-    this.#start = L.circleMarker([0, 0], { ...above, radius: 7, weight: 2, fill: false });
-    this.#highlight = L.circleMarker([0, 0], { ...above, radius: 6, weight: 2, fill: false });
     this.#map.on("click", (event) => onClick(this.#frame.place(event.latlng)));
     new ResizeObserver(() => this.#resize()).observe(element);
     onSchemeChange(() => this.#colour());
@@ -64,7 +48,7 @@ export class Plane {
   /** Draws a tour as "selected" or "pinned"; null takes it away. */
   draw(name, tour) {
     const closed = tour ? [...tour, tour[0]] : [];
-    this.#lines[name].setLatLngs(closed.map((city) => this.#frame.latlng(this.#places[city])));
+    this.#lines[name].show(closed.map((city) => this.#frame.latlng(this.#places[city])));
     if (name === "selected") this.#mark(this.#start, tour?.[0]);
   }
 
@@ -99,11 +83,10 @@ export class Plane {
 
   #colour() {
     this.#cities.setStyle({ fillColor: colour("ink"), fillOpacity: 1 });
-    this.#lines.selected.setStyle({ color: colour("selected") });
-    this.#lines.pinned.setStyle({ color: colour("pinned") });
-    this.#start.setStyle({ color: colour("selected") });
-    this.#highlight.setStyle({ color: colour("ink") });
   }
 }
 
-const line = (renderer, style) => L.polyline([], { renderer, interactive: false, ...style });
+function ring(name, side) {
+  const icon = L.divIcon({ className: `ring ${name}`, iconSize: [side, side], tooltipAnchor: [0, -side / 2] });
+  return L.marker([0, 0], { icon, interactive: false, keyboard: false });
+}

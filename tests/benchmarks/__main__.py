@@ -17,6 +17,7 @@ _NAMES = (
     "layers",
     "load",
     "networks",
+    "page",
     "search",
     "shapes",
     "soak",

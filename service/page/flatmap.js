@@ -1,0 +1,22 @@
+/** A map of no place on earth: plain coordinates, moved and zoomed by mouse and keyboard. */
+
+import "./vendor/leaflet/leaflet.js";
+
+const { L } = globalThis;
+const BY_FINGER = matchMedia("(pointer: coarse)").matches;
+
+/** A map with a pane for tours beneath that of the cities. */
+export function flatMap(element, options) {
+  const map = L.map(element, {
+    crs: L.CRS.Simple,
+    attributionControl: false,
+    zoomAnimation: false,
+    zoomControl: !BY_FINGER,
+    zoomSnap: 0,
+    scrollWheelZoom: false, // the wheel scrolls the page
+    dragging: !BY_FINGER, // and so does one finger
+    ...options,
+  });
+  map.createPane("tours").style.zIndex = 350;
+  return map;
+}

@@ -1,0 +1,78 @@
+/** A tour on a map, on a canvas of its own: another tour is drawn at once, and nothing else anew. */
+
+import "./vendor/leaflet/leaflet.js";
+import { colour, onSchemeChange } from "./colours.js";
+
+const { L } = globalThis;
+
+// To fill wide lines is most of a frame where there is no graphics processor, and of hundreds of
+// cities narrow ones are clearer anyway.
+const MANY = 150;
+const [WIDE, NARROW] = [2, 1]; // pixels
+
+export class TourLine extends L.Layer {
+  #name;
+  #dash;
+  #canvas = document.createElement("canvas");
+  #latlngs = [];
+  #size = null;
+  #ratio = 1; // of the screen's pixels to the map's
+
+  /** @param {string} name of its colour, and of its class */
+  constructor(name, dash = []) {
+    super();
+    L.setOptions(this, { pane: "tours" });
+    this.#name = name;
+    this.#dash = dash;
+    this.#canvas.className = `tour ${name}`;
+    onSchemeChange(() => this.#draw());
+  }
+
+  onAdd(map) {
+    this.getPane().append(this.#canvas);
+    map.on("move zoom viewreset resize", this.#draw, this);
+    this.#draw();
+  }
+
+  /** Draws a line through these; none takes it away. */
+  show(latlngs) {
+    this.#latlngs = latlngs;
+    this.#draw();
+  }
+
+  #draw() {
+    this.#canvas.hidden = !this.#latlngs.length;
+    if (this.#canvas.hidden) return;
+    const context = this.#cleared();
+    context.strokeStyle = colour(this.#name);
+    context.lineWidth = this.#latlngs.length > MANY ? NARROW : WIDE;
+    context.lineJoin = "round";
+    context.setLineDash(this.#dash);
+    context.beginPath();
+    for (const latlng of this.#latlngs) {
+      const { x, y } = this._map.latLngToContainerPoint(latlng);
+      context.lineTo(x, y);
+    }
+    context.stroke();
+  }
+
+  /** The canvas's context, empty and in the map's pixels. */
+  #cleared() {
+    const size = this._map.getSize();
+    if (!this.#size?.equals(size) || this.#ratio !== devicePixelRatio) this.#resize(size);
+    L.DomUtil.setPosition(this.#canvas, this._map.containerPointToLayerPoint([0, 0]));
+    const context = this.#canvas.getContext("2d");
+    context.setTransform(this.#ratio, 0, 0, this.#ratio, 0, 0);
+    context.clearRect(0, 0, size.x, size.y);
+    return context;
+  }
+
+  #resize(size) {
+    this.#size = size;
+    this.#ratio = devicePixelRatio;
+    this.#canvas.width = size.x * this.#ratio;
+    this.#canvas.height = size.y * this.#ratio;
+    this.#canvas.style.width = `${size.x}px`;
+    this.#canvas.style.height = `${size.y}px`;
+  }
+}

@@ -1,0 +1,128 @@
+"""`python -m tests.benchmarks page`: how long a frame of the page takes while its slider moves.
+
+The slider goes over a front of 100 tours and back, a step in each frame, in Debian's Chromium
+without a window. Beside that, what Chromium makes of frames in which nothing is drawn, and of two
+bare canvases as large as the maps, with nothing but the tour on them, in lines of one and two
+pixels. A browser makes at most 60 frames a second, one in 16.7 ms; the milliseconds of processor
+that a frame takes it, all its processes together, say how much of that is left. Prints a table and
+stores `results/page.json`.
+"""
+
+import argparse
+import os
+from typing import Any
+
+import numpy as np
+import psutil
+from playwright.sync_api import Browser, Page
+from tqdm import tqdm
+
+from tests.benchmarks.instances import SIZES, paper_instances
+from tests.benchmarks.provenance import provenance, store
+from tests.browsing import chromium, done, opened
+from tests.serving import running
+
+FRAMES = 300  # of each measurement
+LATE = 25.0  # milliseconds: the frame that a browser had planned was missed
+BARE = 500  # cities on the bare canvases
+
+# Draws once in each frame, and gives the times at which the frames began.
+IN_FRAMES = """async (draw, count) => {
+  const times = [];
+  for (let frame = 0; frame <= count; frame++) {
+    times.push(await new Promise(requestAnimationFrame));
+    draw(0.5 - 0.5 * Math.cos((2 * Math.PI * frame) / count));
+  }
+  return times;
+}"""
+SLIDER = """() => {
+  const slider = document.getElementById("angle");
+  const [least, most] = [Number(slider.min), Number(slider.max)];
+  return (share) => {
+    slider.value = least + share * (most - least);
+    slider.dispatchEvent(new Event("input"));
+  };
+}"""
+CANVASES = """([cities, width]) => {
+  const maps = [0, 1].map((plane) => {
+    const canvas = Object.assign(document.createElement("canvas"), { width: 496, height: 280 });
+    document.body.append(canvas);
+    return [canvas.getContext("2d"), cities.map((row) => row.slice(2 * plane, 2 * plane + 2))];
+  });
+  return (share) => {
+    for (const [context, places] of maps) {
+      context.clearRect(0, 0, 496, 280);
+      context.lineWidth = width;
+      context.lineJoin = "round";
+      context.beginPath();
+      for (const [x, y] of places) context.lineTo(100 + 280 * x + share, 280 * y);
+      context.stroke();
+    }
+  };
+}"""
+NOTHING = "() => () => {}"
+
+
+def main(arguments: list[str]) -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser("python -m tests.benchmarks page", description=__doc__)
+    parser.add_argument("--rounds", type=int, default=5, help="of each row, in turn")
+    options = parser.parse_args(arguments)
+    cores = len(os.sched_getaffinity(0))
+    rows = measure(options.rounds)
+    store("page", {**provenance(cores), "frames": FRAMES * options.rounds, "rows": rows})
+    _print_table(rows)
+
+
+def measure(rounds: int) -> dict[str, Any]:
+    """Of each row: the frames' milliseconds, how many were late, and those of the processor."""
+    # Two searches at once would take turns on one core with the frames that are timed.
+    with running({"PARETOUR_WORKERS": "1"}, ready=True) as service, chromium() as browser:
+        rows = {"an empty page": _measured(browser.new_page(), NOTHING, None, rounds)}
+        cities = paper_instances(BARE, 1)[0].tolist()
+        for width in (1, 2):
+            name = f"two bare canvases, {BARE} cities, lines of {width} px"
+            rows[name] = _measured(browser.new_page(), CANVASES, [cities, width], rounds)
+        for n in tqdm(SIZES, leave=False):
+            rows[f"the page, {n} cities"] = _page_row(browser, service.url, n, rounds)
+    return rows
+
+
+def _page_row(browser: Browser, address: str, n: int, rounds: int) -> dict[str, float]:
+    cities = "\n".join(", ".join(f"{each:.4f}" for each in row) for row in paper_instances(n, 1)[0])
+    with opened(browser, address) as page:
+        done(page)
+        page.get_by_label("x1, y1, x2, y2").fill(cities)
+        page.get_by_role("button", name="Plan").click()
+        done(page)
+        page.get_by_label("A front of 100 tours").wait_for()
+        return _measured(page, SLIDER, None, rounds)
+
+
+def _measured(page: Page, drawing: str, given: Any, rounds: int) -> dict[str, float]:
+    script = f"async ([given, count]) => ({IN_FRAMES})(({drawing})(given), count)"
+    page.bring_to_front()
+    page.evaluate(script, [given, FRAMES // 4])  # compiles
+    before = _processor()
+    times = [page.evaluate(script, [given, FRAMES]) for _ in range(rounds)]
+    frames = np.concatenate([np.diff(each) for each in times])
+    return {
+        "mean_ms": round(float(frames.mean()), 2),
+        "p95_ms": round(float(np.quantile(frames, 0.95)), 2),
+        "late": round(float((frames > LATE).mean()), 4),
+        "processor_ms": round(1000 * (_processor() - before) / len(frames), 2),
+    }
+
+
+def _processor() -> float:
+    """Seconds that the browser has had of the processor, all its processes together."""
+    children = psutil.Process().children(recursive=True)
+    spent = [each.cpu_times() for each in children if "chrom" in each.name()]
+    return sum(each.user + each.system for each in spent)
+
+
+def _print_table(rows: dict[str, Any]) -> None:
+    print("| | ms a frame | p95 | late | of the processor, ms |\n|---|---|---|---|---|")
+    for name, row in rows.items():
+        late = f"{100 * row['late']:.1f} %"
+        print(f"| {name} | {row['mean_ms']} | {row['p95_ms']} | {late} | {row['processor_ms']} |")
