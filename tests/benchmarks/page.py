@@ -22,7 +22,7 @@ from tests.benchmarks.provenance import provenance, store
 from tests.browsing import chromium, done, opened
 from tests.serving import running
 
-FRAMES = 300  # of each measurement
+FRAMES = 240  # of each measurement
 LATE = 25.0  # milliseconds: the frame that a browser had planned was missed
 BARE = 500  # cities on the bare canvases
 
@@ -66,7 +66,7 @@ NOTHING = "() => () => {}"
 def main(arguments: list[str]) -> None:
     """The command line."""
     parser = argparse.ArgumentParser("python -m tests.benchmarks page", description=__doc__)
-    parser.add_argument("--rounds", type=int, default=5, help="of each row, in turn")
+    parser.add_argument("--rounds", type=int, default=2, help="of each row")
     options = parser.parse_args(arguments)
     cores = len(os.sched_getaffinity(0))
     rows = measure(options.rounds)
