@@ -49,6 +49,7 @@ class Answers:
         Work without an idempotency key ends when the client goes away. With one the client is
         expected to come back, so that the work goes on.
         """
+        key = _key(request)
         record = Record(
             id=uuid.uuid4().hex,
             caller=caller_of(request),
@@ -56,8 +57,8 @@ class Answers:
             status="queued",
             front=nothing_yet,
             work=work,
-            key=_key(request),
-            digest=_digest(work),
+            key=key,
+            digest=await asyncio.to_thread(_digest, work) if key else "",
         )
         if _wants_it_later(request):
             return _accepted(self._engine.state(await self._begun(record)).record)
@@ -120,5 +121,8 @@ def _key(request: Request) -> str | None:
 
 
 def _digest(work: Work) -> str:
-    parts = (work.kind.encode(), work.body, work.upload or b"")
-    return hashlib.sha256(b"\0".join(parts)).hexdigest()
+    digest = hashlib.sha256()
+    for part in (work.kind.encode(), work.body, work.upload or b""):
+        digest.update(b"%d:" % len(part))
+        digest.update(part)
+    return digest.hexdigest()

@@ -1,50 +1,54 @@
 """What work asks for, whichever path it came by."""
 
-from typing import Any
+from collections.abc import Mapping
 
-import numpy as np
-
-from service.covering import CoverageRequest, parse_coverage_request
+from service.actor import ActorFacts
+from service.covering import parse_coverage_request
+from service.instance import Instance
 from service.messages import Work
-from service.rendered import Rendered
+from service.rendered import Rendered, empty
 from service.requests import parse_front_request
-from service.schemas import FrontRequest, Limits
+from service.roster import choose_actor
+from service.schemas import Limits
+from service.task import Task
 
 
-def parse(work: Work, limits: Limits) -> FrontRequest | CoverageRequest:
-    """The request in a piece of work.
+def read(work: Work, limits: Limits, actors: Mapping[str, ActorFacts]) -> Task:
+    """The task in a piece of work.
 
     Raises:
-        Refusal: it is none, or over a limit.
+        Refusal: there is none, it is over a limit, or no actor serves it.
+        InvalidInstance: it cannot be planned.
     """
     if work.kind == "coverage":
-        return parse_coverage_request(work.body, limits, work.upload)
-    return parse_front_request(work.body, limits, work.upload)
+        covering = parse_coverage_request(work.body, limits, work.upload)
+        return Task(
+            subject=covering.coverage(),
+            demand=covering.demand(),
+            actor=choose_actor(actors, covering.kind, covering.named_actor),
+            paths=covering.paths,
+        )
+    asked = parse_front_request(work.body, limits, work.upload)
+    return Task(
+        subject=asked.instance(),
+        demand=asked.demand(),
+        actor=choose_actor(actors, asked.kind, asked.named_actor),
+    )
 
 
-def nothing_yet(asked: FrontRequest | CoverageRequest, actor: dict[str, str]) -> Rendered:
-    """The front before anything is found.
-
-    Raises:
-        InvalidInstance: there is nothing to be found.
-    """
-    if isinstance(asked, CoverageRequest):
-        asked.coverage()
-        # What the places cost, and with a spacing which they are, is for a worker to find.
-        known = {"cities": len(asked.places), "scale": None, "places": asked.places}
-        reference_point = asked.reference_point or None
+def nothing_yet(task: Task, actor: Mapping[str, str]) -> Rendered:
+    """The front before anything is found."""
+    subject, reference_point = task.subject, task.demand.reference_point
+    if isinstance(subject, Instance):
+        if reference_point is None:
+            reference_point = subject.n * subject.scale
+        known = {"cities": subject.n, "scale": subject.scale.tolist()}
     else:
-        instance = asked.instance()
-        known = {"cities": instance.n, "scale": instance.scale.tolist()}
-        reference_point = asked.reference_point or (instance.n * instance.scale).tolist()
-    members: dict[str, Any] = {
+        # What the places cost, and with a spacing which they are, is for a worker to find.
+        places = [] if subject.places is None else subject.places.tolist()
+        known = {"cities": len(places), "scale": None, "places": places}
+    return empty(
         **known,
-        "points": 0,
-        "hypervolume": 0.0,
-        "hypervolume_bound": None,
-        "reference_point": reference_point,
-        "timings_ms": {},
-        "terminated": None,
-        "actor": actor,
-    }
-    return Rendered(members, b"", np.empty(0, np.int64), np.empty(0))
+        reference_point=None if reference_point is None else reference_point.tolist(),
+        actor=actor,
+    )

@@ -1,5 +1,6 @@
 """JSON into and out of requests, without a detour through the framework's own parsing."""
 
+import asyncio
 from dataclasses import dataclass
 from typing import Any
 
@@ -31,7 +32,8 @@ async def read_body(request: Request, most_bytes: int, upload: str) -> Body:
     body = await _whole_body(request, most_bytes)
     if not kind.lower().startswith(_PARTED):
         return Body(body)
-    found = parts(kind, body, ("request", upload))
+    # Beside the event loop, because of many megabytes this takes a while.
+    found = await asyncio.to_thread(parts, kind, body, ("request", upload))
     return Body(found["request"], found[upload])
 
 

@@ -1,6 +1,7 @@
 """The paths that plan fronts."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from fastapi import APIRouter
@@ -9,15 +10,14 @@ from starlette.responses import Response
 
 from service.actor import ActorFacts
 from service.answers import Answers
-from service.asked import nothing_yet, parse
+from service.asked import nothing_yet
 from service.bodies import read_body
-from service.covering import CoverageRequest, coverage_schema
+from service.covering import coverage_schema
 from service.engine import Engine
 from service.messages import Work, WorkKind
 from service.problems import responses
-from service.rendered import Rendered
+from service.reading import Reader
 from service.requests import request_schema
-from service.roster import choose_actor
 from service.schemas import AcceptedAnswer, CoverageAnswer, FrontAnswer, Limits
 
 _UPLOADS: Mapping[WorkKind, str] = {"front": "matrices", "coverage": "map"}
@@ -39,6 +39,7 @@ class FrontRoutes:
         self._engine = engine
         self._answers = answers
         self._limits = limits
+        self._reader = Reader(limits, actors)
 
     def router(self) -> APIRouter:
         """The paths, with what the OpenAPI document says of them."""
@@ -81,16 +82,11 @@ class FrontRoutes:
         await self._answers.check_place(request)
         body = await read_body(request, self._limits.body_bytes, _UPLOADS[kind])
         work = Work(kind, body.json, body.upload)
-        return await self._answers.answer(request, work, await self._nothing_yet(work))
-
-    async def _nothing_yet(self, work: Work) -> Rendered:
-        """The front before anything is found, if it is known that it can be planned."""
-        asked = parse(work, self._limits)
-        actor = self._actors[choose_actor(self._actors, asked.kind, asked.named_actor)]
-        nothing = nothing_yet(asked, actor.named)
-        if isinstance(asked, CoverageRequest) or asked.demand().needs_compiled_code:
+        task = await self._reader.read(work)
+        if task.needs_compiled_code:
             await self._engine.check_warm()
-        return nothing
+        nothing = nothing_yet(task, self._actors[task.actor].named)
+        return await self._answers.answer(request, replace(work, task=task), nothing)
 
 
 def _body(schema: dict[str, Any]) -> dict[str, Any]:

@@ -3,10 +3,11 @@
 import pickle
 import struct
 from asyncio import StreamReader
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, BinaryIO, Literal
 
 from service.rendered import Rendered
+from service.task import Task
 
 WorkKind = Literal["front", "coverage"]
 
@@ -15,11 +16,15 @@ _LENGTH = struct.Struct("!Q")
 
 @dataclass(frozen=True)
 class Work:
-    """A front to plan: a kind of request, its body, JSON that was checked, and what came beside."""
+    """A front to plan: a kind of request, its body, JSON that was checked, and what came beside.
+
+    Where it has been read, it brings the task along, so that no worker reads it again.
+    """
 
     kind: WorkKind
     body: bytes
     upload: bytes | None = None
+    task: Task | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +47,7 @@ class Do:
     """To a worker that is idle: do this."""
 
     number: int
-    work: Work
+    work: Work | Task
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What a worker process does with a request: from JSON to a front as JSON."""
+"""What a worker process does with a task: a front as JSON."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -8,14 +8,13 @@ from typing import Any, Protocol
 
 from service import improve, shortest
 from service.actor import ActorFacts, load_actors
-from service.asked import parse
-from service.coverage import survey
-from service.covering import CoverageRequest
+from service.asked import read
+from service.coverage import Coverage, survey
 from service.messages import Work
 from service.planner import Constructor, Report, plan
 from service.rendered import Rendered, Sketch, rendered, sketched
-from service.roster import choose_actor
-from service.schemas import FrontRequest, Limits
+from service.schemas import Limits
+from service.task import Task
 
 
 class NamedActor(Constructor, Protocol):
@@ -39,31 +38,33 @@ class FrontPlanner:
         shortest.warm_up()
 
     def plan(
-        self, work: Work, stop: Callable[[], bool], report: Callable[[Sketch], None]
+        self, work: Work | Task, stop: Callable[[], bool], report: Callable[[Sketch], None]
     ) -> Rendered:
-        """The front that a request asks for."""
-        match parse(work, self.limits):
-            case CoverageRequest() as asked:
-                return self._cover(asked, stop, report)
-            case asked:
-                actor = self._actor(asked)
-                named = actor.facts.named
-                sketch = _sketching(report, actor=named)
-                front = plan(actor, asked.instance(), asked.demand(), stop, sketch)
-                return rendered(front, actor=named)
+        """The front that is asked for, by work that has not been read yet, or by what it says."""
+        task = work if isinstance(work, Task) else read(work, self.limits, self._facts)
+        actor = self.actors[task.actor]
+        if isinstance(task.subject, Coverage):
+            return self._cover(task, task.subject, stop, report)
+        named = actor.facts.named
+        sketch = _sketching(report, actor=named)
+        return rendered(plan(actor, task.subject, task.demand, stop, sketch), actor=named)
 
     def _cover(
-        self, asked: CoverageRequest, stop: Callable[[], bool], report: Callable[[Sketch], None]
+        self,
+        task: Task,
+        coverage: Coverage,
+        stop: Callable[[], bool],
+        report: Callable[[Sketch], None],
     ) -> Rendered:
-        actor = self._actor(asked)
+        actor = self.actors[task.actor]
         began = time.perf_counter()
-        found = survey(asked.coverage(), self.limits.cities, stop)
+        found = survey(coverage, self.limits.cities, stop)
         surveyed = time.perf_counter()
         more = {"actor": actor.facts.named, "places": found.places.tolist()}
-        front = plan(actor, found.instance, asked.demand(), stop, _sketching(report, **more))
+        front = plan(actor, found.instance, task.demand, stop, _sketching(report, **more))
         planned = time.perf_counter()
         # Who stops the work is not kept waiting.
-        paths = list(found.paths(front.tours)) if asked.paths and not stop() else None
+        paths = list(found.paths(front.tours)) if task.paths and not stop() else None
         timings = {
             "survey": 1000 * (surveyed - began),
             **front.timings,
@@ -77,9 +78,9 @@ class FrontPlanner:
             **more,
         )
 
-    def _actor(self, asked: FrontRequest | CoverageRequest) -> NamedActor:
-        facts = {name: actor.facts for name, actor in self.actors.items()}
-        return self.actors[choose_actor(facts, asked.kind, asked.named_actor)]
+    @property
+    def _facts(self) -> dict[str, ActorFacts]:
+        return {name: actor.facts for name, actor in self.actors.items()}
 
 
 def _sketching(report: Callable[[Sketch], None], **more: Any) -> Report:

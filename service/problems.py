@@ -7,7 +7,8 @@ import asyncio
 import logging
 import re
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from http import HTTPStatus
 from typing import Any
 
@@ -68,6 +69,9 @@ class Refusal(Exception):
         actual: float | None = None,
     ) -> None:
         super().__init__(detail)
+        self._made = partial(
+            Refusal, status, code, detail, errors=errors, limit=limit, actual=actual
+        )
         self.status = status
         self.headers = {"Retry-After": "1"} if status == HTTPStatus.SERVICE_UNAVAILABLE else {}
         self.members: dict[str, Any] = {
@@ -80,6 +84,10 @@ class Refusal(Exception):
             "limit": limit,
             "actual": actual,
         }
+
+    def __reduce__(self) -> tuple[Callable[[], "Refusal"], tuple[()]]:
+        """How it travels from one process to another."""
+        return self._made, ()
 
     def document(self, request_id: str) -> dict[str, Any]:
         """The problem document."""

@@ -63,6 +63,19 @@ def rendered(
     return Rendered(members, b",".join(tours), ends, front.angles, front.gained)
 
 
+def empty(**more: Any) -> Rendered:
+    """A front of which nothing has been found, with other members."""
+    members = {
+        "points": 0,
+        "hypervolume": 0.0,
+        "hypervolume_bound": None,
+        "timings_ms": {},
+        "terminated": None,
+        **more,
+    }
+    return Rendered(members, b"", np.empty(0, np.int64), np.empty(0))
+
+
 @dataclass(frozen=True, eq=False)
 class Sketch:
     """How far a search has come. `front` writes the best so many tours found so far."""

@@ -27,6 +27,7 @@ from service.messages import (
     received_now,
 )
 from service.rendered import Rendered, Sketch
+from service.task import Task
 
 MOST_TOURS = 100  # of a snapshot
 EVERY = 0.25  # seconds between two snapshots
@@ -40,7 +41,7 @@ class Planner(Protocol):
         """Compile what can be compiled, or load it."""
 
     def plan(
-        self, work: Work, stop: Callable[[], bool], report: Callable[[Sketch], None]
+        self, work: Work | Task, stop: Callable[[], bool], report: Callable[[Sketch], None]
     ) -> Rendered:
         """The front that is asked for."""
 
@@ -90,7 +91,7 @@ class _Worker:
             case WarmUp():
                 Thread(target=self._warm_up, name="warm-up", daemon=True).start()
 
-    def _done(self, number: int, work: Work) -> Done | Failed:
+    def _done(self, number: int, work: Work | Task) -> Done | Failed:
         report = _Reporter(lambda snapshot: self._send(Found(number, snapshot)))
         try:
             return Done(number, self._planner.plan(work, self._stops[number].is_set, report))

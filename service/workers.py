@@ -246,4 +246,4 @@ class Workers:
                 hand.order = order
                 order.begin()
                 self._limit(order)
-                hand.process.send(Do(order.number, order.work))
+                hand.process.send(Do(order.number, order.work.task or order.work))
