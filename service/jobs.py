@@ -1,14 +1,13 @@
 """Work that outlives the request that asked for it, on the workers of this process."""
 
 import asyncio
-import logging
 from asyncio import Future
 from collections.abc import AsyncIterator, Coroutine
 from dataclasses import replace
 
 from service.engine import Busy, Closed, Cold, Standing, State, finished
 from service.order import Order, Stopped
-from service.problems import problem_of
+from service.outcomes import cancelled, done, failed
 from service.record import Record, Status
 from service.store import Store
 from service.workers import Workers
@@ -63,7 +62,6 @@ class Jobs:
         self._store = store
         self._jobs: dict[str, _Job] = {}
         self._tasks: set[asyncio.Task[None]] = set()
-        self._log = logging.getLogger("paretour")
 
     async def start(self) -> None:
         """Start the workers, and take up what an earlier process has left unfinished."""
@@ -165,19 +163,10 @@ class Jobs:
 
     async def _ended(self, record: Record, order: Order) -> Record:
         try:
-            front = await order.front()
-            stopped = order.stopped is Stopped
-            return replace(
-                record, status="cancelled" if stopped else "done", front=front, work=None
-            )
+            return done(record, await order.front(), order.stopped)
         except Stopped:
-            members = {**record.front.members, "terminated": "cancelled"}
-            nothing = replace(record.front, members=members)
-            return replace(record, status="cancelled", front=nothing, work=None)
+            return cancelled(record)
         except Closed:
             raise
         except Exception as error:
-            self._log.warning("front %s failed", record.id, exc_info=error)
-            front = order.snapshot.front if order.snapshot else record.front
-            problem = problem_of(error, record.request_id)
-            return replace(record, status="failed", front=front, problem=problem, work=None)
+            return failed(record, error, order.snapshot.front if order.snapshot else record.front)

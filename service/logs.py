@@ -2,6 +2,8 @@
 
 from typing import Any
 
+_TALKATIVE = ("uvicorn.access", "celery.worker.strategy", "celery.app.trace")
+
 
 def logging_config(level: str = "INFO") -> dict[str, Any]:
     """For `logging.config.dictConfig`: everything goes to standard error, an object a line."""
@@ -18,5 +20,5 @@ def logging_config(level: str = "INFO") -> dict[str, Any]:
         "handlers": {"stderr": {"class": "logging.StreamHandler", "formatter": "json"}},
         "root": {"level": level, "handlers": ["stderr"]},
         # A line for each request is written by the service, which knows more of it.
-        "loggers": {"uvicorn.access": {"level": "WARNING"}},
+        "loggers": {name: {"level": "WARNING"} for name in _TALKATIVE},
     }

@@ -24,6 +24,24 @@ class Overdue(Exception):
     """The work took longer than any may, and there was no front yet."""
 
 
+def as_ended(front: Rendered, seconds: float, late: bool) -> Rendered:
+    """A front that took so long from when it was asked for, and may have been ended for that."""
+    total = 1000 * seconds
+    phases = front.members["timings_ms"]
+    timings = {"queue": total - sum(phases.values()), **phases, "total": total}
+    members = {**front.members, "timings_ms": timings}
+    if front.members["terminated"] in (None, "cancelled"):
+        members["terminated"] = "time_limit" if late else "cancelled"
+    return replace(front, members=members)
+
+
+def as_planned(front: Rendered) -> Rendered:
+    """A front that has ended, with the times of planning alone."""
+    timings = {**front.members["timings_ms"]}
+    del timings["queue"], timings["total"]
+    return replace(front, members={**front.members, "timings_ms": timings})
+
+
 class Order:
     """Work, who is told when it is begun and when it has come further, and in the end its front.
 
@@ -69,15 +87,9 @@ class Order:
 
     def done(self, front: Rendered) -> None:
         """End with a front."""
-        total = 1000 * (perf_counter() - self._handed_in)
-        phases = front.members["timings_ms"]
-        timings = {"queue": total - sum(phases.values()), **phases, "total": total}
-        members = {**front.members, "timings_ms": timings}
-        if front.members["terminated"] in (None, "cancelled"):
-            late = self.stopped is Overdue
-            members["terminated"] = "time_limit" if late else "cancelled"
         self._end()
-        self._future.set_result(replace(front, members=members))
+        seconds = perf_counter() - self._handed_in
+        self._future.set_result(as_ended(front, seconds, late=self.stopped is Overdue))
 
     def failed(self, error: Exception) -> None:
         """End without a front."""

@@ -7,6 +7,7 @@ from service.messages import Work
 from service.rendered import Rendered
 
 Status = Literal["queued", "running", "done", "cancelled", "failed"]
+UNFINISHED: tuple[Status, ...] = ("queued", "running")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -30,7 +31,7 @@ class Record:
     @property
     def finished(self) -> bool:
         """Whether nothing about it will change."""
-        return self.status not in ("queued", "running")
+        return self.status not in UNFINISHED
 
     def json(self) -> bytes:
         """A FrontAnswer."""

@@ -13,13 +13,16 @@ from fastapi import FastAPI
 from service.access import Access, Rates
 from service.actor import load_actors
 from service.app import create_app
+from service.cluster import check_cluster
 from service.edge import Edge
+from service.engine import Engine
 from service.jobs import Jobs
 from service.logs import logging_config
 from service.metrics import Metrics
 from service.planning import load_planner
 from service.settings import Settings
 from service.sqlite import SqliteStore
+from service.store import Store
 from service.tracing import trace
 from service.workers import Workers
 
@@ -29,22 +32,12 @@ def build(settings: Settings) -> FastAPI:
     # Loaded here only to know, before anything is served, that they can be and who they are.
     actors = load_actors(settings.actors, settings.threads)
     metrics = Metrics()
-    workers = Workers(
-        partial(load_planner, settings.actors, settings.threads, settings.limits),
-        workers=settings.workers,
-        queue=settings.queue,
-        seconds=settings.request_seconds,
-        planned=metrics.planned,
-    )
-    store = SqliteStore(
-        settings.store, entries=settings.store_entries, max_age=settings.store_seconds
-    )
-    jobs = Jobs(workers, store)
-    metrics.watch(jobs)
+    store, engine = (_embedded if settings.redis_url is None else _shared)(settings, metrics)
+    metrics.watch(engine)
     app = create_app(
         {name: actor.facts for name, actor in actors.items()},
         store,
-        jobs,
+        engine,
         settings.limits,
         _version(),
         Edge(
@@ -57,6 +50,37 @@ def build(settings: Settings) -> FastAPI:
     if settings.traces:
         trace(app)
     return app
+
+
+def _embedded(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
+    """The engine in this process and its children."""
+    workers = Workers(
+        partial(load_planner, settings.actors, settings.threads, settings.limits),
+        workers=settings.workers,
+        queue=settings.queue,
+        seconds=settings.request_seconds,
+        planned=metrics.planned,
+    )
+    store = SqliteStore(
+        settings.store, entries=settings.store_entries, max_age=settings.store_seconds
+    )
+    return store, Jobs(workers, store)
+
+
+def _shared(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
+    """The engine that many machines are together."""
+    check_cluster()
+    from service.cluster.replica import replica
+
+    assert settings.redis_url is not None
+    return replica(
+        settings.redis_url,
+        entries=settings.store_entries,
+        max_age=settings.store_seconds,
+        queue=settings.queue,
+        seconds=settings.request_seconds,
+        planned=metrics.planned,
+    )
 
 
 def serve(app: FastAPI, settings: Settings) -> None:

@@ -92,7 +92,7 @@ class _Worker:
                 Thread(target=self._warm_up, name="warm-up", daemon=True).start()
 
     def _done(self, number: int, work: Work | Task) -> Done | Failed:
-        report = _Reporter(lambda snapshot: self._send(Found(number, snapshot)))
+        report = Reporter(lambda snapshot: self._send(Found(number, snapshot)))
         try:
             return Done(number, self._planner.plan(work, self._stops[number].is_set, report))
         except Exception as error:
@@ -119,7 +119,7 @@ def _portable(error: Exception) -> Exception:
     return error
 
 
-class _Reporter:
+class Reporter:
     """Takes a snapshot now and then, the more rarely the longer one takes."""
 
     def __init__(self, send: Callable[[Snapshot], None]) -> None:
@@ -127,6 +127,7 @@ class _Reporter:
         self._next = time.monotonic() + EVERY
 
     def __call__(self, sketch: Sketch) -> None:
+        """Take one, if it is time."""
         began = time.monotonic()
         if began < self._next:
             return

@@ -23,6 +23,7 @@ from fastapi import FastAPI
 from service.actor import ActorFacts
 from service.app import create_app
 from service.edge import Edge
+from service.engine import Engine
 from service.instance import Instance, Kind
 from service.jobs import Jobs
 from service.planning import FrontPlanner, NamedActor
@@ -31,6 +32,7 @@ from service.schemas import Limits
 from service.serve import build
 from service.settings import Settings
 from service.sqlite import IN_MEMORY, SqliteStore
+from service.store import Store
 from service.workers import Workers
 
 LIMITS = Limits(body_bytes=100_000, cities=50, cells=900, preferences=20, size=30, seconds=0.2)
@@ -63,6 +65,15 @@ class Shuffler:
     def started(self) -> bool:
         assert self.gate is not None
         return self.gate.with_suffix(".started").exists()
+
+    def open(self) -> None:
+        assert self.gate is not None
+        self.gate.touch()
+
+    def close(self) -> None:
+        assert self.gate is not None
+        for mark in (self.gate, self.gate.with_suffix(".started")):
+            mark.unlink(missing_ok=True)
 
     def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
         if self.gate is not None:
@@ -122,14 +133,18 @@ def app_of(
 ) -> FastAPI:
     store = store or SqliteStore(IN_MEMORY, entries=100, max_age=60)
     workers = workers or workers_of(planner_of(*actors, limits=limits))
-    return create_app(
-        {actor.facts.name: actor.facts for actor in actors or ACTORS},
-        store,
-        Jobs(workers, store),
-        limits,
-        "test",
-        edge,
-    )
+    return engine_app(store, Jobs(workers, store), *actors, limits=limits, edge=edge)
+
+
+def engine_app(
+    store: Store,
+    engine: Engine,
+    *actors: NamedActor,
+    limits: Limits = LIMITS,
+    edge: Edge | None = None,
+) -> FastAPI:
+    facts = {actor.facts.name: actor.facts for actor in actors or ACTORS}
+    return create_app(facts, store, engine, limits, "test", edge)
 
 
 @contextmanager

@@ -1,13 +1,9 @@
 """Fronts that are asked for now and found later, over HTTP."""
 
 import json
-import os
-import signal
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -20,38 +16,40 @@ from httpx_sse import connect_sse
 from service.access import Access, KeyHash, new_key
 from service.edge import Edge
 from service.instance import Instance, tour_lengths
-from service.sqlite import SqliteStore
-from tests.serving import (
-    LIMITS,
-    Broken,
-    Shuffler,
-    app_of,
-    planner_of,
-    problem,
-    serving,
-    workers_of,
-)
+from tests.engines import Clustered, Embedded, engine_of
+from tests.serving import Broken, Shuffler, problem
 
 # So many that no search of theirs has converged within seconds.
 CITIES = np.random.default_rng(5).random((300, 4)).tolist()
 LONG = {"coordinates": CITIES, "time_limit": 600}
 SHORT = {"coordinates": CITIES[:12], "time_limit": 0.05}
 LATER = {"Prefer": "handling=strict, respond-async; wait=10"}
-PATIENT = replace(LIMITS, seconds=600.0, cities=300)
+Engine = Embedded | Clustered
 
 
-@contextmanager
-def client_of(*actors: Any, **options: Any) -> Iterator[httpx.Client]:
-    workers = workers_of(planner_of(*actors, limits=PATIENT), seconds=600)
-    app = app_of(*actors, limits=PATIENT, **{"workers": workers, **options})
-    with serving(app) as url, httpx.Client(base_url=url, timeout=60) as client:
-        yield client
+@pytest.fixture(scope="module", params=["embedded", "cluster"])
+def engine(request: pytest.FixtureRequest) -> Iterator[Engine]:
+    with engine_of(request.param, request) as engine:
+        yield engine
 
 
 @pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with client_of() as client:
-        yield client
+def client(engine: Engine) -> Iterator[httpx.Client]:
+    with engine.serve() as served:
+        yield served.client
+
+
+@pytest.fixture(scope="module")
+def gate(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("gated") / "gate"
+
+
+@pytest.fixture
+def gated(gate: Path) -> Shuffler:
+    """An actor that waits until the test opens the gate."""
+    actor = Shuffler(gate)
+    actor.close()
+    return actor
 
 
 def later(client: httpx.Client, request: dict[str, Any] = SHORT, **headers: str) -> str:
@@ -62,6 +60,10 @@ def later(client: httpx.Client, request: dict[str, Any] = SHORT, **headers: str)
     assert path == f"/front/{answer.json()['id']}"
     assert answer.json()["status"] in ("queued", "running", "done")
     return path
+
+
+def id_of(path: str) -> str:
+    return path.rpartition("/")[2]
 
 
 def ended(client: httpx.Client, path: str) -> dict[str, Any]:
@@ -122,11 +124,11 @@ def test_a_wrong_request_is_refused_at_once(client: httpx.Client) -> None:
     problem(answer, 422, "invalid-request")
 
 
-def test_before_anything_is_found_the_front_is_empty(tmp_path: Path) -> None:
-    actor = Shuffler(tmp_path / "gate")
-    with client_of(actor) as client:
+def test_before_anything_is_found_the_front_is_empty(engine: Engine, gated: Shuffler) -> None:
+    with engine.serve(gated) as served:
+        client = served.client
         running, waiting = later(client), later(client)
-        while not actor.started:
+        while not gated.started:
             time.sleep(0.01)
         for path, status in ((running, "running"), (waiting, "queued")):
             found = client.get(path).json()
@@ -137,7 +139,7 @@ def test_before_anything_is_found_the_front_is_empty(tmp_path: Path) -> None:
         problem(client.get("/tour?angle=3"), 404, "no-front")
         cancelled = client.delete(waiting).json()
         assert (cancelled["status"], cancelled["front"]) == ("cancelled", [])
-        (tmp_path / "gate").touch()
+        gated.open()
         assert ended(client, running)["status"] == "done"
 
 
@@ -169,7 +171,7 @@ def test_events_tell_how_it_goes_until_it_has_ended(client: httpx.Client) -> Non
     path = later(client, {**LONG, "time_limit": 1.5})
     told = events(client, path)
     statuses = [data for name, data in told if name == "status"]
-    id_ = path.rpartition("/")[2]
+    id_ = id_of(path)
     assert statuses[-2:] == [{"id": id_, "status": each} for each in ("running", "done")]
     assert told[-1] == ("status", statuses[-1])
     progress = [data for name, data in told if name == "progress"]
@@ -225,8 +227,9 @@ def test_a_key_that_is_none_is_refused(client: httpx.Client, length: int) -> Non
     problem(client.post("/front", json=SHORT, headers=headers), 422, "invalid-request")
 
 
-def test_a_job_that_fails_says_why() -> None:
-    with client_of(Broken()) as client:
+def test_a_job_that_fails_says_why(engine: Engine) -> None:
+    with engine.serve(Broken()) as served:
+        client = served.client
         path = later(client)
         found = ended(client, path)
         assert (found["status"], found["front"]) == ("failed", [])
@@ -237,42 +240,30 @@ def test_a_job_that_fails_says_why() -> None:
             problem(client.post("/front", json=SHORT, headers=key), 500, "internal-error")
 
 
-def test_a_job_whose_worker_is_killed_ends_with_a_front() -> None:
-    workers = workers_of(planner_of(limits=PATIENT), seconds=600)
-    with client_of(workers=workers) as client:
-        path = later(client, {**LONG, "time_limit": 1})
-        until_found(client, path)
-        [worker] = workers.pids
-        assert worker is not None
-        os.kill(worker, signal.SIGKILL)
-        found = ended(client, path)
+def test_a_job_whose_worker_is_killed_ends_with_a_front(engine: Engine) -> None:
+    with engine.serve() as served:
+        path = later(served.client, {**LONG, "time_limit": 1})
+        until_found(served.client, path)
+        served.kill(id_of(path))
+        found = ended(served.client, path)
         assert (found["status"], found["terminated"]) == ("done", "time_limit")
         check(found)
-        assert workers.pids != [worker]
 
 
-def test_a_job_that_loses_two_workers_fails_with_the_best_front_so_far() -> None:
-    workers = workers_of(planner_of(limits=PATIENT), seconds=600)
-    with client_of(workers=workers) as client:
-        path = later(client, LONG)
-        until_found(client, path)
-        killed: set[int | None] = set()
-        while len(killed) < 2:
-            if workers.working and not killed.issuperset(workers.pids):
-                [worker] = workers.pids
-                assert worker is not None
-                os.kill(worker, signal.SIGKILL)
-                killed.add(worker)
-            time.sleep(0.02)
-        found = ended(client, path)
+def test_a_job_that_loses_two_workers_fails_with_the_best_front_so_far(engine: Engine) -> None:
+    with engine.serve() as served:
+        path = later(served.client, LONG)
+        until_found(served.client, path)
+        first = served.kill(id_of(path))
+        served.kill(id_of(path), but=first)
+        found = ended(served.client, path)
         assert (found["status"], found["problem"]["code"]) == ("failed", "worker-lost")
         check(found)
 
 
-def test_jobs_are_in_the_queue_like_everybody_else(tmp_path: Path) -> None:
-    actor = Shuffler(tmp_path / "gate")
-    workers = workers_of(planner_of(actor, limits=PATIENT), queue=0)
-    with client_of(actor, workers=workers) as client:
+def test_jobs_are_in_the_queue_like_everybody_else(engine: Engine, gated: Shuffler) -> None:
+    with engine.serve(gated, queue=0) as served:
+        client = served.client
         path = later(client, SHORT, **{"Idempotency-Key": "first"})
         refused = client.post("/front", json=SHORT, headers=LATER)
         problem(refused, 503, "queue-full")
@@ -280,33 +271,31 @@ def test_jobs_are_in_the_queue_like_everybody_else(tmp_path: Path) -> None:
         problem(client.post("/front", json=SHORT, headers=other), 503, "queue-full")
         # A repeat needs no place.
         assert later(client, SHORT, **{"Idempotency-Key": "first"}) == path
-        (tmp_path / "gate").touch()
+        gated.open()
         assert ended(client, path)["status"] == "done"
         assert client.post("/front", json=SHORT, headers=other).status_code == 202
 
 
-def test_what_was_unfinished_when_the_service_ended_is_done_by_the_next(tmp_path: Path) -> None:
-    actor = Shuffler(tmp_path / "gate")
-
-    def store() -> SqliteStore:
-        return SqliteStore(str(tmp_path / "fronts.sqlite"), entries=10, max_age=60)
-
-    with client_of(actor, store=store()) as client:
-        paths = [later(client) for _ in range(2)]
-        while not actor.started:
+def test_what_was_unfinished_when_the_service_ended_is_done_for_the_next(
+    engine: Engine, gated: Shuffler, tmp_path: Path
+) -> None:
+    with engine.serve(gated, folder=tmp_path) as served:
+        paths = [later(served.client) for _ in range(2)]
+        while not gated.started:
             time.sleep(0.01)
-    (tmp_path / "gate").touch()
-    with client_of(store=store()) as client:
+    gated.open()
+    with engine.serve(gated, folder=tmp_path) as served:
         for path in paths:
-            found = ended(client, path)
+            found = ended(served.client, path)
             assert found["status"] == "done"
             check(found)
 
 
-def test_a_caller_sees_its_own_jobs_alone() -> None:
+def test_a_caller_sees_its_own_jobs_alone(engine: Engine) -> None:
     (our_key, ours), (their_key, theirs) = new_key(), new_key()
     hashes = [KeyHash(caller="us", digest=ours), KeyHash(caller="them", digest=theirs)]
-    with client_of(edge=Edge(access=Access(hashes))) as client:
+    with engine.serve(edge=Edge(access=Access(hashes))) as served:
+        client = served.client
         us, them = ({"Authorization": f"Bearer {key}"} for key in (our_key, their_key))
         path = later(client, SHORT, **us)
         for answer in (

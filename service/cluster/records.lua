@@ -120,4 +120,115 @@ function verbs.unfinished(_)
   return found
 end
 
+-- What follows is for records that are worked on.
+
+local function tell(id)
+  redis.call('PUBLISH', TOLD, id .. ':' .. redis.call('HGET', front_of(id), 'status'))
+end
+
+local function workers_at(now)
+  redis.call('ZREMRANGEBYSCORE', WORKERS, '-inf', now - 5)
+  return redis.call('ZCARD', WORKERS)
+end
+
+function verbs.present(now) redis.call('ZADD', WORKERS, now, ARGV[3]) end
+
+function verbs.standing(_)
+  local working = 0
+  for _, id in ipairs(redis.call('ZRANGE', UNFINISHED, 0, -1)) do
+    if redis.call('HGET', front_of(id), 'status') == 'running' then working = working + 1 end
+  end
+  local waiting = redis.call('ZCARD', UNFINISHED) - working
+  return {waiting, working, tonumber(redis.call('GET', LOST) or 0)}
+end
+
+-- Whether a record, or one more, is among those that may wait or be worked on.
+function verbs.has_place(now)
+  local queue, id = tonumber(ARGV[3]), ARGV[4]
+  local before = id and redis.call('ZRANK', UNFINISHED, id) or redis.call('ZCARD', UNFINISHED)
+  return before < workers_at(now) + queue and 1 or 0
+end
+
+-- Nothing where the record is finished, or another worker is at it, unless that is known to be lost.
+function verbs.begin(now)
+  local id, worker, lease, known = ARGV[3], ARGV[4], tonumber(ARGV[5]), ARGV[6]
+  local status, seen = unpack(redis.call('HMGET', front_of(id), 'status', 'seen'))
+  if not status or is_finished(status) then return false end
+  if status == 'running' and known == '' and now - seen < lease then return false end
+  redis.call('HSET', front_of(id), 'status', 'running', 'worker', worker, 'seen', now)
+  if redis.call('HINCRBY', front_of(id), 'attempts', 1) > 1 then redis.call('INCR', LOST) end
+  tell(id)
+  return {redis.call('HGETALL', front_of(id)), redis.call('HGETALL', work_of(id))}
+end
+
+local function has(id, worker) return redis.call('HGET', front_of(id), 'worker') == worker end
+
+-- A worker is at it: whether it is to stop, and why.
+function verbs.seen(now)
+  local id, worker = ARGV[3], ARGV[4]
+  if not has(id, worker) then return 'taken' end
+  redis.call('HSET', front_of(id), 'seen', now)
+  return redis.call('HGET', front_of(id), 'stop') or ''
+end
+
+function verbs.progress(_)
+  local id, worker = ARGV[3], ARGV[4]
+  if has(id, worker) then
+    redis.call('HSET', front_of(id), unpack(ARGV, 5))
+    tell(id)
+  end
+end
+
+-- A worker that ends gives it to another, and it counts as no attempt.
+function verbs.hand_back(now)
+  local id, worker = ARGV[3], ARGV[4]
+  if has(id, worker) then
+    redis.call('HSET', front_of(id), 'status', 'queued', 'sent', now)
+    redis.call('HDEL', front_of(id), 'worker')
+    redis.call('HINCRBY', front_of(id), 'attempts', -1)
+    tell(id)
+  end
+end
+
+function verbs.stop(_)
+  local id, why = ARGV[3], ARGV[4]
+  if redis.call('EXISTS', front_of(id)) == 1 then redis.call('HSETNX', front_of(id), 'stop', why) end
+end
+
+-- Whatever ends it first ends it.
+function verbs.finish(now)
+  local id, fields = ARGV[3], split(4)
+  local status = redis.call('HGET', front_of(id), 'status')
+  if status and not is_finished(status) then
+    put(now, id, fields)
+    tell(id)
+  end
+end
+
+-- To the first who asks, what a record ended with.
+function verbs.claim(_)
+  local id = ARGV[3]
+  if redis.call('HGET', front_of(id), 'status') ~= 'done' then return false end
+  if redis.call('HSETNX', front_of(id), 'claimed', 1) == 0 then return false end
+  return redis.call('HGETALL', front_of(id))
+end
+
+-- Those of which the worker was not seen for so long, or the message is lost, and when one was
+-- last sent is as long ago.
+function verbs.stale(now)
+  local lease, messages = tonumber(ARGV[3]), ARGV[4]
+  local found = {}
+  for _, id in ipairs(redis.call('ZRANGE', UNFINISHED, 0, -1)) do
+    local status, seen, sent, kept =
+      unpack(redis.call('HMGET', front_of(id), 'status', 'seen', 'sent', 'kept'))
+    local left = status == 'queued' and redis.call('LLEN', messages) == 0
+    local lost = status == 'running' and now - seen > lease
+    if (left or lost) and now - (sent or kept) > lease then
+      redis.call('HSET', front_of(id), 'sent', now)
+      found[#found + 1] = id
+    end
+  end
+  return found
+end
+
 return verbs[ARGV[1]](tonumber(ARGV[2]))

@@ -1,24 +1,57 @@
 """Records as Redis keeps them: fields of hashes, and one script for all that is done with them."""
 
+import json
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from service.columns import WORK, columns, record_of
+from pydantic_core import to_json
+from redis import exceptions
+
+from service.columns import WORK, columns, front_columns, record_of
+from service.messages import Snapshot
+from service.order import Overdue, Stopped
 from service.record import Record
 
 SCRIPT = (Path(__file__).parent / "records.lua").read_text()
-Argument = str | bytes | float
+LEASE = 5.0  # seconds after which a worker that was not seen is lost
+REASONS: Mapping[bytes, type[Stopped | Overdue]] = {b"Stopped": Stopped, b"Overdue": Overdue}
 
+GONE = (exceptions.ConnectionError, exceptions.TimeoutError)  # what says that it does not answer
+
+Argument = str | bytes | float
+_PROGRESS = ("seconds", "hypervolume", "points")
 _TEXTS = ("id", "caller", "request_id", "status", "key", "digest", "kind")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Kept:
+    """A record as it stands in Redis, and what Redis knows besides.
+
+    `asked` is when it was asked for, in seconds since 1970.
+    """
+
+    record: Record
+    asked: float
+    attempts: int
+    progress: Snapshot | None
 
 
 def arguments(record: Record) -> list[Argument]:
     """A record for the script: how many arguments are its fields, these, and those of its work."""
     given = {name: value for name, value in columns(record).items() if value is not None}
     work = flat({name: given.pop(name) for name in WORK if name in given})
+    if record.front.gained is not None:
+        given["gained"] = record.front.gained
     fields = flat(given)
     return [len(fields), *fields, *work]
+
+
+def progress_arguments(snapshot: Snapshot) -> list[Argument]:
+    """The fields that a worker changes while it goes on."""
+    progress = {name: getattr(snapshot, name) for name in _PROGRESS}
+    return flat({**front_columns(snapshot.front), "progress": to_json(progress)})
 
 
 def flat(fields: Mapping[str, Argument]) -> list[Argument]:
@@ -26,13 +59,23 @@ def flat(fields: Mapping[str, Argument]) -> list[Argument]:
     return [part for field in fields.items() for part in field]
 
 
-def fields(flat: Iterable[bytes]) -> dict[str, Any]:
-    """What Redis gives as names and values in turn."""
+def kept_in(*hashes: Iterable[bytes]) -> Kept:
+    """What is in one hash, or in one and that of its work."""
+    found = {name: value for each in hashes for name, value in _fields(each).items()}
+    record = record_of(found)
+    if "gained" in found:
+        front = replace(record.front, gained=float(found["gained"]))
+        record = replace(record, front=front)
+    progress = found.get("progress")
+    return Kept(
+        record=record,
+        asked=float(found["kept"]),
+        attempts=int(found.get("attempts", 0)),
+        progress=Snapshot(**json.loads(progress), front=record.front) if progress else None,
+    )
+
+
+def _fields(flat: Iterable[bytes]) -> dict[str, Any]:
     parts = iter(flat)
     found: dict[str, Any] = {name.decode(): value for name, value in zip(parts, parts, strict=True)}
     return found | {name: found[name].decode() for name in _TEXTS if name in found}
-
-
-def record_in(*hashes: Iterable[bytes]) -> Record:
-    """The record in one hash, or in one and that of its work."""
-    return record_of({name: value for each in hashes for name, value in fields(each).items()})

@@ -5,9 +5,8 @@ from time import time
 from typing import Any
 
 from redis.asyncio import Redis
-from redis.exceptions import RedisError
 
-from service.cluster.records import SCRIPT, Argument, arguments, record_in
+from service.cluster.records import GONE, SCRIPT, Argument, Kept, arguments, kept_in
 from service.record import Record
 from service.store import Expired, Mismatch, Unavailable, Unknown
 
@@ -48,15 +47,15 @@ class RedisStore:
             case b"mismatch":
                 raise Mismatch
             case earlier:
-                return record_in(earlier)
+                return kept_in(earlier).record
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
         """The caller's record with this id."""
-        return await self._one("get", caller, id)
+        return (await self.kept("get", caller, id)).record
 
     async def latest(self, caller: str) -> Record:
         """The caller's record that was finished last."""
-        return await self._one("latest", caller)
+        return (await self.kept("latest", caller)).record
 
     async def forget(self, record: Record) -> None:
         """Keep the record no longer, and nothing in its place."""
@@ -64,7 +63,7 @@ class RedisStore:
 
     async def unfinished(self) -> list[Record]:
         """All records that still need work, the oldest first."""
-        return [record_in(*hashes) for hashes in await self.call("unfinished")]
+        return [kept_in(*hashes).record for hashes in await self.call("unfinished")]
 
     async def close(self) -> None:
         """Let go of the connections."""
@@ -78,10 +77,11 @@ class RedisStore:
         """
         try:
             return await self._script(args=[verb, self._clock(), *about])
-        except RedisError as error:
+        except GONE as error:
             raise Unavailable from error
 
-    async def _one(self, verb: str, *about: str) -> Record:
+    async def kept(self, verb: str, *about: str) -> Kept:
+        """What is kept, as `get` or `latest` finds it."""
         await self._make_way()
         match await self.call(verb, *about):
             case b"unknown":
@@ -89,7 +89,7 @@ class RedisStore:
             case b"expired":
                 raise Expired
             case found:
-                return record_in(found)
+                return kept_in(found)
 
     async def _make_way(self) -> None:
         await self.call("make_way", *self._bounds)

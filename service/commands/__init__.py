@@ -173,6 +173,16 @@ def serve(
 
 
 @app.command()
+def work(
+    workers: Annotated[int | None, Option(help="Plans made at a time.", show_default=False)] = None,
+) -> None:
+    """Plan what services with the same PARETOUR_REDIS_URL ask for; needs the extra cluster."""
+    from service.commands.working import run_work
+
+    run_work(workers)
+
+
+@app.command()
 def key(
     caller: Annotated[str, Argument(help="Who will show the key.")],
 ) -> None:

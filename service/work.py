@@ -1,0 +1,50 @@
+"""A worker of the cluster, put together as the settings ask."""
+
+import logging.config
+import multiprocessing
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from pathlib import Path
+
+from service.actor import load_actors
+from service.cluster import check_cluster
+from service.logs import logging_config
+from service.planning import load_planner
+from service.settings import Settings
+
+
+def build_work(settings: Settings) -> Callable[[], int]:
+    """What works until told to end, and says with which status.
+
+    Raises:
+        ValueError: there is no Redis to work for, or what it takes is not installed.
+    """
+    if settings.redis_url is None:
+        raise ValueError("PARETOUR_REDIS_URL must say for which Redis to work")
+    check_cluster()
+    from service.cluster.crew import Crew
+    from service.cluster.hand import make_hand
+    from service.cluster.queue import queue_at
+
+    _check_actors(settings.actors, settings.threads)
+    logging.config.dictConfig(logging_config())
+    load = partial(load_planner, settings.actors, settings.threads, settings.limits)
+    crew = Crew(
+        queue=queue_at(settings.redis_url, settings.request_seconds),
+        make_hand=partial(make_hand, load, settings.redis_url, settings.request_seconds),
+        workers=settings.workers,
+        drain_seconds=settings.drain_seconds,
+    )
+    return crew.run
+
+
+def _check_actors(directory: Path, threads: int) -> None:
+    """Load the networks, elsewhere: a process that will fork must not have them."""
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, mp_context=context) as elsewhere:
+        elsewhere.submit(_load_actors, directory, threads).result()
+
+
+def _load_actors(directory: Path, threads: int) -> None:
+    load_actors(directory, threads)

@@ -1,0 +1,148 @@
+"""Either engine behind a live server, so that a test of one is a test of the other."""
+
+import multiprocessing
+import os
+import signal
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field, replace
+from functools import partial
+from importlib.util import find_spec
+from multiprocessing.process import BaseProcess
+from pathlib import Path
+
+import httpx
+import pytest
+import redis
+
+from service.cluster.crew import Crew
+from service.cluster.hand import make_hand
+from service.cluster.queue import queue_at
+from service.cluster.replica import replica
+from service.edge import Edge
+from service.planning import NamedActor
+from service.process import MakePlanner
+from service.sqlite import IN_MEMORY, SqliteStore
+from tests.redis_server import Redis
+from tests.serving import LIMITS, app_of, engine_app, planner_of, serving, workers_of
+
+PATIENT = replace(LIMITS, seconds=600.0, cities=300)
+SECONDS = 600.0
+
+
+@dataclass(frozen=True)
+class Served:
+    """A client of a service, and the process that plans the front with an id, if one does."""
+
+    client: httpx.Client
+    planning: Callable[[str], int | None]
+
+    def kill(self, id: str, but: int | None = None) -> int:  # noqa: A002
+        """Kill the process that plans a front, once it is another than this."""
+        while (pid := self.planning(id)) in (None, but):
+            time.sleep(0.02)
+        assert pid is not None
+        os.kill(pid, signal.SIGKILL)
+        return pid
+
+
+class Embedded:
+    """The engine of one process."""
+
+    @contextmanager
+    def serve(
+        self,
+        *actors: NamedActor,
+        queue: int = 8,
+        folder: Path | None = None,
+        edge: Edge | None = None,
+    ) -> Iterator[Served]:
+        """A service with one worker. What it keeps in a folder outlives it."""
+        workers = workers_of(planner_of(*actors, limits=PATIENT), queue=queue, seconds=SECONDS)
+        path = IN_MEMORY if folder is None else str(folder / "fronts.sqlite")
+        store = SqliteStore(path, entries=100, max_age=60)
+        app = app_of(*actors, limits=PATIENT, store=store, workers=workers, edge=edge)
+        with serving(app) as url, httpx.Client(base_url=url, timeout=60) as client:
+            yield Served(client, lambda _: workers.pids[0] if workers.working else None)
+
+
+@dataclass
+class Clustered:
+    """The engine of many machines, of which each is a process here, at a Redis database each."""
+
+    server: Redis
+    crews: ExitStack
+    _databases: dict[str, int] = field(default_factory=dict)
+
+    @contextmanager
+    def serve(
+        self,
+        *actors: NamedActor,
+        queue: int = 8,
+        folder: Path | None = None,
+        edge: Edge | None = None,
+    ) -> Iterator[Served]:
+        """A replica, and a worker that goes on for the next with these actors."""
+        url = self._url(actors)
+        kept = folder is not None and (folder / "begun").exists()
+        connection = redis.Redis.from_url(url)
+        if not kept:
+            connection.flushdb()
+        if folder is not None:
+            (folder / "begun").touch()
+        while not connection.zcard("paretour:workers"):
+            time.sleep(0.02)
+        store, engine = replica(url, entries=100, max_age=60, queue=queue, seconds=SECONDS)
+        app = engine_app(store, engine, *actors, limits=PATIENT, edge=edge)
+        with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:
+            yield Served(client, partial(planning, connection))
+        connection.close()
+
+    def _url(self, actors: tuple[NamedActor, ...]) -> str:
+        known = len(self._databases)
+        database = self._databases.setdefault(repr(actors), known)
+        url = f"{self.server.url.removesuffix('/0')}/{database}"
+        if database == known:
+            self.crews.enter_context(crew(url, planner_of(*actors, limits=PATIENT), SECONDS))
+        return url
+
+
+def planning(connection: "redis.Redis[bytes]", id: str) -> int | None:  # noqa: A002
+    """The process that plans a front, as Redis knows it."""
+    status, worker = connection.hmget(f"paretour:front:{id}", "status", "worker")
+    return int(worker.split(b":")[1]) if status == b"running" else None
+
+
+@contextmanager
+def crew(url: str, make_planner: MakePlanner, seconds: float) -> Iterator[BaseProcess]:
+    """A worker with one process that plans."""
+    context = multiprocessing.get_context("spawn")
+    worker = context.Process(target=_work, args=(url, make_planner, seconds))
+    worker.start()
+    try:
+        yield worker
+    finally:
+        worker.kill()
+        worker.join()
+
+
+def _work(url: str, make_planner: MakePlanner, seconds: float) -> None:
+    Crew(
+        queue=queue_at(url, seconds),
+        make_hand=partial(make_hand, make_planner, url, seconds),
+        workers=1,
+        drain_seconds=5,
+    ).run()
+
+
+@contextmanager
+def engine_of(kind: str, request: pytest.FixtureRequest) -> Iterator[Embedded | Clustered]:
+    """Either engine; skips the test where what it takes is not installed."""
+    if kind == "embedded":
+        yield Embedded()
+        return
+    if find_spec("celery") is None:
+        pytest.skip("celery is not installed")
+    with ExitStack() as crews:
+        yield Clustered(request.getfixturevalue("redis"), crews)
