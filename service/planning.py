@@ -34,8 +34,7 @@ class FrontPlanner:
 
     def warm_up(self) -> None:
         """Compile the search, or load it."""
-        improve.warm_up()
-        shortest.warm_up()
+        warm_up()
 
     def plan(
         self, work: Work | Task, stop: Callable[[], bool], report: Callable[[Sketch], None]
@@ -85,6 +84,12 @@ class FrontPlanner:
 
 def _sketching(report: Callable[[Sketch], None], **more: Any) -> Report:
     return lambda interim: report(sketched(interim, **more))
+
+
+def warm_up() -> None:
+    """Compile all that is compiled, or load it, where this process has not."""
+    improve.warm_up()
+    shortest.warm_up()
 
 
 def load_planner(directory: Path, threads: int, limits: Limits) -> FrontPlanner:

@@ -74,7 +74,8 @@ class Settings(BaseSettings):
         "1000/minute", description="requests that each caller with a key may make"
     )
     redis_url: str | None = Field(
-        None, description="Redis, where rates are counted for all replicas together"
+        None,
+        description="Redis of all replicas: rates, fronts and jobs, which `paretour work` plans",
     )
     origins: Words = Field(
         (), description="origins whose pages may call (CORS), with commas between; or *"

@@ -10,7 +10,7 @@ from pathlib import Path
 from service.actor import load_actors
 from service.cluster import check_cluster
 from service.logs import logging_config
-from service.planning import load_planner
+from service.planning import load_planner, warm_up
 from service.settings import Settings
 
 
@@ -36,7 +36,13 @@ def build_work(settings: Settings) -> Callable[[], int]:
         workers=settings.workers,
         drain_seconds=settings.drain_seconds,
     )
-    return crew.run
+
+    def work() -> int:
+        # Before the first fork, so that a process that takes the place of one lost has it at once.
+        warm_up()
+        return crew.run()
+
+    return work
 
 
 def _check_actors(directory: Path, threads: int) -> None:

@@ -21,7 +21,7 @@ from service.cluster.hand import make_hand
 from service.cluster.queue import queue_at
 from service.cluster.replica import replica
 from service.edge import Edge
-from service.planning import NamedActor
+from service.planning import NamedActor, warm_up
 from service.process import MakePlanner
 from service.sqlite import IN_MEMORY, SqliteStore
 from tests.redis_server import Redis
@@ -37,6 +37,7 @@ class Served:
 
     client: httpx.Client
     planning: Callable[[str], int | None]
+    redis_url: str = ""
 
     def kill(self, id: str, but: int | None = None) -> int:  # noqa: A002
         """Kill the process that plans a front, once it is another than this."""
@@ -82,6 +83,7 @@ class Clustered:
         queue: int = 8,
         folder: Path | None = None,
         edge: Edge | None = None,
+        seconds: float = SECONDS,
     ) -> Iterator[Served]:
         """A replica, and a worker that goes on for the next with these actors."""
         url = self._url(actors)
@@ -93,10 +95,10 @@ class Clustered:
             (folder / "begun").touch()
         while not connection.zcard("paretour:workers"):
             time.sleep(0.02)
-        store, engine = replica(url, entries=100, max_age=60, queue=queue, seconds=SECONDS)
+        store, engine = replica(url, entries=100, max_age=60, queue=queue, seconds=seconds)
         app = engine_app(store, engine, *actors, limits=PATIENT, edge=edge)
         with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:
-            yield Served(client, partial(planning, connection))
+            yield Served(client, partial(planning, connection), url)
         connection.close()
 
     def _url(self, actors: tuple[NamedActor, ...]) -> str:
@@ -115,10 +117,12 @@ def planning(connection: "redis.Redis[bytes]", id: str) -> int | None:  # noqa: 
 
 
 @contextmanager
-def crew(url: str, make_planner: MakePlanner, seconds: float) -> Iterator[BaseProcess]:
-    """A worker with one process that plans."""
+def crew(
+    url: str, make_planner: MakePlanner, seconds: float, workers: int = 1
+) -> Iterator[BaseProcess]:
+    """A worker with so many processes that plan."""
     context = multiprocessing.get_context("spawn")
-    worker = context.Process(target=_work, args=(url, make_planner, seconds))
+    worker = context.Process(target=_work, args=(url, make_planner, seconds, workers))
     worker.start()
     try:
         yield worker
@@ -127,11 +131,12 @@ def crew(url: str, make_planner: MakePlanner, seconds: float) -> Iterator[BasePr
         worker.join()
 
 
-def _work(url: str, make_planner: MakePlanner, seconds: float) -> None:
+def _work(url: str, make_planner: MakePlanner, seconds: float, workers: int) -> None:
+    warm_up()
     Crew(
         queue=queue_at(url, seconds),
         make_hand=partial(make_hand, make_planner, url, seconds),
-        workers=1,
+        workers=workers,
         drain_seconds=5,
     ).run()
 

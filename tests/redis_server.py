@@ -14,37 +14,44 @@ import pytest
 
 @dataclass
 class Redis:
-    """A server that can be told to end, and where it is."""
+    """A server that can be told to end, and to begin again, and where it is."""
 
     port: int
-    process: subprocess.Popen[bytes]
+    folder: Path
+    lasting: bool
+    process: subprocess.Popen[bytes] | None = None
 
     @property
     def url(self) -> str:
         return f"redis://127.0.0.1:{self.port}/0"
 
+    def begin(self) -> None:
+        command = ["redis-server", "--port", str(self.port), "--bind", "127.0.0.1", "--save", ""]
+        command += ["--appendonly", "yes" if self.lasting else "no"]
+        self.process = subprocess.Popen(
+            command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        _wait_until_listening(self.port)
+
     def end(self) -> None:
-        self.process.kill()
-        self.process.wait()
+        if self.process is not None:
+            self.process.kill()
+            self.process.wait()
 
 
 @contextmanager
-def redis_server(folder: Path) -> Iterator[Redis]:
-    """A server that keeps nothing; skips the test where there is none."""
+def redis_server(folder: Path, lasting: bool = False) -> Iterator[Redis]:
+    """A server that keeps nothing when it ends, or everything; skips the test if there is none."""
     if shutil.which("redis-server") is None:
         pytest.skip("redis-server is not installed")
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    command = ["redis-server", "--port", str(port), "--bind", "127.0.0.1", "--save", ""]
-    with subprocess.Popen(
-        command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    ) as process:
-        redis = Redis(port, process)
-        try:
-            _wait_until_listening(port)
-            yield redis
-        finally:
-            redis.end()
+    redis = Redis(port, folder, lasting)
+    try:
+        redis.begin()
+        yield redis
+    finally:
+        redis.end()
 
 
 def _wait_until_listening(port: int) -> None:

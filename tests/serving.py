@@ -204,6 +204,19 @@ def running(settings: Mapping[str, str], ready: bool = False) -> Iterator[Runnin
             service.log = log.read()
 
 
+@contextmanager
+def working(settings: Mapping[str, str]) -> Iterator[subprocess.Popen[bytes]]:
+    """The command `paretour work`, which ends with the block."""
+    command = [sys.executable, "-m", "service", "work"]
+    environment = {**os.environ, **settings}
+    with subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL) as process:
+        try:
+            yield process
+        finally:
+            process.send_signal(signal.SIGTERM)
+            process.wait(timeout=60)
+
+
 def _wait_for(url: str) -> None:
     deadline = time.monotonic() + 300
     while time.monotonic() < deadline:
