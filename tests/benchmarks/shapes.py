@@ -8,7 +8,6 @@ n times the scale. What is stored is not measured again. Prints a table and stor
 """
 
 import argparse
-import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -19,10 +18,9 @@ from numpy.typing import NDArray
 
 from models import planes
 from service.actor import load_actors
-from service.front import hypervolume
-from service.instance import Instance, tour_lengths
+from service.instance import Instance
 from service.preferences import fan, from_angles
-from tests.benchmarks.instances import check_tours
+from tests.benchmarks.beside import measured
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rivals.construction import greedy_edge, nearest_neighbour, spread_weights
 from tests.benchmarks.rows import resume
@@ -49,7 +47,7 @@ def main(arguments: list[str]) -> None:
             for n in options.sizes:
                 instances = [shaped(kind, n, seed) for seed in range(options.count)]
                 key = f"{n} cities, {kind}: {row}"
-                resume("shapes", key, digest, instances, partial(_measured, build))
+                resume("shapes", key, digest, instances, partial(measured, build))
     _print_table()
 
 
@@ -87,15 +85,6 @@ KINDS = {
     "streets": (planes.streets, planes.streets),
     "square and box": (planes.uniform, _large_box),
 }
-
-
-def _measured(build: Build, instance: Instance) -> dict[str, float]:
-    began = time.process_time()
-    tours = build(instance)
-    seconds = time.process_time() - began
-    check_tours(tours, instance.n)
-    share = hypervolume(tour_lengths(instance, tours), instance.n * instance.scale)
-    return {"hypervolume": round(100 * share, 4), "seconds": round(seconds, 4)}
 
 
 def _print_table() -> None:
