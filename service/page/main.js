@@ -157,13 +157,15 @@ async function openExample() {
   const example = examples.find(({ file }) => file === element("example").value);
   element("about").textContent = example?.about ?? "";
   if (!example) return;
+  leave();
+  say("The example is being opened.");
   const before = opened;
   try {
     const asked = await service.get(`examples/${example.file}`);
     if (opened > before) return;
     open(asked, example.objectives);
   } catch (error) {
-    fail(error);
+    return fail(error);
   }
   await plan();
 }
