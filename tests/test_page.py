@@ -2,9 +2,12 @@
 
 import json
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import httpx
 import numpy as np
@@ -12,6 +15,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Browser, Locator, Page, expect
 
+from service.commands.tsplib import matrix
 from service.serve import build
 from service.settings import Settings
 from tests.browsing import CHROMIUM, DESK, PHONE, WITHOUT, chromium, done, drawn, opened
@@ -112,13 +116,31 @@ def test_a_link_opens_the_same_front_with_its_cities(page: Page, browser: Browse
     other = browser.new_page()
     other.goto(page.evaluate("navigator.clipboard.readText()"))
     expect(other.locator("#count")).to_have_text("61 cities")
-    shown = other.locator("#front-chart")
-    expect(shown).to_have_attribute(
-        "aria-label", (front or "").replace("distance", "length 1").replace("risk", "length 2")
-    )
+    expect(other.locator("#front-chart")).to_have_attribute("aria-label", front or "")
+    expect(other.get_by_text("Its growth is drawn here while a search runs")).to_be_visible()
     other.goto(page.url.partition("#")[0] + "#front=none")
     expect(other.locator("#request-fault")).to_have_text("There is no front 'none'.")
     other.close()
+
+
+@needs_browser
+def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
+    page: Page, browser: Browser
+) -> None:
+    matrices = np.random.default_rng(0).random((2, 60, 60)).tolist()
+    bring(page, {"costs.json": json.dumps({"matrices": matrices, "time_limit": 0})})
+    page.get_by_role("button", name="Plan").click()
+    done(page)
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Copy link").click()
+    expect(page.get_by_text("This link opens the front without its maps")).to_be_visible()
+    link = page.evaluate("navigator.clipboard.readText()")
+    assert len(link) < 100
+    with opened(browser, link) as other:
+        done(other)
+        expect(other.get_by_text("The link names a front alone")).to_be_visible()
+        expect(other.locator("#plane-1")).to_be_hidden()
+        expect(other.get_by_label("A front of")).to_be_visible()
 
 
 @needs_browser
@@ -157,6 +179,12 @@ def test_a_bad_file_is_refused_in_a_sentence(page: Page, name: str, text: str, s
     expect(page.locator("#count")).to_have_text("61 cities")
 
 
+def tsplib(places: str) -> str:
+    cities = len(places.splitlines())
+    head = f"DIMENSION: {cities}\nEDGE_WEIGHT_TYPE: EUC_2D\nNODE_COORD_SECTION"
+    return f"{head}\n{places}\nEOF\n"
+
+
 @needs_browser
 @pytest.mark.parametrize(
     "files",
@@ -164,8 +192,8 @@ def test_a_bad_file_is_refused_in_a_sentence(page: Page, name: str, text: str, s
         {"cities.csv": "x,y,u,v\n0,0,5,5\n3,1,9,1\n5,2,2,8\n"},
         {"cities.json": '{"coordinates": [[0, 0, 5, 5], [3, 1, 9, 1], [5, 2, 2, 8]]}'},
         {
-            "a.tsp": "NODE_COORD_SECTION\n1 0 0\n2 3 1\n3 5 2\nEOF\n",
-            "b.tsp": "NODE_COORD_SECTION\n1 5 5\n2 9 1\n3 2 8\nEOF\n",
+            "a.tsp": tsplib("1 0 0\n2 3 1\n3 5 2"),
+            "b.tsp": tsplib("1 5 5\n2 9 1\n3 2 8"),
         },
     ],
     ids=["csv", "json", "tsplib"],
@@ -175,6 +203,59 @@ def test_a_file_of_cities_is_planned(page: Page, files: dict[str, str]) -> None:
     expect(page.get_by_label("x1, y1, x2, y2")).to_have_value("0, 0, 5, 5\n3, 1, 9, 1\n5, 2, 2, 8")
     page.get_by_role("button", name="Plan").click()
     expect(page.locator("#status")).to_have_text("Done: 1 tour found.")
+
+
+@pytest.fixture
+def pair(tmp_path: Path) -> list[Path]:
+    """Two files of TSPLIB; halves of whole numbers, so that many distances are halves as well."""
+    halves = np.random.default_rng(4).integers(0, 20, (2, 12, 2)) / 2
+    files = [tmp_path / "a.tsp", tmp_path / "b.tsp"]
+    for file, places in zip(files, halves, strict=True):
+        file.write_text(tsplib("\n".join(f"{i} {x} {y}" for i, (x, y) in enumerate(places, 1))))
+    return files
+
+
+@needs_browser
+def test_two_files_of_tsplib_give_the_front_of_the_command_line(
+    page: Page, pair: list[Path]
+) -> None:
+    command = [sys.executable, "-m", "service", "front", *pair, "--json"]
+    command += ["--time-limit", "50", "--seed", "3"]
+    ended = subprocess.run(command, cwd=SERVICE.parent, capture_output=True, text=True, check=True)
+    expected = json.loads(ended.stdout)
+    assert expected["terminated"] == "converged"
+    page.get_by_label("Open files").set_input_files(pair)
+    page.get_by_text("More settings").click()
+    page.get_by_label("Seed").fill("3")
+    page.get_by_label("Seconds of search").fill("50")
+    page.get_by_role("button", name="Plan").click()
+    done(page)
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save JSON").click()
+    found = json.loads(saved.value.path().read_text())
+    for name in ("front", "points", "hypervolume", "reference_point", "terminated", "actor"):
+        assert found[name] == expected[name]
+
+
+@needs_browser
+def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
+    page: Page, browser: Browser, pair: list[Path]
+) -> None:
+    page.get_by_label("Open files").set_input_files(pair)
+    expect(page.get_by_label("Whole distances")).to_be_checked()
+    page.get_by_role("button", name="Plan").click()
+    done(page)
+    assert asked_by_curl(page)["matrices"] == [matrix(file.read_text()).tolist() for file in pair]
+    link = page.get_by_role("button", name="Copy link")
+    link.click()
+    expect(link).to_have_text("Copied")
+    with opened(browser, page.evaluate("navigator.clipboard.readText()")) as other:
+        done(other)
+        expect(other.get_by_label("Whole distances")).to_be_checked()
+        expect(other.locator("#plane-1 canvas.selected")).to_be_visible()
+        other.get_by_label("Whole distances").uncheck()
+        expect(other.get_by_label("No front yet")).to_be_visible()
+        assert len(asked_by_curl(other)["coordinates"]) == 12
 
 
 @needs_browser
@@ -229,11 +310,7 @@ def test_the_front_can_be_taken_along(page: Page, address: str) -> None:
     head, *lines = saved.value.path().read_text().splitlines()
     assert head == "angle,length_1,length_2,tour"
     assert len(lines) == len(answer["front"])
-    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    page.get_by_role("button", name="Copy as curl").click()
-    command = page.evaluate("navigator.clipboard.readText()")
-    asked = json.loads(command.splitlines()[1])
-    assert command.startswith(f"curl {address}/front ")
+    asked = asked_by_curl(page)
     found = httpx.post(f"{address}/front", json={**asked, "time_limit": 0}).json()
     assert found["cities"] == 61
 
@@ -244,6 +321,17 @@ def test_the_reference_needs_nothing_from_elsewhere(browser: Browser, address: s
     page.goto(f"{address}/docs")
     expect(page.get_by_role("button", name="POST /front Plan Front")).to_be_visible()
     page.close()
+
+
+def asked_by_curl(page: Page) -> Any:
+    """The body of the request that the page gives as a command."""
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    curl = page.get_by_role("button", name="Copy as curl")
+    curl.click()
+    expect(curl).to_have_text("Copied")
+    command = page.evaluate("navigator.clipboard.readText()")
+    assert command.startswith(f"curl {page.url.partition('#')[0]}front ")
+    return json.loads(command.splitlines()[1])
 
 
 def bring(page: Page, files: dict[str, str]) -> None:

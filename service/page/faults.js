@@ -6,16 +6,21 @@ const FIELD_OF_CODE = { unauthorized: "key" };
 /** Shows the faults of a problem; whatever has no field of its own is said under the buttons. */
 export function showFaults(problem) {
   clearFaults();
-  const faults = problem.errors?.length ? problem.errors : [{ detail: problem.message }];
+  const faults = faultsOf(problem);
   let first = null;
   for (const { pointer = "", detail } of faults) {
     const [member, row] = pointer.split("/").slice(1);
     const field = FIELD_OF_CODE[problem.code] ?? FIELD_OF[member] ?? member ?? "request";
     const said = document.getElementById(`${field}-fault`) ?? document.getElementById("request-fault");
     said.textContent ||= sentence(detail);
-    first ??= mark(field, row);
+    first ??= mark(field, member === "matrices" ? undefined : row);
   }
   first?.focus();
+}
+
+/** Of one fault the problem itself says the most. */
+function faultsOf({ message, errors = [] }) {
+  return errors.length > 1 ? errors : [{ ...errors[0], detail: message }];
 }
 
 export function clearFaults() {

@@ -8,10 +8,13 @@ const FONT = "11px system-ui, sans-serif";
 
 export class Growth {
   #element;
+  #unknown;
   #chart;
 
-  constructor(element) {
+  /** @param {HTMLElement} unknown stands in the chart's place where there is no growth to show */
+  constructor(element, unknown) {
     this.#element = element;
+    this.#unknown = unknown;
     this.#chart = new uPlot(options(element), [[], []], element);
     new ResizeObserver(() => this.#chart.setSize(size(element))).observe(element);
     onSchemeChange(() => this.#chart.redraw(false, true));
@@ -20,7 +23,10 @@ export class Growth {
   /** Shows rows of seconds and hypervolume. */
   show(growth) {
     this.#chart.setData([growth.map(([seconds]) => seconds), growth.map(([, grown]) => 100 * grown)]);
-    const said = growth.length ? `from ${share(growth[0][1])} to ${share(growth.at(-1)[1])}` : "not known";
+    this.#element.hidden = !growth.length;
+    this.#unknown.hidden = growth.length > 0;
+    if (!growth.length) return;
+    const said = `from ${share(growth[0][1])} to ${share(growth.at(-1)[1])}`;
     this.#element.setAttribute("aria-label", `Hypervolume over time: ${said}`);
   }
 }

@@ -1,21 +1,29 @@
-/** Links to a stored front, which carry the request that it answers: `#front=ID&request=...`. */
+/** Links to a stored front, which carry what it answers: `#front=ID&asked=...`. */
 
-/** The link's fragment. The request is deflated, and in base64 as addresses may hold it. */
-export async function fragment(id, request) {
-  return `#front=${encodeURIComponent(id)}&request=${await packed(request)}`;
+const MOST = 16000; // characters, beyond which chats, mail and some servers cut addresses off
+
+/**
+ * The link's fragment, with what was asked for deflated, and in base64 as addresses may hold it;
+ * `whole` says whether that was short enough to be in it.
+ */
+export async function fragment(id, asked) {
+  const text = await packed(asked);
+  const front = `#front=${encodeURIComponent(id)}`;
+  const whole = text.length <= MOST;
+  return { hash: whole ? `${front}&asked=${text}` : front, whole };
 }
 
-/** `{ id, request }` of a fragment, null where it names no front; the request may be missing. */
+/** `{ id, asked }` of a fragment, null where it names no front; what was asked may be missing. */
 export async function linked(hash) {
   const members = new URLSearchParams(hash.slice(1));
   const id = members.get("front");
   if (!id) return null;
-  const text = members.get("request");
-  return { id, request: text ? await unpacked(text) : null };
+  const text = members.get("asked");
+  return { id, asked: text ? await unpacked(text) : null };
 }
 
-async function packed(request) {
-  const deflated = through(JSON.stringify(request), new CompressionStream("deflate-raw"));
+async function packed(asked) {
+  const deflated = through(JSON.stringify(asked), new CompressionStream("deflate-raw"));
   const bytes = new Uint8Array(await deflated.arrayBuffer());
   const text = Array.from(bytes, (byte) => String.fromCharCode(byte)).join("");
   return btoa(text).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");

@@ -5,7 +5,7 @@ import { csv, curl, download } from "./exports.js";
 import { clearFaults, showFault, showFaults } from "./faults.js";
 import { Fields } from "./fields.js";
 import { read } from "./files.js";
-import { described, kindOf, requestFor } from "./instance.js";
+import { askedFor, described, kindOf, requestFor } from "./instance.js";
 import { fragment, linked } from "./link.js";
 import { counted } from "./numbers.js";
 import { UNNAMED } from "./objectives.js";
@@ -21,25 +21,31 @@ const service = new Service(() => element("key").value.trim());
 const placing = new Placing(element("place"), element("place-help"), placed);
 const result = new Result((plane, place) => placing.clicked(plane, place));
 
-let members = {}; // of the request, those that are neither typed nor set here
+let brought = { coordinates: [] }; // of what was opened, the members that are not settings
+let objectives = UNNAMED;
 let planning = null; // what is under way
 let answer = null; // the best front so far
 let opened = 0; // how many requests were, so that none takes the place of a later one
 let frame = 0; // in which what was typed is drawn, 0 where all of it is
 
-const request = () => requestFor(members, fields.members, element("cities").value);
+const asked = () =>
+  askedFor(brought, fields.members, { text: element("cities").value, whole: element("rounded").checked });
+const request = () => requestFor(asked());
 
-/** Takes a request into the form, and shows its cities under their objectives. */
-function open(asked, objectives = UNNAMED) {
+/** Takes what is asked for into the form, and shows its cities under their objectives. */
+function open(wanted, names = UNNAMED) {
   opened += 1;
-  const { coordinates = [], ...others } = fields.take(asked, kindOf(asked));
-  members = others;
-  const typed = kindOf(asked) === "coordinates";
+  const kind = kindOf(wanted);
+  brought = fields.take(wanted, kind);
+  objectives = names;
+  const typed = kind === "coordinates";
   element("typed").hidden = element("place").hidden = !typed;
   element("brought").hidden = typed;
-  element("brought").textContent = typed ? "" : described(asked);
-  element("order").open = kindOf(asked) === "matrices";
-  element("cities").value = textOf(coordinates);
+  element("brought").textContent = typed ? "" : described(wanted);
+  element("order").open = kind === "matrices" || kind === "unknown";
+  element("cities").value = textOf(wanted.coordinates ?? []);
+  element("rounding").hidden = !wanted.rounded;
+  element("rounded").checked = Boolean(wanted.rounded);
   result.name(objectives);
   edited();
 }
@@ -53,7 +59,8 @@ function edited(fit = true) {
   say("");
   const rows = rowsOf(element("cities").value);
   element("count").textContent = counted(rows.length, "city", "cities");
-  result.clear({ ...members, coordinates: rows.filter(isCity) }, fit);
+  const typed = kindOf(brought) === "coordinates";
+  result.clear(typed ? { coordinates: rows.filter(isCity) } : brought, fit);
   answered(null);
 }
 
@@ -69,6 +76,7 @@ function placed(row) {
 
 function answered(found) {
   answer = found;
+  element("link-help").textContent = "";
   for (const id of ["link", "json", "csv"]) element(id).disabled = !found;
 }
 
@@ -83,6 +91,8 @@ const SAID = {
   queued: "This is the network’s front; the search waits for its turn.",
   running: "The search is improving the network’s front.",
 };
+
+const ALONE = "This link opens the front without its maps: what was asked for is too long for an address.";
 
 /** Shows what comes of a plan; `states` asks a planning for it. */
 async function run(states) {
@@ -145,8 +155,8 @@ function fail(error) {
 async function openFiles(files) {
   if (!files.length) return;
   try {
-    const { members, objectives } = await read(files);
-    open(members, objectives);
+    const { members, objectives: names } = await read(files);
+    open(members, names);
     forgetExample();
   } catch (error) {
     showFault("file", error.message);
@@ -161,9 +171,9 @@ async function openExample() {
   say("The example is being opened.");
   const before = opened;
   try {
-    const asked = await service.get(`examples/${example.file}`);
+    const wanted = await service.get(`examples/${example.file}`);
     if (opened > before) return;
-    open(asked, example.objectives);
+    open(wanted, example.objectives);
   } catch (error) {
     return fail(error);
   }
@@ -180,7 +190,7 @@ async function openLinked() {
   const link = await linked(location.hash);
   if (!link) return false;
   forgetExample();
-  open(link.request ?? {});
+  open(link.asked?.request ?? {}, link.asked?.objectives);
   await run((mine) => mine.follow(link.id));
   return true;
 }
@@ -193,7 +203,9 @@ async function copy(text, button) {
 }
 
 async function copyLink(button) {
-  history.replaceState(null, "", await fragment(answer.id, request().body));
+  const { hash, whole } = await fragment(answer.id, { request: asked(), objectives });
+  history.replaceState(null, "", hash);
+  element("link-help").textContent = whole ? "" : ALONE;
   await copy(location.href, button);
 }
 
@@ -203,9 +215,10 @@ form.addEventListener("submit", (event) => {
 });
 element("stop").addEventListener("click", stop);
 element("cities").addEventListener("input", typed);
+element("rounded").addEventListener("change", () => edited(false));
 element("clear").addEventListener("click", () => {
   forgetExample();
-  open({});
+  open({ coordinates: [] });
 });
 element("example").addEventListener("change", openExample);
 element("file").addEventListener("change", (event) => {

@@ -29,7 +29,7 @@ export class Result {
     const onSelect = (index) => this.#choose(index);
     this.#maps = new Maps(onClick);
     this.#chart = new FrontChart(element("front-chart"), onSelect);
-    this.#growth = new Growth(element("growth"));
+    this.#growth = new Growth(element("growth"), element("growth-help"));
     this.#slider = new AngleSlider(element("angle"), element("angle-shown"), onSelect);
     element("pin").addEventListener("click", () => this.#pin());
     element("order").addEventListener("toggle", () => this.#order());
