@@ -20,9 +20,7 @@ def build_work(settings: Settings) -> Callable[[], int]:
     Raises:
         ValueError: there is no Redis to work for, or what it takes is not installed.
     """
-    if settings.redis_url is None:
-        raise ValueError("PARETOUR_REDIS_URL must say for which Redis to work")
-    check_cluster()
+    redis_url = _redis_url(settings)
     from service.cluster.crew import Crew
     from service.cluster.hand import make_hand
     from service.cluster.queue import queue_at
@@ -31,8 +29,8 @@ def build_work(settings: Settings) -> Callable[[], int]:
     logging.config.dictConfig(logging_config())
     load = partial(load_planner, settings.actors, settings.threads, settings.limits)
     crew = Crew(
-        queue=queue_at(settings.redis_url, settings.request_seconds),
-        make_hand=partial(make_hand, load, settings.redis_url, settings.request_seconds),
+        queue=queue_at(redis_url, settings.request_seconds),
+        make_hand=partial(make_hand, load, redis_url, settings.request_seconds),
         workers=settings.workers,
         drain_seconds=settings.drain_seconds,
     )
@@ -43,6 +41,25 @@ def build_work(settings: Settings) -> Callable[[], int]:
         return crew.run()
 
     return work
+
+
+def takes_work(settings: Settings) -> bool:
+    """Whether what works on this machine takes what there is to do.
+
+    Raises:
+        ValueError: there is no Redis to work for, or what it takes is not installed.
+    """
+    redis_url = _redis_url(settings)
+    from service.cluster import alive
+
+    return alive.takes_work(redis_url)
+
+
+def _redis_url(settings: Settings) -> str:
+    if settings.redis_url is None:
+        raise ValueError("PARETOUR_REDIS_URL must say for which Redis to work")
+    check_cluster()
+    return settings.redis_url
 
 
 def _check_actors(directory: Path, threads: int) -> None:

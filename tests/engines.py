@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
-from importlib.util import find_spec
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
@@ -74,6 +73,7 @@ class Clustered:
 
     server: Redis
     crews: ExitStack
+    workers: int = 1
     _databases: dict[str, int] = field(default_factory=dict)
 
     @contextmanager
@@ -106,7 +106,9 @@ class Clustered:
         database = self._databases.setdefault(repr(actors), known)
         url = f"{self.server.url.removesuffix('/0')}/{database}"
         if database == known:
-            self.crews.enter_context(crew(url, planner_of(*actors, limits=PATIENT), SECONDS))
+            self.crews.enter_context(
+                crew(url, planner_of(*actors, limits=PATIENT), SECONDS, self.workers)
+            )
         return url
 
 
@@ -118,7 +120,7 @@ def planning(connection: "redis.Redis[bytes]", id: str) -> int | None:  # noqa: 
 
 @contextmanager
 def crew(
-    url: str, make_planner: MakePlanner, seconds: float, workers: int = 1
+    url: str, make_planner: MakePlanner, seconds: float, workers: int
 ) -> Iterator[BaseProcess]:
     """A worker with so many processes that plan."""
     context = multiprocessing.get_context("spawn")
@@ -143,11 +145,9 @@ def _work(url: str, make_planner: MakePlanner, seconds: float, workers: int) -> 
 
 @contextmanager
 def engine_of(kind: str, request: pytest.FixtureRequest) -> Iterator[Embedded | Clustered]:
-    """Either engine; skips the test where what it takes is not installed."""
+    """Either engine; skips the test where there is no Redis."""
     if kind == "embedded":
         yield Embedded()
         return
-    if find_spec("celery") is None:
-        pytest.skip("celery is not installed")
     with ExitStack() as crews:
         yield Clustered(request.getfixturevalue("redis"), crews)

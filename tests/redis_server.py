@@ -4,12 +4,15 @@ import shutil
 import socket
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+
+FORGETFUL = ("redis-server", "--save", "", "--appendonly", "no")
+LASTING = ("redis-server", "--save", "", "--appendonly", "yes")
 
 
 @dataclass
@@ -18,7 +21,7 @@ class Redis:
 
     port: int
     folder: Path
-    lasting: bool
+    command: Sequence[str]
     process: subprocess.Popen[bytes] | None = None
 
     @property
@@ -26,10 +29,9 @@ class Redis:
         return f"redis://127.0.0.1:{self.port}/0"
 
     def begin(self) -> None:
-        command = ["redis-server", "--port", str(self.port), "--bind", "127.0.0.1", "--save", ""]
-        command += ["--appendonly", "yes" if self.lasting else "no"]
+        own = ["--port", str(self.port), "--bind", "127.0.0.1", "--dir", str(self.folder)]
         self.process = subprocess.Popen(
-            command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            [*self.command, *own], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
         _wait_until_listening(self.port)
 
@@ -40,13 +42,13 @@ class Redis:
 
 
 @contextmanager
-def redis_server(folder: Path, lasting: bool = False) -> Iterator[Redis]:
-    """A server that keeps nothing when it ends, or everything; skips the test if there is none."""
+def redis_server(folder: Path, command: Sequence[str] = FORGETFUL) -> Iterator[Redis]:
+    """A server with these options, its files in a folder; skips the test if there is none."""
     if shutil.which("redis-server") is None:
         pytest.skip("redis-server is not installed")
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    redis = Redis(port, folder, lasting)
+    redis = Redis(port, folder, command)
     try:
         redis.begin()
         yield redis

@@ -5,10 +5,11 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import httpx
@@ -16,25 +17,36 @@ import pytest
 import redis
 from redis.asyncio import Redis as AsyncRedis
 
+from service.__main__ import main
+from service.cluster.alive import takes_work
 from service.cluster.engine import Cluster
-from service.cluster.replica import replica
+from service.cluster.queue import QUEUE
 from service.cluster.store import RedisStore
-from tests.engines import PATIENT, Clustered, crew, engine_of, planning
-from tests.redis_server import Redis, redis_server
+from tests.engines import PATIENT, Clustered, Served, engine_of, planning
+from tests.redis_server import LASTING, Redis, redis_server
 from tests.serving import (
     Running,
     Shuffler,
     engine_app,
-    planner_of,
     problem,
     running,
     serving,
     working,
 )
-from tests.test_jobs import CITIES, LONG, check, ended, events, id_of, later, until_found
+from tests.test_jobs import (
+    CITIES,
+    LATER,
+    LONG,
+    SHORT,
+    check,
+    ended,
+    events,
+    id_of,
+    later,
+    until_found,
+)
 
-pytest.importorskip("celery", reason="celery is not installed")
-SOME_SECONDS = {"coordinates": CITIES, "time_limit": 2}
+SOME_SECONDS = {"coordinates": CITIES, "time_limit": 1.5}
 
 
 @dataclass
@@ -54,10 +66,13 @@ class Machines:
         }
 
     def start_worker(self) -> None:
-        self.connection.delete("paretour:workers")
+        before = self._present()
         self.workers.append(self.stack.enter_context(working(self._settings)))
-        while not self.connection.zcard("paretour:workers"):
+        while self._present() <= before:
             time.sleep(0.05)
+
+    def _present(self) -> set[bytes]:
+        return set(self.connection.zrange("paretour:workers", 0, -1))
 
     @contextmanager
     def replica(self) -> Iterator[tuple[Running, httpx.Client]]:
@@ -69,7 +84,7 @@ class Machines:
 @pytest.fixture(scope="module")
 def machines(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machines]:
     with (
-        redis_server(tmp_path_factory.mktemp("redis"), lasting=True) as redis,
+        redis_server(tmp_path_factory.mktemp("redis"), LASTING) as redis,
         ExitStack() as stack,
     ):
         machines = Machines(redis, stack)
@@ -103,21 +118,25 @@ def test_what_a_replica_has_begun_another_tells_of_when_it_is_killed(
     done(client, path)
 
 
-def test_when_a_worker_and_all_its_processes_are_lost_another_does_its_job(
-    machines: Machines, client: httpx.Client
+@pytest.mark.parametrize("with_its_processes", [False, True])
+def test_when_a_worker_is_lost_its_job_ends_with_a_front(
+    machines: Machines, client: httpx.Client, with_its_processes: bool
 ) -> None:
     path = later(client, SOME_SECONDS)
     until_found(client, path)
     planner = planning(machines.connection, id_of(path))
+    assert planner is not None
     machines.workers[-1].kill()
+    if with_its_processes:
+        os.kill(planner, signal.SIGKILL)
     machines.start_worker()
-    assert not Path(f"/proc/{planner}").exists()
     done(client, path)
 
 
 def test_a_worker_that_is_told_to_end_hands_its_job_back(
     machines: Machines, client: httpx.Client
 ) -> None:
+    lost = int(machines.connection.get("paretour:lost") or 0)
     path = later(client, {**LONG, "time_limit": 4})
     until_found(client, path)
     machines.workers[-1].terminate()
@@ -125,7 +144,47 @@ def test_a_worker_that_is_told_to_end_hands_its_job_back(
     assert client.get(path).json()["status"] == "queued"
     machines.start_worker()
     done(client, path)
-    assert int(machines.connection.get("paretour:lost") or 0) <= 1
+    assert int(machines.connection.get("paretour:lost") or 0) == lost
+
+
+def test_a_worker_that_takes_no_work_is_found(machines: Machines, client: httpx.Client) -> None:
+    worker, url = machines.workers[-1], machines.redis.url
+    assert takes_work(url)
+    worker.send_signal(signal.SIGSTOP)
+    try:
+        path = later(client)
+        # What it was waiting for it may still be given; what is sent again, nobody takes.
+        while not machines.connection.llen(QUEUE):
+            time.sleep(0.05)
+        assert not takes_work(url)
+    finally:
+        worker.send_signal(signal.SIGCONT)
+    assert ended(client, path)["status"] == "done"
+    assert takes_work(url)
+
+
+def test_where_there_is_no_worker_the_command_says_so(redis: Redis) -> None:
+    command = [sys.executable, "-m", "service", "work", "--alive"]
+    environment = {**os.environ, "PARETOUR_REDIS_URL": f"{redis.url.removesuffix('/0')}/15"}
+    asked = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert (asked.returncode, asked.stdout) == (1, "")
+    assert "no worker of this machine" in asked.stderr
+
+
+def test_when_redis_is_full_no_more_is_taken_until_there_is_room(
+    machines: Machines, client: httpx.Client
+) -> None:
+    found = client.post("/front", json=SHORT).json()
+    machines.connection.config_set("maxmemory", 1)
+    try:
+        problem(client.post("/front", json=SHORT), 503, "store-unavailable")
+        problem(client.post("/front", json=SHORT, headers=LATER), 503, "store-unavailable")
+        assert client.get(f"/front/{found['id']}").json() == found
+        assert takes_work(machines.redis.url)
+    finally:
+        machines.connection.config_set("maxmemory", 0)
+    assert machines.connection.zcard("paretour:unfinished") == 0
+    assert client.post("/front", json=SHORT).json()["status"] == "done"
 
 
 def test_when_redis_is_restarted_all_goes_on(machines: Machines, client: httpx.Client) -> None:
@@ -136,6 +195,8 @@ def test_when_redis_is_restarted_all_goes_on(machines: Machines, client: httpx.C
         until_found(client, path)
         machines.redis.end()
         unavailable(client, path)
+        # Which is no fault of the worker's.
+        assert takes_work(machines.redis.url)
         machines.redis.begin()
         while client.get("/health/ready").status_code != 200:
             time.sleep(0.05)
@@ -150,6 +211,9 @@ def unavailable(client: httpx.Client, path: str) -> None:
     """Without Redis everything that needs it says so, and the replica lives."""
     for answer in (
         client.get(path),
+        client.delete(path),
+        client.get(f"{path}/events"),
+        client.get("/tour?angle=30"),
         client.post("/front", json=SOME_SECONDS),
         client.get("/health/ready"),
     ):
@@ -159,39 +223,49 @@ def unavailable(client: httpx.Client, path: str) -> None:
     assert client.get("/metrics").status_code == 200
 
 
+Serve = Callable[..., AbstractContextManager[Served]]
+
+
 @pytest.fixture(scope="module")
-def cluster(request: pytest.FixtureRequest) -> Iterator[Clustered]:
+def actor(tmp_path_factory: pytest.TempPathFactory) -> Shuffler:
+    actor = Shuffler(tmp_path_factory.mktemp("gated") / "gate")
+    actor.open()
+    return actor
+
+
+@pytest.fixture(scope="module")
+def serve(request: pytest.FixtureRequest, actor: Shuffler) -> Iterator[Serve]:
+    """Serves with a replica in this process, all with the same worker."""
     with engine_of("cluster", request) as cluster:
-        assert isinstance(cluster, Clustered)
-        yield cluster
+        yield partial(cluster.serve, actor)
 
 
-def test_who_waits_too_long_is_given_the_best_front_so_far(cluster: Clustered) -> None:
-    with cluster.serve(seconds=1.0) as served:
+def test_who_waits_too_long_is_given_the_best_front_so_far(serve: Serve) -> None:
+    with serve(seconds=1.0) as served:
         answer = served.client.post("/front", json=LONG).json()
         assert (answer["status"], answer["terminated"]) == ("done", "time_limit")
         check(answer)
 
 
 def test_work_that_found_nothing_in_time_is_504_and_its_worker_is_free_again(
-    cluster: Clustered, tmp_path: Path
+    serve: Serve, actor: Shuffler
 ) -> None:
-    actor = Shuffler(tmp_path / "gate")
-    with cluster.serve(actor, seconds=1.0) as served:
+    actor.close()
+    with serve(seconds=1.0) as served:
         problem(served.client.post("/front", json=LONG), 504, "overdue")
         actor.open()
         assert ended(served.client, later(served.client))["status"] == "done"
 
 
-def test_a_client_that_goes_away_frees_its_worker(cluster: Clustered) -> None:
-    with cluster.serve() as served:
+def test_a_client_that_goes_away_frees_its_worker(serve: Serve) -> None:
+    with serve() as served:
         with pytest.raises(httpx.ReadTimeout):
             served.client.post("/front", json=LONG, timeout=1)
         assert ended(served.client, later(served.client))["status"] == "done"
 
 
-def test_a_job_whose_message_was_lost_is_done_all_the_same(cluster: Clustered) -> None:
-    with cluster.serve() as served:
+def test_a_job_whose_message_was_lost_is_done_all_the_same(serve: Serve) -> None:
+    with serve() as served:
         connection = AsyncRedis.from_url(served.redis_url)
         store = RedisStore(connection, entries=9, max_age=60)
         forgetful = Cluster(connection, store, lambda _: None, queue=8, seconds=600)
@@ -201,20 +275,18 @@ def test_a_job_whose_message_was_lost_is_done_all_the_same(cluster: Clustered) -
         assert ended(served.client, path)["status"] == "done"
 
 
-def test_ten_kills_under_load_lose_no_job(redis: Redis) -> None:
-    url = f"{redis.url.removesuffix('/0')}/9"
+def test_ten_kills_under_load_lose_no_job(tmp_path: Path) -> None:
     request = {"coordinates": CITIES[:60], "time_limit": 0.4}
-    store, engine = replica(url, entries=100, max_age=60, queue=40, seconds=600)
-    app = engine_app(store, engine, limits=PATIENT)
     with (
-        crew(url, planner_of(limits=PATIENT), 600, workers=2),
-        serving(app) as address,
-        httpx.Client(base_url=address, timeout=60) as client,
+        redis_server(tmp_path) as redis,
+        ExitStack() as crews,
+        Clustered(redis, crews, workers=2).serve(queue=40) as served,
         ThreadPoolExecutor(4) as callers,
     ):
-        answers = [callers.submit(client.post, "/front", json=request) for _ in range(12)]
-        paths = [later(client, request) for _ in range(20)]
-        kill_ten(url, paths)
+        client = served.client
+        answers = [callers.submit(client.post, "/front", json=request) for _ in range(8)]
+        paths = [later(client, request) for _ in range(15)]
+        kill_ten(served, paths)
         for path in paths:
             found = ended(client, path)
             assert (found["status"], bool(found["front"])) == ("done", True)
@@ -223,16 +295,16 @@ def test_ten_kills_under_load_lose_no_job(redis: Redis) -> None:
             answered(answer)
 
 
-def kill_ten(url: str, paths: list[str]) -> None:
+def kill_ten(served: Served, paths: list[str]) -> None:
     """Kill the process that plans, ten times, each time with another job."""
-    connection = redis.Redis.from_url(url)
     killed: set[str] = set()
     while len(killed) < 10:
-        for path in set(paths) - killed:
-            if (pid := planning(connection, id_of(path))) and len(killed) < 10:
+        for path in paths:
+            pid = served.planning(id_of(path))
+            if pid is not None and path not in killed and len(killed) < 10:
                 os.kill(pid, signal.SIGKILL)
                 killed.add(path)
-        time.sleep(0.05)
+        time.sleep(0.02)
 
 
 def answered(answer: Future[httpx.Response]) -> None:
@@ -243,30 +315,28 @@ def answered(answer: Future[httpx.Response]) -> None:
         assert answer.result().json()["code"] in ("queue-full", "worker-lost")
 
 
-def without(*packages: str, code: str) -> subprocess.CompletedProcess[str]:
-    missing = "".join(f"sys.modules[{name!r}] = None; " for name in packages)
-    return subprocess.run(
-        [sys.executable, "-c", f"import sys; {missing}{code}"], capture_output=True, text=True
-    )
-
-
 @pytest.mark.parametrize("command", ["serve", "work"])
 def test_without_the_extra_redis_is_refused_at_the_start(
-    command: str, monkeypatch: pytest.MonkeyPatch
+    command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("PARETOUR_REDIS_URL", "redis://127.0.0.1:1/0")
-    code = f"from service.__main__ import main; main([{command!r}])"
-    refused = without("celery", code=code)
-    assert refused.returncode == 2
-    assert "PARETOUR_REDIS_URL needs the extra paretour[cluster]" in refused.stderr
+    monkeypatch.setitem(sys.modules, "celery", None)
+    with pytest.raises(SystemExit) as stopped:
+        main([command])
+    assert stopped.value.code == 2
+    assert "PARETOUR_REDIS_URL needs the extra paretour[cluster]" in capsys.readouterr().err
 
 
 def test_without_the_extra_the_service_is_what_it_was() -> None:
-    code = "from service.serve import build; from service.settings import Settings; "
-    assert without("celery", "redis", code=f"{code}build(Settings())").returncode == 0
+    code = (
+        "import sys; sys.modules['celery'] = sys.modules['redis'] = None; "
+        "from service.serve import build; from service.settings import Settings; build(Settings())"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
-def test_a_worker_needs_a_redis_to_work_for() -> None:
-    refused = without(code="from service.__main__ import main; main(['work'])")
-    assert refused.returncode == 2
-    assert "PARETOUR_REDIS_URL must say for which Redis to work" in refused.stderr
+def test_a_worker_needs_a_redis_to_work_for(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(["work"])
+    assert stopped.value.code == 2
+    assert "PARETOUR_REDIS_URL must say for which Redis to work" in capsys.readouterr().err

@@ -6,6 +6,7 @@ from typing import Any
 
 from redis import Redis
 from redis.backoff import NoBackoff
+from redis.commands.core import Script
 from redis.retry import Retry
 
 from service.cluster.records import (
@@ -32,15 +33,20 @@ class Taken(Exception):
     """Another worker has the record now."""
 
 
+def script_at(url: str) -> Script:
+    """What is done with records at this Redis, which is asked once."""
+    redis = Redis.from_url(
+        url, retry=Retry(NoBackoff(), 0), socket_timeout=_SECONDS, socket_keepalive=True
+    )
+    return redis.register_script(SCRIPT)
+
+
 class Ledger:
     """One worker's side of the records. `worker` is its name, which no other has."""
 
     def __init__(self, url: str, worker: str) -> None:
         self._worker = worker
-        redis = Redis.from_url(
-            url, retry=Retry(NoBackoff(), 0), socket_timeout=_SECONDS, socket_keepalive=True
-        )
-        self._script = redis.register_script(SCRIPT)
+        self._script = script_at(url)
 
     def present(self) -> None:
         """Say that this worker is there; nothing, if Redis does not answer."""

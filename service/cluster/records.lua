@@ -131,7 +131,30 @@ local function workers_at(now)
   return redis.call('ZCARD', WORKERS)
 end
 
-function verbs.present(now) redis.call('ZADD', WORKERS, now, ARGV[3]) end
+-- What is removed before lets this through where Redis is full: whoever is there stays there.
+function verbs.present(now)
+  workers_at(now)
+  redis.call('ZADD', WORKERS, now, ARGV[3])
+end
+
+-- How many workers a machine has, how many messages wait, and which of its workers have no record.
+function verbs.idle(now)
+  local machine, messages = ARGV[3] .. ':', ARGV[4]
+  workers_at(now)
+  local busy = {}
+  for _, id in ipairs(redis.call('ZRANGE', UNFINISHED, 0, -1)) do
+    local status, worker = unpack(redis.call('HMGET', front_of(id), 'status', 'worker'))
+    if status == 'running' then busy[worker] = true end
+  end
+  local here, idle = 0, {}
+  for _, worker in ipairs(redis.call('ZRANGE', WORKERS, 0, -1)) do
+    if string.sub(worker, 1, #machine) == machine then
+      here = here + 1
+      if not busy[worker] then idle[#idle + 1] = worker end
+    end
+  end
+  return {here, redis.call('LLEN', messages), idle}
+end
 
 function verbs.standing(_)
   local working = 0

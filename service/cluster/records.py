@@ -18,7 +18,8 @@ SCRIPT = (Path(__file__).parent / "records.lua").read_text()
 LEASE = 5.0  # seconds after which a worker that was not seen is lost
 REASONS: Mapping[bytes, type[Stopped | Overdue]] = {b"Stopped": Stopped, b"Overdue": Overdue}
 
-GONE = (exceptions.ConnectionError, exceptions.TimeoutError)  # what says that it does not answer
+# What says that it does not answer, or is full.
+GONE = (exceptions.ConnectionError, exceptions.TimeoutError, exceptions.OutOfMemoryError)
 
 Argument = str | bytes | float
 _PROGRESS = ("seconds", "hypervolume", "points")

@@ -175,11 +175,18 @@ def serve(
 @app.command()
 def work(
     workers: Annotated[int | None, Option(help="Plans made at a time.", show_default=False)] = None,
+    alive: Annotated[
+        bool,
+        Option("--alive", help="Only say, by exit code 0 or 1, if what works here takes work."),
+    ] = False,
 ) -> None:
     """Plan what services with the same PARETOUR_REDIS_URL ask for; needs the extra cluster."""
-    from service.commands.working import run_work
+    from service.commands.working import run_alive, run_work
 
-    run_work(workers)
+    if alive:
+        run_alive()
+    else:
+        run_work(workers)
 
 
 @app.command()

@@ -1,10 +1,12 @@
-"""The command that works for a cluster."""
+"""The command that works for a cluster, and says whether another that does takes work."""
 
 import sys
 
 from service.commands.configured import configured, loaded
-from service.commands.exits import explaining
-from service.work import build_work
+from service.commands.exits import ended, explaining
+from service.work import build_work, takes_work
+
+STALLED = 1
 
 
 def run_work(workers: int | None) -> None:
@@ -12,3 +14,10 @@ def run_work(workers: int | None) -> None:
     with explaining():
         work = loaded(build_work, configured(workers=workers))
     sys.exit(work())
+
+
+def run_alive() -> None:
+    """End with 0, or where what works on this machine takes no work with 1."""
+    with explaining():
+        if not loaded(takes_work, configured()):
+            raise ended("no worker of this machine takes what waits", STALLED)
