@@ -27,7 +27,7 @@ class KeptRoutes:
     def router(self) -> APIRouter:
         """The paths, with what the OpenAPI document says of them."""
         router = APIRouter(tags=["fronts"])
-        missing = responses(404, 410)
+        missing = responses(404, 410, 503)
         stream: dict[str, Any] = {"description": "The events", "content": {"text/event-stream": {}}}
         router.get("/front/{id}", response_model=FrontAnswer, responses=missing)(self.front)
         router.delete(
@@ -40,7 +40,7 @@ class KeptRoutes:
             response_class=StreamingResponse,
             responses={200: stream, **missing},
         )(self.events)
-        router.get("/tour", response_model=TourAnswer, responses=responses(404, 410, 422))(
+        router.get("/tour", response_model=TourAnswer, responses=responses(404, 410, 422, 503))(
             self.tour
         )
         return router
