@@ -5,7 +5,6 @@ import zlib
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
 from pydantic_core import to_json
 
 from service.messages import Work
@@ -45,8 +44,8 @@ def front_columns(front: Rendered) -> dict[str, bytes]:
     return {
         "members": to_json(front.members),
         "tours": zlib.compress(front.tours, _LEVEL),
-        "ends": front.ends.tobytes(),
-        "angles": front.angles.tobytes(),
+        "ends": front.ends,
+        "angles": front.angles,
     }
 
 
@@ -64,8 +63,8 @@ def record_of(columns: Mapping[str, Any]) -> Record:
         front=Rendered(
             json.loads(columns["members"]),
             zlib.decompress(columns["tours"]),
-            np.frombuffer(columns["ends"], np.int64),
-            np.frombuffer(columns["angles"], np.float64),
+            columns["ends"],
+            columns["angles"],
         ),
         work=Work(kind, columns["body"], columns.get("upload")) if kind else None,
     )

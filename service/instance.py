@@ -59,7 +59,7 @@ class Instance:
         """What the instance was made from."""
         return "matrices" if self.coordinates is None else "coordinates"
 
-    @property
+    @cached_property
     def scale(self) -> Array:
         """The unit of each objective, shape (2,), in which network, search and angles work.
 
@@ -105,16 +105,17 @@ class Instance:
 
 def tour_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
     """Both lengths, shape (k, 2), of closed tours, shape (k, n), in the instance's own units."""
-    following = np.roll(tours, -1, axis=1)
     if instance.coordinates is not None:
-        steps = instance.coordinates[following] - instance.coordinates[tours]
-        return np.hypot(steps[..., 0::2], steps[..., 1::2]).sum(axis=1)
+        # As complex numbers, (x, y) are looked up together, and numpy's abs() is a faster hypot().
+        visited = instance.coordinates.view(np.complex128)[tours]
+        return np.abs(np.diff(visited, axis=1, append=visited[:, :1])).sum(axis=1)
     assert instance.matrices is not None
+    following = np.roll(tours, -1, axis=1)
     return instance.matrices[:, tours, following].sum(axis=2).T
 
 
 def _checked_coordinates(given: Array) -> Array:
-    coordinates = np.array(given, dtype=np.float64)
+    coordinates = np.array(given, dtype=np.float64, order="C")
     if coordinates.ndim != 2 or coordinates.shape[1] != 4 or not len(coordinates):
         raise InvalidInstance(
             f"coordinates must have shape (n, 4) with n at least 1, got {coordinates.shape}"

@@ -101,12 +101,10 @@ class Jobs:
         """What becomes of work that somebody waits for, until he has left."""
         assert record.work is not None
         order = self._workers.order(record.work)
-        working = asyncio.ensure_future(order.front())
         try:
-            await asyncio.wait((working, left), return_when=asyncio.FIRST_COMPLETED)
+            await order.ended_or(left)
         finally:
             self._workers.stop(order)
-            working.cancel()
         record = replace(record, status="done", front=await order.front(), work=None)
         await self._store.put(record)
         return record

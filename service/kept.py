@@ -64,7 +64,7 @@ class KeptRoutes:
     async def tour(self, request: Request, query: Annotated[TourQuery, Query()]) -> Response:
         """Give the tour of a front whose direction is nearest to an angle."""
         record = await self._record(request, query.front)
-        if not len(record.front.angles):
+        if not record.front.tours:
             sentence = f"front {record.id} must have a tour, and has none yet"
             raise Refusal(404, "no-tour", sentence)
         tour = record.front.nearest(query.angle)

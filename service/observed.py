@@ -3,7 +3,7 @@
 import logging
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -67,4 +67,4 @@ class ObservedRequests:
 
 def log_request(answered: Answered) -> None:
     """One line for each request."""
-    logging.getLogger("paretour.requests").info("request", extra=asdict(answered))
+    logging.getLogger("paretour.requests").info("request", extra=vars(answered))

@@ -75,6 +75,10 @@ class Order:
         """
         return await asyncio.shield(self._future)
 
+    async def ended_or(self, left: Future[None]) -> None:
+        """Wait until it has ended, or whoever waits for it has left."""
+        await asyncio.wait((self._future, left), return_when=asyncio.FIRST_COMPLETED)
+
     def begin(self) -> None:
         """Take note that a worker is at it, for the first time or once more."""
         self.attempts += 1

@@ -27,7 +27,7 @@ def ended(
     record: Record, front: Rendered, why: type[Stopped | Overdue] | None, seconds: float
 ) -> Record:
     """It ended so long after it was asked for, with a front if any tour is in that."""
-    if len(front.angles):
+    if front.tours:
         return done(record, as_ended(front, seconds, late=why is Overdue), why)
     return failed(record, Overdue(), front) if why is Overdue else cancelled(record)
 

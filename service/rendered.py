@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from service.planner import Front, Interim
@@ -16,21 +15,22 @@ class Rendered:
     """A front of m tours as JSON.
 
     `members` are all the members of the answer but the tours. `tours` is the inside of the array
-    of these: tour i, whose direction is angles[i] degrees, ends before byte ends[i]. `gained` is
-    for whoever watches the service.
+    of these. Where each tour ends in it, and its direction in degrees, are numbers of 8 bytes, in
+    the form in which they travel and are kept. `gained` is for whoever watches the service.
     """
 
     members: dict[str, Any]
     tours: bytes
-    ends: NDArray[np.int64]
-    angles: NDArray[np.float64]
+    ends: bytes
+    angles: bytes
     gained: float | None = None
 
     def nearest(self, angle: float) -> bytes:
         """The tour whose direction is nearest to the angle in degrees, as a JSON object."""
-        index = int(np.abs(self.angles - angle).argmin())
-        begin = int(self.ends[index - 1]) + 1 if index else 0
-        return self.tours[begin : int(self.ends[index])]
+        index = int(np.abs(np.frombuffer(self.angles) - angle).argmin())
+        ends = np.frombuffer(self.ends, np.int64)
+        begin = int(ends[index - 1]) + 1 if index else 0
+        return self.tours[begin : int(ends[index])]
 
     def json(self, **more: Any) -> bytes:
         """The answer, which begins with these other members."""
@@ -60,7 +60,8 @@ def rendered(
         for (a, f, tour), others in zip(rows, each, strict=True)
     ]
     ends = np.cumsum([len(tour) + 1 for tour in tours], dtype=np.int64) - 1
-    return Rendered(members, b",".join(tours), ends, front.angles, front.gained)
+    angles = front.angles.tobytes()
+    return Rendered(members, b",".join(tours), ends.tobytes(), angles, front.gained)
 
 
 def empty(**more: Any) -> Rendered:
@@ -73,7 +74,7 @@ def empty(**more: Any) -> Rendered:
         "terminated": None,
         **more,
     }
-    return Rendered(members, b"", np.empty(0, np.int64), np.empty(0))
+    return Rendered(members, b"", b"", b"")
 
 
 @dataclass(frozen=True, eq=False)

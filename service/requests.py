@@ -80,8 +80,9 @@ def within(limits: Limits, request: Request, n: int) -> Request:
     """
     _check_limits(request, n, limits)
     defaults = _defaults_within(limits).items()
-    given = request.model_fields_set
-    return request.model_copy(update={name: v for name, v in defaults if name not in given})
+    asked = request.model_fields_set
+    lowered = {k: v for k, v in defaults if k not in asked and v < getattr(request, k)}
+    return request.model_copy(update=lowered) if lowered else request
 
 
 def _defaults_within(limits: Limits) -> dict[str, float]:
@@ -107,6 +108,8 @@ def _check_instance(request: FrontRequest, limits: Limits) -> None:
         raise invalid("augment", f"{demand}, got {request.augment}")
     if request.n > limits.cities:
         raise too_many_cities(request.kind, limits.cities, request.n)
+    if request.kind == "coordinates":
+        return
     for m, matrix in enumerate(request.matrices):
         check_costs(matrix, f"matrices/{m}", LARGEST)
 

@@ -17,6 +17,7 @@ from service.store import Expired, Mismatch, Unknown
 T = TypeVar("T")
 IN_MEMORY = ":memory:"
 _COLUMNS = ", ".join(COLUMNS)
+_UNFINISHED = "status IN ('queued', 'running')"
 _SCHEMA = f"""
 PRAGMA locking_mode = EXCLUSIVE;
 PRAGMA journal_mode = WAL;
@@ -25,10 +26,10 @@ CREATE TABLE IF NOT EXISTS front (number INTEGER PRIMARY KEY, kept REAL, {_COLUM
 CREATE UNIQUE INDEX IF NOT EXISTS by_id ON front (id);
 CREATE UNIQUE INDEX IF NOT EXISTS by_key ON front (caller, key) WHERE key IS NOT NULL;
 CREATE INDEX IF NOT EXISTS by_caller ON front (caller, number);
+CREATE INDEX IF NOT EXISTS finished ON front (number, kept) WHERE NOT {_UNFINISHED};
 CREATE TABLE IF NOT EXISTS gone (number INTEGER PRIMARY KEY, id, caller);
 CREATE INDEX IF NOT EXISTS gone_by_id ON gone (id);
 """
-_UNFINISHED = "status IN ('queued', 'running')"
 _MADE_WAY = f"""
 SELECT id, caller FROM front WHERE NOT {_UNFINISHED} AND (kept < ? OR number <= (
     SELECT number FROM front WHERE NOT {_UNFINISHED} ORDER BY number DESC LIMIT 1 OFFSET ?
@@ -142,7 +143,10 @@ class SqliteStore:
 
     def _make_way(self) -> None:
         oldest = self._clock() - self._max_age
-        for id_, caller in self._database.execute(_MADE_WAY, (oldest, self._entries)).fetchall():
+        made_way = self._database.execute(_MADE_WAY, (oldest, self._entries)).fetchall()
+        if not made_way:
+            return
+        for id_, caller in made_way:
             self._database.execute("INSERT INTO gone (id, caller) VALUES (?, ?)", (id_, caller))
             self._delete(id_)
         few = "DELETE FROM gone WHERE number <= (SELECT max(number) FROM gone) - ?"
