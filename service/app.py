@@ -68,6 +68,10 @@ class _Documented(FastAPI):
         if self.openapi_schema is None:
             document = super().openapi()
             document["components"]["schemas"]["Problem"] = _problem_schema()
+            document["components"]["securitySchemes"] = {
+                "key": {"type": "http", "scheme": "bearer"}
+            }
+            document["security"] = [{}, {"key": []}]  # which of them is for the settings to say
             _forget_default_refusals(document)
             illustrate(document)
         return super().openapi()
@@ -94,7 +98,7 @@ def _actor_router(actors: Mapping[str, ActorFacts]) -> APIRouter:
 
     @router.get("/actors", response_model=ActorsAnswer)
     async def actors_there_are() -> Response:
-        """The networks to choose from."""
+        """List the networks to choose from."""
         facts = [asdict(each) for _, each in sorted(actors.items())]
         return json_response({"actors": facts})
 
@@ -117,10 +121,10 @@ class _HealthRoutes:
         return router
 
     async def live(self) -> Response:
-        """Whether the process answers."""
+        """Say whether the process answers."""
         return json_response({"status": "live"})
 
     async def ready(self) -> Response:
-        """Whether the process takes work of every kind."""
+        """Say whether the process takes work of every kind."""
         await self._engine.check_ready()
         return json_response({"status": "ready"})

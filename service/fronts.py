@@ -67,6 +67,9 @@ class FrontRoutes:
 
         Matrices may come as a .npy file of shape (2, n, n) instead: the part `matrices` of a
         multipart/form-data body, beside the part `request` with everything else.
+
+        With `Prefer: respond-async` the answer is 202 at once, and `Location` says where the front
+        will be. A repeat with the same `Idempotency-Key` is answered with the front of the first.
         """
         return await self._plan(request, "front")
 
@@ -75,6 +78,9 @@ class FrontRoutes:
 
         The map may come as a PNG file instead, where dark is an obstacle: the part `map` of a
         multipart/form-data body, beside the part `request` with everything else.
+
+        With `Prefer: respond-async` the answer is 202 at once, and `Location` says where the front
+        will be. A repeat with the same `Idempotency-Key` is answered with the front of the first.
         """
         return await self._plan(request, "coverage")
 

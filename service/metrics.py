@@ -81,7 +81,7 @@ class Metrics:
         return router
 
     async def exposition(self) -> Response:
-        """Everything counted, in the text format of Prometheus."""
+        """Give everything counted, in the text format of Prometheus."""
         if self._watched is not None:
             self._workers.standing = await self._watched.standing()
         return _Exposition(generate_latest(self._registry))

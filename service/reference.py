@@ -1,7 +1,8 @@
-"""Examples in the OpenAPI document: of each path a request and its answer, and every refusal.
+"""Summaries and examples in the OpenAPI document: of each path a request, its answer, all refusals.
 
-They are kept in `docs/examples.json`: requests and answers by operation, as "POST /front"; of each
-refusal what its problem document says, and `of`, where not every operation refuses so.
+A path's summary is the first line of its docstring. Examples are kept in `docs/examples.json`:
+requests and answers by operation, as "POST /front"; of each refusal what its problem document says,
+and `of`, where not every operation refuses so.
 """
 
 import json
@@ -17,9 +18,11 @@ _REQUEST_ID = "2348e4bd4d8a4a028a885757e2b342af"
 
 
 def illustrate(document: dict[str, Any]) -> None:
-    """Put the examples into an OpenAPI document."""
+    """Put summaries and examples into an OpenAPI document."""
     kept = json.loads(_EXAMPLES.read_text())
     for name, operation in _operations(document):
+        summary, _, operation["description"] = operation["description"].partition("\n\n")
+        operation["summary"] = summary.removesuffix(".")
         if name in kept["requests"]:
             content = operation["requestBody"]["content"]["application/json"]
             content["examples"] = {each: {"value": v} for each, v in kept["requests"][name].items()}

@@ -91,9 +91,9 @@ def test_a_pinned_tour_stays_beside_the_selected_one(page: Page) -> None:
     drawn(page)
     selected, pinned, difference = page.get_by_role("row", name="Risk").get_by_role("cell").all()
     assert number(selected) < number(pinned)
-    expect(difference).to_contain_text("-")
+    expect(difference).to_contain_text("\N{MINUS SIGN}")
     page.get_by_role("button", name="Unpin").click()
-    expect(difference).to_have_text("")
+    expect(page.get_by_role("row", name="Risk").get_by_role("cell")).to_have_count(1)
 
 
 @needs_browser
@@ -170,6 +170,8 @@ def test_a_picture_of_a_map_is_covered(browser: Browser) -> None:
     [
         ("stops.csv", "x,y,u,v\n1,2,3,4\n5,6,7\n", "stops.csv must have four numbers on each line"),
         ("stops.json", '{"coordinates": [', "stops.json must be JSON"),
+        ("stops.json", '{"coordinates": [1, 2]}', "coordinates of stops.json must be rows"),
+        ("map.json", '{"grid": []}', "grid of map.json must have a cell or more"),
         ("kroA.tsp", "EDGE_WEIGHT_TYPE: EUC_2D\n", "open it together with the other"),
     ],
 )
@@ -242,7 +244,7 @@ def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
     page: Page, browser: Browser, pair: list[Path]
 ) -> None:
     page.get_by_label("Open files").set_input_files(pair)
-    expect(page.get_by_label("Whole distances")).to_be_checked()
+    expect(page.get_by_label("Distances rounded")).to_be_checked()
     page.get_by_role("button", name="Plan").click()
     done(page)
     assert asked_by_curl(page)["matrices"] == [matrix(file.read_text()).tolist() for file in pair]
@@ -251,22 +253,32 @@ def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
     expect(link).to_have_text("Copied")
     with opened(browser, page.evaluate("navigator.clipboard.readText()")) as other:
         done(other)
-        expect(other.get_by_label("Whole distances")).to_be_checked()
+        expect(other.get_by_label("Distances rounded")).to_be_checked()
         expect(other.locator("#plane-1 canvas.selected")).to_be_visible()
-        other.get_by_label("Whole distances").uncheck()
+        other.get_by_label("Distances rounded").uncheck()
         expect(other.get_by_label("No front yet")).to_be_visible()
         assert len(asked_by_curl(other)["coordinates"]) == 12
+
+
+@needs_browser
+def test_a_list_of_angles_in_a_file_is_asked_for(page: Page) -> None:
+    bring(page, {"few.json": '{"coordinates": [[0, 0, 5, 5]], "preferences": [10, 80]}'})
+    assert asked_by_curl(page)["preferences"] == [10, 80]
+    page.get_by_text("More settings").click()
+    page.get_by_label("Directions of the network").fill("7")
+    assert asked_by_curl(page)["preferences"] == 7
 
 
 @needs_browser
 def test_what_the_service_refuses_is_said_at_the_field(page: Page) -> None:
     page.get_by_label("Seconds of search").fill("soon")
     page.get_by_role("button", name="Plan").click()
-    expect(page.locator("#time_limit-fault")).to_contain_text('got "soon"')
+    fault = page.locator("#time_limit-fault")
+    expect(fault).to_have_text('Seconds of search must be a valid number, got "soon".')
     expect(page.get_by_label("Seconds of search")).to_be_focused()
     page.get_by_label("x1, y1, x2, y2").fill("1, 2, 3, 4\n1, 2, 3\n")
     page.get_by_role("button", name="Plan").click()
-    expect(page.locator("#cities-fault")).to_contain_text("Coordinates/1 must have 4 items")
+    expect(page.locator("#cities-fault")).to_contain_text("City 1 must have 4 items")
 
 
 @needs_browser
@@ -319,7 +331,11 @@ def test_the_front_can_be_taken_along(page: Page, address: str) -> None:
 def test_the_reference_needs_nothing_from_elsewhere(browser: Browser, address: str) -> None:
     page = browser.new_page()
     page.goto(f"{address}/docs")
-    expect(page.get_by_role("button", name="POST /front Plan Front")).to_be_visible()
+    expect(
+        page.get_by_role(
+            "button", name="POST /front Plan the front of tours through the cities given"
+        )
+    ).to_be_visible()
     page.close()
 
 

@@ -38,10 +38,12 @@ export class FrontChart {
     objectives.forEach((objective, axis) => (this.#chart.axes[axis].label = withUnit(objective)));
   }
 
-  show(alone, front) {
-    this.#front = front;
-    this.#chart.setData(uPlot.join([columns(alone), columns(front)]));
-    this.#element.setAttribute("aria-label", described(front, this.#objectives));
+  /** Shows the network's front, the improved one, and lets the points of the latter be clicked. */
+  show(alone, improved) {
+    this.#front = improved.length ? improved : alone;
+    this.#chart.setData(uPlot.join([columns(alone), columns(improved)]));
+    this.#element.classList.toggle("empty", !this.#front.length);
+    this.#element.setAttribute("aria-label", described(this.#front, this.#objectives));
     this.#place();
   }
 
@@ -92,12 +94,15 @@ function options(element) {
     ...size(element),
     legend: { show: false },
     cursor: { show: false },
-    padding: [12, 12, 0, 0],
+    padding: [12, 26, 0, 0],
     scales: { x: { time: false, range: roomy }, y: { range: roomy } },
-    axes: [axis(UNNAMED[0], 28), axis(UNNAMED[1], 64)],
+    axes: [axis(UNNAMED[0], 28, apart), axis(UNNAMED[1], 64, 40)],
     series: [{}, line("alone", 1, 4), line("improved", 1.5, 5)],
   };
 }
+
+/** Pixels from one label of the first axis to the next, so that long ones do not touch. */
+const apart = (_chart, _axis, _least, most) => 7 * Math.max(4, length(Math.trunc(most)).length) + 16;
 
 /** A step from each point to the next: what it bounds is what the front dominates. */
 function line(name, width, points) {
@@ -110,10 +115,11 @@ function line(name, width, points) {
   };
 }
 
-function axis(objective, room) {
+function axis(objective, room, space) {
   return {
     label: withUnit(objective),
     size: room,
+    space,
     labelSize: 18,
     font: FONT,
     labelFont: FONT,

@@ -1,14 +1,15 @@
 /** The selected tour's figures beside the pinned one's. */
 
 import { degrees, difference, length } from "./numbers.js";
-import { titled } from "./objectives.js";
+import { withUnit } from "./objectives.js";
 
 export function compare(table, objectives, selected, pinned) {
   const rows = [
-    [titled(objectives[0]), (item) => item.lengths[0], length],
-    [titled(objectives[1]), (item) => item.lengths[1], length],
+    [withUnit(objectives[0]), (item) => item.lengths[0], length],
+    [withUnit(objectives[1]), (item) => item.lengths[1], length],
     ["Angle", (item) => item.angle, degrees],
   ];
+  table.classList.toggle("alone", !pinned);
   table.tBodies[0].replaceChildren(
     ...rows.map(([name, value, shown]) => {
       const said = (item) => (item ? shown(value(item)) : "–");

@@ -1,6 +1,7 @@
 /** What the service found wrong, said at the field at fault. */
 
 const FIELD_OF = { coordinates: "cities", matrices: "cities" };
+const COLUMNS = ["x₁", "y₁", "x₂", "y₂"];
 const FIELD_OF_CODE = { unauthorized: "key" };
 
 /** Shows the faults of a problem; whatever has no field of its own is said under the buttons. */
@@ -12,7 +13,7 @@ export function showFaults(problem) {
     const [member, row] = pointer.split("/").slice(1);
     const field = FIELD_OF_CODE[problem.code] ?? FIELD_OF[member] ?? member ?? "request";
     const said = document.getElementById(`${field}-fault`) ?? document.getElementById("request-fault");
-    said.textContent ||= sentence(detail);
+    said.textContent ||= sentence(inWords(detail, field));
     first ??= mark(field, member === "matrices" ? undefined : row);
   }
   first?.focus();
@@ -48,6 +49,15 @@ function selectLine(area, row) {
   const lines = area.value.split("\n");
   const before = lines.slice(0, row).join("\n").length + (row > 0 ? 1 : 0);
   area.setSelectionRange(before, before + (lines[row]?.length ?? 0));
+}
+
+/** What a fault calls by its name in the request is called here as on the page. */
+function inWords(detail, field) {
+  const label = document.querySelector(`label[for="${field}"]`)?.textContent;
+  return detail
+    .replace(/^coordinates\/(\d+)\/([0-3])\b/, (_, city, column) => `${COLUMNS[column]} of city ${city}`)
+    .replace(/^coordinates\/(\d+)\b/, "city $1")
+    .replace(new RegExp(`^${field}\\b`), label ?? field);
 }
 
 function sentence(detail) {

@@ -39,6 +39,8 @@ export class Fields {
     this.#coverage.hidden = kind !== "grid";
     for (const { name, where } of FIELDS) {
       if (where === "coverage") this.#form[name].value = "";
+      // What is there and no number, as a list of angles, is left as it is, unless one is typed.
+      if (request[name] != null) this.#form[name].value = "";
       if (typeof request[name] !== "number") continue;
       this.#form[name].value = request[name];
       delete rest[name];

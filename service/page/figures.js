@@ -10,7 +10,7 @@ export function showFigures(list, more, alone, answer) {
 
 const worth = (alone, answer) => [
   ["Front", answer ? share(answer.hypervolume) : "–"],
-  ["Network alone", alone ? share(alone.hypervolume) : "–"],
+  ...(alone ? [["Network alone", share(alone.hypervolume)]] : []),
 ];
 
 const known = (answer) => [

@@ -38,8 +38,25 @@ function parsed(name, text) {
   } catch (error) {
     throw new Error(`${name} must be JSON, and is not: ${error.message}`);
   }
-  return Array.isArray(given) ? { coordinates: given } : given;
+  return drawable(name, Array.isArray(given) ? { coordinates: given } : given);
 }
+
+/** The members, of which those that are drawn are rows; all else is for the service to check. */
+function drawable(name, members) {
+  const { coordinates, grid, cost_layer } = members ?? {};
+  if (!members || typeof members !== "object") throw new Error(`${name} must be a request, got ${members}`);
+  for (const [member, rows] of Object.entries({ coordinates, grid, cost_layer })) {
+    if (rows != null && !isRows(rows)) throw new Error(`${member} of ${name} must be rows of numbers`);
+  }
+  if (grid && !grid[0]?.length) throw new Error(`grid of ${name} must have a cell or more, got none`);
+  if (grid && cost_layer && cost_layer.length !== grid.length) {
+    const came = `${cost_layer.length} and ${grid.length}`;
+    throw new Error(`cost_layer and grid of ${name} must have as many rows, got ${came}`);
+  }
+  return members;
+}
+
+const isRows = (value) => Array.isArray(value) && value.every(Array.isArray);
 
 function table(name, text) {
   const rows = rowsOf(text);

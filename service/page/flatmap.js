@@ -3,7 +3,14 @@
 import "./vendor/leaflet/leaflet.js";
 
 const { L } = globalThis;
+const BUTTONS = 54; // pixels that the zoom buttons take from the map's left
 const BY_FINGER = matchMedia("(pointer: coarse)").matches;
+
+/** How a map is fitted to its bounds: with room beside them, and for the zoom buttons. */
+export function fitting(map, room) {
+  const buttons = map.zoomControl?.getContainer().offsetWidth ? BUTTONS : room;
+  return { paddingTopLeft: [buttons, room], paddingBottomRight: [room, room], animate: false };
+}
 
 /** A map with a pane for tours beneath that of the cities. */
 export function flatMap(element, options) {

@@ -2,7 +2,7 @@
 
 import "./vendor/leaflet/leaflet.js";
 import { colour, onSchemeChange, rgb } from "./colours.js";
-import { flatMap } from "./flatmap.js";
+import { fitting, flatMap } from "./flatmap.js";
 import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
@@ -31,6 +31,7 @@ export class GridMap {
   show({ grid, cost_layer, places }) {
     this.#grid = { grid, costs: cost_layer };
     for (const name of Object.keys(this.#lines)) this.draw(name, null);
+    this.#element.style.aspectRatio = `${grid[0].length} / ${grid.length}`;
     this.place(places ?? []);
     this.#colour();
     this.#fit();
@@ -59,7 +60,7 @@ export class GridMap {
   #fit() {
     if (!this.#grid || !this.#element.clientWidth) return;
     this.#map.invalidateSize({ pan: false });
-    this.#map.fitBounds(this.#bounds, { padding: [8, 8], animate: false });
+    this.#map.fitBounds(this.#bounds, fitting(this.#map, 8));
   }
 
   get #bounds() {

@@ -39,7 +39,7 @@ function options(element) {
     ...size(element),
     legend: { show: false },
     cursor: { show: false },
-    padding: [8, 8, 0, 0],
+    padding: [8, 18, 0, 0],
     scales: { x: { time: false } },
     axes: [axis(22, (tick) => `${tick} s`, 50), axis(52, (tick) => `${tick} %`, 24)],
     series: [{}, { stroke, width: 1.5, points: { show: false } }],

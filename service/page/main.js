@@ -18,6 +18,7 @@ const element = (id) => document.getElementById(id);
 const form = element("request");
 const fields = new Fields(form);
 const service = new Service(() => element("key").value.trim());
+const narrow = matchMedia("(max-width: 860px)"); // the form stands above what it gives, not beside
 const placing = new Placing(element("place"), element("place-help"), placed);
 const result = new Result((plane, place) => placing.clicked(plane, place));
 
@@ -211,6 +212,7 @@ async function copyLink(button) {
 
 form.addEventListener("submit", (event) => {
   event.preventDefault();
+  if (narrow.matches) element("result").scrollIntoView();
   plan();
 });
 element("stop").addEventListener("click", stop);

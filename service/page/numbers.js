@@ -1,12 +1,6 @@
 /** Numbers as people read them. */
 
 const LENGTH = new Intl.NumberFormat("en", { maximumSignificantDigits: 6 });
-const DIFFERENCE = new Intl.NumberFormat("en", {
-  style: "percent",
-  signDisplay: "exceptZero",
-  minimumFractionDigits: 1,
-  maximumFractionDigits: 1,
-});
 
 export function length(value) {
   const size = Math.abs(value);
@@ -15,5 +9,13 @@ export function length(value) {
 
 export const degrees = (angle) => `${angle.toFixed(1)}°`;
 export const share = (value) => `${(100 * value).toFixed(2)} %`;
-export const difference = (value, beside) => (beside === 0 ? "" : DIFFERENCE.format(value / beside - 1));
+
+/** How much more than another a value is, in per cent, with its sign. */
+export function difference(value, beside) {
+  if (beside === 0) return "";
+  const shown = (100 * (value / beside - 1)).toFixed(1);
+  const sign = Number(shown) > 0 ? "+" : Number(shown) < 0 ? "−" : "";
+  return `${sign}${shown.replace("-", "")} %`;
+}
+
 export const counted = (count, one, many) => `${count.toLocaleString("en")} ${count === 1 ? one : many}`;

@@ -2,11 +2,12 @@
 
 import "./vendor/leaflet/leaflet.js";
 import { colour, onSchemeChange } from "./colours.js";
-import { flatMap } from "./flatmap.js";
+import { fitting, flatMap } from "./flatmap.js";
 import { Frame } from "./frame.js";
 import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
+const NARROW = 240; // pixels, as a map on a phone
 
 export class Plane {
   #map;
@@ -37,7 +38,9 @@ export class Plane {
     this.#places = places;
     if (fit) this.#frame = Frame.around(places);
     this.#cities.clearLayers();
-    places.forEach((place, city) => this.#cities.addLayer(this.#dot(place, city)));
+    const crowded = places.length > 300 || this.#map.getContainer().clientWidth < NARROW;
+    const radius = crowded ? 2 : 3.5;
+    places.forEach((place, city) => this.#cities.addLayer(this.#dot(place, city, radius)));
     this.draw("selected", null);
     this.draw("pinned", null);
     this.highlight(null);
@@ -65,8 +68,8 @@ export class Plane {
     else ring.remove();
   }
 
-  #dot(place, city) {
-    const style = { renderer: this.#renderer, radius: this.#places.length > 300 ? 2 : 3.5, weight: 0 };
+  #dot(place, city, radius) {
+    const style = { renderer: this.#renderer, radius, weight: 0 };
     const dot = L.circleMarker(this.#frame.latlng(place), style);
     dot.city = city;
     return dot;
@@ -78,7 +81,7 @@ export class Plane {
   }
 
   #fit() {
-    this.#map.fitBounds(this.#frame.bounds, { padding: [20, 20], animate: false });
+    this.#map.fitBounds(this.#frame.bounds, fitting(this.#map, 20));
   }
 
   #colour() {

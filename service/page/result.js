@@ -51,10 +51,13 @@ export class Result {
   clear(instance, fit = true) {
     cancelAnimationFrame(this.#frame);
     this.#maps.show(instance, fit);
+    element("shade").textContent = instance.cost_layer ? `shaded: ${this.#objectives[1].name}` : "";
     this.#front = [];
     this.#angle = null;
     this.#selected = this.#pinned = null;
     this.#chart.show([], []);
+    this.#legend("alone", false);
+    this.#legend("improved", false);
     this.#growth.show([]);
     this.#slider.show([]);
     this.#drawPin();
@@ -65,7 +68,11 @@ export class Result {
   /** The front of the network alone, where it is known, and the best so far. */
   show({ alone, answer, growth }) {
     this.#front = answer.front;
-    this.#chart.show(alone?.front ?? [], answer.front);
+    // Until the search has found something, the best front so far is the network's.
+    const improved = answer.front === alone?.front ? [] : answer.front;
+    this.#chart.show(alone?.front ?? [], improved);
+    this.#legend("alone", alone !== null);
+    this.#legend("improved", improved.length > 0);
     this.#growth.show(growth);
     this.#slider.show(answer.front);
     this.#maps.place(answer.places);
@@ -94,6 +101,7 @@ export class Result {
 
   #drawPin() {
     element("pin").textContent = this.#pinned ? "Unpin" : "Pin to compare";
+    this.#legend("pinned", this.#pinned !== null);
     this.#chart.mark("pinned", this.#pinned?.lengths ?? null);
     this.#maps.draw("pinned", this.#pinned);
   }
@@ -101,6 +109,7 @@ export class Result {
   #draw() {
     const selected = this.#selected;
     element("pin").disabled = !selected;
+    this.#legend("selected", selected !== null);
     this.#chart.mark("selected", selected?.lengths ?? null);
     this.#maps.draw("selected", selected);
     compare(element("comparison"), this.#objectives, selected, this.#pinned);
@@ -109,6 +118,11 @@ export class Result {
       element(`length-${objective + 1}`).textContent = said;
     }
     this.#order();
+  }
+
+  /** Says what a colour on the chart means, while it is there. */
+  #legend(name, there) {
+    element("legend").querySelector(`.${name}`).hidden = !there;
   }
 
   #order() {

@@ -1,0 +1,27 @@
+"""`python -m tests.picture`: the picture of the page that the README shows."""
+
+from pathlib import Path
+
+from tests.browsing import chromium, done, drawn, opened
+from tests.serving import serving_released
+
+PICTURE = Path(__file__).parent / "page.png"
+
+
+def main() -> None:
+    """Plans the first example, and shows a tour of its front beside a pinned one."""
+    with serving_released() as address, chromium() as browser, opened(browser, address) as page:
+        done(page)
+        slider = page.get_by_role("slider", name="Angle")
+        slider.press("Home")
+        page.get_by_role("button", name="Pin to compare").click()
+        for _ in range(5):
+            slider.press("PageUp")
+        slider.blur()
+        page.mouse.move(0, 0)
+        drawn(page)
+        page.screenshot(path=PICTURE, full_page=True)
+
+
+if __name__ == "__main__":
+    main()
