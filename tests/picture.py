@@ -1,11 +1,15 @@
 """`python -m tests.picture`: the picture of the page that the README shows."""
 
+from io import BytesIO
 from pathlib import Path
+
+from PIL import Image
 
 from tests.browsing import chromium, done, drawn, opened
 from tests.serving import serving_released
 
 PICTURE = Path(__file__).parent / "page.png"
+COLOURS = 128  # enough for a page, in a third of the bytes
 
 
 def main() -> None:
@@ -20,7 +24,8 @@ def main() -> None:
         slider.blur()
         page.mouse.move(0, 0)
         drawn(page)
-        page.screenshot(path=PICTURE, full_page=True)
+        picture = Image.open(BytesIO(page.screenshot(full_page=True)))
+        picture.convert("RGB").quantize(COLOURS).save(PICTURE, optimize=True)
 
 
 if __name__ == "__main__":

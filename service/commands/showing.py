@@ -3,13 +3,20 @@
 import csv
 import io
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
 
 from service.client import Actor, Front, Tour
+
+_ENDS: Mapping[str | None, str] = {
+    None: "still being planned",
+    "converged": "nothing more was found",
+    "time_limit": "stopped at the time limit",
+    "cancelled": "stopped before its time",
+}
 
 
 def front_as_json(front: Front) -> str:
@@ -42,7 +49,7 @@ def front_in_words(front: Front) -> str:
     kept = f"{len(front.tours)} of {front.points} tours found"
     bound = front.hypervolume_bound
     most = "" if bound is None else f", and no front has more than {bound:.2%}"
-    return f"{kept}, hypervolume {front.hypervolume:.2%}{most}; {front.terminated}"
+    return f"{kept}, hypervolume {front.hypervolume:.2%}{most}; {_ENDS[front.terminated]}"
 
 
 def tour_as_json(tour: Tour) -> str:
