@@ -3,14 +3,14 @@
 No figure of ours stands here: all of them come from `results/*.json`.
 """
 
-from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tests.benchmarks import printed
+from tests.benchmarks import printed, under_load
 from tests.benchmarks.instances import SIZES, reference_points
+from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
 
 PAGE = Path(__file__).parent / "RESULTS.md"
@@ -41,13 +41,7 @@ taken while other programs wanted the same processor, which makes them too long.
 def page() -> str:
     """All of it."""
     paper = (_main(), _training(), _coverage(), _layers(), _concave(), _fronts())
-    return "\n".join((INTRODUCTION, *paper, _shapes()))
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table in Markdown."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+    return "\n".join((INTRODUCTION, *paper, _shapes(), under_load.section()))
 
 
 def _main() -> str:

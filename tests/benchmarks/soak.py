@@ -2,7 +2,8 @@
 
 Visitors plan 10 to 500 cities, send what is no request, hang up in the middle, and order fronts as
 jobs, which they watch, wait for or cancel. Counts answers, faults of the service and jobs that
-never ended, and watches the memory of the server and its workers. Stores `results/soak.json`.
+never ended, and watches the memory of the server and its workers. Stores `results/soak.json`, and
+says what does not hold.
 """
 
 import argparse
@@ -12,11 +13,12 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 from urllib.parse import urlsplit
 
-import numpy as np
 import psutil
 from tqdm import tqdm
 
+from tests.benchmarks.demands import growth, unmet_by_soak
 from tests.benchmarks.provenance import provenance, store
+from tests.benchmarks.under_load import soak_table
 from tests.benchmarks.visitors import Tally, Visitor
 from tests.serving import running
 
@@ -24,8 +26,8 @@ VISITORS = 8
 EVERY = 2.0  # seconds between two looks at the memory
 
 
-def main(arguments: list[str]) -> None:
-    """The command line."""
+def main(arguments: list[str]) -> str | None:
+    """The command line. Says what does not hold."""
     parser = argparse.ArgumentParser("python -m tests.benchmarks soak", description=__doc__)
     parser.add_argument("--minutes", type=float, default=10)
     parser.add_argument("--visitors", type=int, default=VISITORS)
@@ -33,15 +35,14 @@ def main(arguments: list[str]) -> None:
     cores = len(os.sched_getaffinity(0))
     results = {**provenance(cores), **soak(60 * options.minutes, options.visitors)}
     store("soak", results)
-    _print_summary(results)
+    print(soak_table(results))
+    return "\n".join(unmet_by_soak(results)) or None
 
 
 def soak(seconds: float, visitors: int) -> dict[str, Any]:
     """What was answered, what was lost, and how the memory went."""
-    # Nothing that was accepted makes way for what came later, or it would look lost.
-    settings = {"PARETOUR_STORE_ENTRIES": "100000"}
     tally = Tally()
-    with running(settings, ready=True) as service, ThreadPoolExecutor(visitors) as pool:
+    with running({}, ready=True) as service, ThreadPoolExecutor(visitors) as pool:
         parts = urlsplit(service.url)
         address = (str(parts.hostname), int(parts.port or 0))
         until = time.monotonic() + seconds
@@ -58,16 +59,10 @@ def soak(seconds: float, visitors: int) -> dict[str, Any]:
         "faults": tally.faults,
         "jobs": tally.jobs,
         "tracebacks_in_log": service.log.count(b"Traceback"),
+        "exit_status": service.process.returncode,
         "megabytes": [round(each / 2**20, 1) for each in memory],
         "growth_over_last_half": round(growth(memory), 4),
     }
-
-
-def growth(memory: list[float]) -> float:
-    """By what share the last tenth of the last half is above its first tenth, on average."""
-    half = np.array(memory[len(memory) // 2 :])
-    tenth = max(1, len(half) // 10)
-    return float(half[-tenth:].mean() / half[:tenth].mean() - 1)
 
 
 def _watch(server: psutil.Process, until: float) -> list[float]:
@@ -89,14 +84,3 @@ def _resident(server: psutil.Process) -> float:
         except psutil.NoSuchProcess:
             continue
     return total
-
-
-def _print_summary(results: dict[str, Any]) -> None:
-    print("| what | answers |\n|---|---|")
-    for deed, statuses in sorted(results["answers"].items()):
-        print(f"| {deed} | {', '.join(f'{k}: {v}' for k, v in sorted(statuses.items()))} |")
-    print(f"\njobs: {results['jobs']}; faults: {results['faults'] or 'none'}")
-    print(f"tracebacks in the log: {results['tracebacks_in_log']}")
-    memory = results["megabytes"]
-    print(f"memory: {memory[0]} to {memory[-1]} MiB,", end=" ")
-    print(f"{100 * results['growth_over_last_half']:+.1f} % over the last half")

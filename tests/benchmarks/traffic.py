@@ -35,10 +35,13 @@ class Client:
     def __init__(self, address: tuple[str, int]) -> None:
         self._socket = socket.create_connection(address, timeout=_PATIENCE)
 
-    def ask(self, method: str, path: str, body: bytes = b"") -> int:
+    def ask(self, method: str, path: str, body: bytes = b"", coding: str = "identity") -> int:
         """The status of the answer, which has been received to its end."""
-        head = f"{method} {path} HTTP/1.1\r\nHost: paretour\r\nContent-Length: {len(body)}\r\n"
-        self._socket.sendall(f"{head}Content-Type: application/json\r\n\r\n".encode() + body)
+        head = (
+            f"{method} {path} HTTP/1.1\r\nHost: paretour\r\nContent-Type: application/json\r\n"
+            f"Content-Encoding: {coding}\r\nContent-Length: {len(body)}\r\n\r\n"
+        )
+        self._socket.sendall(head.encode() + body)
         return self._status()
 
     def close(self) -> None:
@@ -68,7 +71,7 @@ class Client:
 def as_fast_as_answered(
     address: tuple[str, int], bodies: Iterable[bytes], clients: int, seconds: float
 ) -> list[Asked]:
-    """Fronts, each client asking again as soon as it has been answered."""
+    """Fronts that came in that time, each client asking again as soon as it has been answered."""
     asking = _Shared(cycle(bodies))
     until = time.perf_counter() + seconds
 
@@ -77,7 +80,8 @@ def as_fast_as_answered(
         with _client(address) as ask:
             while (began := time.perf_counter()) < until:
                 status = ask("POST", "/front", next(asking))
-                answers.append(Asked(status, time.perf_counter() - began))
+                if (ended := time.perf_counter()) < until:
+                    answers.append(Asked(status, ended - began))
         return answers
 
     return _together(client, clients)

@@ -48,10 +48,10 @@ class Tally:
         return dict(self._jobs)
 
     def answered(self, deed: str, status: int, content: bytes) -> None:
-        """Note an answer. A 500 is a fault."""
+        """Note an answer. Every fault of the service is one, but that it is full is none."""
         with self._lock:
             self._answers[deed][str(status)] += 1
-            if status == 500:
+            if status >= 500 and status != 503:
                 self.faults.append(f"{deed}: {status} {content[:300].decode(errors='replace')}")
 
     def job(self, event: str) -> None:

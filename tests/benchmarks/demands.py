@@ -1,0 +1,51 @@
+"""What `load` and `soak` must find, and what of it they did not find."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+SHARE = 0.9  # of the bare session's calls a second, answered
+LATENESS = 4.0  # times the median, the 99th percentile
+ASIDE_MS = 50.0  # for health and metrics, whatever else goes on
+GROWTH = 0.1  # of resident memory over the last half
+_ENDS = ("done", "cancelled", "failed", "forgotten once done")
+
+
+def unmet_by_load(results: Mapping[str, Any]) -> Iterator[str]:
+    """A sentence for each demand that does not hold."""
+    if (share := results["served_share"]) < SHARE:
+        yield f"answers a second must be {SHARE:.0%} of the bare session's calls, got {share:.1%}"
+    timed = results["at_80_percent"]
+    if (lateness := timed["p99_ms"] / timed["median_ms"]) >= LATENESS:
+        yield f"p99 must be under {LATENESS:g} times the median, got {lateness:.2f} times"
+    for when in ("under_full_load", "with_long_bodies"):
+        for path, times in results[when].items():
+            if (worst := times["worst_ms"]) > ASIDE_MS:
+                said = when.replace("_", " ")
+                yield f"{path} must answer within {ASIDE_MS:g} ms {said}, got {worst:g} ms"
+
+
+def unmet_by_soak(results: Mapping[str, Any]) -> Iterator[str]:
+    """A sentence for each demand that does not hold."""
+    jobs = results["jobs"]
+    ended = sum(jobs.get(end, 0) for end in _ENDS)
+    if jobs.get("accepted", 0) != ended:
+        yield f"every accepted job must end, got {jobs.get('accepted', 0)} and {ended} ends"
+    if jobs.get("failed"):
+        yield f"no job may fail, got {jobs['failed']}"
+    if results["faults"]:
+        yield f"there must be no fault, got {len(results['faults'])}: {results['faults'][0]}"
+    if results["tracebacks_in_log"]:
+        yield f"the log must have no traceback, got {results['tracebacks_in_log']}"
+    if results["exit_status"]:
+        yield f"the service must end with 0, got {results['exit_status']}"
+    if (growth := results["growth_over_last_half"]) >= GROWTH:
+        yield f"memory must grow by less than {GROWTH:.0%} over the last half, got {growth:.1%}"
+
+
+def growth(memory: list[float]) -> float:
+    """By what share the last tenth of the last half is above its first tenth, on average."""
+    half = np.array(memory[len(memory) // 2 :])
+    tenth = max(1, len(half) // 10)
+    return float(half[-tenth:].mean() / half[:tenth].mean() - 1)

@@ -1,0 +1,105 @@
+"""What `load` and `soak` found, in tables, beside what they must find."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from tests.benchmarks.demands import (
+    ASIDE_MS,
+    GROWTH,
+    LATENESS,
+    SHARE,
+    unmet_by_load,
+    unmet_by_soak,
+)
+from tests.benchmarks.markdown import table
+from tests.benchmarks.provenance import load
+
+Row = tuple[str, str, str]
+_WHEN = {"under_full_load": "full load", "with_long_bodies": "and long bodies"}
+
+
+def section() -> str:
+    """What is stored of both."""
+    return (
+        "## The service under load\n\nNot in the paper: `python -m tests.benchmarks load`. "
+        "40 cities, 100 preferences, `time_limit` 0;\nclients, server and workers share the "
+        "cores. The bare session is the same network in a loop, one\nprocess a core; long bodies "
+        "have 10 MB: matrices, cities by the hundred thousand, brackets, gzip.\n\n"
+        f"{_part(load('load'), load_rows, unmet_by_load)}\n"
+        "`python -m tests.benchmarks soak`: visitors who plan 10 to 500 cities, misuse, hang up, "
+        "order, watch\nand cancel jobs.\n\n"
+        f"{_part(load('soak'), soak_rows, unmet_by_soak)}"
+    )
+
+
+def load_table(results: Mapping[str, Any]) -> str:
+    """What `load` found."""
+    return _table(load_rows(results))
+
+
+def soak_table(results: Mapping[str, Any]) -> str:
+    """What `soak` found."""
+    return _table(soak_rows(results))
+
+
+def load_rows(results: Mapping[str, Any]) -> Iterator[Row]:
+    """What, what was found, and what is demanded of it."""
+    bare, served = results["bare"], results["served"]
+    yield "bare session, calls a second", _mean(bare, "per_second"), ""
+    yield "answers a second", _mean(served, "per_second"), ""
+    yield "share", f"{results['served_share']:.1%}", f"at least {SHARE:.0%}"
+    yield "bare session, ms of the processor a call", _mean(bare, "session_ms"), ""
+    for who in ("workers", "server", "clients"):
+        yield f"{who}, ms of the processor an answer", _mean(served, f"{who}_ms"), ""
+    yield "share of the processor", f"{results['processor_share']:.1%}", ""
+    timed = results["at_80_percent"]
+    ratio = timed["p99_ms"] / timed["median_ms"]
+    times = f"{timed['median_ms']:.1f} ms, {timed['p99_ms']:.1f} ms, {ratio:.2f}"
+    yield "at 80 % of that: median, p99, their ratio", times, f"under {LATENESS:g}"
+    for when, said in _WHEN.items():
+        for path, aside in results[when].items():
+            found = f"{aside['p99_ms']:.1f} ms, {aside['worst_ms']:.1f} ms"
+            yield f"`{path}`, {said}: p99, worst", found, f"at most {ASIDE_MS:g} ms"
+    for kind, statuses in results["long_bodies"].items():
+        yield f"long bodies, {kind}: statuses", _counted(statuses), ""
+
+
+def soak_rows(results: Mapping[str, Any]) -> Iterator[Row]:
+    """What, what was found, and what is demanded of it."""
+    yield "minutes, visitors", f"{results['minutes']:g}, {results['visitors']}", ""
+    for deed, statuses in sorted(results["answers"].items()):
+        yield f"{deed}: statuses", _counted(statuses), ""
+    yield "jobs", _counted(results["jobs"]), "as many ends as accepted, none failed"
+    yield "faults", str(len(results["faults"])), "0"
+    yield "tracebacks in the log", str(results["tracebacks_in_log"]), "0"
+    yield "exit status at SIGTERM", str(results["exit_status"]), "0"
+    memory = results["megabytes"]
+    yield "resident memory at first, at last", f"{memory[0]:.0f} MB, {memory[-1]:.0f} MB", ""
+    growth = f"{results['growth_over_last_half']:+.1%}"
+    yield "its growth over the last half", growth, f"under {GROWTH:.0%}"
+
+
+def _part(
+    stored: Mapping[str, Any],
+    rows: Callable[[Mapping[str, Any]], Iterable[Row]],
+    unmet: Callable[[Mapping[str, Any]], Iterable[str]],
+) -> str:
+    if not stored:
+        return "Not measured.\n"
+    origin = f"{stored['cpu']}, {stored['threads']} cores, {stored['date']}, `{stored['commit']}`"
+    below = "".join(f"\n- {each}" for each in unmet(stored)) or " nothing."
+    return f"{_table(rows(stored))}\nMeasured on: {origin}. Does not hold:{below}\n"
+
+
+def _table(rows: Iterable[Row]) -> str:
+    return table(("", "found", "demanded"), rows)
+
+
+def _mean(rows: Iterable[Mapping[str, float]], name: str) -> str:
+    return f"{np.mean([row[name] for row in rows]):.2f}"
+
+
+def _counted(counted: Mapping[str, int]) -> str:
+    return ", ".join(f"{name}: {count}" for name, count in sorted(counted.items())) or "none"
