@@ -4,7 +4,8 @@ import pickle
 import struct
 from asyncio import StreamReader
 from dataclasses import dataclass, field
-from typing import Any, BinaryIO, Literal
+from socket import socket
+from typing import Any, Literal
 
 from service.rendered import Rendered
 from service.task import Task
@@ -108,11 +109,22 @@ async def received(stream: StreamReader) -> Any:
     return pickle.loads(await stream.readexactly(length))
 
 
-def received_now(stream: BinaryIO) -> Any:
-    """The next message, for which the caller waits.
+def received_now(connection: socket) -> Any:
+    """The next message, for which the caller waits. Nothing that comes after it is read.
 
     Raises:
         EOFError: whoever sent is gone.
+        OSError: likewise.
     """
-    stream.read(_LENGTH.size)
-    return pickle.load(stream)
+    (length,) = _LENGTH.unpack(_exactly(connection, _LENGTH.size))
+    return pickle.loads(_exactly(connection, length))
+
+
+def _exactly(connection: socket, size: int) -> bytearray:
+    content = bytearray()
+    while len(content) < size:
+        more = connection.recv(size - len(content))
+        if not more:
+            raise EOFError
+        content += more
+    return content

@@ -1,5 +1,6 @@
 """Reading what is asked for while the event loop goes on: a long body in a process of its own."""
 
+import asyncio
 from collections.abc import Mapping
 
 from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
@@ -38,6 +39,8 @@ class Reader:
         if len(work.body) + len(work.upload or b"") <= _SHORT:
             return read(work, self._limits, self._actors)
         for _ in range(_TRIES):
+            # To put it together took a while, and to hand it over will: others come in between.
+            await asyncio.sleep(0)
             try:
                 return await to_process.run_sync(
                     read, work, self._limits, self._actors, cancellable=True, limiter=self._one

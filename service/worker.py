@@ -3,13 +3,13 @@
 import os
 import pickle
 import signal
-import socket
 import time
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
-from queue import SimpleQueue
-from threading import Event, Lock, Thread
+from select import POLLIN, poll
+from socket import socket
+from threading import Lock, Thread
 from typing import Protocol
 
 from service.messages import (
@@ -46,57 +46,63 @@ class Planner(Protocol):
         """The front that is asked for."""
 
 
-def run_worker(connection: socket.socket, make_planner: Callable[[], Planner]) -> None:
+def run_worker(connection: socket, make_planner: Callable[[], Planner]) -> None:
     """Work as long as the service is there."""
     # An interrupt from a terminal goes to everyone; the service tells its workers when to end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     worker = _Worker(connection, make_planner())
-    Thread(target=worker.listen, name="listen", daemon=True).start()
-    with suppress(OSError):
+    Thread(target=_end_with_the_service, args=[connection], name="guard", daemon=True).start()
+    with suppress(EOFError, OSError):
         worker.work()
 
 
-class _Worker:
-    """Works in one thread, listens in another, and warms up in a third."""
+def _end_with_the_service(connection: socket) -> None:
+    """End at once when the service is gone, whatever is being done."""
+    hung_up = poll()
+    hung_up.register(connection, 0)
+    hung_up.poll()
+    os._exit(0)
 
-    def __init__(self, connection: socket.socket, planner: Planner) -> None:
+
+class _Worker:
+    """Works in one thread and warms up in another."""
+
+    def __init__(self, connection: socket, planner: Planner) -> None:
         self._connection = connection
         self._planner = planner
         self._sending = Lock()
-        self._given: SimpleQueue[Do] = SimpleQueue()
-        self._stops: dict[int, Event] = {}
-
-    def listen(self) -> None:
-        """Take messages until the service is gone, and then end whatever is being done."""
-        with suppress(EOFError, OSError), self._connection.makefile("rb") as stream:
-            while True:
-                self._hear(received_now(stream))
-        os._exit(0)
+        self._stopped: int | None = None
+        self._waiting = poll()
+        self._waiting.register(connection, POLLIN)
 
     def work(self) -> None:
         """Do what is given, one after another."""
         self._send(Started())
         while True:
-            given = self._given.get()
-            self._send(self._done(given.number, given.work))
-            del self._stops[given.number]
+            self._hear(received_now(self._connection))
 
     def _hear(self, message: object) -> None:
         match message:
             case Do():
-                self._stops[message.number] = Event()
-                self._given.put(message)
-            case Stop() if stop := self._stops.get(message.number):
-                stop.set()
+                self._send(self._done(message.number, message.work))
+            case Stop():
+                self._stopped = message.number
             case WarmUp():
                 Thread(target=self._warm_up, name="warm-up", daemon=True).start()
 
     def _done(self, number: int, work: Work | Task) -> Done | Failed:
         report = Reporter(lambda snapshot: self._send(Found(number, snapshot)))
         try:
-            return Done(number, self._planner.plan(work, self._stops[number].is_set, report))
+            return Done(number, self._planner.plan(work, lambda: self._is_over(number), report))
         except Exception as error:
             return Failed(number, _portable(error))
+
+    def _is_over(self, number: int) -> bool:
+        """Whether what is being done is to end: who does it asks again and again."""
+        # While there is work, the service gives no more of it: nothing is begun in here.
+        while self._stopped != number and self._waiting.poll(0):
+            self._hear(received_now(self._connection))
+        return self._stopped == number
 
     def _warm_up(self) -> None:
         self._planner.warm_up()
