@@ -27,7 +27,6 @@ from starlette.requests import Request
 
 from service.problems import Refusal
 
-ANONYMOUS = "anonymous"
 _REDIS_SECONDS = 0.5  # that a request waits for Redis at most
 _NAME = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _LOG = logging.getLogger("paretour")
@@ -104,9 +103,8 @@ class Access:
 
     @property
     def dependencies(self) -> list[Dependency]:
-        """What a guarded router depends on; with it the OpenAPI document asks for a key."""
-        documented = [Security(_BEARER)] if self._keys else []
-        return [Depends(self.admit), *documented]
+        """What a guarded router depends on, if there are keys. Then the document asks for one."""
+        return [Depends(self.admit), Security(_BEARER)] if self._keys else []
 
     async def admit(self, request: Request) -> None:
         """Name the caller in the request's scope.
@@ -114,11 +112,9 @@ class Access:
         Raises:
             Refusal: nobody was given this key, or its requests are too many.
         """
-        request.scope["caller"] = ANONYMOUS
-        if self._keys:
-            request.scope["caller"] = caller = self._caller(request)
-            if self._rates is not None:
-                await self._rates.check(caller)
+        request.scope["caller"] = caller = self._caller(request)
+        if self._rates is not None:
+            await self._rates.check(caller)
 
     def _caller(self, request: Request) -> str:
         scheme, _, key = request.headers.get("authorization", "").partition(" ")

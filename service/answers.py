@@ -22,7 +22,7 @@ _LONGEST_KEY = 255
 
 def caller_of(request: Request) -> str:
     """Who asks; all that shows no key is one caller."""
-    return str(request.scope.get("caller", "anonymous"))
+    return str(request.scope["caller"])
 
 
 class Answers:

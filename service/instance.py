@@ -1,5 +1,6 @@
 """What is planned: cities under two objectives, checked where it is made."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -39,9 +40,7 @@ class Instance:
             object.__setattr__(self, "coordinates", _checked_coordinates(self.coordinates))
         else:
             object.__setattr__(self, "matrices", _checked_matrices(self.matrices))
-        with np.errstate(over="ignore"):
-            longest = 2 * self.n * self._extents
-        if not np.isfinite(longest).all():
+        if not math.isfinite(2 * self.n * float(self._extents.max())):
             raise InvalidInstance(
                 f"costs must leave a tour's length finite, got costs up to {self._extents.max():g}"
             )

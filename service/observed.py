@@ -17,7 +17,7 @@ class Answered:
     """A request and its answer. The path is the template that it matched."""
 
     request_id: str
-    caller: str | None
+    caller: str
     method: str
     path: str
     status: int
@@ -55,7 +55,7 @@ class ObservedRequests:
         finally:
             answered = Answered(
                 request_id=scope["request_id"],
-                caller=scope.get("caller"),
+                caller=scope["caller"],
                 method=scope["method"],
                 path=getattr(scope.get("route"), "path", UNMATCHED),
                 status=status,

@@ -28,6 +28,7 @@ from service.order import Lost, Overdue, Stopped
 from service.store import Mismatch, Unavailable
 
 MEDIA_TYPE = "application/problem+json"
+ANONYMOUS = "anonymous"
 _SAFE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _MOST_FAULTS = 20
 _BUG = "this is a fault of the service, not of the request"
@@ -177,6 +178,7 @@ def _of_work(error: Exception) -> Refusal:
 class RequestIds:
     """Gives each request an identity and turns a bug into a problem document that carries it.
 
+    Until it has shown a key, its caller is anonymous.
     The caller's own X-Request-ID is kept where it is short and plain enough to log.
     """
 
@@ -192,6 +194,7 @@ class RequestIds:
         given = Headers(scope=scope).get("x-request-id", "")
         request_id = given if _SAFE_ID.fullmatch(given) else uuid.uuid4().hex
         scope["request_id"] = request_id
+        scope["caller"] = ANONYMOUS
         started = False
 
         async def send_with_id(message: Message) -> None:
