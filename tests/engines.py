@@ -4,7 +4,7 @@ import multiprocessing
 import os
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -23,6 +23,7 @@ from service.edge import Edge
 from service.planning import NamedActor, warm_up
 from service.process import MakePlanner
 from service.sqlite import IN_MEMORY, SqliteStore
+from service.workers import Workers
 from tests.redis_server import Redis
 from tests.serving import LIMITS, app_of, engine_app, planner_of, serving, workers_of
 
@@ -32,10 +33,14 @@ SECONDS = 600.0
 
 @dataclass(frozen=True)
 class Served:
-    """A client of a service, and the process that plans the front with an id, if one does."""
+    """A client of a service, and the process that plans the front with an id, if one does.
+
+    `searching` tells them apart of which something has been found, and which process plans each.
+    """
 
     client: httpx.Client
     planning: Callable[[str], int | None]
+    searching: Callable[[], Mapping[Hashable, int]]
     redis_url: str = ""
 
     def kill(self, id: str, but: int | None = None) -> int:  # noqa: A002
@@ -47,8 +52,11 @@ class Served:
         return pid
 
 
+@dataclass(frozen=True)
 class Embedded:
     """The engine of one process."""
+
+    workers: int = 1
 
     @contextmanager
     def serve(
@@ -58,13 +66,15 @@ class Embedded:
         folder: Path | None = None,
         edge: Edge | None = None,
     ) -> Iterator[Served]:
-        """A service with one worker. What it keeps in a folder outlives it."""
-        workers = workers_of(planner_of(*actors, limits=PATIENT), queue=queue, seconds=SECONDS)
+        """A service with its workers. What it keeps in a folder outlives it."""
+        make_planner = planner_of(*actors, limits=PATIENT)
+        workers = workers_of(make_planner, self.workers, queue, SECONDS)
         path = IN_MEMORY if folder is None else str(folder / "fronts.sqlite")
         store = SqliteStore(path, entries=100, max_age=60)
         app = app_of(*actors, limits=PATIENT, store=store, workers=workers, edge=edge)
         with serving(app) as url, httpx.Client(base_url=url, timeout=60) as client:
-            yield Served(client, lambda _: workers.pids[0] if workers.working else None)
+            planning = partial(_first, workers)
+            yield Served(client, planning, partial(_searching_here, workers))
 
 
 @dataclass
@@ -98,7 +108,8 @@ class Clustered:
         store, engine = replica(url, entries=100, max_age=60, queue=queue, seconds=seconds)
         app = engine_app(store, engine, *actors, limits=PATIENT, edge=edge)
         with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:
-            yield Served(client, partial(planning, connection), url)
+            searching = partial(_searching_there, connection)
+            yield Served(client, partial(planning, connection), searching, url)
         connection.close()
 
     def _url(self, actors: tuple[NamedActor, ...]) -> str:
@@ -110,6 +121,21 @@ class Clustered:
                 crew(url, planner_of(*actors, limits=PATIENT), SECONDS, self.workers)
             )
         return url
+
+
+def _first(workers: Workers, _: str) -> int | None:
+    return workers.pids[0] if workers.working else None
+
+
+def _searching_here(workers: Workers) -> Mapping[Hashable, int]:
+    at_work = [(hand.order, hand.process.pid) for hand in workers._hands]
+    return {order: pid for order, pid in at_work if pid and order and order.snapshot}
+
+
+def _searching_there(connection: "redis.Redis[bytes]") -> Mapping[Hashable, int]:
+    ids = [id_.decode() for id_ in connection.zrange("paretour:unfinished", 0, -1)]
+    found = [id_ for id_ in ids if connection.hexists(f"paretour:front:{id_}", "progress")]
+    return {id_: pid for id_ in found if (pid := planning(connection, id_))}
 
 
 def planning(connection: "redis.Redis[bytes]", id: str) -> int | None:  # noqa: A002
@@ -144,10 +170,12 @@ def _work(url: str, make_planner: MakePlanner, seconds: float, workers: int) -> 
 
 
 @contextmanager
-def engine_of(kind: str, request: pytest.FixtureRequest) -> Iterator[Embedded | Clustered]:
+def engine_of(
+    kind: str, request: pytest.FixtureRequest, workers: int = 1
+) -> Iterator[Embedded | Clustered]:
     """Either engine; skips the test where there is no Redis."""
     if kind == "embedded":
-        yield Embedded()
+        yield Embedded(workers)
         return
     with ExitStack() as crews:
-        yield Clustered(request.getfixturevalue("redis"), crews)
+        yield Clustered(request.getfixturevalue("redis"), crews, workers)

@@ -6,11 +6,10 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 
 import httpx
 import pytest
@@ -22,7 +21,7 @@ from service.cluster.alive import takes_work
 from service.cluster.engine import Cluster
 from service.cluster.queue import QUEUE
 from service.cluster.store import RedisStore
-from tests.engines import PATIENT, Clustered, Served, engine_of, planning
+from tests.engines import PATIENT, Served, engine_of, planning
 from tests.redis_server import LASTING, Redis, redis_server
 from tests.serving import (
     Running,
@@ -273,46 +272,6 @@ def test_a_job_whose_message_was_lost_is_done_all_the_same(serve: Serve) -> None
         with serving(app) as url, httpx.Client(base_url=url) as client:
             path = later(client)
         assert ended(served.client, path)["status"] == "done"
-
-
-def test_ten_kills_under_load_lose_no_job(tmp_path: Path) -> None:
-    request = {"coordinates": CITIES[:60], "time_limit": 0.4}
-    with (
-        redis_server(tmp_path) as redis,
-        ExitStack() as crews,
-        Clustered(redis, crews, workers=2).serve(queue=40) as served,
-        ThreadPoolExecutor(4) as callers,
-    ):
-        client = served.client
-        answers = [callers.submit(client.post, "/front", json=request) for _ in range(8)]
-        paths = [later(client, request) for _ in range(15)]
-        kill_ten(served, paths)
-        for path in paths:
-            found = ended(client, path)
-            assert (found["status"], bool(found["front"])) == ("done", True)
-            check(found)
-        for answer in answers:
-            answered(answer)
-
-
-def kill_ten(served: Served, paths: list[str]) -> None:
-    """Kill the process that plans, ten times, each time with another job."""
-    killed: set[str] = set()
-    while len(killed) < 10:
-        for path in paths:
-            pid = served.planning(id_of(path))
-            if pid is not None and path not in killed and len(killed) < 10:
-                os.kill(pid, signal.SIGKILL)
-                killed.add(path)
-        time.sleep(0.02)
-
-
-def answered(answer: Future[httpx.Response]) -> None:
-    """With a front, or with a clear refusal."""
-    if answer.result().status_code == 200:
-        check(answer.result().json())
-    else:
-        assert answer.result().json()["code"] in ("queue-full", "worker-lost")
 
 
 @pytest.mark.parametrize("command", ["serve", "work"])
