@@ -9,6 +9,7 @@ from fastapi import APIRouter, FastAPI
 from starlette.responses import Response
 
 from service.actor import ActorFacts
+from service.answer_schemas import ActorsAnswer, HealthAnswer
 from service.answers import Answers
 from service.bodies import json_response
 from service.edge import Edge
@@ -16,9 +17,10 @@ from service.engine import Engine
 from service.fronts import FrontRoutes
 from service.kept import KeptRoutes
 from service.pages import page_routes
-from service.problems import REFUSALS, Problem, answer_refusal, responses
+from service.problems import Problem, responses
 from service.reference import illustrate
-from service.schemas import ActorsAnswer, HealthAnswer, Limits
+from service.refusals import REFUSALS, answer_refusal
+from service.schemas import Limits
 from service.store import Store
 
 

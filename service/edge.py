@@ -9,9 +9,10 @@ from starlette.middleware.cors import CORSMiddleware
 
 from service.access import Access
 from service.headers import BrowserHeaders
+from service.identity import RequestIds
 from service.metrics import Metrics
 from service.observed import ObservedRequests, log_request
-from service.problems import RequestIds, responses
+from service.problems import responses
 from service.timely import TimelyBodies
 
 

@@ -9,6 +9,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from service.actor import ActorFacts
+from service.answer_schemas import AcceptedAnswer, CoverageAnswer, FrontAnswer
 from service.answers import Answers
 from service.asked import nothing_yet
 from service.bodies import read_body
@@ -18,7 +19,7 @@ from service.messages import Work, WorkKind
 from service.problems import responses
 from service.reading import Reader
 from service.requests import request_schema
-from service.schemas import AcceptedAnswer, CoverageAnswer, FrontAnswer, Limits
+from service.schemas import Limits
 
 _UPLOADS: Mapping[WorkKind, str] = {"front": "matrices", "coverage": "map"}
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}

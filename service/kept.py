@@ -7,13 +7,14 @@ from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
+from service.answer_schemas import FrontAnswer, TourAnswer
 from service.answers import caller_of
 from service.bodies import json_bytes
 from service.engine import Engine
 from service.events import event_stream
 from service.problems import Refusal, responses
 from service.record import Record
-from service.schemas import FrontAnswer, TourAnswer, TourQuery
+from service.schemas import TourQuery
 from service.store import Expired, Store, Unknown
 
 

@@ -4,8 +4,8 @@ import logging
 from dataclasses import replace
 
 from service.order import Overdue, Stopped, as_ended
-from service.problems import problem_of
 from service.record import Record, Status
+from service.refusals import problem_of
 from service.rendered import Rendered
 
 _LOG = logging.getLogger("paretour")

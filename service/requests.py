@@ -5,8 +5,9 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
+from service.faults import refused_by
 from service.matrices import check_costs, invalid, loaded, too_many_cities
-from service.problems import Fault, Refusal, refused_by
+from service.problems import Fault, Refusal
 from service.schemas import LARGEST, FrontRequest, Limits, PlanRequest
 
 Request = TypeVar("Request", bound=PlanRequest)

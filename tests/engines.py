@@ -70,7 +70,7 @@ class Embedded:
         make_planner = planner_of(*actors, limits=PATIENT)
         workers = workers_of(make_planner, self.workers, queue, SECONDS)
         path = IN_MEMORY if folder is None else str(folder / "fronts.sqlite")
-        store = SqliteStore(path, entries=100, max_age=60)
+        store = SqliteStore(path, entries=100, max_age=SECONDS)
         app = app_of(*actors, limits=PATIENT, store=store, workers=workers, edge=edge)
         with serving(app) as url, httpx.Client(base_url=url, timeout=60) as client:
             planning = partial(_first, workers)
@@ -105,7 +105,7 @@ class Clustered:
             (folder / "begun").touch()
         while not connection.zcard("paretour:workers"):
             time.sleep(0.02)
-        store, engine = replica(url, entries=100, max_age=60, queue=queue, seconds=seconds)
+        store, engine = replica(url, entries=100, max_age=SECONDS, queue=queue, seconds=seconds)
         app = engine_app(store, engine, *actors, limits=PATIENT, edge=edge)
         with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:
             searching = partial(_searching_there, connection)
