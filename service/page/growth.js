@@ -23,9 +23,10 @@ export class Growth {
   /** Shows rows of seconds and hypervolume. */
   show(growth) {
     this.#chart.setData([growth.map(([seconds]) => seconds), growth.map(([, grown]) => 100 * grown)]);
-    this.#element.hidden = !growth.length;
-    this.#unknown.hidden = growth.length > 0;
-    if (!growth.length) return;
+    const drawn = growth.length > 1; // one row is no line
+    this.#element.hidden = !drawn;
+    this.#unknown.hidden = drawn;
+    if (!drawn) return;
     const said = `from ${share(growth[0][1])} to ${share(growth.at(-1)[1])}`;
     this.#element.setAttribute("aria-label", `Hypervolume over time: ${said}`);
   }
