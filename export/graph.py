@@ -18,6 +18,7 @@ from torch.export import Dim
 from models.decoder import Moment
 from models.groups import grouped
 from models.networks import Actor, Conditioning, Memory
+from models.rollout import starts_in_turn
 
 # Sizes to trace at: no other axis has them, so each axis shows whether it is n or k.
 _N, _K = 11, 35
@@ -41,7 +42,8 @@ class _Encode(nn.Module):
         rows = self.actor.decoder.condition(grouping.rows)
         n = instance.shape[-2]
         nowhere = torch.zeros_like(grouping.members) + n  # (r,)
-        at = nowhere if self.actor.decoder.chooses_first else torch.zeros_like(nowhere)
+        starts = starts_in_turn(grouping.members.shape[0], n)
+        at = nowhere if self.actor.decoder.chooses_first else starts
         recent = torch.stack((at, nowhere, nowhere), dim=-1)
         visited = torch.arange(n) == at[:, None]
         return *memory, *rows, grouping.places, recent, at.clone(), visited

@@ -32,6 +32,16 @@ def sampling(generator: Generator) -> Choose:
     return choose
 
 
+def starts_in_turn(rows: int, n: int) -> Int[Tensor, " r"]:
+    """A first city for each row, neighbouring rows at different ones.
+
+    The tours of neighbouring preferences would otherwise repeat each other's mistakes, and add
+    little to each other's front.
+    """
+    each = torch.arange(rows)
+    return each % (torch.zeros_like(each) + n)  # the exporter wants a tensor on both sides
+
+
 @torch.no_grad()
 def roll_out(
     actor: Actor,

@@ -10,7 +10,7 @@ from torch import Generator, Tensor
 from models.groups import grouped
 from models.instances import tour_lengths
 from models.networks import Actor
-from models.rollout import greedily, roll_out
+from models.rollout import greedily, roll_out, starts_in_turn
 from models.sampling import fan_of_preferences, uniform_instances
 from service.front import hypervolume
 
@@ -45,7 +45,8 @@ def greedy_tours(
 ) -> Int[Tensor, "b k n"]:
     """The greedy tour of each instance and preference."""
     rows, _, places = grouped(preferences, actor.groups)
-    starts = torch.zeros(len(instances), len(rows), dtype=torch.long, device=instances.device)
+    n = instances.shape[-2]
+    starts = starts_in_turn(len(rows), n).to(instances.device).repeat(len(instances), 1)
     memory = actor.remember(instances, rows)
     return roll_out(actor, memory, actor.decoder.condition(rows), starts, greedily)[:, places]
 

@@ -93,7 +93,8 @@ def test_numbering_the_cities_otherwise_changes_no_tour(name: str) -> None:
     precision = torch.float32 if name == "pa-ean" else torch.float64
     actor = small(name).to(precision)
     instances = given(actor, 1, 12).to(precision)
-    order = torch.cat((torch.zeros(1), 1 + torch.randperm(11, generator=Generator()))).long()
+    # Five rows for four preferences begin at the first five cities, which stay what they are.
+    order = torch.cat((torch.arange(5), 5 + torch.randperm(7, generator=Generator())))
     preferences = fan_of_preferences(4, CPU).to(precision)
     tours = greedy_tours(actor, instances, preferences)
     if actor.reads == "coordinates":
@@ -102,6 +103,13 @@ def test_numbering_the_cities_otherwise_changes_no_tour(name: str) -> None:
         other = instances[:, :, order][..., order]
     renumbered = greedy_tours(actor, other, preferences)
     assert torch.equal(order[renumbered], tours)
+
+
+@pytest.mark.parametrize("name", ["pa-one", "pa-one-matrix"])
+def test_tours_of_neighbouring_preferences_begin_at_different_cities(name: str) -> None:
+    actor = small(name)
+    tours = greedy_tours(actor, given(actor, 1, 7), fan_of_preferences(20, CPU))[0]
+    assert tours[:, 0].tolist() == [row % 7 for row in range(20)]
 
 
 @pytest.mark.parametrize("name", ["pa-at", "pa-ean"])
