@@ -42,7 +42,7 @@ class _Encode(nn.Module):
         rows = self.actor.decoder.condition(grouping.rows)
         n = instance.shape[-2]
         nowhere = torch.zeros_like(grouping.members) + n  # (r,)
-        starts = starts_in_turn(grouping.members.shape[0], n)
+        starts = starts_in_turn(grouping.rows, instance)
         at = nowhere if self.actor.decoder.chooses_first else starts
         recent = torch.stack((at, nowhere, nowhere), dim=-1)
         visited = torch.arange(n) == at[:, None]

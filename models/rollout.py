@@ -32,14 +32,15 @@ def sampling(generator: Generator) -> Choose:
     return choose
 
 
-def starts_in_turn(rows: int, n: int) -> Int[Tensor, " r"]:
-    """A first city for each row, neighbouring rows at different ones.
+def starts_in_turn(preferences: Float[Tensor, "r 2"], instances: Tensor) -> Int[Tensor, " r"]:
+    """A first city for each preference, for neighbouring ones different cities.
 
     The tours of neighbouring preferences would otherwise repeat each other's mistakes, and add
     little to each other's front.
     """
-    each = torch.arange(rows)
-    return each % (torch.zeros_like(each) + n)  # the exporter wants a tensor on both sides
+    each = torch.arange(preferences.shape[0], device=preferences.device)
+    n = torch.zeros_like(each) + instances.shape[-2]  # the exporter wants a tensor on both sides
+    return each % n
 
 
 @torch.no_grad()

@@ -45,8 +45,7 @@ def greedy_tours(
 ) -> Int[Tensor, "b k n"]:
     """The greedy tour of each instance and preference."""
     rows, _, places = grouped(preferences, actor.groups)
-    n = instances.shape[-2]
-    starts = starts_in_turn(len(rows), n).to(instances.device).repeat(len(instances), 1)
+    starts = starts_in_turn(rows, instances).repeat(len(instances), 1)
     memory = actor.remember(instances, rows)
     return roll_out(actor, memory, actor.decoder.condition(rows), starts, greedily)[:, places]
 
