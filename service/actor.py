@@ -15,6 +15,7 @@ from service.instance import Instance, Kind
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 _METADATA = ("name", "config", "commit", "sizes", "angles", "figures", "inputs")
+_FEW = 100  # cities, and preferences, for which a session keeps less than 20 MB
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,10 +59,10 @@ class Actor:
         self._session = onnxruntime.InferenceSession(
             content, _options(threads), providers=["CPUExecutionProvider"]
         )
-        self._run_options = onnxruntime.RunOptions()
+        self._giving_back = onnxruntime.RunOptions()
         # Else what the largest instance needed is never given back (microsoft/onnxruntime#11627).
         shrink = ("memory.enable_memory_arena_shrinkage", "cpu:0")
-        self._run_options.add_run_config_entry(*shrink)
+        self._giving_back.add_run_config_entry(*shrink)
         metadata = self._session.get_modelmeta().custom_metadata_map
         if missing := [name for name in _METADATA if name not in metadata]:
             raise ValueError(f"the metadata of {path} must have {', '.join(missing)}")
@@ -75,7 +76,9 @@ class Actor:
     def tours(self, instance: Instance, preferences: Array) -> Tours:
         """One tour, a row of shape (n,), for each preference, a row of shape (k, 2)."""
         inputs = {**self._read(instance), "preferences": preferences.astype(np.float32)}
-        (tours,) = self._session.run(["tours"], inputs, self._run_options)
+        # To give a little back and to get it again takes 2 % of a call at 40 cities.
+        few = max(instance.n, len(preferences)) <= _FEW
+        (tours,) = self._session.run(["tours"], inputs, None if few else self._giving_back)
         if not (np.sort(tours, axis=1) == np.arange(instance.n)).all():
             raise RuntimeError(f"{self.facts.name} built a tour that is not a permutation")
         return tours

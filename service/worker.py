@@ -29,6 +29,7 @@ from service.messages import (
 from service.rendered import Rendered, Sketch
 from service.task import Task
 
+NICENESS = 5  # of a worker: the event loop comes first, and needs little
 MOST_TOURS = 100  # of a snapshot
 EVERY = 0.25  # seconds between two snapshots
 MOST_SHARE = 0.05  # of the time goes into snapshots
@@ -50,6 +51,7 @@ def run_worker(connection: socket, make_planner: Callable[[], Planner]) -> None:
     """Work as long as the service is there."""
     # An interrupt from a terminal goes to everyone; the service tells its workers when to end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.nice(NICENESS)
     worker = _Worker(connection, make_planner())
     Thread(target=_end_with_the_service, args=[connection], name="guard", daemon=True).start()
     with suppress(EOFError, OSError):

@@ -1,9 +1,10 @@
 """`python -m tests.benchmarks load`: what HTTP costs, and how long answers take under load.
 
 40 cities, 100 preferences, the network alone. The server, its clients and the bare ONNX session
-share the cores that this process may use; server and bare session have one process with one thread
-of inference a core. All are measured in turn, because machines drift, and the milliseconds that
-they take of the processor are counted beside the answers: these tell on a busy machine, too.
+share the cores that this process may use. The bare session is called in a loop, with all cores for
+each call; beside it stands what so many sessions as cores do, each in a process and with a thread
+of its own, as in the server. All are measured in turn, because machines drift, and the milliseconds
+that they take of the processor are counted beside the answers: these tell on a busy machine, too.
 Stores `results/load.json`, and says what does not hold.
 """
 
@@ -31,9 +32,11 @@ from tests.benchmarks.provenance import provenance, store
 from tests.benchmarks.traffic import (
     Asked,
     as_fast_as_answered,
-    at_a_rate,
+    at_random,
+    evenly,
     now_and_then,
     quantiles,
+    when_due,
 )
 from tests.benchmarks.under_load import load_table
 from tests.serving import Running, running
@@ -63,12 +66,17 @@ def measure(cores: int, rounds: int, seconds: float) -> dict[str, Any]:
     with running(settings, ready=True) as service:
         address = _address(service)
         as_fast_as_answered(address, _bodies(), cores, 1)
-        bare, served, timed = [], [], []
+        bare, apart, served, timed, bursting = [], [], [], [], []
         for seed in range(rounds):
-            bare.append(_bare(cores, seconds))
+            bare.append(_bare(1, cores, seconds))
+            apart.append(_bare(cores, 1, seconds))
             served.append(_served(service, 3 * cores, seconds))
             rate = SHARE * served[-1]["per_second"]
-            timed += _checked(at_a_rate(address, _bodies(), rate, seconds, seed))
+            for asked, dues in (
+                (timed, evenly(rate, seconds)),
+                (bursting, at_random(rate, seconds, seed)),
+            ):
+                asked += _checked(when_due(address, _bodies(), dues))
         asides = _asides(address, cores, seconds)
         sending = long_bodies.Senders(address)
         with sending:
@@ -78,10 +86,13 @@ def measure(cores: int, rounds: int, seconds: float) -> dict[str, Any]:
         "preferences": PREFERENCES,
         "seconds": seconds,
         "bare": bare,
+        "apart": apart,
         "served": served,
         "served_share": round(_mean(served, "per_second") / _mean(bare, "per_second"), 4),
-        "processor_share": round(_mean(bare, "session_ms") / _processor_ms(served), 4),
+        "share_of_apart": round(_mean(served, "per_second") / _mean(apart, "per_second"), 4),
+        "processor_share": round(_mean(apart, "session_ms") / _processor_ms(served), 4),
         "at_80_percent": {**quantiles(timed), "requests": len(timed)},
+        "at_80_percent_at_random": {**quantiles(bursting), "requests": len(bursting)},
         "under_full_load": asides,
         "with_long_bodies": crowded,
         "long_bodies": sending.statuses,
@@ -141,18 +152,19 @@ def _checked(answers: list[Asked]) -> list[Asked]:
     return answers
 
 
-def _bare(cores: int, seconds: float) -> dict[str, float]:
-    """Calls a second, of one session a core, and what one takes of the processor."""
-    with multiprocessing.get_context("spawn").Pool(cores) as pool:
-        calls, spent = zip(*pool.map(_loop, [seconds] * cores), strict=True)
+def _bare(processes: int, threads: int, seconds: float) -> dict[str, float]:
+    """Calls a second, of a session in each process, and what one takes of the processor."""
+    with multiprocessing.get_context("spawn").Pool(processes) as pool:
+        found = pool.starmap(_loop, [(threads, seconds)] * processes)
+    calls, spent = zip(*found, strict=True)
     each = round(1000 * sum(spent) / sum(calls), 3)
     return {"per_second": round(sum(calls) / seconds, 2), "session_ms": each}
 
 
-def _loop(seconds: float) -> tuple[int, float]:
-    """How often a session with one thread was run, and its seconds of the processor."""
+def _loop(threads: int, seconds: float) -> tuple[int, float]:
+    """How often a session with so many threads was run, and its seconds of the processor."""
     options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = 1
+    options.intra_op_num_threads = threads
     session = onnxruntime.InferenceSession(ACTORS / f"{NAME}.onnx", options)
     preferences = from_angles(fan(PREFERENCES)).astype(np.float32)
     inputs = [

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 T = TypeVar("T")
+Array = NDArray[np.float64]
 _PATIENCE = 60  # seconds that a client waits for an answer
 _LENGTH = re.compile(rb"(?i)\r\ncontent-length: *(\d+)")
 
@@ -87,16 +88,28 @@ def as_fast_as_answered(
     return _together(client, clients)
 
 
-def at_a_rate(
-    address: tuple[str, int], bodies: Iterable[bytes], rate: float, seconds: float, seed: int = 0
-) -> list[Asked]:
-    """Fronts asked for at random times, so many a second on average, as independent people do.
+def evenly(rate: float, seconds: float) -> Array:
+    """When so many requests a second are due, one as long after another as the next."""
+    return np.arange(int(rate * seconds)) / rate
+
+
+def at_random(rate: float, seconds: float, seed: int = 0) -> Array:
+    """When so many requests a second are due, of people who know nothing of each other.
+
+    For two servers that take always the same time and are busy for 80 % of it, the 99th percentile
+    is then 3.9 times the median (simulated).
+    """
+    gaps = np.random.default_rng(seed).exponential(1 / rate, int(rate * seconds))
+    return np.cumsum(gaps)
+
+
+def when_due(address: tuple[str, int], bodies: Iterable[bytes], dues: Array) -> list[Asked]:
+    """Fronts asked for at these seconds from now, whatever has been answered by then.
 
     The seconds of each count from when it was due, so that no delay hides behind another.
     """
-    gaps = np.random.default_rng(seed).exponential(1 / rate, int(rate * seconds))
     began = time.perf_counter() + 0.1
-    asking = _Shared(zip(began + np.cumsum(gaps), cycle(bodies), strict=False))
+    asking = _Shared(zip(began + dues, cycle(bodies), strict=False))
 
     def client(_: int) -> list[Asked]:
         answers = []
@@ -125,7 +138,7 @@ def now_and_then(
 
 def quantiles(answers: Iterable[Asked]) -> dict[str, float]:
     """Milliseconds of the answers."""
-    milliseconds: NDArray[np.float64] = 1000 * np.array([each.seconds for each in answers])
+    milliseconds: Array = 1000 * np.array([each.seconds for each in answers])
     median, late = np.quantile(milliseconds, [0.5, 0.99])
     return {
         "median_ms": round(float(median), 2),
