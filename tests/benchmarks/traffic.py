@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 T = TypeVar("T")
 Array = NDArray[np.float64]
+MOST_AT_ONCE = 64  # connections of requests that come when they are due
 _PATIENCE = 60  # seconds that a client waits for an answer
 _LENGTH = re.compile(rb"(?i)\r\ncontent-length: *(\d+)")
 
@@ -120,7 +121,7 @@ def when_due(address: tuple[str, int], bodies: Iterable[bytes], dues: Array) -> 
                 answers.append(Asked(status, time.perf_counter() - due))
         return answers
 
-    return _together(client, 64)
+    return _together(client, MOST_AT_ONCE)
 
 
 def now_and_then(
