@@ -12,12 +12,11 @@ from starlette.responses import Response
 from service.bodies import json_bytes, json_response
 from service.engine import Engine, finished
 from service.messages import Work
-from service.problems import MEDIA_TYPE, Fault, Refusal
+from service.problems import MEDIA_TYPE
 from service.record import Record
 from service.rendered import Rendered
 from service.store import Store
-
-_LONGEST_KEY = 255
+from service.wishes import idempotency_key, wants_it_later
 
 
 def caller_of(request: Request) -> str:
@@ -40,7 +39,7 @@ class Answers:
             Closed: no more work is taken.
         """
         await self._engine.check_open()
-        if _key(request) is None:
+        if idempotency_key(request) is None:
             await self._engine.check_place()
 
     async def answer(self, request: Request, work: Work, nothing_yet: Rendered) -> Response:
@@ -49,7 +48,7 @@ class Answers:
         Work without an idempotency key ends when the client goes away. With one the client is
         expected to come back, so that the work goes on.
         """
-        key = _key(request)
+        key = idempotency_key(request)
         record = Record(
             id=uuid.uuid4().hex,
             caller=caller_of(request),
@@ -60,7 +59,7 @@ class Answers:
             key=key,
             digest=await asyncio.to_thread(_digest, work) if key else "",
         )
-        if _wants_it_later(request):
+        if wants_it_later(request):
             return _accepted(self._engine.state(await self._begun(record)).record)
         if record.key is not None:
             return _finished(request, await finished(self._engine, await self._begun(record)))
@@ -105,19 +104,6 @@ def _finished(request: Request, record: Record) -> Response:
     status: int = problem["status"]
     headers = {"Retry-After": "1"} if status == HTTPStatus.SERVICE_UNAVAILABLE else {}
     return Response(to_json(problem), status, headers, MEDIA_TYPE)
-
-
-def _wants_it_later(request: Request) -> bool:
-    preferences = ",".join(request.headers.getlist("prefer")).lower().split(",")
-    return "respond-async" in (each.partition(";")[0].strip() for each in preferences)
-
-
-def _key(request: Request) -> str | None:
-    key = request.headers.get("idempotency-key")
-    if key is not None and not 0 < len(key) <= _LONGEST_KEY:
-        sentence = f"Idempotency-Key must have 1 to {_LONGEST_KEY} characters, got {len(key)}"
-        raise Refusal(422, "invalid-request", sentence, errors=[Fault(detail=sentence)])
-    return key
 
 
 def _digest(work: Work) -> str:

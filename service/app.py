@@ -23,6 +23,8 @@ from service.refusals import REFUSALS, answer_refusal
 from service.schemas import Limits
 from service.store import Store
 
+_OPEN: dict[str, Any] = {"security": []}  # an orchestrator has no key
+
 
 def create_app(
     actors: Mapping[str, ActorFacts],
@@ -108,7 +110,7 @@ def _actor_router(actors: Mapping[str, ActorFacts]) -> APIRouter:
 
 
 class _HealthRoutes:
-    """How the service is. These are open to all: an orchestrator has no key."""
+    """How the service is. These are open to all."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
@@ -116,10 +118,13 @@ class _HealthRoutes:
     def router(self) -> APIRouter:
         """The paths, with what the OpenAPI document says of them."""
         router = APIRouter(tags=["service"])
-        router.get("/health/live", response_model=HealthAnswer)(self.live)
-        router.get("/health/ready", response_model=HealthAnswer, responses=responses(503))(
-            self.ready
-        )
+        router.get("/health/live", response_model=HealthAnswer, openapi_extra=_OPEN)(self.live)
+        router.get(
+            "/health/ready",
+            response_model=HealthAnswer,
+            responses=responses(503),
+            openapi_extra=_OPEN,
+        )(self.ready)
         return router
 
     async def live(self) -> Response:

@@ -20,6 +20,7 @@ from service.problems import responses
 from service.reading import Reader
 from service.requests import request_schema
 from service.schemas import Limits
+from service.wishes import PARAMETERS
 
 _UPLOADS: Mapping[WorkKind, str] = {"front": "matrices", "coverage": "map"}
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
@@ -53,13 +54,13 @@ class FrontRoutes:
             "/front",
             response_model=FrontAnswer,
             responses=said,
-            openapi_extra=_body(request_schema(self._limits, self._actors)),
+            openapi_extra=_asked(request_schema(self._limits, self._actors)),
         )(self.plan_front)
         router.post(
             "/coverage",
             response_model=CoverageAnswer,
             responses=said,
-            openapi_extra=_body(coverage_schema(self._limits, self._actors)),
+            openapi_extra=_asked(coverage_schema(self._limits, self._actors)),
         )(self.plan_coverage)
         return router
 
@@ -96,6 +97,9 @@ class FrontRoutes:
         return await self._answers.answer(request, replace(work, task=task), nothing)
 
 
-def _body(schema: dict[str, Any]) -> dict[str, Any]:
+def _asked(schema: dict[str, Any]) -> dict[str, Any]:
     content = {"application/json": {"schema": schema}}
-    return {"requestBody": {"required": True, "content": content}}
+    return {
+        "parameters": list(PARAMETERS),
+        "requestBody": {"required": True, "content": content},
+    }

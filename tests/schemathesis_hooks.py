@@ -1,5 +1,6 @@
 """What schemathesis has to know beyond the OpenAPI document."""
 
+import uuid
 from typing import Any
 
 import schemathesis
@@ -9,8 +10,10 @@ import schemathesis
 def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noqa: ARG001
     """No schema can say that a matrix is square, that its costs are not negative but on the
     diagonal, that some actors read no matrices, that a start is one of the cities, that a tour
-    visits each once, nor that places are free cells of a grid.
+    visits each once, that places are free cells of a grid, nor that a key belongs to one body.
     """
+    if _is_key((case.headers or {}).get("Idempotency-Key")):
+        case.headers["Idempotency-Key"] = uuid.uuid4().hex
     match case.body:
         case {"grid": _} as body if case.meta.generation.mode.is_positive:
             _make_coverable(body)
@@ -62,6 +65,13 @@ def _are_tours(given: Any) -> bool:
         and given != []
         and all(isinstance(tour, list) for tour in given)
         and all(_is_city(city) for tour in given for city in tour)
+    )
+
+
+def _is_key(given: Any) -> bool:
+    """Whether the schema takes it for an idempotency key."""
+    return (
+        isinstance(given, str) and 0 < len(given) <= 255 and given.isascii() and given.isprintable()
     )
 
 

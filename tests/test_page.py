@@ -124,6 +124,21 @@ def test_a_link_opens_the_same_front_with_its_cities(page: Page, browser: Browse
 
 
 @needs_browser
+def test_a_link_to_the_networks_front_calls_it_that(page: Page, browser: Browser) -> None:
+    page.get_by_label("Seconds of search").fill("0")
+    page.get_by_role("button", name="Plan").click()
+    done(page)
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Copy link").click()
+    expect(page.get_by_text("Copied")).to_be_visible()
+    with opened(browser, page.evaluate("navigator.clipboard.readText()")) as other:
+        done(other)
+        for shown in (page, other):
+            expect(shown.locator("#legend .alone")).to_be_visible()
+            expect(shown.locator("#legend .improved")).to_be_hidden()
+
+
+@needs_browser
 def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
     page: Page, browser: Browser
 ) -> None:

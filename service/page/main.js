@@ -192,8 +192,14 @@ async function openLinked() {
   if (!link) return false;
   forgetExample();
   open(link.asked?.request ?? {}, link.asked?.objectives);
-  await run((mine) => mine.follow(link.id));
+  const searched = link.asked?.request.time_limit !== 0;
+  await run((mine) => (searched ? mine.follow(link.id) : unsearched(mine.follow(link.id))));
   return true;
+}
+
+/** Of a front that no search was to improve, the network's is all there is. */
+async function* unsearched(states) {
+  for await (const state of states) yield { ...state, alone: state.answer, growth: [] };
 }
 
 async function copy(text, button) {

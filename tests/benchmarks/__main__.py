@@ -16,6 +16,7 @@ _NAMES = (
     "fronts",
     "kro",
     "layers",
+    "literature",
     "load",
     "networks",
     "page",

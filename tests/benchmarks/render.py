@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from tests.benchmarks import printed, under_load
+from tests.benchmarks import beyond, printed, under_load
+from tests.benchmarks.cells import mean_seconds, mean_share, of, share_in_seconds
 from tests.benchmarks.instances import SIZES, reference_points
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
 
 PAGE = Path(__file__).parent / "RESULTS.md"
 PLACES = (40, 100, 200)
-MISSING = "not measured"
 ROWS = (
     *("NSGA-II (20K)", "NSGA-II (80K)", "MOEA/D (20K)", "MOEA/D (80K)"),
     *("DRL-MOA", "PA-EAN", "PA-AT", "PA-One"),
@@ -41,7 +41,7 @@ taken while other programs wanted the same processor, which makes them too long.
 def page() -> str:
     """All of it."""
     paper = (_main(), _training(), _coverage(), _layers(), _concave(), _fronts())
-    return "\n".join((INTRODUCTION, *paper, _shapes(), under_load.section()))
+    return "\n".join((INTRODUCTION, *paper, beyond.section(), under_load.section()))
 
 
 def _main() -> str:
@@ -68,19 +68,19 @@ def _main_row(
     return [
         row,
         str(shares[column]) if shares else "",
-        *(_share([each["hypervolume"][corner] for each in _of(entry)]) for corner in corners),
+        *(mean_share([each["hypervolume"][corner] for each in of(entry)]) for corner in corners),
         str(times[column]) if times else "",
-        _seconds(entry),
-        str(len(_of(entry))) if entry else "",
+        mean_seconds(entry),
+        str(len(of(entry))) if entry else "",
     ]
 
 
 def _search_row(stored: dict[str, Any], key: str, corners: list[str]) -> list[str]:
-    runs = _of(stored[key])
-    cells = [_share([run["hypervolume"][corner] for run in runs]) for corner in corners]
+    runs = of(stored[key])
+    cells = [mean_share([run["hypervolume"][corner] for run in runs]) for corner in corners]
     points = f"{np.mean([run['points'] for run in runs]):.0f} tours"
     row = f"Paretour's search, {points}"
-    return [row, "", *cells, "", _seconds(stored[key]), str(len(runs))]
+    return [row, "", *cells, "", mean_seconds(stored[key]), str(len(runs))]
 
 
 def _with_search(stored: dict[str, Any]) -> dict[str, Any]:
@@ -92,7 +92,7 @@ def _with_search(stored: dict[str, Any]) -> dict[str, Any]:
     for n in SIZES:
         for limit in ("no limit", "n_l = 10"):
             entry = found.get(f"{n} OR-Tools, {limit}")
-            if len(_of(entry)) > len(_of(stored.get(f"{n} OR-Tools ({limit})"))):
+            if len(of(entry)) > len(of(stored.get(f"{n} OR-Tools ({limit})"))):
                 stored[f"{n} OR-Tools ({limit})"] = _only(entry, 0) | {"busy": 2}
         if entry := found.get(f"{n} Paretour"):
             stored |= {f"{n} Paretour {i}": _only(entry, i) for i in (0, -1)}
@@ -103,28 +103,9 @@ def _only(entry: dict[str, Any], mark: int) -> dict[str, Any]:
     return entry | {"instances": [rows[mark] for rows in entry["instances"]]}
 
 
-def _of(entry: dict[str, Any] | None) -> list[Any]:
-    return entry["instances"] if entry else []
-
-
-def _share(values: list[float]) -> str:
-    if not values:
-        return MISSING
-    deviation = f" ± {np.std(values):.2f}" if len(values) > 1 else ""
-    return f"{np.mean(values):.2f}{deviation}"
-
-
-def _seconds(entry: dict[str, Any] | None) -> str:
-    if not _of(entry):
-        return ""
-    mean = np.mean([each["seconds"] for each in _of(entry)])
-    busy = entry is not None and entry.get("busy", 0) > 1
-    return (f"{mean:.0f}" if mean >= 100 else f"{mean:.2g}") + ("\\*" if busy else "")
-
-
 def _origins(stored: dict[str, Any]) -> str:
     """Where the rows were measured."""
-    entries = [entry for entry in stored.values() if _of(entry)]
+    entries = [entry for entry in stored.values() if of(entry)]
     machines = sorted({f"{entry['cpu']}, {entry['date']}" for entry in entries})
     commits = sorted({f"`{entry['commit']}`" for entry in entries})
     return f"Measured on: {'; '.join(machines)}. Commits: {', '.join(commits)}.\n"
@@ -136,7 +117,7 @@ def _below(stored: dict[str, Any]) -> str:
     for row, shares in printed.HYPERVOLUME.items():
         for n, share in zip(SIZES, shares, strict=True):
             corner = list(reference_points(n))[-1]
-            values = [each["hypervolume"][corner] for each in _of(stored.get(f"{n} {row}"))]
+            values = [each["hypervolume"][corner] for each in of(stored.get(f"{n} {row}"))]
             if values and np.mean(values) < share:
                 found.append(f"{row} at {n} cities by {share - np.mean(values):.2f}")
     return f"Below the printed hypervolume: {', '.join(found) or 'nothing'}.\n"
@@ -168,18 +149,15 @@ def _coverage() -> str:
         for row, shares in printed.COVERAGE_HYPERVOLUME.items()
         for times in [printed.COVERAGE_SECONDS[row]]
     ]
-    cells = [[row, *(_covered(stored.get(f"{n} places: {row}")) for n in PLACES)] for row in ours]
+    cells = [
+        [row, *(share_in_seconds(stored.get(f"{n} places: {row}")) for n in PLACES)] for row in ours
+    ]
     return (
         f"## Coverage planning\n\nPrinted:\n\n{table(head, theirs)}\nOurs, `python -m "
         "tests.benchmarks coverage`: maps of our own and a reference point of n times the\n"
         "scale, for the paper names neither, so that only rows of one table compare:\n\n"
         f"{table(head, cells)}"
     )
-
-
-def _covered(entry: dict[str, Any] | None) -> str:
-    share = _share([each["hypervolume"] for each in _of(entry)])
-    return f"{share} in {_seconds(entry)} s" if entry else share
 
 
 def _layers() -> str:
@@ -189,14 +167,14 @@ def _layers() -> str:
         cells = []
         for n, share in zip(SIZES, shares, strict=True):
             corner = list(reference_points(n))[-1]
-            values = [each["hypervolume"][corner] for each in _of(stored.get(f"{n} {row}"))]
-            cells += [str(share), _share(values)]
+            values = [each["hypervolume"][corner] for each in of(stored.get(f"{n} {row}"))]
+            cells += [str(share), mean_share(values)]
         rows.append([row, *cells])
     head = ["network", *(cell for n in SIZES for cell in (f"{n}, printed", "ours"))]
     graphs = []
     for row, shares in printed.GRAPH_ENCODER.items():
         entries = [coverage.get(f"{n} places: {row.lower()}, network alone") for n in PLACES]
-        ours = [_share([each["hypervolume"] for each in _of(entry)]) for entry in entries]
+        ours = [mean_share([each["hypervolume"] for each in of(entry)]) for entry in entries]
         graphs.append(
             [row, *(x for pair in zip(map(str, shares), ours, strict=True) for x in pair)]
         )
@@ -228,18 +206,4 @@ def _fronts() -> str:
     return (
         "## Fronts\n\n`python -m tests.benchmarks fronts`: the paper's first instance of each "
         "size.\n\n![Fronts at 40 and 500 cities](results/fronts.png)\n"
-    )
-
-
-def _shapes() -> str:
-    stored = load("shapes")
-    rows = dict.fromkeys(key.partition(": ")[2] for key in stored)
-    groups = dict.fromkeys(key.partition(": ")[0] for key in stored)
-    cells = [
-        [group, *(_covered(stored.get(f"{group}: {row}")) for row in rows)] for group in groups
-    ]
-    return (
-        "## Planes of other shapes\n\nNot in the paper: `python -m tests.benchmarks shapes`, the "
-        "reference point n times the scale,\nthe network alone beside construction heuristics.\n\n"
-        f"{table(['', *rows], cells)}"
     )

@@ -1,0 +1,46 @@
+"""What the paper has not: planes of other shapes, and the networks of the literature."""
+
+from tests.benchmarks import printed
+from tests.benchmarks.cells import of, share_in_seconds
+from tests.benchmarks.markdown import table
+from tests.benchmarks.provenance import load
+
+
+def section() -> str:
+    """What is stored of both."""
+    return f"{_shapes()}\n{_literature()}"
+
+
+def _shapes() -> str:
+    stored = load("shapes")
+    rows = dict.fromkeys(key.partition(": ")[2] for key in stored)
+    groups = dict.fromkeys(key.partition(": ")[0] for key in stored)
+    cells = [
+        [group, *(share_in_seconds(stored.get(f"{group}: {row}")) for row in rows)]
+        for group in groups
+    ]
+    return (
+        "## Planes of other shapes\n\nNot in the paper: `python -m tests.benchmarks shapes`, the "
+        "reference point n times the scale,\nthe network alone beside construction heuristics.\n\n"
+        f"{table(['', *rows], cells)}"
+    )
+
+
+def _literature() -> str:
+    stored = load("literature")
+    sizes = list(printed.LITERATURE_CORNERS)
+    theirs = [[row, *map("{:.2f}".format, shares)] for row, shares in printed.LITERATURE.items()]
+    names = dict.fromkeys(key.partition(": ")[2] for key in stored)
+    ours = [
+        [name, *(share_in_seconds(stored.get(f"{n} cities: {name}")) for n in sizes)]
+        for name in names
+    ]
+    corners = ", ".join(map(str, printed.LITERATURE_CORNERS.values()))
+    counts = sorted({len(of(entry)) for entry in stored.values()})
+    return (
+        "## The frame of the literature\n\nNot in the paper: `python -m tests.benchmarks "
+        "literature`. Uniform cities, 101 directions, in per cent of\nthe box to (r, r) with r of "
+        f"{corners}. The first rows are of Chen et al. (2025), on 200\ninstances of theirs; ours "
+        f"are on {' to '.join(map(str, counts))} of our own.\n\n"
+        f"{table(['', *(f'{n} cities' for n in sizes)], [*theirs, *ours])}"
+    )
