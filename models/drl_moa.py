@@ -190,8 +190,12 @@ def _append_line(run: TransferRun, objective: float, path: Path) -> None:
 
 
 def save_weights(run: TransferRun, path: Path) -> None:
-    """Writes the finished networks, their configuration and the seconds that they took."""
-    state = {"config": asdict(run.config), "actors": run.finished, "seconds": run.seconds}
+    """Writes the finished networks, their configuration and the seconds that they took.
+
+    In half precision: there may be a hundred of them.
+    """
+    actors = [{name: x.half() for name, x in each.items()} for each in run.finished]
+    state = {"config": asdict(run.config), "actors": actors, "seconds": run.seconds}
     torch.save(state, path)
 
 
