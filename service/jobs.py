@@ -9,7 +9,7 @@ from service.engine import Busy, Closed, Cold, Standing, State, finished
 from service.order import Order, Stopped
 from service.outcomes import cancelled, done, failed
 from service.record import Record, Status
-from service.store import Store
+from service.store import Expired, Store, Unknown
 from service.workers import Workers
 
 _PAUSE = 0.5  # seconds between two tries to take up the work of an earlier process
@@ -35,9 +35,10 @@ class _Job:
         front = snapshot.front if snapshot else self._record.front
         return State(replace(self._record, status=status, front=front), snapshot)
 
-    async def change(self) -> None:
-        """Wait until it stands differently."""
-        await self._changed.wait()
+    @property
+    def changed(self) -> asyncio.Event:
+        """What is set once it stands differently from now."""
+        return self._changed
 
     def end(self, record: Record) -> None:
         """This is what became of it."""
@@ -123,16 +124,25 @@ class Jobs:
         """How it stands now, and after each change, until it is finished."""
         job = self._jobs.get(record.id)
         while job is not None and not job.ended:
-            changing = asyncio.ensure_future(job.change())
+            changed = job.changed
             yield job.state
-            await changing
-        yield job.state if job else State(record)
+            await changed.wait()
+        yield job.state if job else State(await self._latest(record))
 
     async def cancel(self, record: Record) -> Record:
         """End the work of a record at once; what was found so far is kept."""
         if job := self._jobs.get(record.id):
             self._workers.stop(job.order)
         return await finished(self, record)
+
+    async def _latest(self, record: Record) -> Record:
+        """As it is in the store; once it is forgotten, as if it had been cancelled."""
+        if record.finished:
+            return record
+        try:
+            return await self._store.get(record.caller, record.id)
+        except (Unknown, Expired):
+            return replace(record, status="cancelled", work=None)
 
     def _spawn(self, work: Coroutine[None, None, None]) -> None:
         task = asyncio.create_task(work)

@@ -13,7 +13,7 @@ import httpx
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Browser, Locator, Page, Route, expect
 
 from service.commands.tsplib import matrix
 from service.serve import build
@@ -104,6 +104,20 @@ def test_what_was_found_stays_when_the_search_is_stopped(page: Page) -> None:
     page.get_by_role("button", name="Stop").click()
     expect(page.locator("#status")).to_contain_text("Stopped: ")
     expect(page.get_by_label(re.compile("A front of [0-9]+ tours"))).to_be_visible()
+    expect(page.get_by_role("button", name="Plan")).to_be_enabled()
+
+
+@needs_browser
+def test_the_search_is_stopped_before_the_service_has_taken_it(page: Page) -> None:
+    def hold(route: Route) -> None:
+        if "prefer" not in route.request.headers:
+            route.continue_()
+
+    page.route("**/front", hold)
+    page.get_by_role("button", name="Plan").click()
+    expect(page.locator("#status")).to_contain_text("improving")
+    page.get_by_role("button", name="Stop").click()
+    expect(page.locator("#status")).to_contain_text("Stopped: ")
     expect(page.get_by_role("button", name="Plan")).to_be_enabled()
 
 

@@ -138,7 +138,10 @@ function busy(yes) {
 }
 
 async function stop() {
-  await planning?.stop().catch(fail);
+  const mine = planning;
+  await mine?.stop().catch(fail);
+  // It had no job yet that would say so.
+  if (mine?.left && mine === planning) say(answer ? ended({ stage: "cancelled", answer }) : "Stopped.");
 }
 
 function ended({ stage, answer: { front, points } }) {
