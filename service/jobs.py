@@ -142,7 +142,7 @@ class Jobs:
         try:
             return await self._store.get(record.caller, record.id)
         except (Unknown, Expired):
-            return replace(record, status="cancelled", work=None)
+            return cancelled(record)
 
     def _spawn(self, work: Coroutine[None, None, None]) -> None:
         task = asyncio.create_task(work)

@@ -27,6 +27,7 @@ BODY = b'{"coordinates": [[0, 0, 0, 0], [1, 2, 3, 4], [9, 8, 7, 6]], "time_limit
 def loaded(**other: Any) -> dict[str, Any]:
     return {
         **WHERE,
+        "seconds": 20.0,
         "bare": [{"per_second": 100.0, "session_ms": 20.0}],
         "apart": [{"per_second": 120.0, "session_ms": 18.0}],
         "served": [{"per_second": 90.0, "workers_ms": 18.5, "server_ms": 1.0, "clients_ms": 0.25}],

@@ -50,6 +50,7 @@ def soak_table(results: Mapping[str, Any]) -> str:
 def load_rows(results: Mapping[str, Any]) -> Iterator[Row]:
     """What, what was found, and what is demanded of it."""
     bare, apart, served = results["bare"], results["apart"], results["served"]
+    yield "seconds of each measurement", f"{results['seconds']:g}", ""
     yield "bare session, calls a second", _mean(bare, "per_second"), ""
     yield "sessions apart, calls a second", _mean(apart, "per_second"), ""
     yield "answers a second", _mean(served, "per_second"), ""
