@@ -15,6 +15,7 @@ from onnx import GraphProto, ModelProto, NodeProto, TensorProto, helper
 from torch import Tensor, nn
 from torch.export import Dim
 
+from export.blocks import in_blocks, with_nodes
 from models.decoder import Moment
 from models.groups import grouped
 from models.networks import Actor, Conditioning, Memory
@@ -86,11 +87,13 @@ def to_onnx(actor: Actor) -> ModelProto:
         rows = actor.decoder.condition(grouped_preferences)
         state = _Encode(actor)(instance, preferences)[-3:]
     tables = [f"memory_{i}" for i in range(len(memory))] + [f"rows_{i}" for i in range(len(rows))]
-    encode = _exported(
-        _Encode(actor),
-        (instance, preferences),
-        [name, "preferences"],
-        [*tables, "places", *_STATE],
+    encode = in_blocks(
+        _exported(
+            _Encode(with_nodes(actor)),
+            (instance, preferences),
+            [name, "preferences"],
+            [*tables, "places", *_STATE],
+        )
     )
     step = _exported(
         _Step(actor, type(memory), type(rows)),

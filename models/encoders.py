@@ -8,13 +8,19 @@ weights. Distances are in units of 1 / sqrt(n), near the spacing of n cities in 
 that neighbourhoods look alike at every n.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
 from models.instances import distance_matrices
+
+# What each head of each city sees, from its queries, keys and values, all (b, h, n, d / h).
+See = Callable[[Tensor, Tensor, Tensor], Tensor]
+# The same, given first at which rates, (h, m), each head fades with each measure of nearness.
+SeeFading = Callable[[Tensor, Tensor, Tensor, Tensor], Tensor]
 
 
 def plane_distances(cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b 2 n n"]:
@@ -26,6 +32,30 @@ def plane_distances(cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b 2 n n"]:
     return distance_matrices(cities) * root[:, None, None, None]
 
 
+def see(
+    query: Float[Tensor, "b h n e"],
+    key: Float[Tensor, "b h n e"],
+    value: Float[Tensor, "b h n e"],
+    bias: Float[Tensor, "b h n n"] | None = None,
+) -> Float[Tensor, "b h n e"]:
+    """Scaled dot-product attention; the bias is added to the scores."""
+    scores = query @ key.mT / query.shape[-1] ** 0.5
+    return (scores if bias is None else scores + bias).softmax(dim=-1) @ value
+
+
+def see_fading(
+    nearness: Float[Tensor, "b m n n"],
+    rates: Float[Tensor, "h m"],
+    query: Float[Tensor, "b h n e"],
+    key: Float[Tensor, "b h n e"],
+    value: Float[Tensor, "b h n e"],
+) -> Float[Tensor, "b h n e"]:
+    """Attention that falls off, for each head at rates of its own, as measures of nearness do."""
+    # As a product it is one pass over (b, h, n, n), the largest thing there is.
+    bias = (rates @ nearness.flatten(2)).unflatten(2, nearness.shape[2:])
+    return see(query, key, value, bias)
+
+
 class SelfAttention(nn.Module):
     """Multi-head attention among the cities of an instance."""
 
@@ -35,17 +65,13 @@ class SelfAttention(nn.Module):
         self.project = nn.Linear(width, 3 * width, bias=False)
         self.merge = nn.Linear(width, width, bias=False)
 
-    def forward(
-        self, features: Float[Tensor, "b n d"], bias: Float[Tensor, "b h n n"] | None = None
-    ) -> Float[Tensor, "b n d"]:
-        """Each city's view of all cities; the bias is added to the scores."""
-        query, key, value = (
-            part.unflatten(-1, (self.heads, -1)).transpose(1, 2)  # (b, h, n, d / h)
+    def forward(self, features: Float[Tensor, "b n d"], see: See = see) -> Float[Tensor, "b n d"]:
+        """Each city's view of all cities."""
+        parts = (
+            part.unflatten(-1, (self.heads, -1)).transpose(1, 2)
             for part in self.project(features).chunk(3, dim=-1)
         )
-        scores = query @ key.mT / query.shape[-1] ** 0.5
-        seen = (scores if bias is None else scores + bias).softmax(dim=-1) @ value
-        merged: Tensor = self.merge(seen.transpose(1, 2).flatten(2))
+        merged: Tensor = self.merge(see(*parts).transpose(1, 2).flatten(2))
         return merged
 
 
@@ -109,7 +135,11 @@ class DistanceAwareEncoder(nn.Module):
     """PA-One's: attention that fades with distance, normalised before each layer.
 
     A city is given by its coordinates, by these times their plane's weight, and by the weights.
+    Axis bg is instances and groups of preferences, groups inner.
     """
+
+    # From distances (b, 2, n, n) and weights (g, 2) to the way that its layers see.
+    seeing: Callable[[Tensor, Tensor], SeeFading]
 
     def __init__(self, width: int, heads: int, layers: int, hidden: int) -> None:
         super().__init__()
@@ -118,24 +148,32 @@ class DistanceAwareEncoder(nn.Module):
             FadingLayer(width, heads, hidden, _KINDS) for _ in range(layers)
         )
         self.norm = nn.LayerNorm(width)
+        self.seeing = seeing_at_once
 
     def forward(
         self,
         cities: Float[Tensor, "b n 4"],
         distances: Float[Tensor, "b 2 n n"],
-        weights: Float[Tensor, "b 2"],
-    ) -> Float[Tensor, "b n d"]:
-        """Features of the cities for the weights."""
-        spread = weights[:, None].expand(-1, cities.shape[1], -1)  # (b, n, 2)
-        weighted_cities = cities * spread.repeat_interleave(2, dim=-1)
-        features: Tensor = self.embed(torch.cat((cities, weighted_cities, spread), dim=-1))
-        first, second = distances.unbind(1)
-        weighted = weights[:, :1, None] * first + weights[:, 1:, None] * second
-        nearness = -torch.stack((first, second, weighted), dim=1).log1p()  # (b, 3, n, n)
+        weights: Float[Tensor, "g 2"],
+    ) -> Float[Tensor, "bg n d"]:
+        """Features of the cities for each of the weights."""
+        repeated = cities.repeat_interleave(len(weights), dim=0)
+        spread = weights.repeat(len(cities), 1)[:, None].expand(-1, cities.shape[1], -1)
+        weighted = repeated * spread.repeat_interleave(2, dim=-1)
+        features: Tensor = self.embed(torch.cat((repeated, weighted, spread), dim=-1))
+        see = self.seeing(distances, weights)
         for layer in self.layers:
-            features = layer(features, nearness)
+            features = layer(features, see)
         normalised: Tensor = self.norm(features)
         return normalised
+
+
+def seeing_at_once(distances: Float[Tensor, "b 2 n n"], weights: Float[Tensor, "g 2"]) -> SeeFading:
+    """Attention of all cities to all in one product, near being near in a plane or by weight."""
+    first, second = distances.repeat_interleave(len(weights), dim=0).unbind(1)
+    share, other_share = weights.repeat(len(distances), 1)[..., None, None].unbind(1)
+    measures = (first, second, share * first + other_share * second)
+    return partial(see_fading, -torch.stack(measures, dim=1).log1p())
 
 
 # How fast each kind of head fades at first: with distance in plane 1, in plane 2, by weight.
@@ -164,12 +202,8 @@ class FadingLayer(nn.Module):
             for weights in last.parameters():
                 nn.init.zeros_(weights)
 
-    def forward(
-        self, features: Float[Tensor, "b n d"], nearness: Float[Tensor, "b m n n"]
-    ) -> Float[Tensor, "b n d"]:
+    def forward(self, features: Float[Tensor, "b n d"], see: SeeFading) -> Float[Tensor, "b n d"]:
         """Features of the cities, each in view of those near it."""
-        # As a product it is one pass over (b, h, n, n), the largest thing there is.
-        bias = (self.fading @ nearness.flatten(2)).unflatten(2, nearness.shape[2:])
-        features = features + self.attend(self.norms[0](features), bias)
+        features = features + self.attend(self.norms[0](features), partial(see, self.fading))
         thought: Tensor = self.think(self.norms[1](features))
         return features + thought

@@ -7,11 +7,13 @@ scores are mixed with the matrix. PA-One's sees more: what lies where shows in t
 landmarks, and its heads attend less the more a step costs, in either direction.
 """
 
+from functools import partial
+
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from models.encoders import FadingLayer, PostNormLayer, SelfAttention, feedforward
+from models.encoders import FadingLayer, PostNormLayer, SelfAttention, feedforward, see_fading
 
 LANDMARKS = 6  # for each objective
 _FAR = 1e9  # above every cost of a matrix whose largest entry is one
@@ -152,9 +154,9 @@ class MatrixEncoder(nn.Module):
         weighted = given * spread[..., None]
         told = torch.cat((given.flatten(2), weighted.flatten(2), spread), dim=-1)
         features: Tensor = self.embed(told)
-        nearness = _nearness(matrices / unit, weights)
+        see = partial(see_fading, _nearness(matrices / unit, weights))
         for layer in self.layers:
-            features = layer(features, nearness)
+            features = layer(features, see)
         normalised: Tensor = self.norm(features)
         return normalised
 

@@ -107,11 +107,7 @@ class OneActor(nn.Module):
         """
         middles = preferences.unflatten(0, (self.groups, -1)).mean(dim=1)
         distances = plane_distances(cities)
-        features = self.encoder(
-            cities.repeat_interleave(self.groups, dim=0),
-            distances.repeat_interleave(self.groups, dim=0),
-            weights(middles).repeat(len(cities), 1),
-        )
+        features = self.encoder(cities, distances, weights(middles))
         return self.decoder.remember(features, distances)
 
 

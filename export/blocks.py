@@ -1,0 +1,116 @@
+"""PA-One's attention for long instances: block by block of cities, so that memory stays small.
+
+At once, the scores of n cities are groups x heads x n x n numbers, 4 GB at 5,000 cities. In the
+exported graph a node stands for the attention of a layer, and an ONNX function says what it
+does: a Loop over blocks of queries, which works out how near the cities of its block are to all.
+"""
+
+from copy import deepcopy
+
+import torch
+from onnx import ModelProto, helper, inliner, parser
+from torch import Tensor
+
+from models.encoders import DistanceAwareEncoder, SeeFading
+from models.networks import Actor
+
+_BLOCK = 64  # cities whose scores fit into a processor's cache
+
+# Queries, keys and values are (g, h, n, e), rates (h, 3), distances (1, 2, n, n), weights (g, 2).
+# In the loop, m is the cities of the block.
+_SEE = """
+<domain: "paretour", opset_import: ["": 20]>
+See (query, key, value, rates, distances, weights) => (seen)
+{
+    zero = Constant <value_ints = [0]> ()
+    one = Constant <value_ints = [1]> ()
+    two = Constant <value_ints = [2]> ()
+    block = Constant <value_ints = [%d]> ()
+    n = Shape <start = 2, end = 3> (query)
+    groups = Shape <start = 0, end = 1> (weights)
+    heads = Shape <start = 0, end = 1> (rates)
+    rest = Constant <value_ints = [-1]> ()
+
+    features = Shape <start = 3, end = 4> (query)
+    root = CastLike (features, query)
+    root_of_features = Sqrt (root)
+    scaled = Div (query, root_of_features)
+    key_columns = Transpose <perm = [0, 1, 3, 2]> (key)
+    falling = Neg (rates)
+    by_plane = Squeeze (distances, zero)
+
+    more = Add (n, block)
+    filled = Sub (more, one)
+    blocks = Div (filled, block)
+    trips = Squeeze (blocks)
+    nothing = Slice (query, zero, zero, two)
+    seen = Loop (trips, , nothing) <body = see_block
+        (int64 index, bool before, float[g, h, m_before, e] so_far)
+        => (bool after, float[g, h, m_after, e] grown)
+        {
+            after = Identity (before)
+            index_row = Reshape (index, one)
+            first = Mul (index_row, block)
+            beyond = Add (first, block)
+            last = Min (beyond, n)
+            asking = Slice (scaled, first, last, two)
+            apart = Slice (by_plane, first, last, one)
+            m = Sub (last, first)
+
+            flat_shape = Concat <axis = 0> (two, rest)
+            flat = Reshape (apart, flat_shape)
+            weighted = MatMul (weights, flat)
+            weighted_measure = Unsqueeze (weighted, one)
+            planes_once = Unsqueeze (flat, zero)
+            spread = Concat <axis = 0> (groups, one, one)
+            planes = Tile (planes_once, spread)
+            measures = Concat <axis = 1> (planes, weighted_measure)
+            unit = Constant <value_float = 1.0> ()
+            raised = Add (measures, unit)
+            far = Log (raised)
+            faded = MatMul (falling, far)
+            scores_shape = Concat <axis = 0> (groups, heads, m, n)
+            bias = Reshape (faded, scores_shape)
+
+            alike = MatMul (asking, key_columns)
+            scores = Add (alike, bias)
+            shares = Softmax <axis = -1> (scores)
+            part = MatMul (shares, value)
+            grown = Concat <axis = 2> (so_far, part)
+        }>
+}
+"""
+
+
+def with_nodes(actor: Actor) -> Actor:
+    """The actor, its attention as nodes of the graph that it is exported to; others as they are."""
+    if not isinstance(actor.encoder, DistanceAwareEncoder):
+        return actor
+    changed = deepcopy(actor)
+    changed.encoder.seeing = _node
+    return changed
+
+
+def _node(distances: Tensor, weights: Tensor) -> SeeFading:
+    def see(rates: Tensor, query: Tensor, key: Tensor, value: Tensor) -> Tensor:
+        return torch.onnx.ops.symbolic(
+            "paretour::See",
+            (query, key, value, rates, distances, weights),
+            dtype=query.dtype,
+            shape=query.shape,
+            version=1,
+        )
+
+    return see
+
+
+def in_blocks(model: ModelProto) -> ModelProto:
+    """The model with every such node replaced by what it does."""
+    model.functions.append(parser.parse_function(_SEE % _BLOCK))
+    if not any(each.domain == "paretour" for each in model.opset_import):
+        model.opset_import.append(helper.make_opsetid("paretour", 1))
+    inlined = inliner.inline_local_functions(model)
+    kept = [each for each in inlined.opset_import if each.domain != "paretour"]
+    del inlined.opset_import[:]
+    inlined.opset_import.extend(kept)
+    return inlined
