@@ -12,15 +12,16 @@ from onnx import ModelProto, helper, inliner, parser
 from torch import Tensor
 
 from models.encoders import DistanceAwareEncoder, SeeFading
+from models.matrix_encoders import MatrixEncoder
 from models.networks import Actor
 
 _BLOCK = 64  # cities whose scores fit into a processor's cache
 
-# Queries, keys and values are (g, h, n, e), rates (h, 3), distances (1, 2, n, n), weights (g, 2).
+# Queries, keys and values are (g, h, n, e), rates (h, 3 s), costs (1, s, 2, n, n), weights (g, 2).
 # In the loop, m is the cities of the block.
 _SEE = """
 <domain: "paretour", opset_import: ["": 20]>
-See (query, key, value, rates, distances, weights) => (seen)
+See (query, key, value, rates, costs, weights) => (seen)
 {
     zero = Constant <value_ints = [0]> ()
     one = Constant <value_ints = [1]> ()
@@ -37,7 +38,8 @@ See (query, key, value, rates, distances, weights) => (seen)
     scaled = Div (query, root_of_features)
     key_columns = Transpose <perm = [0, 1, 3, 2]> (key)
     falling = Neg (rates)
-    by_plane = Squeeze (distances, zero)
+    by_kind = Squeeze (costs, zero)
+    kinds = Shape <start = 0, end = 1> (by_kind)
 
     more = Add (n, block)
     filled = Sub (more, one)
@@ -54,17 +56,22 @@ See (query, key, value, rates, distances, weights) => (seen)
             beyond = Add (first, block)
             last = Min (beyond, n)
             asking = Slice (scaled, first, last, two)
-            apart = Slice (by_plane, first, last, one)
+            apart = Slice (by_kind, first, last, two)
             m = Sub (last, first)
+            last_of_flat = Mul (m, n)
 
-            flat_shape = Concat <axis = 0> (two, rest)
-            flat = Reshape (apart, flat_shape)
-            weighted = MatMul (weights, flat)
-            weighted_measure = Unsqueeze (weighted, one)
-            planes_once = Unsqueeze (flat, zero)
-            spread = Concat <axis = 0> (groups, one, one)
-            planes = Tile (planes_once, spread)
-            measures = Concat <axis = 1> (planes, weighted_measure)
+            flat_shape = Concat <axis = 0> (kinds, two, rest)
+            planes = Reshape (apart, flat_shape)
+            by_weight = MatMul (weights, planes)
+            by_weight_shape = Concat <axis = 0> (kinds, groups, one, rest)
+            weighted = Reshape (by_weight, by_weight_shape)
+            planes_once = Unsqueeze (planes, one)
+            spread = Concat <axis = 0> (one, groups, one, one)
+            planes_of_groups = Tile (planes_once, spread)
+            by_kind_first = Concat <axis = 2> (planes_of_groups, weighted)
+            by_group = Transpose <perm = [1, 0, 2, 3]> (by_kind_first)
+            measures_shape = Concat <axis = 0> (groups, rest, last_of_flat)
+            measures = Reshape (by_group, measures_shape)
             unit = Constant <value_float = 1.0> ()
             raised = Add (measures, unit)
             far = Log (raised)
@@ -84,18 +91,18 @@ See (query, key, value, rates, distances, weights) => (seen)
 
 def with_nodes(actor: Actor) -> Actor:
     """The actor, its attention as nodes of the graph that it is exported to; others as they are."""
-    if not isinstance(actor.encoder, DistanceAwareEncoder):
+    if not isinstance(actor.encoder, DistanceAwareEncoder | MatrixEncoder):
         return actor
     changed = deepcopy(actor)
     changed.encoder.seeing = _node
     return changed
 
 
-def _node(distances: Tensor, weights: Tensor) -> SeeFading:
+def _node(costs: Tensor, weights: Tensor) -> SeeFading:
     def see(rates: Tensor, query: Tensor, key: Tensor, value: Tensor) -> Tensor:
         return torch.onnx.ops.symbolic(
             "paretour::See",
-            (query, key, value, rates, distances, weights),
+            (query, key, value, rates, costs, weights),
             dtype=query.dtype,
             shape=query.shape,
             version=1,

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from onnx import ModelProto
 from torch import Generator, Tensor
 
-from models.groups import grouped
 from models.networks import Actor
 from models.rollout import log_likelihoods_by_city
 from models.sampling import fan_of_preferences, uniform_instances
@@ -79,7 +78,7 @@ def _check_ties(
     actor: Actor, instance: Tensor, preferences: Tensor, both: tuple[Tensor, Tensor]
 ) -> None:
     """Raises unless, wherever two tours part, torch finds both next cities all but as likely."""
-    rows, members, places = grouped(preferences, actor.groups)
+    rows, members, places = actor.grouped(preferences)
     with torch.no_grad():
         memory, conditioning = actor.remember(instance, rows), actor.decoder.condition(rows)
         likelihoods = [

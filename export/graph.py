@@ -17,7 +17,6 @@ from torch.export import Dim
 
 from export.blocks import in_blocks, with_nodes
 from models.decoder import Moment
-from models.groups import grouped
 from models.networks import Actor, Conditioning, Memory
 from models.rollout import starts_in_turn
 
@@ -38,7 +37,7 @@ class _Encode(nn.Module):
         self.actor = actor
 
     def forward(self, instance: Tensor, preferences: Tensor) -> tuple[Tensor, ...]:
-        grouping = grouped(preferences, self.actor.groups)
+        grouping = self.actor.grouped(preferences)
         memory = self.actor.remember(instance[None], grouping.rows)
         rows = self.actor.decoder.condition(grouping.rows)
         n = instance.shape[-2]
@@ -82,7 +81,7 @@ def to_onnx(actor: Actor) -> ModelProto:
     instance = torch.rand(_N, 4) if name == "cities" else torch.rand(2, _N, _N)
     preferences = torch.rand(_K, 2)
     with torch.no_grad():
-        grouped_preferences = grouped(preferences, actor.groups).rows
+        grouped_preferences = actor.grouped(preferences).rows
         memory = actor.remember(instance[None], grouped_preferences)
         rows = actor.decoder.condition(grouped_preferences)
         state = _Encode(actor)(instance, preferences)[-3:]

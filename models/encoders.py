@@ -21,6 +21,8 @@ from models.instances import distance_matrices
 See = Callable[[Tensor, Tensor, Tensor], Tensor]
 # The same, given first at which rates, (h, m), each head fades with each measure of nearness.
 SeeFading = Callable[[Tensor, Tensor, Tensor, Tensor], Tensor]
+# The way that layers see, from costs (b, s, 2, n, n) of s kinds and weights (g, 2).
+Seeing = Callable[[Tensor, Tensor], SeeFading]
 
 
 def plane_distances(cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b 2 n n"]:
@@ -138,8 +140,7 @@ class DistanceAwareEncoder(nn.Module):
     Axis bg is instances and groups of preferences, groups inner.
     """
 
-    # From distances (b, 2, n, n) and weights (g, 2) to the way that its layers see.
-    seeing: Callable[[Tensor, Tensor], SeeFading]
+    seeing: Seeing
 
     def __init__(self, width: int, heads: int, layers: int, hidden: int) -> None:
         super().__init__()
@@ -161,19 +162,22 @@ class DistanceAwareEncoder(nn.Module):
         spread = weights.repeat(len(cities), 1)[:, None].expand(-1, cities.shape[1], -1)
         weighted = repeated * spread.repeat_interleave(2, dim=-1)
         features: Tensor = self.embed(torch.cat((repeated, weighted, spread), dim=-1))
-        see = self.seeing(distances, weights)
+        see = self.seeing(distances[:, None], weights)
         for layer in self.layers:
             features = layer(features, see)
         normalised: Tensor = self.norm(features)
         return normalised
 
 
-def seeing_at_once(distances: Float[Tensor, "b 2 n n"], weights: Float[Tensor, "g 2"]) -> SeeFading:
-    """Attention of all cities to all in one product, near being near in a plane or by weight."""
-    first, second = distances.repeat_interleave(len(weights), dim=0).unbind(1)
-    share, other_share = weights.repeat(len(distances), 1)[..., None, None].unbind(1)
-    measures = (first, second, share * first + other_share * second)
-    return partial(see_fading, -torch.stack(measures, dim=1).log1p())
+def seeing_at_once(costs: Float[Tensor, "b s 2 n n"], weights: Float[Tensor, "g 2"]) -> SeeFading:
+    """Attention of all cities to all in one product.
+
+    Near is what costs little, of s kinds of cost: in the first plane, the second, or by weight.
+    """
+    each = costs.repeat_interleave(len(weights), dim=0)
+    shares = weights.repeat(len(costs), 1)[:, None, :, None, None]
+    measures = torch.cat((each, (each * shares).sum(dim=2, keepdim=True)), dim=2)
+    return partial(see_fading, -measures.flatten(1, 2).log1p())
 
 
 # How fast each kind of head fades at first: with distance in plane 1, in plane 2, by weight.

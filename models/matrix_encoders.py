@@ -7,13 +7,18 @@ scores are mixed with the matrix. PA-One's sees more: what lies where shows in t
 landmarks, and its heads attend less the more a step costs, in either direction.
 """
 
-from functools import partial
-
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from models.encoders import FadingLayer, PostNormLayer, SelfAttention, feedforward, see_fading
+from models.encoders import (
+    FadingLayer,
+    PostNormLayer,
+    Seeing,
+    SelfAttention,
+    feedforward,
+    seeing_at_once,
+)
 
 LANDMARKS = 6  # for each objective
 _FAR = 1e9  # above every cost of a matrix whose largest entry is one
@@ -129,7 +134,12 @@ class AdjacencyEncoder(nn.Module):
 
 
 class MatrixEncoder(nn.Module):
-    """PA-One's for matrices: for a city its costs in sum and to the landmarks, and the weights."""
+    """PA-One's for matrices: for a city its costs in sum and to the landmarks, and the weights.
+
+    Axis bg is instances and groups of preferences, groups inner.
+    """
+
+    seeing: Seeing
 
     def __init__(self, width: int, heads: int, layers: int, hidden: int) -> None:
         super().__init__()
@@ -139,22 +149,24 @@ class MatrixEncoder(nn.Module):
             FadingLayer(width, heads, hidden, _KINDS) for _ in range(layers)
         )
         self.norm = nn.LayerNorm(width)
+        self.seeing = seeing_at_once
 
     def forward(
         self,
         matrices: Float[Tensor, "b 2 n n"],
         unit: Float[Tensor, "b 1 1 1"],
-        weights: Float[Tensor, "b 2"],
-    ) -> Float[Tensor, "b n d"]:
-        """Features of the cities for the weights, costs being near when they are near the unit."""
-        spread = weights[:, None].expand(-1, matrices.shape[-1], -1)  # (b, n, 2)
+        weights: Float[Tensor, "g 2"],
+    ) -> Float[Tensor, "bg n d"]:
+        """Features of the cities for each of the weights, costs near the unit being near."""
         sums = initial_features(matrices)
         landmarks = landmark_costs(matrices).unflatten(-1, (-1, 2)).mT  # (b, n, 2, 2 l)
-        given = torch.cat((sums, landmarks), dim=-1)
+        given = torch.cat((sums, landmarks), dim=-1).repeat_interleave(len(weights), dim=0)
+        spread = weights.repeat(len(matrices), 1)[:, None].expand(-1, matrices.shape[-1], -1)
         weighted = given * spread[..., None]
         told = torch.cat((given.flatten(2), weighted.flatten(2), spread), dim=-1)
         features: Tensor = self.embed(told)
-        see = partial(see_fading, _nearness(matrices / unit, weights))
+        costs = matrices / unit
+        see = self.seeing(torch.stack((costs, costs.mT), dim=1), weights)
         for layer in self.layers:
             features = layer(features, see)
         normalised: Tensor = self.norm(features)
@@ -169,14 +181,6 @@ _KINDS = (
     (0.0, 0.0, 3.0, 0.0, 0.0, 0.0),
     (0.0, 0.0, 0.0, 0.0, 0.0, 3.0),
 )
-
-
-def _nearness(
-    matrices: Float[Tensor, "b 2 n n"], weights: Float[Tensor, "b 2"]
-) -> Float[Tensor, "b 6 n n"]:
-    weighted = (matrices * weights[..., None, None]).sum(dim=1, keepdim=True)
-    outward = -torch.cat((matrices, weighted), dim=1).log1p()
-    return torch.cat((outward, outward.mT), dim=1)
 
 
 def _diagonal(matrices: Tensor) -> Tensor:

@@ -6,10 +6,12 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from models.aiming import aimed
 from models.config import NetworkConfig
 from models.decoder import AttentionDecoder, AttentionMemory, OneDecoder, OneMemory
 from models.ean import EANDecoder, EANEncoder, EANMemory
 from models.encoders import AttentionEncoder, DistanceAwareEncoder, plane_distances
+from models.groups import Grouped, grouped
 from models.lagrangian import weights
 from models.matrix_encoders import AdjacencyEncoder, MatrixEncoder, spacing, unit_matrices
 
@@ -24,6 +26,10 @@ class _AlikeForAll(nn.Module):
     groups = 1
     encoder: AttentionEncoder | EANEncoder | AdjacencyEncoder
     decoder: AttentionDecoder | EANDecoder
+
+    def grouped(self, preferences: Float[Tensor, "k 2"]) -> Grouped:
+        """The preferences laid out as rows, all in one group."""
+        return grouped(preferences, self.groups)
 
     def remember(
         self,
@@ -82,13 +88,19 @@ class AdjacencyActor(_AlikeForAll):
         )
 
 
-class OneActor(nn.Module):
-    """PA-One: distances in the encoder's attention and in the decoder's logits.
-
-    It encodes the cities once for each group of neighbouring preferences.
-    """
+class _ByGroup(nn.Module):
+    """An actor that encodes an instance once for each group of neighbouring preferences."""
 
     groups = 5
+
+    def grouped(self, preferences: Float[Tensor, "k 2"]) -> Grouped:
+        """The preferences laid out as rows, and turned so that the tours point where these do."""
+        return grouped(aimed(preferences), self.groups)
+
+
+class OneActor(_ByGroup):
+    """PA-One: distances in the encoder's attention and in the decoder's logits."""
+
     reads = "coordinates"
 
     def __init__(self, config: NetworkConfig) -> None:
@@ -111,10 +123,9 @@ class OneActor(nn.Module):
         return self.decoder.remember(features, distances)
 
 
-class OneMatrixActor(nn.Module):
+class OneMatrixActor(_ByGroup):
     """PA-One for matrices of costs, which need not be symmetric; the decoder is PA-One's."""
 
-    groups = 5
     reads = "matrices"
 
     def __init__(self, config: NetworkConfig) -> None:
@@ -132,11 +143,7 @@ class OneMatrixActor(nn.Module):
         middles = preferences.unflatten(0, (self.groups, -1)).mean(dim=1)
         scaled = unit_matrices(matrices)
         unit = spacing(scaled)
-        features = self.encoder(
-            scaled.repeat_interleave(self.groups, dim=0),
-            unit.repeat_interleave(self.groups, dim=0),
-            weights(middles).repeat(len(matrices), 1),
-        )
+        features = self.encoder(scaled, unit, weights(middles))
         return self.decoder.remember(features, scaled / unit)
 
 

@@ -7,7 +7,6 @@ import torch
 from jaxtyping import Float, Int
 from torch import Generator, Tensor
 
-from models.groups import grouped
 from models.instances import tour_lengths
 from models.networks import Actor
 from models.rollout import greedily, roll_out, starts_in_turn
@@ -44,7 +43,7 @@ def greedy_tours(
     actor: Actor, instances: Tensor, preferences: Float[Tensor, "k 2"]
 ) -> Int[Tensor, "b k n"]:
     """The greedy tour of each instance and preference."""
-    rows, _, places = grouped(preferences, actor.groups)
+    rows, _, places = actor.grouped(preferences)
     starts = starts_in_turn(rows, instances).repeat(len(instances), 1)
     memory = actor.remember(instances, rows)
     return roll_out(actor, memory, actor.decoder.condition(rows), starts, greedily)[:, places]
