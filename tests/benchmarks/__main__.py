@@ -15,6 +15,7 @@ _NAMES = (
     "curves",
     "fronts",
     "kro",
+    "large",
     "layers",
     "literature",
     "load",

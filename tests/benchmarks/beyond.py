@@ -1,4 +1,4 @@
-"""What the paper has not: planes of other shapes, and the networks of the literature."""
+"""What the paper has not: other shapes, the networks of the literature, thousands of cities."""
 
 from tests.benchmarks import printed
 from tests.benchmarks.cells import of, share_in_seconds
@@ -7,8 +7,8 @@ from tests.benchmarks.provenance import load
 
 
 def section() -> str:
-    """What is stored of both."""
-    return f"{_shapes()}\n{_literature()}"
+    """What is stored of all three."""
+    return f"{_shapes()}\n{_literature()}\n{_large()}"
 
 
 def _shapes() -> str:
@@ -43,4 +43,17 @@ def _literature() -> str:
         f"{corners}. The first rows are of Chen et al. (2025), on 200\ninstances of theirs; ours "
         f"are on {' to '.join(map(str, counts))} of our own.\n\n"
         f"{table(['', *(f'{n} cities' for n in sizes)], [*theirs, *ours])}"
+    )
+
+
+def _large() -> str:
+    rows = [
+        [size, f"{of(entry)[0]['seconds']:.3g}", f"{of(entry)[0]['peak_mb']:.0f}"]
+        for size, entry in load("large").items()
+    ]
+    return (
+        "## Thousands of cities\n\nNot in the paper: `python -m tests.benchmarks large`. One "
+        "inference call of PA-One with 100 preferences,\nuniform cities, one thread, each in a "
+        "process of its own.\n\n"
+        f"{table(['', 'seconds', 'memory at its highest, MB'], rows)}"
     )
