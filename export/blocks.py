@@ -8,7 +8,7 @@ does: a Loop over blocks of queries, which works out how near the cities of its 
 from copy import deepcopy
 
 import torch
-from onnx import ModelProto, helper, inliner, parser
+from onnx import ModelProto, inliner, parser
 from torch import Tensor
 
 from models.encoders import DistanceAwareEncoder, SeeFading
@@ -32,10 +32,10 @@ See (query, key, value, rates, costs, weights) => (seen)
     heads = Shape <start = 0, end = 1> (rates)
     rest = Constant <value_ints = [-1]> ()
 
-    features = Shape <start = 3, end = 4> (query)
-    root = CastLike (features, query)
-    root_of_features = Sqrt (root)
-    scaled = Div (query, root_of_features)
+    e = Shape <start = 3, end = 4> (query)
+    e_as_float = CastLike (e, query)
+    root = Sqrt (e_as_float)
+    scaled = Div (query, root)
     key_columns = Transpose <perm = [0, 1, 3, 2]> (key)
     falling = Neg (rates)
     by_kind = Squeeze (costs, zero)
@@ -58,19 +58,19 @@ See (query, key, value, rates, costs, weights) => (seen)
             asking = Slice (scaled, first, last, two)
             apart = Slice (by_kind, first, last, two)
             m = Sub (last, first)
-            last_of_flat = Mul (m, n)
 
-            flat_shape = Concat <axis = 0> (kinds, two, rest)
-            planes = Reshape (apart, flat_shape)
+            planes_shape = Concat <axis = 0> (kinds, two, rest)
+            planes = Reshape (apart, planes_shape)
             by_weight = MatMul (weights, planes)
-            by_weight_shape = Concat <axis = 0> (kinds, groups, one, rest)
-            weighted = Reshape (by_weight, by_weight_shape)
+            weighted_shape = Concat <axis = 0> (kinds, groups, one, rest)
+            weighted = Reshape (by_weight, weighted_shape)
             planes_once = Unsqueeze (planes, one)
-            spread = Concat <axis = 0> (one, groups, one, one)
-            planes_of_groups = Tile (planes_once, spread)
-            by_kind_first = Concat <axis = 2> (planes_of_groups, weighted)
-            by_group = Transpose <perm = [1, 0, 2, 3]> (by_kind_first)
-            measures_shape = Concat <axis = 0> (groups, rest, last_of_flat)
+            times = Concat <axis = 0> (one, groups, one, one)
+            planes_of_groups = Tile (planes_once, times)
+            by_kind_and_group = Concat <axis = 2> (planes_of_groups, weighted)
+            by_group = Transpose <perm = [1, 0, 2, 3]> (by_kind_and_group)
+            steps = Mul (m, n)
+            measures_shape = Concat <axis = 0> (groups, rest, steps)
             measures = Reshape (by_group, measures_shape)
             unit = Constant <value_float = 1.0> ()
             raised = Add (measures, unit)
@@ -90,7 +90,7 @@ See (query, key, value, rates, costs, weights) => (seen)
 
 
 def with_nodes(actor: Actor) -> Actor:
-    """The actor, its attention as nodes of the graph that it is exported to; others as they are."""
+    """The actor, PA-One's attention as nodes of the graph that it is exported to."""
     if not isinstance(actor.encoder, DistanceAwareEncoder | MatrixEncoder):
         return actor
     changed = deepcopy(actor)
@@ -114,10 +114,4 @@ def _node(costs: Tensor, weights: Tensor) -> SeeFading:
 def in_blocks(model: ModelProto) -> ModelProto:
     """The model with every such node replaced by what it does."""
     model.functions.append(parser.parse_function(_SEE % _BLOCK))
-    if not any(each.domain == "paretour" for each in model.opset_import):
-        model.opset_import.append(helper.make_opsetid("paretour", 1))
-    inlined = inliner.inline_local_functions(model)
-    kept = [each for each in inlined.opset_import if each.domain != "paretour"]
-    del inlined.opset_import[:]
-    inlined.opset_import.extend(kept)
-    return inlined
+    return inliner.inline_local_functions(model)

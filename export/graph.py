@@ -156,7 +156,7 @@ def _joined(
         [helper.make_tensor_value_info("tours", TensorProto.INT64, ["k", "n"])],
         [*encode.graph.initializer, *constants, given],
     )
-    model = helper.make_model(graph, opset_imports=encode.opset_import, ir_version=10)
+    model = helper.make_model(graph, opset_imports=step.opset_import, ir_version=10)
     onnx.checker.check_model(model, full_check=True)
     return model
 
