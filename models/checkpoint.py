@@ -88,17 +88,6 @@ def resume(path: Path, device: torch.device) -> Run:
     return run
 
 
-def save_weights(run: Run, path: Path) -> None:
-    """Writes what a released checkpoint holds: averaged weights, configuration, steps, seconds."""
-    state = {
-        "config": as_plain(run.config),
-        "actor": averaged_actor(run).state_dict(),
-        "step": run.step,
-        "seconds": run.seconds,
-    }
-    torch.save(state, path)
-
-
 class Trained(NamedTuple):
     """A released checkpoint: what was trained, how, and for how long."""
 
@@ -106,6 +95,18 @@ class Trained(NamedTuple):
     actor: Actor
     step: int
     seconds: float
+
+
+def save_weights(run: Run, path: Path) -> None:
+    """Writes what a released checkpoint holds: averaged weights, configuration, steps, seconds."""
+    write(Trained(run.config, averaged_actor(run), run.step, run.seconds), path)
+
+
+def write(trained: Trained, path: Path) -> None:
+    """Writes a checkpoint that `load_weights` reads."""
+    state = trained._asdict()
+    state |= {"config": as_plain(trained.config), "actor": trained.actor.state_dict()}
+    torch.save(state, path)
 
 
 def load_weights(path: Path) -> Trained:

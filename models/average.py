@@ -1,0 +1,41 @@
+"""`python -m models.average --out MEAN.pt A.pt B.pt ...`: the mean of the weights of several runs.
+
+Runs that began from the same weights and went on apart each settle with a noise of their own;
+their mean has less of it, and costs nothing to use (Wortsman et al., 2022, arXiv:2203.05482).
+"""
+
+import argparse
+from pathlib import Path
+
+import torch
+
+from models.checkpoint import Trained, load_weights, write
+
+
+def average(trained: list[Trained]) -> Trained:
+    """The mean of the weights; the configuration and steps of the last, the seconds of all.
+
+    Raises:
+        ValueError: there is none, or their networks differ.
+    """
+    networks = {each.config.network for each in trained}
+    if len(networks) != 1:
+        raise ValueError(f"checkpoints must be of one network, got {len(networks)}")
+    states = [each.actor.state_dict() for each in trained]
+    mean = {name: torch.stack([s[name] for s in states]).mean(dim=0) for name in states[0]}
+    *_, last = trained
+    last.actor.load_state_dict(mean)
+    return last._replace(seconds=sum(each.seconds for each in trained))
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser("python -m models.average", description=__doc__)
+    parser.add_argument("checkpoints", type=Path, nargs="+", help="weights.pt of training runs")
+    parser.add_argument("--out", type=Path, required=True, help="the checkpoint to write")
+    options = parser.parse_args(arguments)
+    write(average([load_weights(path) for path in options.checkpoints]), options.out)
+
+
+if __name__ == "__main__":
+    main()
