@@ -6,8 +6,10 @@ import pytest
 import torch
 from torch import Generator, Tensor
 
+from models.aiming import aimed
 from models.config import NetworkConfig
 from models.decoder import AttentionDecoder, Moment
+from models.lagrangian import weights
 from models.networks import Actor, build
 from models.rollout import greedily, log_likelihoods, repeated, roll_out, sampling
 from models.sampling import fan_of_preferences, uniform_cities
@@ -125,9 +127,10 @@ def test_a_new_pa_one_goes_to_the_nearest_neighbour_under_the_weights() -> None:
     actor.decoder.project_city.weight.data[-128:] = 0
     actor.decoder.encode_preference[-1].weight.data.zero_()
     instances = cities(1, 30)
-    tour = greedy_tours(actor, instances, torch.tensor([[0.6, 0.8]]))[0, 0]
+    preference = torch.tensor([[0.6, 0.8]])
+    tour = greedy_tours(actor, instances, preference)[0, 0]
     steps = (instances[0, :, None] - instances[0]).unflatten(-1, (2, 2)).norm(dim=-1)
-    cost = steps @ torch.tensor([0.8, 0.6])
+    cost = steps @ weights(aimed(preference))[0]
     for t in range(29):
         left = tour[t + 1 :]
         assert tour[t + 1] == left[cost[tour[t], left].argmin()]
