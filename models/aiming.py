@@ -6,7 +6,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-# Measured: of 1, 0.9, 0.8 and 0.7 the one whose tours point nearest to what was asked.
+# Of 1, 0.9, 0.8 and 0.7 the nearest to what is asked at 200 cities; 0.7 is at 40, 0.9 at 500.
 _EXPONENT = 0.8
 
 
