@@ -97,6 +97,10 @@ class _ByGroup(nn.Module):
         """The preferences laid out as rows, and turned so that the tours point where these do."""
         return grouped(aimed(preferences), self.groups)
 
+    def _weights(self, rows: Float[Tensor, "k 2"]) -> Float[Tensor, "g 2"]:
+        """The weights in the middle of each group of rows, as `grouped` lays them out."""
+        return weights(rows.unflatten(0, (self.groups, -1)).mean(dim=1))
+
 
 class OneActor(_ByGroup):
     """PA-One: distances in the encoder's attention and in the decoder's logits."""
@@ -115,11 +119,10 @@ class OneActor(_ByGroup):
     ) -> OneMemory:
         """What decoding needs of the instances, computed once for each group of preferences.
 
-        The preferences come as `models.groups` lays them out.
+        The preferences come as `grouped` lays them out.
         """
-        middles = preferences.unflatten(0, (self.groups, -1)).mean(dim=1)
         distances = plane_distances(cities)
-        features = self.encoder(cities, distances, weights(middles))
+        features = self.encoder(cities, distances, self._weights(preferences))
         return self.decoder.remember(features, distances)
 
 
@@ -138,12 +141,11 @@ class OneMatrixActor(_ByGroup):
     ) -> OneMemory:
         """What decoding needs of the instances, computed once for each group of preferences.
 
-        The preferences come as `models.groups` lays them out.
+        The preferences come as `grouped` lays them out.
         """
-        middles = preferences.unflatten(0, (self.groups, -1)).mean(dim=1)
         scaled = unit_matrices(matrices)
         unit = spacing(scaled)
-        features = self.encoder(scaled, unit, weights(middles))
+        features = self.encoder(scaled, unit, self._weights(preferences))
         return self.decoder.remember(features, scaled / unit)
 
 

@@ -20,7 +20,7 @@ from service.instance import Instance
 from service.preferences import fan, from_angles
 from tests.benchmarks.instances import check_tours
 from tests.benchmarks.provenance import load
-from tests.benchmarks.rows import resume
+from tests.benchmarks.rows import TOURS, resume
 
 ACTOR = Path("service/actors/pa-one.onnx")
 SIZES = (40, 200, 1000, 2000, 5000)
@@ -46,7 +46,7 @@ def measured(n: int) -> dict[str, float]:
     actor = Actor(ACTOR, threads=1)
     instance = Instance(coordinates=np.random.default_rng(n).random((n, 4)))
     began = time.process_time()
-    tours = actor.tours(instance, from_angles(fan(100)))
+    tours = actor.tours(instance, from_angles(fan(TOURS)))
     seconds = time.process_time() - began
     check_tours(tours, n)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024  # from KiB, on Linux
