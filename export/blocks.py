@@ -11,9 +11,9 @@ import torch
 from onnx import ModelProto, inliner, parser
 from torch import Tensor
 
-from models.encoders import DistanceAwareEncoder, SeeFading
+from models.encoders import SeeFading
 from models.matrix_encoders import MatrixEncoder
-from models.networks import Actor
+from models.networks import StepwiseActor
 
 _BLOCK = 64  # cities whose scores fit into a processor's cache
 
@@ -89,9 +89,9 @@ See (query, key, value, rates, costs, weights) => (seen)
 """
 
 
-def with_nodes(actor: Actor) -> Actor:
+def with_nodes(actor: StepwiseActor) -> StepwiseActor:
     """The actor, PA-One's attention as nodes of the graph that it is exported to."""
-    if not isinstance(actor.encoder, DistanceAwareEncoder | MatrixEncoder):
+    if not isinstance(actor.encoder, MatrixEncoder):
         return actor
     changed = deepcopy(actor)
     changed.encoder.seeing = _node

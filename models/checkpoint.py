@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 import torch
-from torch import Generator, Tensor
+from torch import Generator, Tensor, nn
 from torch.optim import Adam
 from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
@@ -14,6 +14,7 @@ from models.config import TrainingConfig, as_plain, from_plain
 from models.critic import Critic
 from models.encoders import FadingLayer
 from models.networks import Actor, build
+from models.one import OneActor, TellingLayer
 
 
 @dataclass
@@ -129,16 +130,20 @@ def start_from(run: Run, weights: Actor) -> None:
     The layers that the shallower one lacks change nothing at first.
     """
     state = weights.state_dict()
-    if len(run.actor.encoder.layers) > len(weights.encoder.layers):
-        state = _silenced(run.actor, len(weights.encoder.layers)) | state
+    if len(_layers(run.actor)) > len(_layers(weights)):
+        state = _silenced(run.actor, len(_layers(weights))) | state
     run.actor.load_state_dict(state)
     averaged_actor(run).load_state_dict(state)
 
 
+def _layers(actor: Actor) -> nn.ModuleList:
+    return actor.layers if isinstance(actor, OneActor) else actor.encoder.layers
+
+
 def _silenced(actor: Actor, depth: int) -> dict[str, Tensor]:
-    """The weights of an actor of which the encoder's layers from depth on add nothing."""
-    for layer in actor.encoder.layers[depth:]:
-        if not isinstance(layer, FadingLayer):
+    """The weights of an actor of which the layers from depth on add nothing."""
+    for layer in _layers(actor)[depth:]:
+        if not isinstance(layer, FadingLayer | TellingLayer):
             raise ValueError(f"{type(actor).__name__} must begin from weights of as many layers")
         layer.silence()
     return actor.state_dict()

@@ -1,4 +1,4 @@
-"""From features and preferences to the next city: the decoders of PA-AT and PA-One.
+"""From features and preferences to the next city: the decoders of PA-AT and of PA-One for matrices.
 
 Both share one key, value and pointer per city among all preferences, so that a decoding step for
 k preferences is a few products of a (k, d) with a (d, n) matrix. A *row* is one tour under
@@ -56,7 +56,7 @@ class AttentionConditioning(NamedTuple):
 
 
 class OneMemory(NamedTuple):
-    """PA-One's tables of the instances, those of features for each group of preferences anew.
+    """Tables of PA-One for matrices, those of features for each group of preferences anew.
 
     Axis bg is instances and groups, groups inner. Distances are 1 + sqrt(n) times those in each
     plane.
@@ -76,7 +76,7 @@ class OneMemory(NamedTuple):
 
 
 class OneConditioning(NamedTuple):
-    """What a preference does to PA-One's rows."""
+    """What a preference does to the rows of PA-One for matrices."""
 
     scale: Float[Tensor, "r d"]
     shift: Float[Tensor, "r d"]
@@ -142,7 +142,7 @@ class AttentionDecoder(nn.Module):
 
 
 class OneDecoder(nn.Module):
-    """PA-One's: queries modulated by the preference, pointers that fall off with distance.
+    """PA-One for matrices: queries modulated by the preference, pointers that fall off with cost.
 
     Its logits start as those of the nearest neighbour under the preference's weights, softened:
     minus a multiple of log(1 + distance); the pointer learns the rest. Half of the heads see the

@@ -1,11 +1,9 @@
-"""From cities to features: the encoders of PA-AT and PA-One.
+"""From what is given of each city to features: the encoder of PA-AT, and layers of others.
 
-PA-AT's is the encoder of Kool, van Hoof and Welling (2019), arXiv:1803.08475. PA-One's differs
-in three ways: it normalises before each layer rather than after, so that deeper stacks train; it
-encodes the cities for a preference, not once for all; and its heads attend less the farther two
-cities are apart, each head at rates of its own in either plane and under the preference's
-weights. Distances are in units of 1 / sqrt(n), near the spacing of n cities in a unit square, so
-that neighbourhoods look alike at every n.
+PA-AT's is the encoder of Kool, van Hoof and Welling (2019), arXiv:1803.08475. The layers of
+PA-One for matrices differ in two ways: they normalise before each layer rather than after, so
+that deeper stacks train; and their heads attend less the more a step between two cities costs,
+each head at rates of its own in either objective and under the preference's weights.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,23 +13,12 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from models.instances import distance_matrices
-
 # What each head of each city sees, from its queries, keys and values, all (b, h, n, d / h).
 See = Callable[[Tensor, Tensor, Tensor], Tensor]
 # The same, given first at which rates, (h, m), each head fades with each measure of nearness.
 SeeFading = Callable[[Tensor, Tensor, Tensor, Tensor], Tensor]
 # The way that layers see, from costs (b, s, 2, n, n) of s kinds and weights (g, 2).
 Seeing = Callable[[Tensor, Tensor], SeeFading]
-
-
-def plane_distances(cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b 2 n n"]:
-    """Distances in each plane, in units of 1 / sqrt(n).
-
-    Written without Python arithmetic on n, which would freeze it when the network is exported.
-    """
-    root = torch.ones_like(cities[:, :, 0]).sum(dim=-1).sqrt()  # sqrt(n), (b,)
-    return distance_matrices(cities) * root[:, None, None, None]
 
 
 def see(
@@ -133,42 +120,6 @@ class PostNormLayer(nn.Module):
         return normalised
 
 
-class DistanceAwareEncoder(nn.Module):
-    """PA-One's: attention that fades with distance, normalised before each layer.
-
-    A city is given by its coordinates, by these times their plane's weight, and by the weights.
-    Axis bg is instances and groups of preferences, groups inner.
-    """
-
-    seeing: Seeing
-
-    def __init__(self, width: int, heads: int, layers: int, hidden: int) -> None:
-        super().__init__()
-        self.embed = nn.Linear(10, width)
-        self.layers = nn.ModuleList(
-            FadingLayer(width, heads, hidden, _KINDS) for _ in range(layers)
-        )
-        self.norm = nn.LayerNorm(width)
-        self.seeing = seeing_at_once
-
-    def forward(
-        self,
-        cities: Float[Tensor, "b n 4"],
-        distances: Float[Tensor, "b 2 n n"],
-        weights: Float[Tensor, "g 2"],
-    ) -> Float[Tensor, "bg n d"]:
-        """Features of the cities for each of the weights."""
-        repeated = cities.repeat_interleave(len(weights), dim=0)
-        spread = weights.repeat(len(cities), 1)[:, None].expand(-1, cities.shape[1], -1)
-        weighted = repeated * spread.repeat_interleave(2, dim=-1)
-        features: Tensor = self.embed(torch.cat((repeated, weighted, spread), dim=-1))
-        see = self.seeing(distances[:, None], weights)
-        for layer in self.layers:
-            features = layer(features, see)
-        normalised: Tensor = self.norm(features)
-        return normalised
-
-
 def seeing_at_once(costs: Float[Tensor, "b s 2 n n"], weights: Float[Tensor, "g 2"]) -> SeeFading:
     """Attention of all cities to all in one product.
 
@@ -178,10 +129,6 @@ def seeing_at_once(costs: Float[Tensor, "b s 2 n n"], weights: Float[Tensor, "g 
     shares = weights.repeat(len(costs), 1)[:, None, :, None, None]
     measures = torch.cat((each, (each * shares).sum(dim=2, keepdim=True)), dim=2)
     return partial(see_fading, -measures.flatten(1, 2).log1p())
-
-
-# How fast each kind of head fades at first: with distance in plane 1, in plane 2, by weight.
-_KINDS = ((2.0, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 3.0), (0.0, 0.0, 0.0))
 
 
 class FadingLayer(nn.Module):

@@ -10,10 +10,11 @@ from models.aiming import aimed
 from models.config import NetworkConfig
 from models.decoder import AttentionDecoder, AttentionMemory, OneDecoder, OneMemory
 from models.ean import EANDecoder, EANEncoder, EANMemory
-from models.encoders import AttentionEncoder, DistanceAwareEncoder, plane_distances
+from models.encoders import AttentionEncoder
 from models.groups import Grouped, grouped
 from models.lagrangian import weights
 from models.matrix_encoders import AdjacencyEncoder, MatrixEncoder, spacing, unit_matrices
+from models.one import OneActor
 
 # Named tuples of tensors, of a kind that only the actor's own decoder reads.
 Memory = Any
@@ -88,10 +89,20 @@ class AdjacencyActor(_AlikeForAll):
         )
 
 
-class _ByGroup(nn.Module):
-    """An actor that encodes an instance once for each group of neighbouring preferences."""
+class OneMatrixActor(nn.Module):
+    """PA-One for matrices of costs, which need not be symmetric.
 
+    It builds tours city by city, and encodes an instance once for each group of neighbouring
+    preferences.
+    """
+
+    reads = "matrices"
     groups = 5
+
+    def __init__(self, config: NetworkConfig) -> None:
+        super().__init__()
+        self.encoder = MatrixEncoder(config.width, config.heads, config.layers, config.feedforward)
+        self.decoder = OneDecoder(config.width, config.heads, config.clip)
 
     def grouped(self, preferences: Float[Tensor, "k 2"]) -> Grouped:
         """The preferences laid out as rows, and turned so that the tours point where these do."""
@@ -100,41 +111,6 @@ class _ByGroup(nn.Module):
     def _weights(self, rows: Float[Tensor, "k 2"]) -> Float[Tensor, "g 2"]:
         """The weights in the middle of each group of rows, as `grouped` lays them out."""
         return weights(rows.unflatten(0, (self.groups, -1)).mean(dim=1))
-
-
-class OneActor(_ByGroup):
-    """PA-One: distances in the encoder's attention and in the decoder's logits."""
-
-    reads = "coordinates"
-
-    def __init__(self, config: NetworkConfig) -> None:
-        super().__init__()
-        self.encoder = DistanceAwareEncoder(
-            config.width, config.heads, config.layers, config.feedforward
-        )
-        self.decoder = OneDecoder(config.width, config.heads, config.clip)
-
-    def remember(
-        self, cities: Float[Tensor, "b n 4"], preferences: Float[Tensor, "k 2"]
-    ) -> OneMemory:
-        """What decoding needs of the instances, computed once for each group of preferences.
-
-        The preferences come as `grouped` lays them out.
-        """
-        distances = plane_distances(cities)
-        features = self.encoder(cities, distances, self._weights(preferences))
-        return self.decoder.remember(features, distances)
-
-
-class OneMatrixActor(_ByGroup):
-    """PA-One for matrices of costs, which need not be symmetric; the decoder is PA-One's."""
-
-    reads = "matrices"
-
-    def __init__(self, config: NetworkConfig) -> None:
-        super().__init__()
-        self.encoder = MatrixEncoder(config.width, config.heads, config.layers, config.feedforward)
-        self.decoder = OneDecoder(config.width, config.heads, config.clip)
 
     def remember(
         self, matrices: Float[Tensor, "b 2 n n"], preferences: Float[Tensor, "k 2"]
@@ -149,7 +125,9 @@ class OneMatrixActor(_ByGroup):
         return self.decoder.remember(features, scaled / unit)
 
 
-Actor = AttentionActor | EANActor | AdjacencyActor | OneActor | OneMatrixActor
+# Actors that build tours city by city, and one that does not.
+StepwiseActor = AttentionActor | EANActor | AdjacencyActor | OneMatrixActor
+Actor = StepwiseActor | OneActor
 ACTORS: dict[str, type[Actor]] = {
     "pa-at": AttentionActor,
     "pa-ean": EANActor,

@@ -1,6 +1,6 @@
-"""Tours from an actor, and their log-likelihoods.
+"""Tours from an actor that builds them city by city, and their log-likelihoods.
 
-Tours are built city by city without gradients; the log-likelihoods of finished tours come from
+They are built without gradients; the log-likelihoods of finished tours come from
 one pass over all their moments at once (teacher forcing), which is where gradients flow.
 """
 
@@ -11,7 +11,7 @@ from jaxtyping import Float, Int
 from torch import Generator, Tensor
 
 from models.decoder import Moment
-from models.networks import Actor, Conditioning, Memory
+from models.networks import Conditioning, Memory, StepwiseActor
 
 # How the next cities, (b, r), follow from the logits, (b, r, n).
 Choose = Callable[[Tensor], Tensor]
@@ -45,7 +45,7 @@ def starts_in_turn(preferences: Float[Tensor, "r 2"], instances: Tensor) -> Int[
 
 @torch.no_grad()
 def roll_out(
-    actor: Actor,
+    actor: StepwiseActor,
     memory: Memory,
     rows: Conditioning,
     starts: Int[Tensor, "b r"],
@@ -74,14 +74,14 @@ def _recent(tour: list[Tensor]) -> Int[Tensor, "b r 3"]:
 
 
 def log_likelihoods(
-    actor: Actor, memory: Memory, rows: Conditioning, tours: Int[Tensor, "b r n"]
+    actor: StepwiseActor, memory: Memory, rows: Conditioning, tours: Int[Tensor, "b r n"]
 ) -> Float[Tensor, "b r"]:
     """The log-likelihood of each tour: the sum over the cities that the actor chose."""
     return log_likelihoods_by_city(actor, memory, rows, tours).sum(dim=-1)
 
 
 def log_likelihoods_by_city(
-    actor: Actor, memory: Memory, rows: Conditioning, tours: Int[Tensor, "b r n"]
+    actor: StepwiseActor, memory: Memory, rows: Conditioning, tours: Int[Tensor, "b r n"]
 ) -> Float[Tensor, "b r t"]:
     """The log-likelihood of each city that the actor chose, given those before it in its tour."""
     b, r, _ = tours.shape

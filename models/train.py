@@ -27,9 +27,11 @@ from models.checkpoint import (
 )
 from models.config import NetworkConfig, TrainingConfig, add_options, from_options
 from models.instances import tour_lengths
-from models.labels import Labels
+from models.joining import imitation_loss, sampled_tours
+from models.labels import Batch, Labels
 from models.lagrangian import ascended, lagrangian, violation, weighted_sum
 from models.networks import Memory
+from models.one import OneActor
 from models.record import Record, Step
 from models.rollout import (
     log_likelihoods,
@@ -82,21 +84,7 @@ def policy_gradient_step(run: Run) -> Step:
     run.actor.train()
     instances = _sample_instances(run)
     preferences = _preferences(run)
-    starts = distinct_starts(
-        config.instances,
-        instances.shape[-2],
-        config.starts,
-        run.instance_generator,
-        run.device,
-    ).repeat(1, config.preferences)
-
-    with _precision(run):
-        memory = run.actor.remember(instances, preferences)
-        rows = repeated(run.actor.decoder.condition(preferences), config.starts)
-        choose = sampling(run.sampling_generator)
-        tours = roll_out(run.actor, _detached(memory), rows, starts, choose)
-        likelihoods = log_likelihoods(run.actor, memory, rows, tours)
-
+    tours, likelihoods = _drawn(run, instances, preferences)
     points = tour_lengths(instances, tours)
     each = preferences.repeat_interleave(config.starts, dim=0)
     if config.objective == "lagrangian":
@@ -125,20 +113,20 @@ def policy_gradient_step(run: Run) -> Step:
 
 
 def imitate(run: Run, labels: Labels) -> Step:
-    """One step towards the expert: the loss is what a city of its tours costs in likelihood."""
+    """One step towards the expert."""
     config = run.config
     run.actor.train()
-    instances, preferences, tours = (
-        part.to(run.device)
-        for part in labels.batch(
-            config.instances, config.preferences, config.starts, run.instance_generator
+    batch = Batch(
+        *(
+            part.to(run.device)
+            for part in labels.batch(
+                config.instances, config.preferences, config.starts, run.instance_generator
+            )
         )
     )
-    with _precision(run):
-        memory = run.actor.remember(instances, preferences)
-        rows = repeated(run.actor.decoder.condition(preferences), config.starts)
-        loss = -log_likelihoods_by_city(run.actor, memory, rows, tours).mean()
+    loss = _imitation_loss(run, batch)
     _learn(run, loss)
+    instances, preferences, tours = batch
     points = tour_lengths(instances, tours)
     each = preferences.repeat_interleave(config.starts, dim=0)
     return Step(
@@ -147,6 +135,36 @@ def imitate(run: Run, labels: Labels) -> Step:
         violation=violation(points, each).mean().item(),
         multiplier=0.0,
     )
+
+
+def _drawn(run: Run, instances: Tensor, preferences: Tensor) -> tuple[Tensor, Tensor]:
+    """Tours of the instances, several for each preference in turn, and their log-likelihoods."""
+    config, actor, generator = run.config, run.actor, run.sampling_generator
+    if isinstance(actor, OneActor):
+        return sampled_tours(actor, instances, preferences, config.starts, generator)
+    starts = distinct_starts(
+        config.instances,
+        instances.shape[-2],
+        config.starts,
+        run.instance_generator,
+        run.device,
+    ).repeat(1, config.preferences)
+    with _precision(run):
+        memory = actor.remember(instances, preferences)
+        rows = repeated(actor.decoder.condition(preferences), config.starts)
+        tours = roll_out(actor, _detached(memory), rows, starts, sampling(generator))
+        return tours, log_likelihoods(actor, memory, rows, tours)
+
+
+def _imitation_loss(run: Run, batch: Batch) -> Tensor:
+    """What a choice that the expert's tours ask for costs in likelihood."""
+    if isinstance(run.actor, OneActor):
+        return imitation_loss(run.actor, batch)
+    instances, preferences, tours = batch
+    with _precision(run):
+        memory = run.actor.remember(instances, preferences)
+        rows = repeated(run.actor.decoder.condition(preferences), run.config.starts)
+        return -log_likelihoods_by_city(run.actor, memory, rows, tours).mean()
 
 
 def _sample_instances(run: Run) -> Tensor:
@@ -222,6 +240,8 @@ def main(arguments: list[str] | None = None) -> None:
         if options.initial:
             start_from(run, load_weights(options.initial).actor)
     run.precision = getattr(torch, options.precision)
+    if isinstance(run.actor, OneActor) and run.precision != torch.float32:
+        raise ValueError(f"pa-one trains in float32, got precision {options.precision}")
     labels = Labels(options.labels) if options.labels else None
     validation = validation_sets(run.actor.reads, COUNTS, device)
     train(run, run.config.steps, validation, options.out, labels)

@@ -9,6 +9,7 @@ from torch import Generator, Tensor
 
 from models.instances import tour_lengths
 from models.networks import Actor
+from models.one import OneActor
 from models.rollout import greedily, roll_out, starts_in_turn
 from models.sampling import fan_of_preferences, uniform_instances
 from service.front import hypervolume
@@ -43,6 +44,8 @@ def greedy_tours(
     actor: Actor, instances: Tensor, preferences: Float[Tensor, "k 2"]
 ) -> Int[Tensor, "b k n"]:
     """The greedy tour of each instance and preference."""
+    if isinstance(actor, OneActor):
+        return actor.tours(instances, preferences)
     rows, _, places = actor.grouped(preferences)
     starts = starts_in_turn(rows, instances).repeat(len(instances), 1)
     memory = actor.remember(instances, rows)

@@ -34,8 +34,8 @@ class Demand:
 
     The search that improves it has `time_limit` seconds; at 0 there is none. The caller may bring
     tours, shape (m, n), that the front shall dominate or equal. Without a reference point it is
-    n times the scale: where every step costs a whole unit. The network builds its tours from so
-    many of the symmetries of the cities' coordinates.
+    n times the scale: where every step costs a whole unit. The network is called so many
+    times, each under another symmetry of the cities' coordinates and for angles in between.
     """
 
     angles: Array
@@ -201,13 +201,19 @@ def _constructed(
     # Of one or two cities there is one tour, and no network was trained on them.
     if instance.n <= 2:
         return np.arange(instance.n, dtype=np.int64)[np.newaxis]
-    preferences = from_angles(demand.angles)
     tours = []
-    for seen in symmetries(instance, demand.augment):
-        tours.append(constructor.tours(seen, preferences))
+    for call, seen in enumerate(symmetries(instance, demand.augment)):
+        angles = _moved(demand.angles, call / demand.augment)
+        tours.append(constructor.tours(seen, from_angles(angles)))
         if stop():
             break
     return np.concatenate(tours)
+
+
+def _moved(angles: Array, share: float) -> Array:
+    """The angles, each moved by a share of the way to the next; the last stays."""
+    each = np.arange(len(angles))
+    return np.interp(each + share, each, angles)
 
 
 def _reference_point(instance: Instance, demand: Demand) -> Array:

@@ -139,8 +139,8 @@ class FrontRequest(PlanRequest):
 
     augment: Annotated[int, Field(ge=1, le=MOST), BeforeValidator(_whole)] = Field(
         default=1,
-        description="of how many symmetries of the coordinates the network builds tours, each in a"
-        " call of its own",
+        description="how many times the network is called: each time it sees the coordinates under"
+        " another symmetry of the square, and aims between the angles of the other calls",
     )
 
     @property

@@ -11,8 +11,8 @@ import torch
 from models import train
 from models.checkpoint import averaged_actor, load_weights, new_run, resume, save, start_from
 from models.config import NAMES, NetworkConfig, TrainingConfig, as_plain, from_plain
-from models.sampling import fan_of_preferences, uniform_cities
-from models.validation import validation_sets
+from models.sampling import fan_of_preferences, uniform_instances
+from models.validation import greedy_tours, validation_sets
 
 CPU = torch.device("cpu")
 SMALL = NetworkConfig(width=16, heads=2, layers=1, feedforward=32)
@@ -93,6 +93,8 @@ def test_training_lowers_the_objective(
         multiplier=2.0,
         ascent_rate=0.0,
     )
+    if (name, objective) == ("pa-one", "lagrangian"):
+        pytest.skip("it joins by weighted sums, so where its tours point is not its to change")
     run = new_run(config, CPU)
     objectives = [train.policy_gradient_step(run).objective for _ in range(150)]
     assert sum(objectives[-30:]) < 0.97 * sum(objectives[:30])
@@ -174,26 +176,26 @@ def test_an_ablation_is_labelled_as_the_paper_does(changes: dict[str, object], l
     assert NetworkConfig(**changes).label == label
 
 
+@pytest.mark.parametrize("name", ["pa-one", "pa-one-matrix"])
 @torch.no_grad()
-def test_a_deeper_network_begins_as_the_one_it_grew_from() -> None:
-    grown = new_run(small_config(network=replace(SMALL, layers=3)), CPU)
-    shallow = new_run(small_config(seed=9), CPU).actor.eval()
+def test_a_deeper_network_begins_as_the_one_it_grew_from(name: str) -> None:
+    network = replace(SMALL, name=name)
+    grown = new_run(small_config(network=replace(network, layers=3)), CPU)
+    shallow = new_run(small_config(network=network, seed=9), CPU).actor.eval()
     start_from(grown, shallow)
-    sampled = uniform_cities(2, 9, torch.Generator().manual_seed(1), CPU)
+    generator = torch.Generator().manual_seed(1)
+    sampled = uniform_instances(shallow.reads, 2, 9, generator, CPU)
     preferences = fan_of_preferences(5, CPU)
     for actor in (grown.actor, averaged_actor(grown)):
-        for table, expected in zip(
-            actor.eval().remember(sampled, preferences),
-            shallow.remember(sampled, preferences),
-            strict=True,
-        ):
-            torch.testing.assert_close(table, expected)
+        tours = greedy_tours(actor.eval(), sampled, preferences)
+        assert torch.equal(tours, greedy_tours(shallow, sampled, preferences))
     policy_gradient = train.policy_gradient_step
-    before = [weights.clone() for weights in grown.actor.encoder.layers[2].parameters()]
+    layer = (grown.actor.layers if name == "pa-one" else grown.actor.encoder.layers)[2]
+    before = [weights.clone() for weights in layer.parameters()]
     with torch.enable_grad():
         policy_gradient(grown)
         policy_gradient(grown)
-    after = grown.actor.encoder.layers[2].parameters()
+    after = layer.parameters()
     assert all((b != a).any() for b, a in zip(before, after, strict=True))
 
 
@@ -206,7 +208,13 @@ def test_only_a_network_that_can_stay_what_it_was_grows() -> None:
 
 def test_products_of_less_precision_train_as_well(tmp_path: Path) -> None:
     command = ["--out", str(tmp_path), "--precision", "bfloat16", "--steps", "2"]
+    command += ["--name", "pa-one-matrix"]
     small = ["--width", "16", "--heads", "2", "--layers", "1", "--feedforward", "32"]
     train.main([*command, *small, "--instances", "2", "--starts", "2", "--preferences", "5"])
     weights = load_weights(tmp_path / "weights.pt").actor.state_dict()
     assert all(each.isfinite().all() and each.dtype == torch.float32 for each in weights.values())
+
+
+def test_pa_one_trains_in_single_precision_alone(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="pa-one trains in float32, got precision bfloat16"):
+        train.main(["--out", str(tmp_path), "--precision", "bfloat16"])

@@ -1,0 +1,85 @@
+"""Parts of an actor as ONNX, to be put together by hand."""
+
+import logging
+import warnings
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import torch
+from onnx import AttributeProto, FunctionProto, GraphProto, ModelProto, TensorProto, helper, inliner
+from torch import nn
+
+DOMAIN = "paretour"  # of functions that stand for parts until they are put in their places
+
+
+def exported(
+    module: nn.Module,
+    arguments: Any,
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    axes: Mapping[int, Any],
+) -> ModelProto:
+    """The module as a graph of its own, of which the axes of the sizes that are given stay free."""
+
+    def dynamic(argument: Any) -> Any:
+        if isinstance(argument, tuple):
+            return tuple(dynamic(each) for each in argument)
+        return {axis: axes[size] for axis, size in enumerate(argument.shape) if size in axes}
+
+    logging.getLogger("torch.onnx").setLevel(logging.ERROR)  # it warns of torchvision's absence
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the exporter's own deprecations and axis names
+        program = torch.onnx.export(
+            module.eval(),
+            arguments,
+            input_names=list(inputs),
+            output_names=list(outputs),
+            dynamic_shapes=dynamic(arguments),
+            dynamo=True,
+            verbose=False,
+        )
+    assert program is not None
+    return program.model_proto
+
+
+def inlined(model: ModelProto, functions: Sequence[FunctionProto]) -> ModelProto:
+    """The model with each function in its place, and the weights of all in the outermost graph."""
+    model.functions.extend(functions)
+    model = inliner.inline_local_functions(model)
+    model.graph.initializer.extend(_taken_out(model.graph))
+    return model
+
+
+def _taken_out(graph: GraphProto) -> list[TensorProto]:
+    """The constant tensors of a graph and of those in it, which lose them; names are unique."""
+    constants, others = [], []
+    for node in graph.node:
+        if node.op_type == "Constant" and node.attribute[0].name == "value":
+            constant = TensorProto()
+            constant.CopyFrom(node.attribute[0].t)
+            constant.name = node.output[0]
+            constants.append(constant)
+        else:
+            others.append(node)
+            for attribute in node.attribute:
+                if attribute.type == AttributeProto.GRAPH:
+                    constants += _taken_out(attribute.g)
+    del graph.node[:]
+    graph.node.extend(others)
+    return constants
+
+
+def as_function(name: str, model: ModelProto) -> FunctionProto:
+    """A graph as a function of that name, its weights as constants inside."""
+    graph = model.graph
+    constants = [
+        helper.make_node("Constant", [], [each.name], value=each) for each in graph.initializer
+    ]
+    return helper.make_function(
+        DOMAIN,
+        name,
+        [value.name for value in graph.input],
+        [value.name for value in graph.output],
+        [*constants, *graph.node],
+        model.opset_import,
+    )

@@ -1,0 +1,134 @@
+"""Tours in the making: paths, here called fragments, that grow together until one is left.
+
+A row is one tour. Its *ends* are the cities that still lack a neighbour: both ends of each path,
+and every city that is still alone, which is an end once and lacks two. Ends that have got all
+their neighbours are closed and, from time to time, cleared away. All is written so that the
+numbers of rows, ends and cities stay free when it is exported.
+"""
+
+from typing import NamedTuple
+
+import torch
+from jaxtyping import Bool, Float, Int
+from torch import Tensor
+
+# What an impossible edge costs, and how little it is wanted. Twice this is a finite float.
+NEVER = 1e9
+
+
+class Fragments(NamedTuple):
+    """The fragments of each row, given by their ends; here and below e counts ends, by position.
+
+    An end's partner is the position of the other end of its path; a city alone is its own. The
+    links are the first neighbour of each city, then the second of each, then a place of no
+    meaning; minus one where there is none yet.
+    """
+
+    ends: Int[Tensor, "r e"]
+    partners: Int[Tensor, "r e"]
+    open: Bool[Tensor, "r e"]
+    links: Int[Tensor, "r l"]
+    left: Int[Tensor, " r"]
+
+    @property
+    def on_paths(self) -> Bool[Tensor, "r e"]:
+        """Which ends are of a path; the others are cities alone."""
+        return self.partners != _each(self.ends)
+
+    @property
+    def names(self) -> Int[Tensor, "r e"]:
+        """One number for both ends of a fragment."""
+        return torch.minimum(self.partners, _each(self.ends))
+
+    def trimmed(self) -> "Fragments":
+        """The same without positions at which no row has an open end."""
+        moved, kept = cleared(self)
+        ends, partners, open_ = (part[:, : int(kept)] for part in moved[:3])
+        return Fragments(ends, partners, open_, self.links, self.left)
+
+
+def _each(positions: Tensor) -> Int[Tensor, " e"]:
+    return torch.arange(positions.shape[1], device=positions.device)
+
+
+def all_alone(like: Float[Tensor, "r n"]) -> Fragments:
+    """Every city a fragment of its own, for as many rows and cities as the given tensor has."""
+    nothing = torch.zeros_like(like, dtype=torch.long)
+    cities = nothing + torch.arange(like.shape[1], device=like.device)
+    links = torch.cat((nothing, nothing, nothing[:, :1]), dim=1) - 1
+    return Fragments(cities, cities.clone(), nothing == 0, links, (nothing + 1).sum(dim=1))
+
+
+def cleared(fragments: Fragments) -> tuple[Fragments, Int[Tensor, ""]]:
+    """The open ends of each row first, and how many of all ends are worth keeping."""
+    open_ = fragments.open
+    positions = open_.long().cumsum(dim=1) - 1
+    e = open_.shape[1]
+    each = _each(open_).expand_as(positions)
+    room = torch.cat((each, each[:, :1]), dim=1)  # closed ends go beyond the last
+    order = room.scatter(1, torch.where(open_, positions, e), each)[:, :-1]
+    kept = open_.sum(dim=1, keepdim=True)
+    partners = positions.gather(1, fragments.partners.gather(1, order))
+    moved = Fragments(
+        fragments.ends.gather(1, order),
+        torch.where(each < kept, partners, each),
+        each < kept,
+        fragments.links,
+        fragments.left,
+    )
+    return moved, kept.max()
+
+
+def possible(fragments: Fragments, candidates: Int[Tensor, "r e c"]) -> Bool[Tensor, "r e c"]:
+    """Whether each end may be joined to each of its candidates, given by position."""
+    flat = candidates.flatten(1)
+    open_ = fragments.open.gather(1, flat).view_as(candidates) & fragments.open[..., None]
+    theirs = fragments.names.gather(1, flat).view_as(candidates)
+    return open_ & (theirs != fragments.names[..., None])
+
+
+def best_mates(
+    fragments: Fragments, candidates: Int[Tensor, "r e c"], wanted: Float[Tensor, "r e c"]
+) -> Int[Tensor, "r e"]:
+    """Whom to join each end to, by position, or minus one.
+
+    Two fragments are joined where both have no edge to any fragment that is wanted more. So each
+    fragment is joined to one other at most, no cycle closes, and wherever two fragments have
+    possible edges, some are joined. An edge is wanted as much by both its ends.
+    """
+    wanted = torch.where(possible(fragments, candidates), wanted, -NEVER)
+    best, which = wanted.max(dim=-1)
+    mates = candidates.gather(2, which[..., None]).squeeze(-1)
+    own = fragments.names
+    theirs = own.gather(1, mates)
+    highest = torch.full_like(best, -NEVER).scatter_reduce(1, own, best, "amax")
+    # An end may be wanted by one that is not among its own candidates.
+    named = own.gather(1, candidates.flatten(1))
+    highest = highest.scatter_reduce(1, named, wanted.flatten(1), "amax")
+    agreed = (best > -NEVER / 2) & (best >= highest.gather(1, own))
+    agreed &= best >= highest.gather(1, theirs)
+
+    # Of edges wanted alike, a fragment takes the one with the highest number.
+    each = _each(own)
+    e = each[-1] + 1
+    numbers = torch.where(agreed, torch.minimum(each, mates) * e + torch.maximum(each, mates), -1)
+    most = torch.full_like(numbers, -1).scatter_reduce(1, own, numbers, "amax")
+    most = most.scatter_reduce(1, theirs, numbers, "amax")
+    agreed &= (most.gather(1, own) == numbers) & (most.gather(1, theirs) == numbers)
+
+    chosen = torch.where(agreed, mates, -1)
+    room = torch.cat((chosen, chosen[:, :1]), dim=1)
+    return room.scatter(1, torch.where(agreed, mates, e), each.expand_as(mates))[:, :-1]
+
+
+def joined(fragments: Fragments, mates: Int[Tensor, "r e"]) -> Fragments:
+    """The fragments with each end joined to its mate, where it has one."""
+    ends, partners, open_, links, left = fragments
+    at = mates >= 0
+    second = fragments.on_paths
+    n = (links.shape[1] - 1) // 2
+    places = torch.where(at, torch.where(second, ends + n, ends), 2 * n)
+    links = links.scatter(1, places, ends.gather(1, mates.clamp(min=0)))
+    beyond = mates.gather(1, partners)
+    partners = torch.where(beyond >= 0, partners.gather(1, beyond.clamp(min=0)), partners)
+    return Fragments(ends, partners, open_ & ~(at & second), links, left - at.sum(dim=1) // 2)
