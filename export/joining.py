@@ -1,8 +1,9 @@
 """One ONNX graph from PA-One: loops over blocks of preferences, over rounds, over cities.
 
 The parts are exported each on its own and put together by the text below. A block has as many
-preferences as there is room for their costs; a round works on the ends that are still open, of
-which there are fewer each time; the last loop goes along the links of the finished tours.
+preferences as there is room for their costs. It begins with a round of all cities; further rounds
+work on the ends that are still open, of which there are fewer each time. The last loop goes along
+the links of the finished tours.
 """
 
 import onnx
@@ -20,7 +21,9 @@ from models.one import (
     OneActor,
     begun,
     by_weight,
+    first_look,
     first_steps,
+    look,
     next_city,
     padded_distances,
 )
@@ -59,10 +62,11 @@ actor (float[n, 4] cities, float[k, 2] preferences) => (int64[k, n] tours)
             first_row = Mul (block, size)
             beyond_row = Add (first_row, size)
             rows = Slice (weights, first_row, beyond_row, zero)
-            costs, ends, partners, open, links, left = paretour.Begin (distances, rows)
+            costs, ends, partners, open, links, left, kept, unfinished =
+                paretour.Begin (distances, rows)
 
             last_ends, last_partners, last_open, last_links, last_left, last_kept = Loop
-                (cities_in_all, , ends, partners, open, links, left, n) <body = join
+                (cities_in_all, unfinished, ends, partners, open, links, left, kept) <body = join
                 (int64 round, bool going_on, int64[r, e] all_ends, int64[r, e] all_partners,
                  bool[r, e] all_open, int64[r, l] links_in, int64[r] left_in, int64[1] kept_in)
                 => (bool go_on, int64[r, f] ends_out, int64[r, f] partners_out,
@@ -103,21 +107,31 @@ class _Prepare(nn.Module):
 
 
 class _Begin(nn.Module):
-    def forward(self, distances: Tensor, rows: Tensor) -> tuple[Tensor, ...]:
-        costs = by_weight(distances, rows)
-        return costs, *begun(costs)
-
-
-class _Round(nn.Module):
-    """The fragments after a round, how many ends to keep, and whether there is more to join."""
+    """The costs of the rows, and what is left of their cities after a first round."""
 
     def __init__(self, actor: OneActor) -> None:
         super().__init__()
         self.actor = actor
 
-    def forward(self, costs: Tensor, fragments: tuple[Tensor, ...]) -> tuple[Tensor, ...]:
-        after, kept = cleared(self.actor.round(costs, Fragments(*fragments)))
-        return *after, kept[None], (after.left > 1).any()
+    def forward(self, distances: Tensor, rows: Tensor) -> tuple[Tensor, ...]:
+        costs = by_weight(distances, rows)
+        return costs, *_left(self.actor.round(costs, begun(costs), first_look(costs)))
+
+
+class _Round(nn.Module):
+    def __init__(self, actor: OneActor) -> None:
+        super().__init__()
+        self.actor = actor
+
+    def forward(self, costs: Tensor, given: tuple[Tensor, ...]) -> tuple[Tensor, ...]:
+        fragments = Fragments(*given)
+        return _left(self.actor.round(costs, fragments, look(costs, fragments)))
+
+
+def _left(fragments: Fragments) -> tuple[Tensor, ...]:
+    """Cleared fragments, how many ends to keep, and whether there is more to join."""
+    after, kept = cleared(fragments)
+    return *after, kept[None], (after.left > 1).any()
 
 
 class _Start(nn.Module):
@@ -151,14 +165,15 @@ def to_onnx(actor: OneActor) -> ModelProto:
     whole = begun(costs)
     ends, partners, open_ = (part[:, :_E].contiguous() for part in whole[:3])
     some = Fragments(ends, partners, open_, whole.links, whole.left)
+    left = [*(f"new_{name}" for name in _FRAGMENTS), "kept", "go_on"]
     parts = {
         "Prepare": (_Prepare(), (cities, rows), ["cities", "preferences"], ["distances", "rows"]),
-        "Begin": (_Begin(), (distances, rows), ["distances", "rows"], ["costs", *_FRAGMENTS]),
+        "Begin": (_Begin(actor), (distances, rows), ["distances", "rows"], ["costs", *left]),
         "Round": (
             _Round(actor),
             (costs, tuple(some)),
             ["costs", *_FRAGMENTS],
-            [*(f"new_{name}" for name in _FRAGMENTS), "kept", "go_on"],
+            left,
         ),
         "Start": (_Start(), (tuple(some),), list(_FRAGMENTS), ["first", "second"]),
         "Next": (

@@ -81,10 +81,9 @@ def cleared(fragments: Fragments) -> tuple[Fragments, Int[Tensor, ""]]:
 
 def possible(fragments: Fragments, candidates: Int[Tensor, "r e c"]) -> Bool[Tensor, "r e c"]:
     """Whether each end may be joined to each of its candidates, given by position."""
-    flat = candidates.flatten(1)
-    open_ = fragments.open.gather(1, flat).view_as(candidates) & fragments.open[..., None]
-    theirs = fragments.names.gather(1, flat).view_as(candidates)
-    return open_ & (theirs != fragments.names[..., None])
+    names = torch.where(fragments.open, fragments.names, -1)
+    theirs = names.gather(1, candidates.flatten(1)).view_as(candidates)
+    return (theirs >= 0) & (theirs != names[..., None]) & fragments.open[..., None]
 
 
 def best_mates(
@@ -92,19 +91,17 @@ def best_mates(
 ) -> Int[Tensor, "r e"]:
     """Whom to join each end to, by position, or minus one.
 
-    Two fragments are joined where both have no edge to any fragment that is wanted more. So each
-    fragment is joined to one other at most, no cycle closes, and wherever two fragments have
-    possible edges, some are joined. An edge is wanted as much by both its ends.
+    Every end names the candidate that it wants most, and two fragments are joined by an edge that
+    both their ends want no less than any other that they name or are named for. So each fragment
+    is joined to one other at most, no cycle closes, and in every row some are joined. An edge is
+    wanted as much by both its ends, and by -NEVER where it is impossible.
     """
-    wanted = torch.where(possible(fragments, candidates), wanted, -NEVER)
     best, which = wanted.max(dim=-1)
     mates = candidates.gather(2, which[..., None]).squeeze(-1)
     own = fragments.names
     theirs = own.gather(1, mates)
     highest = torch.full_like(best, -NEVER).scatter_reduce(1, own, best, "amax")
-    # An end may be wanted by one that is not among its own candidates.
-    named = own.gather(1, candidates.flatten(1))
-    highest = highest.scatter_reduce(1, named, wanted.flatten(1), "amax")
+    highest = highest.scatter_reduce(1, theirs, best, "amax")
     agreed = (best > -NEVER / 2) & (best >= highest.gather(1, own))
     agreed &= best >= highest.gather(1, theirs)
 

@@ -34,6 +34,8 @@ def sampled_tours(
         logits = actor.wanted(costs, fragments, seen) / _TEMPERATURE
         noisy = logits.detach() + _noise(seen.candidates, generator)
         for _ in range(JOININGS):
+            may = possible(fragments, seen.candidates)
+            noisy, logits = (torch.where(may, each, -NEVER) for each in (noisy, logits))
             mates = best_mates(fragments, seen.candidates, noisy)
             likelihoods = likelihoods + _chosen(fragments, seen.candidates, logits, mates)
             fragments = joined(fragments, mates)
@@ -45,11 +47,11 @@ def sampled_tours(
 def imitation_loss(actor: OneActor, batch: Batch) -> Float[Tensor, ""]:
     """The binary cross-entropy of each edge that the network looks at, summed, for each end.
 
-    Of the edges that the expert's tours have, those are taken that the network wants most, until
-    the tours are whole or it sees no more of them.
+    There is one tour for each instance and preference. Of the edges that the expert's tours have,
+    those are taken that the network wants most, until the tours are whole or it sees no more of
+    them.
     """
-    times = batch.tours.shape[1] // len(batch.preferences)
-    costs = _costs(batch.instances, batch.preferences).repeat_interleave(times, dim=0)
+    costs = _costs(batch.instances, batch.preferences)
     tours = batch.tours.flatten(0, 1)
     fragments = begun(costs)
     loss, ends = costs.new_zeros(()), costs.new_zeros(())
@@ -63,8 +65,8 @@ def imitation_loss(actor: OneActor, batch: Batch) -> Float[Tensor, ""]:
         allowed = torch.where(theirs, wanted.detach(), -NEVER)
         before = fragments.left.sum()
         for _ in range(JOININGS):
-            mates = best_mates(fragments, seen.candidates, allowed)
-            fragments = joined(fragments, mates)
+            allowed = torch.where(possible(fragments, seen.candidates), allowed, -NEVER)
+            fragments = joined(fragments, best_mates(fragments, seen.candidates, allowed))
         if bool(fragments.left.sum() == before):
             break
         fragments = fragments.trimmed()
@@ -94,7 +96,6 @@ def _chosen(
     mates: Int[Tensor, "r e"],
 ) -> Float[Tensor, " r"]:
     """The log-likelihood of the edges to the mates, each among all of its fragment's edges."""
-    logits = torch.where(possible(fragments, candidates), logits, -NEVER)
     names = fragments.names
     nothing = torch.full_like(logits[..., 0], -NEVER)
     highest = nothing.scatter_reduce(1, names, logits.detach().amax(dim=-1), "amax")

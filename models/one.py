@@ -18,7 +18,7 @@ from torch import Tensor, nn
 from models.aiming import aimed
 from models.config import NetworkConfig
 from models.encoders import feedforward
-from models.fragments import NEVER, Fragments, all_alone, best_mates, joined
+from models.fragments import NEVER, Fragments, all_alone, best_mates, joined, possible
 from models.instances import distance_matrices
 from models.lagrangian import weights
 
@@ -68,6 +68,12 @@ def begun(costs: Float[Tensor, "r n m"]) -> Fragments:
     return all_alone(costs[:, :, 0])
 
 
+def first_look(costs: Float[Tensor, "r n m"]) -> Look:
+    """What `look` finds while all cities are alone, for less."""
+    cheapest, cities = costs.topk(CANDIDATES, largest=False)
+    return Look(cheapest, torch.where(cheapest < NEVER / 2, cities, 0))
+
+
 def look(costs: Float[Tensor, "r n m"], fragments: Fragments) -> Look:
     """The candidates of each end: the cheapest open ends."""
     ends, partners, open_ = fragments[:3]
@@ -93,7 +99,7 @@ class OneActor(nn.Module):
 
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
-        self.embed = feedforward(4 * CANDIDATES + 6, config.width, config.feedforward)
+        self.embed = feedforward(5 * CANDIDATES + 6, config.width, config.feedforward)
         self.layers = nn.ModuleList(
             TellingLayer(config.width, config.feedforward) for _ in range(config.layers)
         )
@@ -116,8 +122,8 @@ class OneActor(nn.Module):
         nearest = own[..., 0]
         paths = fragments.on_paths.to(costs)
         told = near.candidates_of(torch.stack((1 / scale, nearest, paths), dim=-1).flatten(0, 1))
-        their_scale, their_nearest, their_paths = told.unflatten(0, scale.shape).unbind(dim=-1)
-        theirs = torch.where(real, in_units * their_scale, _MOST).clamp(max=_MOST)
+        told = told.unflatten(0, scale.shape)
+        theirs = torch.where(real, in_units * told[..., 0], _MOST).clamp(max=_MOST)
         across = fragments_across(costs, fragments) / unit
         ends = (
             scale.log(),
@@ -127,8 +133,7 @@ class OneActor(nn.Module):
             nearest,
             count.to(costs) / CANDIDATES,
         )
-        edges = (own, theirs, theirs - their_nearest, their_paths)
-        known = torch.cat((*edges, torch.stack(ends, dim=-1)), dim=-1)
+        known = torch.cat((own, theirs, told.flatten(2), torch.stack(ends, dim=-1)), dim=-1)
         features = self.embed(known.flatten(0, 1))
         for layer in self.layers:
             features = layer(features, near)
@@ -149,16 +154,17 @@ class OneActor(nn.Module):
 
     def _tours(self, cities: Float[Tensor, "n 4"], rows: Float[Tensor, "k 2"]) -> Tensor:
         costs = by_weight(padded_distances(cities), rows)
-        fragments = begun(costs)
+        fragments = self.round(costs, begun(costs), first_look(costs)).trimmed()
         while bool((fragments.left > 1).any()):
-            fragments = self.round(costs, fragments).trimmed()
+            fragments = self.round(costs, fragments, look(costs, fragments)).trimmed()
         return walked(fragments)
 
-    def round(self, costs: Float[Tensor, "r n m"], fragments: Fragments) -> Fragments:
-        """The fragments after one look, and joining by it."""
-        seen = look(costs, fragments)
+    def round(self, costs: Float[Tensor, "r n m"], fragments: Fragments, seen: Look) -> Fragments:
+        """The fragments after joining by what was seen."""
         wanted = self.wanted(costs, fragments, seen)
-        for _ in range(JOININGS):
+        fragments = joined(fragments, best_mates(fragments, seen.candidates, wanted))
+        for _ in range(JOININGS - 1):
+            wanted = torch.where(possible(fragments, seen.candidates), wanted, -NEVER)
             fragments = joined(fragments, best_mates(fragments, seen.candidates, wanted))
         return fragments
 

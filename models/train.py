@@ -116,19 +116,15 @@ def imitate(run: Run, labels: Labels) -> Step:
     """One step towards the expert."""
     config = run.config
     run.actor.train()
-    batch = Batch(
-        *(
-            part.to(run.device)
-            for part in labels.batch(
-                config.instances, config.preferences, config.starts, run.instance_generator
-            )
-        )
-    )
+    # PA-One learns edges, for which it is all one where a tour starts.
+    starts = 1 if isinstance(run.actor, OneActor) else config.starts
+    given = labels.batch(config.instances, config.preferences, starts, run.instance_generator)
+    batch = Batch(*(part.to(run.device) for part in given))
     loss = _imitation_loss(run, batch)
     _learn(run, loss)
     instances, preferences, tours = batch
     points = tour_lengths(instances, tours)
-    each = preferences.repeat_interleave(config.starts, dim=0)
+    each = preferences.repeat_interleave(starts, dim=0)
     return Step(
         loss=loss.item(),
         objective=weighted_sum(points, each).mean().item(),

@@ -112,9 +112,10 @@ def test_a_tour_short_in_the_first_length_belongs_to_a_steep_preference(folder: 
         assert points[-1, 1] > points[0, 1]
 
 
-def test_imitation_makes_the_expert_likelier(folder: Path) -> None:
+@pytest.mark.parametrize("name", ["pa-one", "pa-at"])
+def test_imitation_makes_the_expert_likelier(folder: Path, name: str) -> None:
     config = TrainingConfig(
-        network=NetworkConfig(width=32, heads=2, layers=1, feedforward=32),
+        network=NetworkConfig(name=name, width=32, heads=2, layers=1, feedforward=32),
         objective="imitation",
         steps=60,
         instances=6,

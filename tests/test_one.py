@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from torch import Generator, Tensor
 
 from models.config import NetworkConfig
-from models.fragments import NEVER, Fragments, all_alone, best_mates, joined
+from models.fragments import NEVER, Fragments, all_alone, best_mates, joined, possible
 from models.instances import tour_lengths
 from models.joining import sampled_tours
 from models.lagrangian import weights
 from models.networks import build
-from models.one import OneActor, walked
+from models.one import OneActor, begun, by_weight, first_look, look, padded_distances, walked
 from models.sampling import fan_of_preferences, uniform_cities
 
 CPU = torch.device("cpu")
@@ -98,6 +98,7 @@ def to_the_end(wanted: Tensor) -> Fragments:
     fragments = all_alone(wanted[:, 0])
     candidates = torch.arange(n).expand(r, n, n)
     for _ in range(n):
+        wanted = torch.where(possible(fragments, candidates), wanted, -NEVER)
         fragments = joined(fragments, best_mates(fragments, candidates, wanted))
     assert (fragments.left == 1).all()
     return fragments
@@ -156,3 +157,13 @@ def test_likelier_tours_are_drawn_more_often() -> None:
         ((lengths - lengths.mean()) * likelihoods).mean().backward()
         optimizer.step()
     assert mean_cost() < 0.98 * before
+
+
+def test_the_first_look_is_as_any_other() -> None:
+    for n in (3, 9, 30):
+        cities = uniform_cities(1, n, Generator().manual_seed(n), CPU)[0]
+        costs = by_weight(padded_distances(cities), weights(fan_of_preferences(4, CPU)))
+        first, usual = first_look(costs), look(costs, begun(costs))
+        assert torch.equal(first.real, usual.real)
+        assert torch.equal(first.costs[first.real], usual.costs[first.real])
+        assert torch.equal(first.candidates[first.real], usual.candidates[first.real])
