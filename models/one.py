@@ -23,8 +23,8 @@ from models.instances import distance_matrices
 from models.lagrangian import weights
 
 CANDIDATES = 8  # of an end
-_TOLD = 8  # features that an end tells its neighbours
-_WEIGHED = 8  # hidden features of an edge
+_TOLD = 4  # features that an end tells its neighbours
+_WEIGHED = 4  # hidden features of an edge
 JOININGS = 2  # for one look of the network
 
 # Bounds on what the network sees. Costs are in units of their mean over the candidates of a row.
