@@ -14,7 +14,7 @@ from torch.export import Dim
 
 from export.parts import as_function, exported, inlined
 from models.aiming import aimed
-from models.fragments import Fragments, cleared
+from models.fragments import Fragments, cleared, first_steps, next_city
 from models.lagrangian import weights
 from models.one import (
     CANDIDATES,
@@ -22,9 +22,7 @@ from models.one import (
     begun,
     by_weight,
     first_look,
-    first_steps,
     look,
-    next_city,
     padded_distances,
 )
 

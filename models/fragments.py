@@ -129,3 +129,32 @@ def joined(fragments: Fragments, mates: Int[Tensor, "r e"]) -> Fragments:
     beyond = mates.gather(1, partners)
     partners = torch.where(beyond >= 0, partners.gather(1, beyond.clamp(min=0)), partners)
     return Fragments(ends, partners, open_ & ~(at & second), links, left - at.sum(dim=1) // 2)
+
+
+def walked(fragments: Fragments) -> Int[Tensor, "r n"]:
+    """The tours of rows that have one fragment left, from one of its ends to the other."""
+    links = fragments.links
+    n = (links.shape[1] - 1) // 2
+    before, now = first_steps(fragments)
+    tour = [before, now]
+    for _ in range(n - 2):
+        before, now = now, next_city(links, before, now)
+        tour.append(now)
+    return torch.stack(tour, dim=1)
+
+
+def first_steps(fragments: Fragments) -> tuple[Int[Tensor, " r"], Int[Tensor, " r"]]:
+    """One end of each row's last fragment, and the city after it."""
+    number = fragments.open.long()
+    one = fragments.ends.gather(1, number.argmax(dim=1, keepdim=True))
+    return one.squeeze(1), fragments.links.gather(1, one).squeeze(1)
+
+
+def next_city(
+    links: Int[Tensor, "r l"], before: Int[Tensor, " r"], now: Int[Tensor, " r"]
+) -> Int[Tensor, " r"]:
+    """The neighbour of the city now that is not the one before."""
+    n = (links.shape[1] - 1) // 2
+    first = links.gather(1, now[:, None]).squeeze(1)
+    second = links.gather(1, now[:, None] + n).squeeze(1)
+    return torch.where(first == before, second, first)

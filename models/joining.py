@@ -5,10 +5,10 @@ from jaxtyping import Bool, Float, Int
 from torch import Generator, Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits
 
-from models.fragments import NEVER, Fragments, best_mates, joined, possible
+from models.fragments import NEVER, Fragments, best_mates, joined, possible, walked
 from models.labels import Batch
 from models.lagrangian import weights
-from models.one import JOININGS, OneActor, begun, by_weight, look, padded_distances, walked
+from models.one import JOININGS, OneActor, begun, by_weight, look, padded_distances
 
 _TEMPERATURE = 0.5  # of what is drawn, against log-odds
 

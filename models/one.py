@@ -6,7 +6,7 @@ says how much each edge to them is wanted; and the edges that nothing better sta
 taken. The ends that are left are looked at anew in the next round, so that the network always
 sees the problem as it then is: a smaller one of the same kind. It knows nothing of coordinates,
 preferences or the number of cities, only what the edges between neighbours cost, against each
-other; which is why what it learns at 20 to 200 cities holds at 5,000.
+other; which is why what it learns at 20 to 180 cities holds at 1000.
 """
 
 from typing import NamedTuple
@@ -18,7 +18,7 @@ from torch import Tensor, nn
 from models.aiming import aimed
 from models.config import NetworkConfig
 from models.encoders import feedforward
-from models.fragments import NEVER, Fragments, all_alone, best_mates, joined, possible
+from models.fragments import NEVER, Fragments, all_alone, best_mates, joined, possible, walked
 from models.instances import distance_matrices
 from models.lagrangian import weights
 
@@ -223,32 +223,3 @@ class TellingLayer(nn.Module):
         heard = near.candidates_of(told).flatten(1)
         thought: Tensor = self.think(torch.cat((features, near.partners_of(told), heard), dim=-1))
         return features + thought
-
-
-def walked(fragments: Fragments) -> Int[Tensor, "r n"]:
-    """The tours of rows that have one fragment left, from city 0, or its first neighbour on."""
-    links = fragments.links
-    n = (links.shape[1] - 1) // 2
-    before, now = first_steps(fragments)
-    tour = [before, now]
-    for _ in range(n - 2):
-        before, now = now, next_city(links, before, now)
-        tour.append(now)
-    return torch.stack(tour, dim=1)
-
-
-def first_steps(fragments: Fragments) -> tuple[Int[Tensor, " r"], Int[Tensor, " r"]]:
-    """One end of each row's last fragment, and the city after it."""
-    number = fragments.open.long()
-    one = fragments.ends.gather(1, number.argmax(dim=1, keepdim=True))
-    return one.squeeze(1), fragments.links.gather(1, one).squeeze(1)
-
-
-def next_city(
-    links: Int[Tensor, "r l"], before: Int[Tensor, " r"], now: Int[Tensor, " r"]
-) -> Int[Tensor, " r"]:
-    """The neighbour of the city now that is not the one before."""
-    n = (links.shape[1] - 1) // 2
-    first = links.gather(1, now[:, None]).squeeze(1)
-    second = links.gather(1, now[:, None] + n).squeeze(1)
-    return torch.where(first == before, second, first)

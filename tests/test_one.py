@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from torch import Generator, Tensor
 
 from models.config import NetworkConfig
-from models.fragments import NEVER, Fragments, all_alone, best_mates, joined, possible
+from models.fragments import NEVER, Fragments, all_alone, best_mates, joined, possible, walked
 from models.instances import tour_lengths
 from models.joining import sampled_tours
 from models.lagrangian import weights
 from models.networks import build
-from models.one import OneActor, begun, by_weight, first_look, look, padded_distances, walked
+from models.one import OneActor, begun, by_weight, first_look, look, padded_distances
 from models.sampling import fan_of_preferences, uniform_cities
 
 CPU = torch.device("cpu")
