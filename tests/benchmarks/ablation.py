@@ -35,7 +35,7 @@ from tests.benchmarks.rivals.construction import greedy_edge, spread_weights
 
 SECONDS = {40: (0.02, 0.05, 0.2), 200: (0.1, 0.3, 1.0), 500: (0.5, 1.0, 3.0), 1000: (2.0, 5.0)}
 
-EDGES = "these, and their edges"  # of the network's 100 tours, in the column before
+EDGES = "100 tours of the network, and their edges"
 Build = Callable[[Instance], NDArray[np.integer]]
 Candidates = Callable[[NDArray[np.integer]], AbstractContextManager[None]]
 
