@@ -1,4 +1,4 @@
-"""PA-One's attention for long instances: block by block of cities, so that memory stays small.
+"""The attention of PA-One for matrices: block by block of cities, so that memory stays small.
 
 At once, the scores of n cities are groups x heads x n x n numbers, 4 GB at 5,000 cities. In the
 exported graph a node stands for the attention of a layer, and an ONNX function says what it
@@ -90,7 +90,7 @@ See (query, key, value, rates, costs, weights) => (seen)
 
 
 def with_nodes(actor: StepwiseActor) -> StepwiseActor:
-    """The actor, PA-One's attention as nodes of the graph that it is exported to."""
+    """The actor, attention that fades as nodes of the graph that it is exported to."""
     if not isinstance(actor.encoder, MatrixEncoder):
         return actor
     changed = deepcopy(actor)
