@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from onnx import ModelProto
 from torch import Generator, Tensor
 
-from models.networks import Actor, StepwiseActor
-from models.one import OneActor
+from models.data.sampling import fan_of_preferences, uniform_instances
+from models.networks.build import Actor, StepwiseActor
+from models.networks.pa_one import OneActor
 from models.rollout import log_likelihoods_by_city
-from models.sampling import fan_of_preferences, uniform_instances
 from models.validation import greedy_tours
 
 CITIES = (3, 7, 40, 200, 1000)

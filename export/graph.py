@@ -2,9 +2,9 @@
 
 from onnx import ModelProto
 
-from export import joining, stepwise
-from models.networks import Actor
-from models.one import OneActor
+from export import pa_one, stepwise
+from models.networks.build import Actor
+from models.networks.pa_one import OneActor
 
 
 def to_onnx(actor: Actor) -> ModelProto:
@@ -12,4 +12,4 @@ def to_onnx(actor: Actor) -> ModelProto:
 
     The instance is cities (n, 4) or matrices (2, n, n), whichever the actor reads.
     """
-    return joining.to_onnx(actor) if isinstance(actor, OneActor) else stepwise.to_onnx(actor)
+    return pa_one.to_onnx(actor) if isinstance(actor, OneActor) else stepwise.to_onnx(actor)

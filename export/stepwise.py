@@ -13,10 +13,10 @@ from onnx import GraphProto, ModelProto, NodeProto, TensorProto, helper
 from torch import Tensor, nn
 from torch.export import Dim
 
-from export.blocks import in_blocks, with_nodes
-from export.parts import exported
-from models.decoder import Moment
-from models.networks import Conditioning, Memory, StepwiseActor
+from export.attention_blocks import in_blocks, with_nodes
+from export.onnx_parts import exported
+from models.networks.build import Conditioning, Memory, StepwiseActor
+from models.networks.stepwise import Moment
 from models.rollout import starts_in_turn
 
 # Sizes to trace at: no other axis has them, so each axis shows whether it is n or k.

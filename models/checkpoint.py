@@ -11,10 +11,10 @@ from torch.optim import Adam
 from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
 from models.config import TrainingConfig, as_plain, from_plain
-from models.critic import Critic
-from models.encoders import FadingLayer
-from models.networks import Actor, build
-from models.one import OneActor, TellingLayer
+from models.networks.build import Actor, build
+from models.networks.critic import Critic
+from models.networks.layers import FadingLayer
+from models.networks.pa_one import OneActor, TellingLayer
 
 
 @dataclass

@@ -20,10 +20,15 @@ from torch.optim import Adam
 from tqdm import tqdm
 
 from models.config import add_options, from_options, setting
-from models.instances import tour_lengths
-from models.pointer_network import PointerActor, PointerCritic, build_tours, log_likelihoods
+from models.data.instances import tour_lengths
+from models.data.sampling import uniform_cities
+from models.networks.pointer_network import (
+    PointerActor,
+    PointerCritic,
+    build_tours,
+    log_likelihoods,
+)
 from models.rollout import sampling
-from models.sampling import uniform_cities
 
 
 @dataclass(frozen=True, kw_only=True)

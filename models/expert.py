@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from models.config import add_options, from_options, setting
-from models.instances import closed, distance_matrices
-from models.maps import coverage_matrices
-from models.planes import KINDS
-from service.improve import improve
+from models.data.instances import closed, distance_matrices
+from models.data.maps import coverage_matrices
+from models.data.planes import KINDS
 from service.instance import Instance
 from service.preferences import from_angles, weights
+from service.search.improve import improve
 
 Array = NDArray[np.float64]
 

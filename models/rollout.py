@@ -10,8 +10,8 @@ import torch
 from jaxtyping import Float, Int
 from torch import Generator, Tensor
 
-from models.decoder import Moment
-from models.networks import Conditioning, Memory, StepwiseActor
+from models.networks.build import Conditioning, Memory, StepwiseActor
+from models.networks.stepwise import Moment
 
 # How the next cities, (b, r), follow from the logits, (b, r, n).
 Choose = Callable[[Tensor], Tensor]

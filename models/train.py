@@ -26,13 +26,18 @@ from models.checkpoint import (
     start_from,
 )
 from models.config import NetworkConfig, TrainingConfig, add_options, from_options
-from models.instances import tour_lengths
-from models.joining import imitation_loss, sampled_tours
-from models.labels import Batch, Labels
+from models.data.dataset import Batch, Labels
+from models.data.instances import tour_lengths
+from models.data.sampling import (
+    city_count,
+    distinct_starts,
+    fan_of_preferences,
+    spread_preferences,
+    uniform_instances,
+)
 from models.lagrangian import ascended, lagrangian, violation, weighted_sum
-from models.networks import Memory
-from models.one import OneActor
-from models.record import Record, Step
+from models.networks.build import Memory
+from models.networks.pa_one import OneActor
 from models.rollout import (
     log_likelihoods,
     log_likelihoods_by_city,
@@ -40,13 +45,8 @@ from models.rollout import (
     roll_out,
     sampling,
 )
-from models.sampling import (
-    city_count,
-    distinct_starts,
-    fan_of_preferences,
-    spread_preferences,
-    uniform_instances,
-)
+from models.rollout_pa_one import imitation_loss, sampled_tours
+from models.training_log import Record, Step
 from models.validation import (
     COUNTS,
     ValidationSet,

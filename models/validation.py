@@ -7,12 +7,12 @@ import torch
 from jaxtyping import Float, Int
 from torch import Generator, Tensor
 
-from models.instances import tour_lengths
-from models.networks import Actor
-from models.one import OneActor
+from models.data.instances import tour_lengths
+from models.data.sampling import fan_of_preferences, uniform_instances
+from models.networks.build import Actor
+from models.networks.pa_one import OneActor
 from models.rollout import greedily, roll_out, starts_in_turn
-from models.sampling import fan_of_preferences, uniform_instances
-from service.front import hypervolume
+from service.pareto import hypervolume
 
 _SEED = 20_220_303  # apart from the seeds of training and from the instances of the paper
 _PREFERENCES = 100

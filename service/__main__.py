@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from service.commands import app
+from service.cli.commands import app
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -9,10 +9,12 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from service.front import hypervolume, nondominated
-from service.improve import Progress, best_subset, hypervolume_bound, improve
 from service.instance import Instance, tour_lengths
+from service.pareto import hypervolume, nondominated
 from service.preferences import angles, from_angles
+from service.search.bound import hypervolume_bound
+from service.search.improve import Progress, improve
+from service.search.subset import best_subset
 from service.symmetries import symmetries
 
 Array = NDArray[np.float64]

@@ -8,8 +8,8 @@ from limits import parse
 from pydantic import AfterValidator, BeforeValidator, Field
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
-from service.access import KeyHash
-from service.schemas import Limits
+from service.api.auth import KeyHash
+from service.requests.schemas import Limits
 
 
 def _cores() -> int:

@@ -10,7 +10,7 @@ from service.actor import Actor, load_actors
 from service.instance import Instance
 from service.preferences import fan, from_angles
 from service.settings import Settings
-from tests.artifacts import METADATA, always_city_0, by_row_sums
+from tests.helpers.artifacts import METADATA, always_city_0, by_row_sums
 
 RELEASED = Settings().actors / "pa-one.onnx"
 

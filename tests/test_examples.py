@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from service.settings import Settings
-from tests.serving import app_of, serving
+from tests.helpers.serving import app_of, serving
 
 EXAMPLES = Path(__file__).parent.parent / "service/examples"
 INDEX: list[dict[str, Any]] = json.loads((EXAMPLES / "index.json").read_text())

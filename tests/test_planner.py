@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from service.actor import Actor
-from service.front import hypervolume, nondominated
 from service.instance import Instance, tour_lengths
+from service.pareto import hypervolume, nondominated
 from service.planner import Demand, Front, plan
 from service.preferences import fan
 from service.settings import Settings

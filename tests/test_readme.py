@@ -11,7 +11,7 @@ import httpx
 import pytest
 
 from service.settings import Settings
-from tests.serving import app_of, serving_released
+from tests.helpers.serving import app_of, serving_released
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()

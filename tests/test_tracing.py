@@ -12,7 +12,7 @@ from fastapi import FastAPI
 from opentelemetry.proto.collector.trace.v1.trace_service_pb2 import ExportTraceServiceRequest
 
 from service.tracing import trace
-from tests.serving import running
+from tests.helpers.serving import running
 
 
 @contextmanager

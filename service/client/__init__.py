@@ -1,35 +1,12 @@
-"""A client of the service, for programs that wait and for programs that await.
+"""The old name of the client, for a release more: import `paretour` instead."""
 
-    from service.client import Client
+import warnings
 
-    with Client("http://localhost:8000") as client:
-        front = client.front(coordinates=cities, time_limit=2)
-        tour = front.nearest(angle=30).tour
+from paretour import *  # noqa: F403
+from paretour import __all__ as __all__
 
-What is asked, and how an answer is read, is written once, in `calls` and `following`; the two
-clients only carry it to and fro. Nothing else of the service is needed.
-"""
-
-from service.client.asynchronous import AsyncClient, AsyncJob
-from service.client.plans import Plan, coverage_plan, front_plan
-from service.client.refused import Refused
-from service.client.sync import Client, Job
-from service.client.values import Actor, CoverageRequest, Front, FrontRequest, Path, Progress, Tour
-
-__all__ = [
-    "Actor",
-    "AsyncClient",
-    "AsyncJob",
-    "Client",
-    "CoverageRequest",
-    "Front",
-    "FrontRequest",
-    "Job",
-    "Path",
-    "Plan",
-    "Progress",
-    "Refused",
-    "Tour",
-    "coverage_plan",
-    "front_plan",
-]
+warnings.warn(
+    "service.client is now called paretour: from paretour import Client",
+    DeprecationWarning,
+    stacklevel=2,
+)

@@ -7,9 +7,9 @@ nothing to do although messages wait, which otherwise lasts no longer than to ha
 from socket import gethostname
 from time import monotonic, sleep, time
 
-from service.cluster.ledger import script_at
-from service.cluster.queue import QUEUE
+from service.cluster.celery_app import QUEUE
 from service.cluster.records import GONE, LEASE
+from service.cluster.worker_store import script_at
 
 _SECONDS = LEASE + 1  # until a process that was lost counts as one no more
 _PAUSE = 0.25  # seconds between two looks

@@ -8,16 +8,16 @@ from collections.abc import Callable
 from socket import gethostname
 from threading import Event, Thread
 
-from service.cluster.ledger import Ledger, Taken
 from service.cluster.records import Kept
-from service.messages import Snapshot
-from service.order import MOST_ATTEMPTS, Lost, Overdue, Stopped
-from service.outcomes import ended, failed
-from service.process import MakePlanner
-from service.record import Record
-from service.rendered import Rendered
-from service.worker import Planner, Reporter
-from service.workers import GRACE
+from service.cluster.worker_store import Ledger, Taken
+from service.jobs.front_document import Rendered
+from service.jobs.messages import Snapshot
+from service.jobs.outcomes import ended, failed
+from service.jobs.process import MakePlanner
+from service.jobs.record import Record
+from service.jobs.submission import MOST_ATTEMPTS, Lost, Overdue, Stopped
+from service.jobs.worker_pool import GRACE
+from service.jobs.worker_process import Planner, Reporter
 
 _EVERY = 0.05  # seconds between two looks at whether the work is still wanted
 _PRESENT = 1.0  # seconds between two signs of life

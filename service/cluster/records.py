@@ -9,10 +9,10 @@ from typing import Any
 from pydantic_core import to_json
 from redis import exceptions
 
-from service.columns import WORK, columns, front_columns, record_of
-from service.messages import Snapshot
-from service.order import Overdue, Stopped
-from service.record import Record
+from service.jobs.columns import WORK, columns, front_columns, record_of
+from service.jobs.messages import Snapshot
+from service.jobs.record import Record
+from service.jobs.submission import Overdue, Stopped
 
 SCRIPT = (Path(__file__).parent / "records.lua").read_text()
 LEASE = 5.0  # seconds after which a worker that was not seen is lost

@@ -7,10 +7,10 @@ from redis.asyncio import Redis
 from redis.backoff import NoBackoff
 from redis.retry import Retry
 
-from service.cluster.engine import Cluster
-from service.cluster.queue import queue_at, send
-from service.cluster.store import RedisStore
-from service.rendered import Rendered
+from service.cluster.celery_app import queue_at, send
+from service.cluster.redis_engine import Cluster
+from service.cluster.redis_store import RedisStore
+from service.jobs.front_document import Rendered
 
 _SECONDS = 2.0  # that one answer of Redis may take
 

@@ -21,13 +21,13 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from service.actor import Actor
-from service.front import hypervolume
-from service.improve import improve, warm_up
-from service.improve.costs import tabulate
-from service.improve.neighbours import NEAREST, empty_pool
-from service.improve.search import WEIGHTS, Search
 from service.instance import Instance, tour_lengths
+from service.pareto import hypervolume
 from service.preferences import fan, from_angles
+from service.search.candidates import NEAREST, empty_pool
+from service.search.costs import tabulate
+from service.search.improve import improve, warm_up
+from service.search.schedule import WEIGHTS, Search
 from tests.benchmarks.actors import ACTORS
 from tests.benchmarks.instances import paper_instances, reference_points
 from tests.benchmarks.provenance import load, provenance, store

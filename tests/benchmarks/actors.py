@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from service.actor import Actor
-from service.front import hypervolume
 from service.instance import Instance, tour_lengths
+from service.pareto import hypervolume
 from service.preferences import fan, from_angles
 from tests.benchmarks.instances import COUNT, SIZES, check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import provenance, store

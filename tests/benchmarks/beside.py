@@ -19,11 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.actor import Actor, load_actors
-from service.front import hypervolume
-from service.improve import warm_up
 from service.instance import Instance, tour_lengths
+from service.pareto import hypervolume
 from service.planner import Demand, plan
 from service.preferences import fan
+from service.search.improve import warm_up
 from tests.benchmarks.instances import check_tours
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rivals import ortools_routing

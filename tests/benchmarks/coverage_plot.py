@@ -7,10 +7,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from models.maps import drawn_map
-from service.coverage import Coverage, Survey, survey
-from service.improve import improve
-from service.terrain import inflated, laid_out, largest_region
+from models.data.maps import drawn_map
+from service.coverage.grid import inflated, laid_out, largest_region
+from service.coverage.survey import Coverage, Survey, survey
+from service.search.improve import improve
 from tests.benchmarks.provenance import RESULTS
 
 Array = NDArray[np.float64]

@@ -19,10 +19,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from service.front import hypervolume
-from service.improve import improve, warm_up
-from service.improve.search import bisecting
 from service.instance import Instance, tour_lengths
+from service.pareto import hypervolume
+from service.search.improve import improve, warm_up
+from service.search.schedule import bisecting
 from tests.benchmarks.instances import check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import RESULTS, load, provenance, store
 from tests.benchmarks.rivals import fast_tsp_weights, ortools_routing

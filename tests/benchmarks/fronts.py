@@ -12,9 +12,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from service.front import nondominated
-from service.improve import best_subset, improve
 from service.instance import Instance, tour_lengths
+from service.pareto import nondominated
+from service.search.improve import improve
+from service.search.subset import best_subset
 from tests.benchmarks.instances import paper_instances
 from tests.benchmarks.methods import methods
 from tests.benchmarks.provenance import RESULTS, load

@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from service.front import hypervolume, nondominated
-from service.improve import improve, warm_up
 from service.instance import Instance
+from service.pareto import hypervolume, nondominated
+from service.search.improve import improve, warm_up
 from tests.benchmarks.provenance import provenance, store
 
 Array = NDArray[np.float64]

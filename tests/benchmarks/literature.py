@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from service.actor import Actor
-from service.improve import warm_up
 from service.instance import Instance
 from service.planner import Demand, plan
 from service.preferences import fan
+from service.search.improve import warm_up
 from tests.benchmarks.printed import LITERATURE_CORNERS
 from tests.benchmarks.rows import resume
 

@@ -40,7 +40,7 @@ from tests.benchmarks.traffic import (
     when_due,
 )
 from tests.benchmarks.under_load import load_table
-from tests.serving import Running, running
+from tests.helpers.serving import Running, running
 
 CITIES = 40
 SHARE = 0.8  # of the sustained rate, at which answers are timed

@@ -15,7 +15,7 @@ import torch
 from numpy.typing import NDArray
 
 from models.drl_moa import load_actors
-from models.pointer_network import build_tours
+from models.networks.pointer_network import build_tours
 from service.actor import Actor
 from service.instance import Instance, tour_lengths
 from service.preferences import fan, from_angles

@@ -19,8 +19,8 @@ from tqdm import tqdm
 
 from tests.benchmarks.instances import SIZES, paper_instances
 from tests.benchmarks.provenance import provenance, store
-from tests.browsing import chromium, done, opened
-from tests.serving import running
+from tests.helpers.browsing import chromium, done, opened
+from tests.helpers.serving import running
 
 FRAMES = 240  # of each measurement
 LATE = 25.0  # milliseconds: the frame that a browser had planned was missed

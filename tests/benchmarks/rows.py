@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from service.front import hypervolume
 from service.instance import Instance
+from service.pareto import hypervolume
 from tests.benchmarks.instances import reference_points
 from tests.benchmarks.provenance import load, provenance, store
 

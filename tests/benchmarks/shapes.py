@@ -16,7 +16,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from models import planes
+from models.data import planes
 from service.actor import load_actors
 from service.instance import Instance
 from service.preferences import fan, from_angles

@@ -20,7 +20,7 @@ from tests.benchmarks.demands import growth, unmet_by_soak
 from tests.benchmarks.provenance import provenance, store
 from tests.benchmarks.under_load import soak_table
 from tests.benchmarks.visitors import Tally, Visitor
-from tests.serving import running
+from tests.helpers.serving import running
 
 VISITORS = 8
 EVERY = 2.0  # seconds between two looks at the memory

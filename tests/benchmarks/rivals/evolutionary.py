@@ -21,8 +21,8 @@ from pymoo.operators.mutation.inversion import InversionMutation
 from pymoo.operators.sampling.rnd import PermutationRandomSampling
 from pymoo.optimize import minimize
 
-from service.front import nondominated
 from service.instance import Instance, tour_lengths
+from service.pareto import nondominated
 from tests.benchmarks.rivals.construction import spread_weights
 
 Array = NDArray[np.float64]

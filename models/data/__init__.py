@@ -1,0 +1,1 @@
+"""Instances and preferences to train on, and their labels."""

@@ -1,0 +1,100 @@
+"""Maps of three kinds and the costs between places on them, drawn from an explicit generator.
+
+The kinds are those of PathBench (Toma et al. 2021): cells filled at random, blocks, and a house of
+rooms with doors. With places at random on such maps, they are the instances of the coverage
+experiment of Mehta, Taghipour and Saeedi (2022), arXiv:2203.01298.
+"""
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
+
+from service.coverage.grid import largest_region
+from service.coverage.shortest_paths import between, flat, make_grid
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Cells = NDArray[np.int64]
+Span = tuple[int, int]
+
+SIDE = 64  # cells, as PathBench's maps have
+KINDS = ("random", "blocks", "house")
+_FILL = (0.1, 0.3)  # least and largest share of cells that are obstacles
+_BLOCK = (3, 12)  # least and largest side of a block
+_ROOM = 9  # no side of a room is shorter
+_DOOR = 3
+
+
+def coverage_matrices(generator: Generator, n: int, side: int = SIDE) -> Array:
+    """Costs, shape (2, n, n), between n random places on a map of a random kind.
+
+    The first are lengths of shortest paths, in cells; the second, distances between random points
+    of the unit square.
+    """
+    free, places = coverage_map(generator, n, side)
+    grid = make_grid(free)
+    lengths, _ = between(grid, flat(grid, places), lambda: False)
+    return np.stack((lengths, uniform_distances(generator, n)))
+
+
+def coverage_map(generator: Generator, n: int, side: int = SIDE) -> tuple[Mask, Cells]:
+    """Which cells are free, shape (side, side), and n different ones, shape (n, 2), in one region.
+
+    Drawn again while its largest region has too few cells.
+    """
+    while True:
+        free = drawn_map(generator, KINDS[generator.integers(len(KINDS))], side)
+        cells = np.argwhere(largest_region(free))
+        if len(cells) >= n:
+            return free, generator.permutation(cells)[:n]
+
+
+def drawn_map(generator: Generator, kind: str, side: int) -> Mask:
+    """Which cells of a map of this kind, shape (side, side), are free."""
+    match kind:
+        case "random":
+            return generator.random((side, side)) >= generator.uniform(*_FILL)
+        case "blocks":
+            return _blocks(generator, side)
+        case "house":
+            house = np.pad(np.ones((side, side), np.bool_), 1)
+            _divide(generator, house, (1, side + 1), (1, side + 1))
+            return house[1:-1, 1:-1]
+    raise ValueError(f"kind must be one of {', '.join(KINDS)}, got {kind!r}")
+
+
+def uniform_distances(generator: Generator, n: int) -> Array:
+    """Distances, shape (n, n), between points uniform in the unit square."""
+    points = generator.random((n, 2))
+    return np.hypot(*(points[:, np.newaxis] - points).transpose(2, 0, 1))
+
+
+def _blocks(generator: Generator, side: int) -> Mask:
+    free = np.ones((side, side), np.bool_)
+    fill = generator.uniform(*_FILL)
+    while free.mean() > 1 - fill:
+        row, column = generator.integers(side, size=2)
+        height, width = generator.integers(*_BLOCK, size=2, endpoint=True)
+        free[row : row + height, column : column + width] = False
+    return free
+
+
+def _divide(generator: Generator, house: Mask, rows: Span, columns: Span) -> None:
+    """Divides a room by a wall with a door, and each part again as long as there is space."""
+    if columns[1] - columns[0] > rows[1] - rows[0]:
+        house, rows, columns = house.T, columns, rows
+    (top, bottom), (left, right) = rows, columns
+    # A wall may not end at a door of another.
+    walls = [
+        row
+        for row in range(top + _ROOM, bottom - _ROOM)
+        if not (house[row, left - 1] or house[row, right])
+    ]
+    if not walls:
+        return
+    wall = int(generator.choice(walls))
+    door = generator.integers(left, right - _DOOR, endpoint=True)
+    house[wall, left:right] = False
+    house[wall, door : door + _DOOR] = True
+    _divide(generator, house, (top, wall), columns)
+    _divide(generator, house, (wall + 1, bottom), columns)

@@ -1,0 +1,1 @@
+"""The actors and critics, and what they are made of."""

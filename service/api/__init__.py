@@ -1,0 +1,1 @@
+"""The HTTP interface: what requests may say, and what is answered."""

@@ -1,0 +1,156 @@
+"""Who may call, and how often: API keys, and a rate for each.
+
+A key is 256 random bits. The settings hold its SHA-256 alone, which needs no salt: nobody guesses
+256 bits. Without keys everybody may call, as one caller.
+"""
+
+import hashlib
+import hmac
+import logging
+import math
+import re
+import secrets
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+from importlib.util import find_spec
+from typing import Self
+
+from fastapi import Depends, Security
+from fastapi.params import Depends as Dependency
+from fastapi.security import HTTPBearer
+from limits import RateLimitItem, parse
+from limits.aio.storage import MemoryStorage, RedisStorage
+from limits.aio.strategies import MovingWindowRateLimiter
+from limits.errors import StorageError
+from starlette.requests import Request
+
+from service.errors import Refusal
+
+_REDIS_SECONDS = 0.5  # that a request waits for Redis at most
+_NAME = re.compile(r"[A-Za-z0-9._-]{1,64}")
+_LOG = logging.getLogger("paretour")
+_BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API key")
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeyHash:
+    """The name of a caller and the SHA-256 of a key that it may show, in hexadecimal."""
+
+    caller: str
+    digest: str
+
+    def __post_init__(self) -> None:
+        if not _NAME.fullmatch(self.caller):
+            sentence = "a caller must be named by 1 to 64 letters, digits, dots, dashes"
+            raise ValueError(f"{sentence}, got {self.caller!r}")
+        if len(self.digest) != 64 or not set(self.digest) <= set("0123456789abcdef"):
+            raise ValueError(f"the hash of {self.caller}'s key must be 64 hexadecimal digits")
+
+    @classmethod
+    def read(cls, text: str) -> Self:
+        """The hash written as CALLER:DIGEST."""
+        caller, _, digest = text.partition(":")
+        return cls(caller=caller, digest=digest)
+
+
+def new_key() -> tuple[str, str]:
+    """A key, to be given to its caller and kept nowhere, and its hash, for the settings."""
+    key = secrets.token_urlsafe(32)
+    return key, _digest(key)
+
+
+class Rates:
+    """So many requests of each caller in so much time, as `limits` writes it: 100/second.
+
+    They are counted in memory, or in Redis for all replicas together. Where Redis does not answer,
+    nobody is held up: a rate is a protection, and must not be an outage.
+
+    Raises:
+        ValueError: what Redis needs is not installed.
+    """
+
+    def __init__(self, rate: str, redis_url: str | None = None) -> None:
+        self._rate: RateLimitItem = parse(rate)
+        self._limiter = MovingWindowRateLimiter(_storage(redis_url))
+
+    async def check(self, caller: str) -> None:
+        """Nothing, if the caller may go on; the request is counted.
+
+        Raises:
+            Refusal: there were too many.
+        """
+        try:
+            if await self._limiter.hit(self._rate, caller):
+                return
+            window = await self._limiter.get_window_stats(self._rate, caller)
+        except StorageError:
+            _LOG.warning("rates are not counted: Redis does not answer")
+            return
+        wait = max(1, math.ceil(window.reset_time - time.time()))
+        sentence = f"requests must be at most {self._rate}, and {caller} made more: wait {wait} s"
+        refusal = Refusal(429, "rate-limited", sentence, limit=self._rate.amount)
+        refusal.headers["Retry-After"] = str(wait)
+        raise refusal
+
+
+class Access:
+    """Names the caller of each path that is not open to all, or refuses it."""
+
+    def __init__(self, keys: Iterable[KeyHash] = (), rates: Rates | None = None) -> None:
+        self._keys = tuple(keys)
+        self._rates = rates
+
+    @property
+    def dependencies(self) -> list[Dependency]:
+        """What a guarded router depends on, if there are keys. Then the document asks for one."""
+        return [Depends(self.admit), Security(_BEARER)] if self._keys else []
+
+    async def admit(self, request: Request) -> None:
+        """Name the caller in the request's scope.
+
+        Raises:
+            Refusal: nobody was given this key, or its requests are too many.
+        """
+        request.scope["caller"] = caller = self._caller(request)
+        if self._rates is not None:
+            await self._rates.check(caller)
+
+    def _caller(self, request: Request) -> str:
+        scheme, _, key = request.headers.get("authorization", "").partition(" ")
+        if scheme.lower() != "bearer":
+            raise _unauthorized("Authorization must be Bearer and an API key, and there was none")
+        digest = _digest(key.strip())
+        # No early end: how long it takes says nothing of which hash comes near.
+        matches = [hash_.caller for hash_ in self._keys if _same(hash_.digest, digest)]
+        if not matches:
+            raise _unauthorized("Authorization must be an API key of this service; this is none")
+        return matches[0]
+
+
+def _storage(redis_url: str | None) -> MemoryStorage | RedisStorage:
+    if redis_url is None:
+        return MemoryStorage()
+    if find_spec("redis") is None:
+        raise ValueError("PARETOUR_REDIS_URL needs the extra paretour[cluster]")
+    return RedisStorage(
+        f"async+{redis_url}",
+        wrap_exceptions=True,
+        implementation="redispy",
+        socket_connect_timeout=_REDIS_SECONDS,
+        socket_timeout=_REDIS_SECONDS,
+    )
+
+
+def _digest(key: str) -> str:
+    return hashlib.sha256(key.encode()).hexdigest()
+
+
+def _same(one: str, other: str) -> bool:
+    return hmac.compare_digest(one, other)
+
+
+def _unauthorized(sentence: str) -> Refusal:
+    refusal = Refusal(401, "unauthorized", sentence)
+    refusal.headers["WWW-Authenticate"] = "Bearer"
+    return refusal

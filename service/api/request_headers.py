@@ -1,0 +1,54 @@
+"""What the headers of a request ask for, beside its body: an answer later, and one for repeats."""
+
+import re
+from typing import Any
+
+from starlette.requests import Request
+
+from service.errors import Fault, Refusal
+
+_LONGEST_KEY = 255
+_KEY = rf"^[!-~]([ -~]{{0,{_LONGEST_KEY - 2}}}[!-~])?$"
+# For the OpenAPI document.
+PARAMETERS: tuple[dict[str, Any], ...] = (
+    {
+        "name": "Prefer",
+        "in": "header",
+        "description": "`respond-async` for 202 at once, with a `Location`",
+        "schema": {"type": "string"},
+    },
+    {
+        "name": "Idempotency-Key",
+        "in": "header",
+        "description": "what repeats of this request have in common, so that it is done once",
+        "schema": {
+            "type": "string",
+            "minLength": 1,
+            "maxLength": _LONGEST_KEY,
+            "pattern": _KEY,
+        },
+    },
+)
+
+
+def wants_it_later(request: Request) -> bool:
+    """Whether the answer shall say no more than where the front will be."""
+    preferences = ",".join(request.headers.getlist("prefer")).lower().split(",")
+    return "respond-async" in (each.partition(";")[0].strip() for each in preferences)
+
+
+def idempotency_key(request: Request) -> str | None:
+    """What repeats of the request have in common, if the caller says.
+
+    Raises:
+        Refusal: it is too long, empty, or not of printable ASCII.
+    """
+    key = request.headers.get("idempotency-key")
+    if key is not None and re.fullmatch(_KEY, key) is None:
+        such = "" if key.isascii() and key.isprintable() else ", some of them others"
+        sentence = (
+            f"Idempotency-Key must have 1 to {_LONGEST_KEY} characters of printable ASCII, "
+            f"got {len(key)}{such}"
+        )
+        raise Refusal(422, "invalid-request", sentence, errors=[Fault(detail=sentence)])
+    return key

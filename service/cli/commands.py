@@ -1,0 +1,199 @@
+"""The commands of `paretour`.
+
+Each imports what it needs where it runs: help, or the refusal of an option, waits for nothing.
+"""
+
+from pathlib import Path
+from typing import Annotated
+
+from typer import Argument, Option, Typer
+
+from service.cli.options import (
+    ActorName,
+    Angles,
+    ApiKey,
+    AsCsv,
+    AsJson,
+    Augment,
+    File,
+    Plot,
+    SecondFile,
+    Seed,
+    Size,
+    Start,
+    TimeLimit,
+    Unrounded,
+    Url,
+)
+
+app = Typer(
+    name="paretour",
+    help="Tours under two objectives: the whole front of trade-offs.",
+    epilog="Results go to stdout, all else to stderr. Exit codes: 0 a front, also where Ctrl-C"
+    " ended its search; 1 a fault of paretour; 2 a wrong command, file or request; 3 a service that"
+    " cannot be reached, lets nobody in, or fails; 130 Ctrl-C before there was a front.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+@app.command()
+def front(  # noqa: PLR0913  an option each
+    file: File,
+    file2: SecondFile = None,
+    time_limit: TimeLimit = None,
+    angles: Angles = None,
+    size: Size = None,
+    start: Start = None,
+    seed: Seed = None,
+    actor: ActorName = None,
+    augment: Augment = None,
+    unrounded: Unrounded = False,
+    as_json: AsJson = False,
+    as_csv: AsCsv = False,
+    plot: Plot = None,
+    url: Url = None,
+    api_key: ApiKey = None,
+) -> None:
+    """Plan the front of tours through the cities of a file, or of one for each objective."""
+    from service.cli.backends import Cities, Planner
+    from service.cli.output import Shown, run_front
+
+    options = {"time_limit": time_limit, "size": size, "start": start, "seed": seed, "actor": actor}
+    options["augment"] = augment
+    run_front(
+        Cities(file=file, file2=file2, unrounded=unrounded, angles=angles, options=options),
+        Planner(url, api_key),
+        Shown(as_json=as_json, as_csv=as_csv, plot=plot),
+    )
+
+
+@app.command()
+def tour(  # noqa: PLR0913  an option each
+    file: File,
+    file2: SecondFile = None,
+    *,
+    angle: Annotated[
+        float, Option(min=0, max=90, help="The trade-off: near 0 the second length is small.")
+    ],
+    time_limit: TimeLimit = None,
+    start: Start = None,
+    seed: Seed = None,
+    actor: ActorName = None,
+    augment: Augment = None,
+    unrounded: Unrounded = False,
+    as_json: AsJson = False,
+    url: Url = None,
+    api_key: ApiKey = None,
+) -> None:
+    """Plan a front and print its tour nearest to an angle."""
+    from service.cli.backends import Cities, Planner
+    from service.cli.output import run_tour
+
+    options = {"time_limit": time_limit, "start": start, "seed": seed, "actor": actor}
+    options["augment"] = augment
+    asked = Cities(file=file, file2=file2, unrounded=unrounded, options=options)
+    run_tour(asked, Planner(url, api_key), angle, as_json)
+
+
+@app.command()
+def coverage(  # noqa: PLR0913  an option each
+    file: Annotated[
+        Path,
+        Argument(
+            metavar="MAP", help="PNG, dark where there are obstacles; or JSON, a whole request."
+        ),
+    ],
+    cell_size: Annotated[float | None, Option(help="Metres that a pixel is wide.")] = None,
+    robot_radius: Annotated[float | None, Option(help="In metres.", show_default="0")] = None,
+    spacing: Annotated[
+        float | None, Option(help="A place is visited in each square of so many metres.")
+    ] = None,
+    cost_layer: Annotated[
+        Path | None, Option(help="The second objective: CSV, a cost for each pixel.")
+    ] = None,
+    paths: Annotated[
+        bool | None, Option("--paths", help="Have the cells of each tour's path, with --json.")
+    ] = None,
+    time_limit: TimeLimit = None,
+    size: Size = None,
+    start: Start = None,
+    seed: Seed = None,
+    actor: ActorName = None,
+    as_json: AsJson = False,
+    as_csv: AsCsv = False,
+    plot: Plot = None,
+    url: Url = None,
+    api_key: ApiKey = None,
+) -> None:
+    """Plan the front of tours of a robot through places all over a map."""
+    from service.cli.backends import Map, Planner
+    from service.cli.output import Shown, run_front
+
+    options = {
+        "cell_size": cell_size,
+        "robot_radius": robot_radius,
+        "spacing": spacing,
+        "paths": paths,
+        "time_limit": time_limit,
+        "size": size,
+        "start": start,
+        "seed": seed,
+        "actor": actor,
+    }
+    run_front(
+        Map(file=file, cost_layer=cost_layer, options=options),
+        Planner(url, api_key),
+        Shown(as_json=as_json, as_csv=as_csv, plot=plot),
+    )
+
+
+@app.command()
+def actors(as_json: AsJson = False, url: Url = None, api_key: ApiKey = None) -> None:
+    """List the networks to choose from."""
+    from service.cli.backends import Planner
+    from service.cli.output import run_actors
+
+    run_actors(Planner(url, api_key), as_json)
+
+
+@app.command()
+def serve(
+    host: Annotated[str | None, Option(help="Address to listen on.", show_default=False)] = None,
+    port: Annotated[
+        int | None, Option(help="Port to listen on; 0 takes a free one.", show_default=False)
+    ] = None,
+    workers: Annotated[int | None, Option(help="Plans made at a time.", show_default=False)] = None,
+) -> None:
+    """Answer requests over HTTP; other settings come from PARETOUR_* variables."""
+    from service.cli.serving import run_serve
+
+    run_serve(host, port, workers)
+
+
+@app.command()
+def work(
+    workers: Annotated[int | None, Option(help="Plans made at a time.", show_default=False)] = None,
+    alive: Annotated[
+        bool,
+        Option("--alive", help="Only say, by exit code 0 or 1, if what works here takes work."),
+    ] = False,
+) -> None:
+    """Plan what services with the same PARETOUR_REDIS_URL ask for; needs the extra cluster."""
+    from service.cli.working import run_alive, run_work
+
+    if alive:
+        run_alive()
+    else:
+        run_work(workers)
+
+
+@app.command()
+def key(
+    caller: Annotated[str, Argument(help="Who will show the key.")],
+) -> None:
+    """Make an API key for a caller, and the entry for PARETOUR_API_KEYS that lets it in."""
+    from service.cli.keys import run_key
+
+    run_key(caller)

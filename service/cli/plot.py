@@ -1,0 +1,36 @@
+"""A picture of a front. The extra `plot` brings what this needs."""
+
+from pathlib import Path
+
+from matplotlib.backend_bases import FigureCanvasBase
+from matplotlib.figure import Figure
+from paretour import Front
+
+from service.cli.errors import Wrong
+
+
+def check_format(path: Path) -> None:
+    """Nothing, if the file's name says a format that can be drawn, in a directory that is there.
+
+    Raises:
+        Wrong: it does not.
+    """
+    formats = sorted(FigureCanvasBase.get_supported_filetypes())
+    if path.suffix.removeprefix(".") not in formats:
+        raise Wrong(f"--plot must end in one of {', '.join(formats)}, got {path}")
+    if not path.parent.is_dir():
+        raise Wrong(f"--plot must be in a directory that is there, got {path}")
+
+
+def plot_front(front: Front, path: Path) -> None:
+    """Draw both lengths of every tour into a file."""
+    figure = Figure(figsize=(6, 4.5), layout="constrained")
+    axes = figure.add_subplot()
+    first, second = front.lengths.T
+    axes.step(first, second, where="post", color="0.8", linewidth=1)
+    axes.scatter(first, second, s=14)
+    axes.set_xlabel("first length")
+    axes.set_ylabel("second length")
+    axes.set_title(f"{len(front.tours)} tours, hypervolume {front.hypervolume:.2%}")
+    axes.spines[["top", "right"]].set_visible(False)
+    figure.savefig(path, dpi=150)

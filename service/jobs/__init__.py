@@ -1,0 +1,1 @@
+"""Planning tasks in worker processes, and keeping their fronts."""

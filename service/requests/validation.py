@@ -1,0 +1,62 @@
+"""What pydantic finds wrong with a request, in the words of this service."""
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pydantic_core import ErrorDetails, to_json
+
+from service.errors import MOST_FAULTS, Fault, Refusal
+
+
+def refused_by(errors: Sequence[ErrorDetails], parameters: bool = False) -> Refusal:
+    """What pydantic found wrong with a body, or with query parameters, as one refusal."""
+    faults = [_fault(error, parameters) for error in errors[:MOST_FAULTS]]
+    more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+    return Refusal(422, "invalid-request", faults[0].detail + more, errors=faults)
+
+
+def _fault(error: ErrorDetails, parameters: bool) -> Fault:
+    # FastAPI puts "query" first; brackets mark a branch of a union, which the caller never wrote.
+    parts = [str(part) for part in error["loc"] if not str(part).startswith("[")]
+    if parameters:
+        name = shortened(".".join(parts[1:]))
+        return Fault(detail=f"{name} {_demand(error)}", parameter=name)
+    pointer = shortened("".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts))
+    return Fault(detail=f"{pointer.lstrip('/') or 'the body'} {_demand(error)}", pointer=pointer)
+
+
+def _demand(error: ErrorDetails) -> str:
+    bounds: Mapping[str, Any] = error.get("ctx", {})
+    match error["type"]:
+        case "missing":
+            return "is required"
+        case "extra_forbidden":
+            return "is not a field that this request has"
+        case "too_short":
+            return f"must have {bounds['min_length']} items or more, got {len(error['input'])}"
+        case "too_long":
+            return f"must have {bounds['max_length']} items or fewer, got {len(error['input'])}"
+        case "greater_than_equal":
+            return f"must be at least {bounds['ge']:.16g}, got {_shown(error['input'])}"
+        case "less_than_equal":
+            return f"must be at most {bounds['le']:.16g}, got {_shown(error['input'])}"
+    demand = re.sub(r"^Input should be", "must be", error["msg"])
+    return f"{demand}, got {_shown(error['input'])}"
+
+
+def _shown(value: object) -> str:
+    match value:
+        case list():
+            return f"a list of {len(value)}"
+        case dict():
+            return "an object"
+        case int() if abs(value) >= 10**40:
+            return "an integer of more than 40 digits"
+        case _:
+            return shortened(to_json(value, inf_nan_mode="constants").decode())
+
+
+def shortened(text: str) -> str:
+    """What came, as far as a sentence has room for it."""
+    return text if len(text) <= 80 else f"{text[:79]}…"

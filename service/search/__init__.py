@@ -1,0 +1,1 @@
+"""Local search for the whole front of an instance, as compiled code."""

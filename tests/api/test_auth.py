@@ -1,0 +1,199 @@
+"""Who may call and how often, against a live server."""
+
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+
+from service.api.auth import Access, KeyHash, Rates, new_key
+from service.api.edge import Edge
+from tests.api.test_app import CITIES
+from tests.helpers.redis_server import redis_server
+from tests.helpers.serving import app_of, problem, running, serving
+
+FRONT = {"coordinates": CITIES, "time_limit": 0}
+OPEN = {"/health/live", "/health/ready"}
+DISPATCH, DISPATCH_HASH = new_key()
+DISPATCH_NEXT, DISPATCH_NEXT_HASH = new_key()
+LAB, LAB_HASH = new_key()
+HASHES = [
+    KeyHash(caller="dispatch", digest=DISPATCH_HASH),
+    KeyHash(caller="dispatch", digest=DISPATCH_NEXT_HASH),
+    KeyHash(caller="lab", digest=LAB_HASH),
+]
+
+
+@pytest.fixture(scope="module")
+def url() -> Iterator[str]:
+    with serving(app_of(edge=Edge(access=Access(HASHES)))) as address:
+        yield address
+
+
+@pytest.fixture
+def limited() -> Iterator[str]:
+    edge = Edge(access=Access(HASHES, Rates("3/hour")))
+    with serving(app_of(edge=edge)) as address:
+        yield address
+
+
+def bearing(key: str) -> dict[str, str]:
+    return {"Authorization": f"Bearer {key}"}
+
+
+@pytest.mark.parametrize("key", [DISPATCH, DISPATCH_NEXT, LAB], ids=["one", "its next", "other"])
+def test_a_key_lets_its_caller_in(url: str, key: str) -> None:
+    answer = httpx.post(f"{url}/front", json=FRONT, headers=bearing(key))
+    assert answer.status_code == 200
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {},
+        {"Authorization": ""},
+        {"Authorization": "Bearer"},
+        bearing("nobody's"),
+        bearing(DISPATCH_HASH),
+        bearing(DISPATCH + "x"),
+        {"Authorization": f"Basic {DISPATCH}"},
+        {"Authorization": DISPATCH},
+        {"X-API-Key": DISPATCH},
+    ],
+)
+def test_whoever_has_no_key_is_refused(url: str, headers: dict[str, str]) -> None:
+    answer = httpx.post(f"{url}/front", json=FRONT, headers=headers)
+    problem(answer, 401, "unauthorized")
+    assert answer.headers["www-authenticate"] == "Bearer"
+
+
+def test_a_key_is_never_said_again(url: str) -> None:
+    assert "secret" not in httpx.get(f"{url}/actors", headers=bearing("secret")).text
+
+
+def test_every_path_needs_a_key_but_the_open_ones(url: str) -> None:
+    document = httpx.get(f"{url}/openapi.json").json()
+    for path, operations in document["paths"].items():
+        for method, operation in operations.items():
+            asked = httpx.request(method, url + re.sub(r"\{.*?\}", "x", path))
+            assert (asked.status_code == 401) == (path not in OPEN), (method, path)
+            assert ({"401", "429"} <= set(operation["responses"])) == (path not in OPEN)
+            assert bool(operation["security"]) == (path not in OPEN)
+
+
+def test_without_keys_the_document_asks_for_none() -> None:
+    with serving(app_of()) as url:
+        document = httpx.get(f"{url}/openapi.json").json()
+    operations = [each for path in document["paths"].values() for each in path.values()]
+    assert not any(operation.get("security") for operation in operations)
+
+
+def test_a_caller_over_its_rate_is_told_when_to_come_back_and_others_are_not(limited: str) -> None:
+    for key in (DISPATCH, DISPATCH_NEXT, DISPATCH):
+        assert httpx.get(f"{limited}/actors", headers=bearing(key)).status_code == 200
+    refused = httpx.get(f"{limited}/actors", headers=bearing(DISPATCH))
+    document = problem(refused, 429, "rate-limited")
+    assert document["limit"] == 3
+    assert 3500 < int(refused.headers["retry-after"]) <= 3600
+    assert httpx.get(f"{limited}/actors", headers=bearing(LAB)).status_code == 200
+    assert httpx.get(f"{limited}/health/live").status_code == 200
+
+
+def test_without_keys_nobody_is_held_up() -> None:
+    edge = Edge(access=Access((), Rates("1/hour")))
+    with serving(app_of(edge=edge)) as url:
+        assert [httpx.get(f"{url}/actors").status_code for _ in range(3)] == [200] * 3
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("dispatch", "the hash of dispatch's key must be 64 hexadecimal digits"),
+        (f"dispatch:{DISPATCH}", "the hash of dispatch's key must be 64 hexadecimal digits"),
+        (f"dispatch:{DISPATCH_HASH.upper()}x", "the hash of dispatch's key"),
+        (f"two words:{DISPATCH_HASH}", "a caller must be named"),
+        (f":{DISPATCH_HASH}", "a caller must be named"),
+    ],
+)
+def test_what_is_no_hash_is_refused(text: str, sentence: str) -> None:
+    with pytest.raises(ValueError, match=sentence):
+        KeyHash.read(text)
+
+
+def test_a_hash_is_read_as_it_is_written() -> None:
+    assert KeyHash.read(f"lab:{LAB_HASH}") == HASHES[2]
+
+
+def test_a_page_of_another_origin_may_call_where_it_is_allowed() -> None:
+    asked = {"Origin": "https://fleet.example", "Access-Control-Request-Method": "POST"}
+    with serving(app_of(edge=Edge(origins=["https://fleet.example"]))) as url:
+        preflight = httpx.options(f"{url}/front", headers=asked)
+        answer = httpx.get(f"{url}/actors", headers=asked)
+        other = httpx.get(f"{url}/actors", headers={"Origin": "https://other.example"})
+    assert preflight.status_code == 200
+    for allowed in (preflight, answer):
+        assert allowed.headers["access-control-allow-origin"] == "https://fleet.example"
+    assert "access-control-allow-origin" not in other.headers
+
+
+def test_no_page_of_another_origin_may_call_unless_it_is_allowed(url: str) -> None:
+    origin = {"Origin": "https://fleet.example"}
+    answer = httpx.get(f"{url}/actors", headers={**origin, **bearing(LAB)})
+    assert answer.status_code == 200
+    assert "access-control-allow-origin" not in answer.headers
+
+
+def test_the_command_makes_a_key_that_its_entry_lets_in() -> None:
+    made = subprocess.run(
+        [sys.executable, "-m", "service", "key", "dispatch"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    key, entry = made.stdout.splitlines()
+    with running({"PARETOUR_API_KEYS": f" {entry} , lab:{LAB_HASH}"}) as service:
+        for shown in (key, LAB):
+            assert httpx.get(f"{service.url}/actors", headers=bearing(shown)).status_code == 200
+        assert httpx.get(f"{service.url}/actors").status_code == 401
+    assert key.encode() not in service.log
+    [line] = [line for line in service.log.splitlines() if b'"caller": "dispatch"' in line]
+    assert b"/actors" in line
+
+
+def test_the_command_makes_no_key_for_a_name_that_no_entry_can_hold() -> None:
+    made = subprocess.run(
+        [sys.executable, "-m", "service", "key", "the lab"], capture_output=True, text=True
+    )
+    assert (made.returncode, made.stdout) == (2, "")
+    assert (
+        "a caller must be named by 1 to 64 letters, digits, dots, dashes, got 'the lab'"
+        in made.stderr
+    )
+
+
+def test_replicas_count_together_in_redis_and_go_on_without_it(tmp_path: Path) -> None:
+    with redis_server(tmp_path) as redis:
+        edges = [Edge(access=Access(HASHES, Rates("3/hour", redis.url))) for _ in range(2)]
+        with serving(app_of(edge=edges[0])) as one, serving(app_of(edge=edges[1])) as other:
+            counted = [httpx.get(f"{url}/actors", headers=bearing(LAB)) for url in (one, other) * 2]
+            assert [answer.status_code for answer in counted] == [200, 200, 200, 429]
+            assert 3500 < int(counted[3].headers["retry-after"]) <= 3600
+            redis.end()
+            assert httpx.get(f"{one}/actors", headers=bearing(LAB)).status_code == 200
+
+
+def test_a_front_is_there_for_its_caller_alone(url: str) -> None:
+    planned = httpx.post(f"{url}/front", json=FRONT, headers=bearing(DISPATCH)).json()["id"]
+    asked = [("GET", f"/front/{planned}"), ("GET", f"/front/{planned}/events")]
+    asked += [("GET", f"/tour?angle=30&front={planned}"), ("DELETE", f"/front/{planned}")]
+    for method, path in asked:
+        answer = httpx.request(method, url + path, headers=bearing(LAB))
+        problem(answer, 404, "unknown-front")
+    latest = httpx.get(f"{url}/tour?angle=30", headers=bearing(LAB))
+    assert latest.json().get("front") != planned
+    for method, path in asked:
+        answer = httpx.request(method, url + path, headers=bearing(DISPATCH_NEXT))
+        assert answer.status_code in (200, 204)

@@ -1,0 +1,112 @@
+"""What Prometheus is told, against a live server."""
+
+import socket
+import time
+from dataclasses import dataclass
+from urllib.parse import urlsplit
+
+import httpx
+import numpy as np
+import pytest
+from prometheus_client.parser import text_string_to_metric_families
+
+from service.api.edge import Edge
+from service.api.metrics import Metrics
+from service.jobs.engine import Standing
+from tests.api.test_app import CITIES
+from tests.helpers.serving import Broken, app_of, running, serving
+
+FRONT = {"coordinates": CITIES, "time_limit": 0}
+
+
+def samples(url: str) -> dict[tuple[str, ...], float]:
+    """The value of each sample, by its name and its labels' values in the order of their names."""
+    answer = httpx.get(f"{url}/metrics")
+    assert answer.headers["content-type"].startswith("text/plain; version=0.0.4")
+    return {
+        (sample.name, *(value for _, value in sorted(sample.labels.items()))): sample.value
+        for family in text_string_to_metric_families(answer.text)
+        for sample in family.samples
+    }
+
+
+def test_requests_are_counted_by_the_path_that_they_matched() -> None:
+    with serving(app_of()) as url:
+        for _ in range(3):
+            httpx.post(f"{url}/front", json=FRONT)
+        httpx.get(f"{url}/front/none")
+        httpx.get(f"{url}/nowhere/at/all")
+        httpx.request("BREW", f"{url}/front")
+        counted = samples(url)
+    requests = {key[1:]: value for key, value in counted.items() if key[0].endswith("s_total")}
+    assert requests["POST", "/front", "200"] == 3
+    assert requests["GET", "/front/{id}", "404"] == 1
+    assert requests["GET", "unmatched", "404"] == 1
+    assert requests["other", "/front", "405"] == 1
+    assert counted["paretour_request_seconds_count", "POST", "/front"] == 3
+
+
+def test_a_bug_is_counted() -> None:
+    with serving(app_of(Broken())) as url:
+        httpx.post(f"{url}/front", json=FRONT)
+        assert samples(url)["paretour_requests_total", "POST", "/front", "500"] == 1
+
+
+def test_a_client_that_goes_away_before_its_body_has_ended_is_no_fault(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    with serving(app_of()) as url:
+        address = urlsplit(url)
+        with socket.create_connection((address.hostname, address.port)) as connection:
+            head = "POST /front HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
+            connection.sendall(f"{head}Content-Length: 100\r\n\r\n[".encode())
+        gone = ("paretour_requests_total", "POST", "/front", "499")
+        deadline = time.monotonic() + 10
+        while gone not in (counted := samples(url)) and time.monotonic() < deadline:
+            time.sleep(0.01)
+    assert counted[gone] == 1
+    assert not [record for record in caplog.records if record.exc_info]
+
+
+@dataclass
+class Crew:
+    """Workers that stand as they stand."""
+
+    now: Standing
+
+    async def standing(self) -> Standing:
+        return self.now
+
+
+def test_the_workers_are_asked_whenever_prometheus_asks() -> None:
+    crew = Crew(Standing(waiting=3, working=2, lost=1))
+    metrics = Metrics()
+    metrics.watch(crew)
+    with serving(app_of(edge=Edge(metrics=metrics))) as url:
+        counted = samples(url)
+        crew.now = Standing(waiting=0, working=2, lost=1)
+        later = samples(url)
+    assert counted["paretour_queue_depth",] == 3
+    assert counted["paretour_workers_busy",] == 2
+    assert counted["paretour_worker_restarts_total",] == 1
+    assert later["paretour_queue_depth",] == 0
+
+
+def test_fronts_are_counted_by_phase_and_size_class() -> None:
+    with running({}, ready=True) as service:
+        for n, seconds in [(12, 1.0), (12, 0.0), (60, 0.0)]:
+            cities = np.random.default_rng(n).random((n, 4)).tolist()
+            request = {"coordinates": cities, "time_limit": seconds, "preferences": 5}
+            answer = httpx.post(f"{service.url}/front", json=request, timeout=60)
+            assert answer.status_code == 200
+        counted = samples(service.url)
+    for phase in ("construction", "improvement", "selection", "bound"):
+        assert counted["paretour_planning_seconds_count", "20", phase] == 2
+        assert counted["paretour_planning_seconds_count", "100", phase] == 1
+    assert counted["paretour_planning_seconds_sum", "20", "improvement"] >= 0.01
+    assert counted["paretour_hypervolume_gained_count", "20"] == 1
+    assert 0 < counted["paretour_hypervolume_gained_sum", "20"] < 1
+    assert ("paretour_hypervolume_gained_count", "100") not in counted
+    assert counted["paretour_queue_depth",] == 0
+    assert counted["paretour_worker_restarts_total",] == 0
+    assert counted["process_resident_memory_bytes",] > 1e6

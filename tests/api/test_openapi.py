@@ -1,0 +1,75 @@
+"""The HTTP reference: examples that are true, of every path and every refusal."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from service.errors import MEDIA_TYPE, Problem
+from tests.helpers.serving import app_of, serving
+
+SERVICE = Path(__file__).parents[2] / "service"
+# Of these no operation says that it answers so: what is asked for is none, or the service is wrong.
+OF_NO_OPERATION = {"no-such-path", "method-not-allowed", "refused", "internal-error"}
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    with serving(app_of()) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def operations(address: str) -> dict[str, Any]:
+    """What the document says of each, as "POST /front"."""
+    paths = httpx.get(f"{address}/openapi.json").json()["paths"]
+    return {f"{m.upper()} {path}": each for path, ms in paths.items() for m, each in ms.items()}
+
+
+def test_every_operation_shows_its_answer_and_every_refusal(operations: dict[str, Any]) -> None:
+    for name, operation in operations.items():
+        for status, response in operation["responses"].items():
+            for kind, content in response.get("content", {}).items():
+                shown = content.get("examples") or content.get("example")
+                assert shown, f"{name} has no example of {status} as {kind}"
+
+
+def test_every_code_that_the_service_knows_is_shown(operations: dict[str, Any]) -> None:
+    sources = "\n".join(path.read_text() for path in SERVICE.glob("*.py"))
+    codes = set(re.findall(r'\d{3},\s+"([a-z]+-[a-z-]+|[a-z]+)",', sources))
+    codes |= set(re.findall(r'code = "([a-z-]+)"', sources))
+    shown = {problem["code"] for problem in problems_of(operations)}
+    assert codes - OF_NO_OPERATION - shown == set()
+    assert shown - codes == set()
+
+
+def test_every_refusal_shown_is_a_problem_document(operations: dict[str, Any]) -> None:
+    for problem in problems_of(operations):
+        Problem.model_validate(problem)
+
+
+def test_every_request_shown_is_answered_as_shown(address: str, operations: dict[str, Any]) -> None:
+    for name, operation in operations.items():
+        method, path = name.split()
+        for example in requests_of(operation):
+            answer = httpx.request(method, address + path, json=example, timeout=60)
+            assert answer.status_code == 200, answer.text
+            shown = operation["responses"]["200"]["content"]["application/json"]["example"]
+            assert set(shown) <= set(answer.json())
+
+
+def problems_of(operations: dict[str, Any]) -> list[dict[str, Any]]:
+    return [
+        example["value"]
+        for operation in operations.values()
+        for response in operation["responses"].values()
+        for example in response.get("content", {}).get(MEDIA_TYPE, {}).get("examples", {}).values()
+    ]
+
+
+def requests_of(operation: dict[str, Any]) -> list[Any]:
+    content = operation.get("requestBody", {}).get("content", {}).get("application/json", {})
+    return [example["value"] for example in content.get("examples", {}).values()]

@@ -1,0 +1,71 @@
+"""Whoever follows a job hears of its end, however the two happen to fall together."""
+
+import asyncio
+from collections.abc import Callable
+
+import pytest
+
+from service.jobs.front_document import empty
+from service.jobs.local_engine import Jobs
+from service.jobs.messages import Work
+from service.jobs.record import Record
+from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
+from service.jobs.submission import Order
+from service.jobs.worker_pool import Workers
+from tests.helpers.serving import Shuffler
+
+FRONT = empty(cities=3)
+
+
+class OrdersOnly(Workers):
+    """Workers without processes: the test does the work."""
+
+    def __init__(self) -> None:
+        super().__init__(Shuffler, workers=1, queue=1)  # type: ignore[arg-type]
+
+    def order(
+        self, work: Work, tell: Callable[[], None] = lambda: None, patient: bool = False
+    ) -> Order:
+        self.given = Order(0, work, tell, patient)
+        return self.given
+
+
+class Immediate(SqliteStore):
+    """A store whose answer waits for no other thread."""
+
+    async def put(self, record: Record) -> None:
+        self._at_once(self._put, record)
+
+
+async def followed(steps: int) -> list[str]:
+    """The statuses that are told to who begins to follow so many steps of the loop into the end."""
+    store = Immediate(IN_MEMORY, entries=10, max_age=60)
+    workers = OrdersOnly()
+    jobs = Jobs(workers, store)
+    record = Record(
+        id="0" * 32,
+        caller="me",
+        request_id="",
+        status="queued",
+        front=FRONT,
+        work=Work("front", b""),
+    )
+    await jobs.begin(record)
+    await asyncio.sleep(0)  # so that the job waits for its front
+    workers.given.done(FRONT)
+    for _ in range(steps):
+        await asyncio.sleep(0)
+    following = asyncio.ensure_future(_statuses(jobs, record))
+    async with asyncio.timeout(1):
+        statuses = await following
+    await store.close()
+    return statuses
+
+
+async def _statuses(jobs: Jobs, record: Record) -> list[str]:
+    return [state.record.status async for state in jobs.states(record)]
+
+
+@pytest.mark.parametrize("steps", range(12))
+def test_the_end_is_told_whenever_it_comes(steps: int) -> None:
+    assert asyncio.run(followed(steps))[-1] == "done"

@@ -1,0 +1,299 @@
+"""Many machines and what may befall them: real processes, a real Redis, and kill -9."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager, ExitStack, contextmanager
+from dataclasses import dataclass, field
+from functools import partial
+
+import httpx
+import pytest
+import redis
+from redis.asyncio import Redis as AsyncRedis
+
+from service.__main__ import main
+from service.cluster.alive import takes_work
+from service.cluster.celery_app import QUEUE
+from service.cluster.redis_engine import Cluster
+from service.cluster.redis_store import RedisStore
+from tests.helpers.engines import PATIENT, Served, engine_of, planning
+from tests.helpers.redis_server import LASTING, Redis, redis_server
+from tests.helpers.serving import Running, Shuffler, engine_app, problem, running, serving, working
+from tests.jobs.test_local_engine import (
+    CITIES,
+    LATER,
+    LONG,
+    SHORT,
+    check,
+    ended,
+    events,
+    id_of,
+    later,
+    until_found,
+)
+
+SOME_SECONDS = {"coordinates": CITIES, "time_limit": 1.5}
+
+
+@dataclass
+class Machines:
+    """A Redis that lasts, and commands that work with it, each as if on a machine of its own."""
+
+    redis: Redis
+    stack: ExitStack
+    workers: list[subprocess.Popen[bytes]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.connection = redis.Redis.from_url(self.redis.url)
+        self._settings = {
+            "PARETOUR_REDIS_URL": self.redis.url,
+            "PARETOUR_WORKERS": "1",
+            "PARETOUR_DRAIN_SECONDS": "1",
+        }
+
+    def start_worker(self) -> None:
+        before = self._present()
+        self.workers.append(self.stack.enter_context(working(self._settings)))
+        while self._present() <= before:
+            time.sleep(0.05)
+
+    def _present(self) -> set[bytes]:
+        return set(self.connection.zrange("paretour:workers", 0, -1))
+
+    @contextmanager
+    def replica(self) -> Iterator[tuple[Running, httpx.Client]]:
+        with running(self._settings) as service, httpx.Client(base_url=service.url) as client:
+            client.timeout = 60
+            yield service, client
+
+
+@pytest.fixture(scope="module")
+def machines(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machines]:
+    with (
+        redis_server(tmp_path_factory.mktemp("redis"), LASTING) as redis,
+        ExitStack() as stack,
+    ):
+        machines = Machines(redis, stack)
+        machines.start_worker()
+        yield machines
+
+
+@pytest.fixture(scope="module")
+def client(machines: Machines) -> Iterator[httpx.Client]:
+    with machines.replica() as (_, client):
+        yield client
+
+
+def done(client: httpx.Client, path: str) -> None:
+    found = ended(client, path)
+    assert (found["status"], found["terminated"]) == ("done", "time_limit")
+    check(found)
+
+
+def test_what_a_replica_has_begun_another_tells_of_when_it_is_killed(
+    machines: Machines, client: httpx.Client
+) -> None:
+    with machines.replica() as (service, other):
+        path = later(other, SOME_SECONDS)
+        until_found(client, path)
+        service.process.kill()
+        service.process.wait()
+    told = events(client, path)
+    assert told[0] == ("progress", told[0][1]) or told[0][1]["status"] == "running"
+    assert told[-1] == ("status", {"id": id_of(path), "status": "done"})
+    done(client, path)
+
+
+@pytest.mark.parametrize("with_its_processes", [False, True])
+def test_when_a_worker_is_lost_its_job_ends_with_a_front(
+    machines: Machines, client: httpx.Client, with_its_processes: bool
+) -> None:
+    path = later(client, SOME_SECONDS)
+    until_found(client, path)
+    planner = planning(machines.connection, id_of(path))
+    assert planner is not None
+    machines.workers[-1].kill()
+    if with_its_processes:
+        os.kill(planner, signal.SIGKILL)
+    machines.start_worker()
+    done(client, path)
+
+
+def test_a_worker_that_is_told_to_end_hands_its_job_back(
+    machines: Machines, client: httpx.Client
+) -> None:
+    lost = int(machines.connection.get("paretour:lost") or 0)
+    path = later(client, {**LONG, "time_limit": 4})
+    until_found(client, path)
+    machines.workers[-1].terminate()
+    assert machines.workers[-1].wait(timeout=30) == 0
+    assert client.get(path).json()["status"] == "queued"
+    machines.start_worker()
+    done(client, path)
+    assert int(machines.connection.get("paretour:lost") or 0) == lost
+
+
+def test_a_worker_that_takes_no_work_is_found(machines: Machines, client: httpx.Client) -> None:
+    worker, url = machines.workers[-1], machines.redis.url
+    assert takes_work(url)
+    worker.send_signal(signal.SIGSTOP)
+    try:
+        path = later(client)
+        # What it was waiting for it may still be given; what is sent again, nobody takes.
+        while not machines.connection.llen(QUEUE):
+            time.sleep(0.05)
+        assert not takes_work(url)
+    finally:
+        worker.send_signal(signal.SIGCONT)
+    assert ended(client, path)["status"] == "done"
+    assert takes_work(url)
+
+
+def test_where_there_is_no_worker_the_command_says_so(redis: Redis) -> None:
+    command = [sys.executable, "-m", "service", "work", "--alive"]
+    environment = {**os.environ, "PARETOUR_REDIS_URL": f"{redis.url.removesuffix('/0')}/15"}
+    asked = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert (asked.returncode, asked.stdout) == (1, "")
+    assert "no worker of this machine" in asked.stderr
+
+
+def test_when_redis_is_full_no_more_is_taken_until_there_is_room(
+    machines: Machines, client: httpx.Client
+) -> None:
+    found = client.post("/front", json=SHORT).json()
+    machines.connection.config_set("maxmemory", 1)
+    try:
+        problem(client.post("/front", json=SHORT), 503, "store-unavailable")
+        problem(client.post("/front", json=SHORT, headers=LATER), 503, "store-unavailable")
+        assert client.get(f"/front/{found['id']}").json() == found
+        assert takes_work(machines.redis.url)
+    finally:
+        machines.connection.config_set("maxmemory", 0)
+    assert machines.connection.zcard("paretour:unfinished") == 0
+    assert client.post("/front", json=SHORT).json()["status"] == "done"
+
+
+def test_when_redis_is_restarted_all_goes_on(machines: Machines, client: httpx.Client) -> None:
+    with ThreadPoolExecutor() as waiting:
+        path, next_path = later(client, SOME_SECONDS), later(client, SOME_SECONDS)
+        answer = waiting.submit(client.post, "/front", json=SOME_SECONDS)
+        listener = waiting.submit(events, client, path)
+        until_found(client, path)
+        machines.redis.end()
+        unavailable(client, path)
+        # Which is no fault of the worker's.
+        assert takes_work(machines.redis.url)
+        machines.redis.begin()
+        # The first answers of a Redis that comes back may take too long, and not only the first.
+        for asked in ("/health/ready", path, next_path):
+            while (found := client.get(asked)).status_code == 503 or unfinished(found):
+                time.sleep(0.05)
+        done(client, path)
+        done(client, next_path)
+        assert answer.result().json()["status"] == "done"
+        assert listener.result()[-1][1]["status"] == "done"
+    done(client, later(client, SOME_SECONDS))
+
+
+def unfinished(answer: httpx.Response) -> bool:
+    return answer.json().get("status") in ("queued", "running")
+
+
+def unavailable(client: httpx.Client, path: str) -> None:
+    """Without Redis everything that needs it says so, and the replica lives."""
+    for answer in (
+        client.get(path),
+        client.delete(path),
+        client.get(f"{path}/events"),
+        client.get("/tour?angle=30"),
+        client.post("/front", json=SOME_SECONDS),
+        client.get("/health/ready"),
+    ):
+        problem(answer, 503, "store-unavailable")
+        assert answer.headers["retry-after"]
+    assert client.get("/health/live").status_code == 200
+    assert client.get("/metrics").status_code == 200
+
+
+Serve = Callable[..., AbstractContextManager[Served]]
+
+
+@pytest.fixture(scope="module")
+def actor(tmp_path_factory: pytest.TempPathFactory) -> Shuffler:
+    actor = Shuffler(tmp_path_factory.mktemp("gated") / "gate")
+    actor.open()
+    return actor
+
+
+@pytest.fixture(scope="module")
+def serve(request: pytest.FixtureRequest, actor: Shuffler) -> Iterator[Serve]:
+    """Serves with a replica in this process, all with the same worker."""
+    with engine_of("cluster", request) as cluster:
+        yield partial(cluster.serve, actor)
+
+
+def test_who_waits_too_long_is_given_the_best_front_so_far(serve: Serve) -> None:
+    with serve(seconds=1.0) as served:
+        answer = served.client.post("/front", json=LONG).json()
+        assert (answer["status"], answer["terminated"]) == ("done", "time_limit")
+        check(answer)
+
+
+def test_work_that_found_nothing_in_time_is_504_and_its_worker_is_free_again(
+    serve: Serve, actor: Shuffler
+) -> None:
+    actor.close()
+    with serve(seconds=1.0) as served:
+        problem(served.client.post("/front", json=LONG), 504, "overdue")
+        actor.open()
+        assert ended(served.client, later(served.client))["status"] == "done"
+
+
+def test_a_client_that_goes_away_frees_its_worker(serve: Serve) -> None:
+    with serve() as served:
+        with pytest.raises(httpx.ReadTimeout):
+            served.client.post("/front", json=LONG, timeout=1)
+        assert ended(served.client, later(served.client))["status"] == "done"
+
+
+def test_a_job_whose_message_was_lost_is_done_all_the_same(serve: Serve) -> None:
+    with serve() as served:
+        connection = AsyncRedis.from_url(served.redis_url)
+        store = RedisStore(connection, entries=9, max_age=60)
+        forgetful = Cluster(connection, store, lambda _: None, queue=8, seconds=600)
+        app = engine_app(store, forgetful, limits=PATIENT)
+        with serving(app) as url, httpx.Client(base_url=url) as client:
+            path = later(client)
+        assert ended(served.client, path)["status"] == "done"
+
+
+@pytest.mark.parametrize("command", ["serve", "work"])
+def test_without_the_extra_redis_is_refused_at_the_start(
+    command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PARETOUR_REDIS_URL", "redis://127.0.0.1:1/0")
+    monkeypatch.setitem(sys.modules, "celery", None)
+    with pytest.raises(SystemExit) as stopped:
+        main([command])
+    assert stopped.value.code == 2
+    assert "PARETOUR_REDIS_URL needs the extra paretour[cluster]" in capsys.readouterr().err
+
+
+def test_without_the_extra_the_service_is_what_it_was() -> None:
+    code = (
+        "import sys; sys.modules['celery'] = sys.modules['redis'] = None; "
+        "from service.serve import build; from service.settings import Settings; build(Settings())"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_worker_needs_a_redis_to_work_for(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(["work"])
+    assert stopped.value.code == 2
+    assert "PARETOUR_REDIS_URL must say for which Redis to work" in capsys.readouterr().err

@@ -1,0 +1,60 @@
+"""From checkpoint to ONNX file."""
+
+from pathlib import Path
+
+import onnx
+import pytest
+from onnx import ModelProto, numpy_helper
+
+from export.check import Mismatch, compare
+from export.graph import to_onnx
+from models.checkpoint import load_weights
+from models.config import NetworkConfig
+from models.networks.build import Actor, build
+
+ROOT = Path(__file__).parents[2]
+ACTORS = ROOT / "service/actors"
+
+
+def small(name: str) -> Actor:
+    config = NetworkConfig(name=name, width=16, heads=2, layers=1, feedforward=32)
+    return build(config, seed=2).eval()
+
+
+@pytest.fixture(scope="module", params=["pa-at", "pa-ean", "pa-ad", "pa-one", "pa-one-matrix"])
+def exported(request: pytest.FixtureRequest) -> tuple[Actor, ModelProto]:
+    actor = small(request.param)
+    return actor, to_onnx(actor)
+
+
+def test_the_file_builds_the_tours_that_torch_builds(exported: tuple[Actor, ModelProto]) -> None:
+    compare(*exported, sizes=(3, 7, 40, 130))  # 130: more than two blocks
+
+
+@pytest.mark.parametrize("path", sorted(ACTORS.glob("*.onnx")), ids=lambda path: path.stem)
+def test_the_released_file_builds_the_tours_of_the_released_checkpoint(path: Path) -> None:
+    trained = load_weights(ROOT / f"models/checkpoints/{path.stem}.pt")
+    compare(trained.actor, onnx.load(path), sizes=(3, 40, 200))  # the export itself goes further
+
+
+def test_a_file_with_other_weights_is_refused(exported: tuple[Actor, ModelProto]) -> None:
+    actor, model = exported
+    changed = ModelProto()
+    changed.CopyFrom(model)
+    for weights in changed.graph.initializer:
+        values = numpy_helper.to_array(weights)
+        if values.ndim == 2 and values.dtype == "float32":
+            weights.CopyFrom(numpy_helper.from_array(-values, weights.name))
+    with pytest.raises(Mismatch, match=r"tours of .* part at position"):
+        compare(actor, changed)
+
+
+def test_a_file_with_a_frozen_size_is_refused(exported: tuple[Actor, ModelProto]) -> None:
+    actor, model = exported
+    frozen = ModelProto()
+    frozen.CopyFrom(model)
+    frozen.graph.input[0].type.tensor_type.shape.dim[-2].dim_value = 11
+    with pytest.raises(
+        Mismatch, match=r"(cities|matrices) must have shape \[.*'n', .*\], got .*11"
+    ):
+        compare(actor, frozen)

@@ -1,0 +1,181 @@
+"""Either engine behind a live server, so that a test of one is a test of the other."""
+
+import multiprocessing
+import os
+import signal
+import time
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field, replace
+from functools import partial
+from multiprocessing.process import BaseProcess
+from pathlib import Path
+
+import httpx
+import pytest
+import redis
+
+from service.api.edge import Edge
+from service.cluster.celery_app import queue_at
+from service.cluster.hand import make_hand
+from service.cluster.replica import replica
+from service.cluster.worker import Crew
+from service.jobs.process import MakePlanner
+from service.jobs.runner import NamedActor, warm_up
+from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
+from service.jobs.worker_pool import Workers
+from tests.helpers.redis_server import Redis
+from tests.helpers.serving import LIMITS, app_of, engine_app, planner_of, serving, workers_of
+
+PATIENT = replace(LIMITS, seconds=600.0, cities=300)
+SECONDS = 600.0
+
+
+@dataclass(frozen=True)
+class Served:
+    """A client of a service, and the process that plans the front with an id, if one does.
+
+    `searching` tells them apart of which something has been found, and which process plans each.
+    """
+
+    client: httpx.Client
+    planning: Callable[[str], int | None]
+    searching: Callable[[], Mapping[Hashable, int]]
+    redis_url: str = ""
+
+    def kill(self, id: str, but: int | None = None) -> int:  # noqa: A002
+        """Kill the process that plans a front, once it is another than this."""
+        while (pid := self.planning(id)) in (None, but):
+            time.sleep(0.02)
+        assert pid is not None
+        os.kill(pid, signal.SIGKILL)
+        return pid
+
+
+@dataclass(frozen=True)
+class Embedded:
+    """The engine of one process."""
+
+    workers: int = 1
+
+    @contextmanager
+    def serve(
+        self,
+        *actors: NamedActor,
+        queue: int = 8,
+        folder: Path | None = None,
+        edge: Edge | None = None,
+    ) -> Iterator[Served]:
+        """A service with its workers. What it keeps in a folder outlives it."""
+        make_planner = planner_of(*actors, limits=PATIENT)
+        workers = workers_of(make_planner, self.workers, queue, SECONDS)
+        path = IN_MEMORY if folder is None else str(folder / "fronts.sqlite")
+        store = SqliteStore(path, entries=100, max_age=SECONDS)
+        app = app_of(*actors, limits=PATIENT, store=store, workers=workers, edge=edge)
+        with serving(app) as url, httpx.Client(base_url=url, timeout=60) as client:
+            planning = partial(_first, workers)
+            yield Served(client, planning, partial(_searching_here, workers))
+
+
+@dataclass
+class Clustered:
+    """The engine of many machines, of which each is a process here, at a Redis database each."""
+
+    server: Redis
+    crews: ExitStack
+    workers: int = 1
+    _databases: dict[str, int] = field(default_factory=dict)
+
+    @contextmanager
+    def serve(
+        self,
+        *actors: NamedActor,
+        queue: int = 8,
+        folder: Path | None = None,
+        edge: Edge | None = None,
+        seconds: float = SECONDS,
+    ) -> Iterator[Served]:
+        """A replica, and a worker that goes on for the next with these actors."""
+        url = self._url(actors)
+        kept = folder is not None and (folder / "begun").exists()
+        connection = redis.Redis.from_url(url)
+        if not kept:
+            connection.flushdb()
+        if folder is not None:
+            (folder / "begun").touch()
+        while not connection.zcard("paretour:workers"):
+            time.sleep(0.02)
+        store, engine = replica(url, entries=100, max_age=SECONDS, queue=queue, seconds=seconds)
+        app = engine_app(store, engine, *actors, limits=PATIENT, edge=edge)
+        with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:
+            searching = partial(_searching_there, connection)
+            yield Served(client, partial(planning, connection), searching, url)
+        connection.close()
+
+    def _url(self, actors: tuple[NamedActor, ...]) -> str:
+        known = len(self._databases)
+        database = self._databases.setdefault(repr(actors), known)
+        url = f"{self.server.url.removesuffix('/0')}/{database}"
+        if database == known:
+            self.crews.enter_context(
+                crew(url, planner_of(*actors, limits=PATIENT), SECONDS, self.workers)
+            )
+        return url
+
+
+def _first(workers: Workers, _: str) -> int | None:
+    return workers.pids[0] if workers.working else None
+
+
+def _searching_here(workers: Workers) -> Mapping[Hashable, int]:
+    at_work = [(hand.order, hand.process.pid) for hand in workers._hands]
+    return {order: pid for order, pid in at_work if pid and order and order.snapshot}
+
+
+def _searching_there(connection: "redis.Redis[bytes]") -> Mapping[Hashable, int]:
+    ids = [id_.decode() for id_ in connection.zrange("paretour:unfinished", 0, -1)]
+    found = [id_ for id_ in ids if connection.hexists(f"paretour:front:{id_}", "progress")]
+    return {id_: pid for id_ in found if (pid := planning(connection, id_))}
+
+
+def planning(connection: "redis.Redis[bytes]", id: str) -> int | None:  # noqa: A002
+    """The process that plans a front, as Redis knows it."""
+    status, worker = connection.hmget(f"paretour:front:{id}", "status", "worker")
+    return int(worker.split(b":")[1]) if status == b"running" else None
+
+
+@contextmanager
+def crew(
+    url: str, make_planner: MakePlanner, seconds: float, workers: int
+) -> Iterator[BaseProcess]:
+    """A worker with so many processes that plan."""
+    context = multiprocessing.get_context("spawn")
+    worker = context.Process(target=_work, args=(url, make_planner, seconds, workers))
+    worker.start()
+    try:
+        yield worker
+    finally:
+        worker.kill()
+        worker.join()
+
+
+def _work(url: str, make_planner: MakePlanner, seconds: float, workers: int) -> None:
+    warm_up()
+    Crew(
+        queue=queue_at(url, seconds),
+        make_hand=partial(make_hand, make_planner, url, seconds),
+        workers=workers,
+        drain_seconds=5,
+    ).run()
+
+
+@contextmanager
+def engine_of(
+    kind: str, request: pytest.FixtureRequest, workers: int = 1
+) -> Iterator[Embedded | Clustered]:
+    """Either engine; skips the test where there is no Redis."""
+    if kind == "embedded":
+        yield Embedded(workers)
+        return
+    with ExitStack() as crews:
+        yield Clustered(request.getfixturevalue("redis"), crews, workers)

@@ -1,0 +1,76 @@
+"""Workers that are killed under load, of either engine: nothing that was asked for is lost."""
+
+import os
+import signal
+import time
+from concurrent.futures import ThreadPoolExecutor
+from threading import Event
+from typing import Any
+
+import httpx
+import pytest
+
+from tests.helpers.engines import Served, engine_of
+from tests.helpers.serving import problem
+from tests.jobs.test_local_engine import CITIES, check, ended, later
+
+REQUEST = {"coordinates": CITIES[:60], "time_limit": 0.4}
+CALLERS = 3
+
+
+@pytest.mark.parametrize("kind", ["embedded", "cluster"])
+def test_ten_kills_under_load_lose_nothing(kind: str, request: pytest.FixtureRequest) -> None:
+    over = Event()
+    with (
+        engine_of(kind, request, workers=2) as engine,
+        engine.serve(queue=40) as served,
+        ThreadPoolExecutor(CALLERS) as callers,
+    ):
+        served.client.timeout = 300  # As each process that follows one takes seconds to load.
+        asking = [callers.submit(ask, served.client, over) for _ in range(CALLERS)]
+        paths = [later(served.client, REQUEST) for _ in range(6)]
+        try:
+            kill_ten(served)
+        finally:
+            over.set()
+        for path in paths:
+            check_ended(ended(served.client, path))
+        for answer in [answer for asked in asking for answer in asked.result()]:
+            check_answered(answer)
+
+
+def ask(client: httpx.Client, over: Event) -> list[httpx.Response]:
+    """One request after the other, until it is over."""
+    answers = []
+    while not over.is_set():
+        answers.append(client.post("/front", json=REQUEST))
+    return answers
+
+
+def kill_ten(served: Served) -> None:
+    """Kill a process in mid-search, ten times, each time over another front."""
+    killed = set()
+    while len(killed) < 10:
+        for front, pid in served.searching().items():
+            if front not in killed and len(killed) < 10:
+                os.kill(pid, signal.SIGKILL)
+                killed.add(front)
+        time.sleep(0.01)
+
+
+def check_ended(found: dict[str, Any]) -> None:
+    """With a front, whatever befell it: a kill that came late hit the front that followed."""
+    assert found["front"]
+    check(found)
+    if found["status"] != "done":
+        assert (found["status"], found["problem"]["code"]) == ("failed", "worker-lost")
+
+
+def check_answered(answer: httpx.Response) -> None:
+    """With a front, or with a clear refusal."""
+    if answer.status_code == 200:
+        check(answer.json())
+    else:
+        code = answer.json()["code"]
+        assert code in ("queue-full", "worker-lost")
+        problem(answer, 503, code)

@@ -1,0 +1,230 @@
+"""Worker processes: what becomes of work, and of them, whatever happens."""
+
+import asyncio
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from service.jobs.engine import Busy, Closed, Cold
+from service.jobs.submission import Lost, Overdue, Stopped
+from service.jobs.worker_pool import Workers
+from tests.helpers.puppet import Puppet, work, working
+
+ROOT = Path(__file__).parents[2]
+
+
+def run(test: Callable[[Workers], Awaitable[None]], *args: Any, **options: Any) -> None:
+    """A test with workers at work."""
+
+    async def with_workers() -> None:
+        async with working(*args, **options) as workers:
+            await asyncio.wait_for(test(workers), timeout=60)
+
+    asyncio.run(with_workers())
+
+
+async def until(holds: Callable[[], bool]) -> None:
+    while not holds():
+        await asyncio.sleep(0.005)
+
+
+async def front(workers: Workers, body: bytes = b"") -> dict[str, Any]:
+    return (await workers.order(work(body)).front()).members
+
+
+def test_work_becomes_a_front_with_the_time_that_it_waited() -> None:
+    async def test(workers: Workers) -> None:
+        timings = (await front(workers))["timings_ms"]
+        assert timings["construction"] == 1
+        assert timings["total"] == pytest.approx(timings["queue"] + 1)
+
+    run(test)
+
+
+def test_what_fails_fails_for_whoever_asked_with_the_traceback_of_the_worker() -> None:
+    async def test(workers: Workers) -> None:
+        with pytest.raises(KeyError, match="city") as failed:
+            await front(workers, b"fail")
+        assert 'raise KeyError("city")' in failed.value.__notes__[0]
+        assert (await front(workers))["terminated"] == "converged"
+
+    run(test)
+
+
+def test_work_keeps_its_place_when_nobody_waits_for_it_any_more() -> None:
+    async def test(workers: Workers) -> None:
+        order = workers.order(work(b"wait"))
+        await until(lambda: workers.working == 1)
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(order.front(), timeout=0.05)
+        with pytest.raises(Busy):
+            workers.order(work())
+        workers.stop(order)
+        assert (await order.front()).members["terminated"] == "cancelled"
+
+    run(test)
+
+
+def test_work_that_is_stopped_while_it_waits_gives_up_its_place() -> None:
+    async def test(workers: Workers) -> None:
+        workers.order(work(b"wait"))
+        waiting = workers.order(work())
+        workers.stop(waiting)
+        with pytest.raises(Stopped):
+            await waiting.front()
+        workers.order(work())
+
+    run(test, queue=1)
+
+
+def test_work_that_does_not_listen_is_ended_and_its_process_replaced() -> None:
+    async def test(workers: Workers) -> None:
+        order = workers.order(work(b"hang"))
+        await until(lambda: workers.working == 1)
+        workers.stop(order)
+        with pytest.raises(Stopped):
+            await order.front()
+        assert (await front(workers))["terminated"] == "converged"
+        assert workers.lost == 1
+
+    run(test)
+
+
+@pytest.mark.parametrize("patient", [True, False])
+def test_work_that_takes_too_long_ends_with_the_best_front_so_far(patient: bool) -> None:
+    async def test(workers: Workers) -> None:
+        await workers.order(work(), patient=True).front()
+        told: list[None] = []
+        order = workers.order(work(b"report and hang"), lambda: told.append(None), patient)
+        found = (await order.front()).members
+        assert (found["terminated"], found["points"]) == ("time_limit", 1)
+        # That it was begun, and what was found.
+        assert len(told) > 1
+
+    run(test, seconds=2.0)
+
+
+def test_work_that_takes_too_long_and_found_nothing_fails() -> None:
+    async def test(workers: Workers) -> None:
+        with pytest.raises(Overdue):
+            await front(workers, b"hang")
+
+    run(test, seconds=1.0)
+
+
+def test_work_whose_process_is_killed_is_done_by_another(tmp_path: Path) -> None:
+    lives = tmp_path / "lives"
+    lives.write_bytes(b"1")
+
+    async def test(workers: Workers) -> None:
+        assert (await front(workers, b"die"))["terminated"] == "converged"
+        assert workers.lost == 1
+
+    run(test, Puppet(lives=lives))
+
+
+def test_work_that_kills_two_processes_is_given_up_and_others_are_done(tmp_path: Path) -> None:
+    lives = tmp_path / "lives"
+    lives.write_bytes(b"123")
+
+    async def test(workers: Workers) -> None:
+        deadly, other = workers.order(work(b"die")), workers.order(work())
+        with pytest.raises(Lost):
+            await deadly.front()
+        assert (await other.front()).members["terminated"] == "converged"
+        assert lives.read_bytes() == b"3"
+
+    run(test, Puppet(lives=lives), queue=1)
+
+
+def test_a_process_killed_while_idle_is_replaced() -> None:
+    async def test(workers: Workers) -> None:
+        await front(workers)
+        [killed] = workers.pids
+        assert killed is not None
+        os.kill(killed, signal.SIGKILL)
+        await until(lambda: workers.lost == 1)
+        assert (await front(workers))["terminated"] == "converged"
+        assert killed not in workers.pids
+
+    run(test)
+
+
+def test_compiled_code_may_not_be_used_before_it_is_warm(tmp_path: Path) -> None:
+    async def test(workers: Workers) -> None:
+        assert (await front(workers))["terminated"] == "converged"
+        for check in (workers.check_warm, workers.check_ready):
+            with pytest.raises(Cold):
+                check()
+        (tmp_path / "warm").touch()
+        await until(lambda: is_warm(workers))
+        assert (await front(workers))["terminated"] == "converged"
+        workers.check_ready()
+
+    run(test, Puppet(warm=tmp_path / "warm"), workers=2)
+
+
+def is_warm(workers: Workers) -> bool:
+    with suppress(Cold):
+        workers.check_warm()
+        return True
+    return False
+
+
+def test_after_the_close_no_work_is_taken_and_none_is_waited_for_in_vain() -> None:
+    async def test(workers: Workers) -> None:
+        orders = [workers.order(work(b"hang")) for _ in range(2)]
+        await until(lambda: workers.working == 1)
+        await workers.close()
+        for order in orders:
+            with pytest.raises(Closed):
+                await order.front()
+        with pytest.raises(Closed):
+            workers.check_open()
+        with pytest.raises(Closed):
+            workers.order(work())
+
+    run(test, queue=1)
+
+
+ORPHANS = """
+import asyncio
+from tests.puppet import work, working
+
+async def main():
+    async with working(workers=2) as workers:
+        orders = [workers.order(work(b"hang")) for _ in range(2)]
+        while workers.working < 2:
+            await asyncio.sleep(0.01)
+        print(*workers.pids, flush=True)
+        await asyncio.sleep(600)
+
+if __name__ == "__main__":
+    asyncio.run(main())
+"""
+
+
+def test_no_worker_outlives_a_service_that_is_killed(tmp_path: Path) -> None:
+    script = tmp_path / "orphans.py"
+    script.write_text(ORPHANS)
+    command = [sys.executable, script]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE) as service:
+        assert service.stdout is not None
+        pids = [int(pid) for pid in service.stdout.readline().split()]
+        assert len(pids) == 2
+        service.kill()
+        # Which ends when the last process that could write to it has ended.
+        assert service.stdout.read() == b""
+    assert not any(Path(f"/proc/{pid}").exists() and not zombie(pid) for pid in pids)
+
+
+def zombie(pid: int) -> bool:
+    return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"

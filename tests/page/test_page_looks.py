@@ -1,0 +1,162 @@
+"""How the page looks: on a phone and on a desk, in light and in dark, whatever is planned on it."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import CHROMIUM, DESK, PHONE, WITHOUT, chromium, done, drawn, opened
+from tests.helpers.serving import serving_released
+
+EXAMPLES = ["City deliveries", "Drone inspection", "Warehouse cleaning"]
+LEGIBLE, SEEN = 4.5, 3.0  # contrasts that WCAG 2.2 demands of text, and of lines
+
+pytestmark = pytest.mark.skipif(not CHROMIUM.exists(), reason=WITHOUT)
+
+# Every piece of text that is seen, with its colour and what lies behind it.
+TEXTS = """() => {
+  const parts = (text) => text.match(/[\\d.]+/g).map(Number);
+  const behind = (element) => {
+    for (let at = element; at; at = at.parentElement) {
+      const [red, green, blue, alpha = 1] = parts(getComputedStyle(at).backgroundColor);
+      if (alpha > 0) return [red, green, blue];
+    }
+  };
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  const texts = [];
+  while (walker.nextNode()) {
+    const text = walker.currentNode.data.trim();
+    const element = walker.currentNode.parentElement;
+    if (!text || !element.checkVisibility() || element.closest(":disabled")) continue;
+    texts.push([text, parts(getComputedStyle(element).color).slice(0, 3), behind(element)]);
+  }
+  return texts;
+}"""
+# The strongest colour on each canvas of a map, and what lies behind it.
+LINES = """() => {
+  const strongest = (canvas) => {
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    let best = 0;
+    for (let at = 0; at < data.length; at += 4) if (data[at + 3] > data[best + 3]) best = at;
+    return [...data.slice(best, best + 4)];
+  };
+  return [...document.querySelectorAll(".plane canvas:not([hidden])")].map((canvas) => {
+    const ground = getComputedStyle(canvas.closest(".map")).backgroundColor;
+    return [strongest(canvas), ground.match(/\\d+/g).slice(0, 3).map(Number)];
+  });
+}"""
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    with serving_released() as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with chromium() as browser:
+        yield browser
+
+
+@pytest.mark.parametrize("width", [DESK, PHONE])
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_nothing_sticks_out_at_either_width(
+    browser: Browser, address: str, width: int, example: str
+) -> None:
+    with opened(browser, address, width) as page:
+        done(page)
+        page.get_by_label("Example").select_option(example)
+        done(page)
+        unfold(page)
+        assert page.evaluate("document.documentElement.scrollWidth") == width
+        page.get_by_label("Seconds of search").fill("as long as it takes, if that is not forever")
+        page.get_by_role("button", name="Plan").click()
+        expect(page.locator("#time_limit-fault")).not_to_be_empty()
+        assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_every_text_is_legible_against_what_lies_behind_it(
+    browser: Browser, address: str, scheme: Any
+) -> None:
+    with opened(browser, address, scheme=scheme) as page:
+        done(page)
+        page.get_by_role("button", name="Pin to compare").click()
+        page.get_by_label("Seconds of search").fill("soon")
+        page.get_by_role("button", name="Plan").click()
+        expect(page.locator("#time_limit-fault")).not_to_be_empty()
+        unfold(page)
+        texts = page.evaluate(TEXTS)
+        assert {"Front", "Plan", "Selected", "Pinned"} <= {text for text, _, _ in texts}
+        assert [text for text, *colours in texts if contrast(*colours) < LEGIBLE] == []
+        # The ground is what tells that the scheme was taken.
+        ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
+        assert (ground == "rgb(16, 21, 28)") == (scheme == "dark")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_cities_and_tours_stand_out_from_the_maps(
+    browser: Browser, address: str, scheme: Any
+) -> None:
+    with opened(browser, address, scheme=scheme) as page:
+        done(page)
+        page.get_by_role("slider", name="Angle").press("Home")
+        page.get_by_role("button", name="Pin to compare").click()
+        page.get_by_role("slider", name="Angle").press("End")
+        drawn(page)
+        lines = page.evaluate(LINES)
+        assert len(lines) == 6  # cities, the selected tour and the pinned one, in either plane
+        for (*colour, alpha), ground in lines:
+            assert alpha == 255
+            assert contrast(colour, ground) >= SEEN
+
+
+def test_the_maps_follow_when_the_page_turns_dark(browser: Browser, address: str) -> None:
+    with opened(browser, address) as page:
+        done(page)
+        drawn(page)
+        before = page.evaluate(LINES)
+        page.emulate_media(color_scheme="dark")
+        drawn(page)
+        after = page.evaluate(LINES)
+        assert all(one[0] != other[0] for one, other in zip(before, after, strict=True))
+
+
+def test_a_thousand_cities_and_a_hundred_tours_are_shown(browser: Browser, address: str) -> None:
+    cities = np.random.default_rng(0).random((1000, 4)).round(4)
+    with opened(browser, address) as page:
+        done(page)
+        page.get_by_label("x1, y1, x2, y2").fill("\n".join(",".join(map(str, r)) for r in cities))
+        expect(page.locator("#count")).to_have_text("1,000 cities")
+        page.get_by_role("button", name="Plan").click()
+        expect(page.get_by_label("A front of 100 tours")).to_be_visible(timeout=120_000)
+        done(page)
+        slider = page.get_by_role("slider", name="Angle")
+        shown = set()
+        for key, place in [("Home", 1), ("PageUp", 11), ("End", 100)]:
+            slider.press(key)
+            expect(slider).to_have_attribute("aria-valuetext", re.compile(f"tour {place} of 100"))
+            drawn(page)
+            shown.add(page.locator("#plane-1 canvas.selected").evaluate("c => c.toDataURL()"))
+        assert len(shown) == 3
+
+
+def unfold(page: Page) -> None:
+    """Opens everything that is folded."""
+    page.evaluate("for (const each of document.querySelectorAll('details')) each.open = true")
+
+
+def contrast(one: list[float], other: list[float]) -> float:
+    """Of two colours, as WCAG defines it: 1 of like ones, 21 of black and white."""
+    darker, lighter = sorted([luminance(one), luminance(other)])
+    return (lighter + 0.05) / (darker + 0.05)
+
+
+def luminance(colour: list[float]) -> float:
+    share = np.array(colour) / 255
+    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])

@@ -1,0 +1,111 @@
+"""No front exceeds the bound."""
+
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from service.instance import Instance, tour_lengths
+from service.pareto import hypervolume
+from service.search.bound import (
+    WEIGHTS,
+    area_above,
+    assignment_bounds,
+    hypervolume_bound,
+    one_tree_bounds,
+)
+from service.search.costs import make_costs, units
+from service.search.enumeration import all_tours
+from service.search.improve import improve
+
+TOURS = {n: all_tours(n) for n in range(1, 10)}
+
+
+def drawn(seed: int, n: int, symmetric: bool, planar: bool) -> Instance:
+    rng = np.random.default_rng(seed)
+    if planar:
+        return Instance(coordinates=rng.integers(0, 6, (n, 4)).astype(float))
+    matrices = rng.integers(0, 1 + seed % 40, (2, n, n)) * np.array([1.0, 1e3])[:, None, None]
+    return Instance(matrices=matrices + (matrices.transpose(0, 2, 1) if symmetric else 0))
+
+
+@settings(max_examples=150)
+@given(
+    seed=st.integers(0, 10**6),
+    n=st.integers(1, 9),
+    symmetric=st.booleans(),
+    planar=st.booleans(),
+    corner=st.tuples(st.floats(0.05, 2), st.floats(0.05, 2)),
+)
+def test_the_exact_front_of_up_to_nine_cities_is_within_the_bound(
+    seed: int, n: int, symmetric: bool, planar: bool, corner: tuple[float, float]
+) -> None:
+    instance = drawn(seed, n, symmetric, planar)
+    reference_point = n * instance.scale * corner
+    exact = hypervolume(tour_lengths(instance, TOURS[n]), reference_point)
+    assert exact <= hypervolume_bound(instance, reference_point) <= 1
+
+
+@settings(max_examples=60)
+@given(seed=st.integers(0, 10**6), n=st.integers(4, 8), symmetric=st.booleans())
+def test_no_tour_is_shorter_than_the_bound_under_a_weight(
+    seed: int, n: int, symmetric: bool
+) -> None:
+    instance = drawn(seed, n, symmetric, planar=False)
+    share = np.linspace(0, 1, WEIGHTS)
+    weights = np.stack([share, 1 - share], axis=1) / instance.scale
+    shortest = (tour_lengths(instance, TOURS[n]) @ weights.T).min(axis=0)
+    bounds = one_tree_bounds if instance.symmetric else assignment_bounds
+    for k, value in bounds(make_costs(instance), weights / units(instance)):
+        assert value <= shortest[k] + 1e-9
+
+
+def test_the_assignment_bound_is_the_least_assignment() -> None:
+    n = 7
+    instance = Instance(matrices=np.random.default_rng(5).random((2, n, n)))
+    weights = np.array([[0.5, 0.5]])
+    costs = make_costs(instance)
+    weighted: NDArray[np.float64] = costs.matrix @ weights[0]
+    orders = np.array([order for order in _permutations(n) if (order != np.arange(n)).all()])
+    least = weighted[np.arange(n), orders].sum(axis=1).min()
+    *_, (_, last) = assignment_bounds(costs, np.vstack([weights, weights]))
+    assert last == pytest.approx(least)
+
+
+def _permutations(n: int) -> NDArray[np.int32]:
+    return all_tours(n + 1)[:, 1:] - 1
+
+
+@pytest.mark.parametrize(("symmetric", "gap"), [(True, 0.005), (False, 0.03)])
+def test_the_bound_is_close_above_what_a_search_finds(symmetric: bool, gap: float) -> None:
+    rng = np.random.default_rng(1)
+    instance = (
+        Instance(coordinates=rng.random((40, 4)))
+        if symmetric
+        else Instance(matrices=rng.random((2, 40, 40)))
+    )
+    corner = 40 * instance.scale
+    found = improve(instance, np.empty((0, 40), np.int32), iterations=30_000)
+    share, bound = hypervolume(found.points, corner), hypervolume_bound(instance, corner)
+    assert share <= bound <= share + gap
+
+
+@pytest.mark.parametrize("symmetric", [True, False])
+def test_a_bound_out_of_time_is_loose_yet_valid(symmetric: bool) -> None:
+    instance = drawn(7, 60, symmetric, planar=False)
+    corner = 60 * instance.scale
+    used = time.process_time()
+    hasty = hypervolume_bound(instance, corner, deadline=time.monotonic())
+    assert time.process_time() - used < 0.1
+    assert hypervolume_bound(instance, corner) <= hasty <= 1
+
+
+def test_the_area_above_known_lines_is_known() -> None:
+    weights = np.array([[0.0, 1.0], [0.5, 0.5], [1.0, 0.0]])
+    assert area_above(weights, np.zeros(3)) == 1
+    assert area_above(weights, np.array([0.25, 0.0, 0.5])) == pytest.approx(0.75 * 0.5)
+    assert area_above(weights, np.array([0.0, 0.5, 0.0])) == pytest.approx(0.5)
+    assert area_above(weights, np.array([0.0, 0.0, 3.0])) == 0
