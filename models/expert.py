@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from models.config import add_options, from_options, setting
+from models.data.generators import PLANES, coverage_matrices
 from models.data.instances import closed, distance_matrices
-from models.data.maps import coverage_matrices
-from models.data.planes import KINDS
 from service.instance import Instance
 from service.preferences import from_angles, weights
 from service.search.improve import improve
@@ -111,10 +110,10 @@ def expert_tours(
 
 def _cities(n: int, shaped: float, generator: Generator) -> Array:
     """Cities in the unit squares of both planes, each plane of a kind of its own."""
-    names = list(KINDS)
+    names = list(PLANES)
     shares = [1 - shaped] + [shaped / (len(names) - 1)] * (len(names) - 1)
     kinds = generator.choice(names, p=shares, size=2)
-    return np.concatenate([KINDS[kind](n, generator) for kind in kinds], axis=1)
+    return np.concatenate([PLANES[kind](n, generator) for kind in kinds], axis=1)
 
 
 def _matrices(n: int, shaped: float, generator: Generator) -> Array:

@@ -1,8 +1,10 @@
-"""What is planned: cities under two objectives, checked where it is made."""
+"""An instance: cities and two costs between them, checked where it is made."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import permutations
 from typing import Literal
 
 import numpy as np
@@ -137,3 +139,30 @@ def _checked_matrices(given: Array | None) -> Array:
         raise InvalidInstance(f"costs must not be negative, got {matrices.min():g}")
     matrices.setflags(write=False)
     return matrices
+
+
+MOST = 8  # of a square
+
+
+def symmetries(instance: Instance, count: int) -> Iterator[Instance]:
+    """The instance itself, and then as it looks under others of the eight symmetries of a square.
+
+    All have the same tours and the same lengths. Both planes are mirrored alike. Of matrices there
+    is one view.
+    """
+    yield instance
+    if instance.coordinates is None:
+        return
+    for number in range(1, count):
+        planes = instance.coordinates.reshape(-1, 2, 2)
+        mirrored = planes * np.where([number & 1, number & 2], -1.0, 1.0)
+        turned = mirrored[..., ::-1] if number & 4 else mirrored
+        yield Instance(coordinates=turned.reshape(-1, 4))
+
+
+MOST_ENUMERATED = 7  # cities, and 720 tours
+
+
+def all_tours(n: int) -> NDArray[np.int32]:
+    """Every tour of n cities that sets out from city 0."""
+    return np.array([(0, *rest) for rest in permutations(range(1, n))], np.int32)

@@ -9,13 +9,11 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance, tour_lengths
-from service.pareto import hypervolume, nondominated
+from service.instance import Instance, symmetries, tour_lengths
+from service.pareto import best_subset, hypervolume, nondominated
 from service.preferences import angles, from_angles
 from service.search.bound import hypervolume_bound
 from service.search.improve import Progress, improve
-from service.search.subset import best_subset
-from service.symmetries import symmetries
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]

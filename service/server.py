@@ -1,10 +1,15 @@
-"""Everything put together as the settings ask, and served."""
+"""The service, or a worker of a cluster, put together as the settings say."""
 
 import gc
+import logging.config
+import multiprocessing
 import signal
 import sys
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
@@ -12,20 +17,18 @@ import uvicorn
 from fastapi import FastAPI
 
 from service.actor import load_actors
-from service.api.app import create_app
+from service.api.app import Edge, create_app
 from service.api.auth import Access, Rates
-from service.api.edge import Edge
 from service.api.metrics import Metrics
 from service.cluster import check_cluster
 from service.jobs.engine import Engine
 from service.jobs.local_engine import Jobs
-from service.jobs.runner import load_planner
+from service.jobs.runner import load_planner, warm_up
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.worker_pool import Workers
 from service.settings import Settings
-from service.telemetry import logging_config
-from service.tracing import trace
+from service.telemetry import logging_config, trace
 
 
 def build(settings: Settings) -> FastAPI:
@@ -71,7 +74,7 @@ def _embedded(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
 def _shared(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
     """The engine that many machines are together."""
     check_cluster()
-    from service.cluster.replica import replica
+    from service.cluster.redis_engine import replica
 
     assert settings.redis_url is not None
     return replica(
@@ -113,3 +116,61 @@ def _version() -> str:
 
 def _exit(_signal: int, _frame: FrameType | None) -> NoReturn:
     sys.exit(0)
+
+
+def build_work(settings: Settings) -> Callable[[], int]:
+    """What works until told to end, and says with which status.
+
+    Raises:
+        ValueError: there is no Redis to work for, or what it takes is not installed.
+    """
+    redis_url = _redis_url(settings)
+    from service.cluster.celery_app import queue_at
+    from service.cluster.worker import Crew, make_hand
+
+    _check_actors(settings.actors, settings.threads)
+    logging.config.dictConfig(logging_config())
+    load = partial(load_planner, settings.actors, settings.threads, settings.limits)
+    crew = Crew(
+        queue=queue_at(redis_url, settings.request_seconds),
+        make_hand=partial(make_hand, load, redis_url, settings.request_seconds),
+        workers=settings.workers,
+        drain_seconds=settings.drain_seconds,
+    )
+
+    def work() -> int:
+        # Before the first fork, so that a process that takes the place of one lost has it at once.
+        warm_up()
+        return crew.run()
+
+    return work
+
+
+def takes_work(settings: Settings) -> bool:
+    """Whether what works on this machine takes what there is to do.
+
+    Raises:
+        ValueError: there is no Redis to work for, or what it takes is not installed.
+    """
+    redis_url = _redis_url(settings)
+    from service.cluster import worker_store
+
+    return worker_store.takes_work(redis_url)
+
+
+def _redis_url(settings: Settings) -> str:
+    if settings.redis_url is None:
+        raise ValueError("PARETOUR_REDIS_URL must say for which Redis to work")
+    check_cluster()
+    return settings.redis_url
+
+
+def _check_actors(directory: Path, threads: int) -> None:
+    """Load the networks, elsewhere: a process that will fork must not have them."""
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, mp_context=context) as elsewhere:
+        elsewhere.submit(_load_actors, directory, threads).result()
+
+
+def _load_actors(directory: Path, threads: int) -> None:
+    load_actors(directory, threads)

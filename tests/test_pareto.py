@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from service.pareto import hypervolume, nondominated
-from service.search.subset import best_subset
+from service.pareto import best_subset, hypervolume, nondominated
 
 REFERENCE_POINT = np.array([8.0, 10.0])
 # Small integers, so that ties and points beyond the reference point are common.

@@ -10,12 +10,11 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from service.actor import Actor
-from service.instance import Instance, tour_lengths
+from service.instance import Instance, symmetries, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.planner import Demand, Front, plan
 from service.preferences import fan
 from service.settings import Settings
-from service.symmetries import symmetries
 
 SMALL = (
     st.integers(1, 7)

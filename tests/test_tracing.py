@@ -11,7 +11,7 @@ import pytest
 from fastapi import FastAPI
 from opentelemetry.proto.collector.trace.v1.trace_service_pb2 import ExportTraceServiceRequest
 
-from service.tracing import trace
+from service.telemetry import trace
 from tests.helpers.serving import running
 
 

@@ -1,20 +1,29 @@
-"""The service over HTTP: every path, and what any of them answers when it refuses."""
+"""The application: every path, its middleware and its exception handlers, put together."""
 
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import asynccontextmanager
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from fastapi import APIRouter, FastAPI
+from starlette.middleware import Middleware
+from starlette.middleware.cors import CORSMiddleware
 from starlette.responses import Response
 
 from service.actor import ActorFacts
-from service.api.answers import Answers
+from service.api.auth import Access
 from service.api.body import json_response
-from service.api.edge import Edge
 from service.api.exception_handlers import REFUSALS, answer_refusal
+from service.api.metrics import Metrics
+from service.api.middleware import (
+    BrowserHeaders,
+    ObservedRequests,
+    RequestIds,
+    TimelyBodies,
+    log_request,
+)
 from service.api.openapi import illustrate
-from service.api.plan import FrontRoutes
+from service.api.plan import Answers, FrontRoutes
 from service.api.responses import ActorsAnswer, HealthAnswer
 from service.api.static import page_routes
 from service.api.stored_fronts import KeptRoutes
@@ -22,6 +31,44 @@ from service.errors import Problem, responses
 from service.jobs.engine import Engine
 from service.jobs.store import Store
 from service.requests.schemas import Limits
+
+
+@dataclass(frozen=True, kw_only=True)
+class Edge:
+    """Everybody may call, as one, and no page of another origin, unless it is said otherwise."""
+
+    access: Access = field(default_factory=Access)
+    metrics: Metrics = field(default_factory=Metrics)
+    origins: Sequence[str] = ()
+    body_seconds: float = 30.0
+
+    @property
+    def guard(self) -> dict[str, Any]:
+        """What a router that is not open to all is included with."""
+        return {"dependencies": self.access.dependencies, "responses": responses(401, 429)}
+
+    @property
+    def middleware(self) -> list[Middleware]:
+        """What each request passes through, outermost first."""
+        observers = (self.metrics.answered, log_request)
+        cors = [Middleware(CORSMiddleware, **self._cors)] if self.origins else []
+        return [
+            Middleware(BrowserHeaders),
+            Middleware(RequestIds),
+            Middleware(ObservedRequests, observers),
+            *cors,
+            Middleware(TimelyBodies, self.body_seconds),
+        ]
+
+    @property
+    def _cors(self) -> dict[str, Any]:
+        return {
+            "allow_origins": self.origins,
+            "allow_methods": ["GET", "POST", "DELETE"],
+            "allow_headers": ["Authorization", "Content-Type", "Idempotency-Key", "Prefer"],
+            "expose_headers": ["Location", "Preference-Applied", "Retry-After", "X-Request-ID"],
+        }
+
 
 _OPEN: dict[str, Any] = {"security": []}  # an orchestrator has no key
 

@@ -1,15 +1,88 @@
-"""JSON into and out of requests, without a detour through the framework's own parsing."""
+"""Request bodies: received within their limits, split into parts, and parsed into a task."""
 
 import asyncio
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
+from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
 from pydantic_core import to_json
+from python_multipart.exceptions import FormParserError
+from python_multipart.multipart import Field, File, FormParser, parse_options_header
 from starlette.requests import Request
 from starlette.responses import Response
 
-from service.api.multipart import parts
+from service.actor import ActorFacts
 from service.errors import Refusal
+from service.jobs.messages import Work
+from service.jobs.submission import Lost
+from service.requests.asked import read
+from service.requests.schemas import Limits
+from service.requests.task import Task
+
+
+def parts(content_type: str, body: bytes, expected: Collection[str]) -> dict[str, bytes]:
+    """The content of each part by its name: all of those expected, once each, and no other.
+
+    Raises:
+        Refusal: it is not of parts, or of others.
+    """
+    reader = _Reader(expected)
+    _, options = parse_options_header(content_type)
+    try:
+        parser = FormParser(
+            "multipart/form-data",
+            reader.take_field,
+            reader.take_file,
+            reader.end,
+            options.get(b"boundary"),
+            config={"MAX_MEMORY_FILE_SIZE": inf},
+        )
+        parser.write(body)
+        parser.finalize()
+    except FormParserError as error:
+        raise _malformed(str(error)) from None
+    if not reader.ended:
+        raise _malformed("it ends before its last boundary")
+    if missing := [name for name in expected if name not in reader.found]:
+        raise _unexpected(f"the part {missing[0]} is required")
+    return reader.found
+
+
+class _Reader:
+    """Takes the parts as they come."""
+
+    def __init__(self, expected: Collection[str]) -> None:
+        self.found: dict[str, bytes] = {}
+        self.ended = False
+        self._expected = expected
+
+    def take_field(self, part: Field) -> None:
+        self._take(part.field_name, part.value)
+
+    def take_file(self, part: File) -> None:
+        part.file_object.seek(0)
+        self._take(part.field_name, part.file_object.read())
+
+    def end(self) -> None:
+        self.ended = True
+
+    def _take(self, raw: bytes | None, content: bytes | None) -> None:
+        name = (raw or b"").decode(errors="replace")
+        if name not in self._expected or name in self.found:
+            among = " and ".join(self._expected)
+            raise _unexpected(f"the parts must be {among}, once each, got {name[:80]!r}")
+        self.found[name] = content or b""
+
+
+def _malformed(reason: str) -> Refusal:
+    return Refusal(400, "malformed-multipart", f"the body must be multipart/form-data: {reason}")
+
+
+def _unexpected(sentence: str) -> Refusal:
+    return Refusal(422, "invalid-parts", sentence)
+
 
 _PARTED = "multipart/form-data"
 _LONG = 2**20  # bytes
@@ -82,3 +155,41 @@ def _too_long(limit: int, actual: int | None = None) -> Refusal:
         limit=limit,
         actual=actual,
     )
+
+
+_SHORT = 2**17  # bytes that are read within a few milliseconds; many megabytes take seconds
+_TRIES = 2
+
+
+class Reader:
+    """Reads within these limits, for these actors.
+
+    The process is started for the first long body, and again where it was lost. It reads one body
+    at a time; whoever sends another waits.
+    """
+
+    def __init__(self, limits: Limits, actors: Mapping[str, ActorFacts]) -> None:
+        self._limits = limits
+        self._actors = dict(actors)
+        self._one = CapacityLimiter(1)
+
+    async def read(self, work: Work) -> Task:
+        """The task in a piece of work.
+
+        Raises:
+            Refusal: there is none, it is over a limit, or no actor serves it.
+            InvalidInstance: it cannot be planned.
+            Lost: the process did not survive it, nor did the next.
+        """
+        if len(work.body) + len(work.upload or b"") <= _SHORT:
+            return read(work, self._limits, self._actors)
+        for _ in range(_TRIES):
+            # To put it together took a while, and to hand it over will: others come in between.
+            await asyncio.sleep(0)
+            try:
+                return await to_process.run_sync(
+                    read, work, self._limits, self._actors, cancellable=True, limiter=self._one
+                )
+            except BrokenWorkerProcess:
+                continue
+        raise Lost

@@ -18,7 +18,7 @@ from prometheus_client.metrics_core import CounterMetricFamily, GaugeMetricFamil
 from prometheus_client.registry import Collector
 from starlette.responses import Response
 
-from service.api.observed import Answered
+from service.api.middleware import Answered
 from service.jobs.engine import Standing
 from service.jobs.front_document import Rendered
 

@@ -1,7 +1,8 @@
-"""What is asked, and who plans it: a service that runs somewhere, or else this process."""
+"""Who plans for the command: this process, or a service at a URL."""
 
+import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Protocol, cast
 
@@ -15,11 +16,59 @@ from paretour import (
     coverage_plan,
     front_plan,
 )
+from paretour.values import front_of
 from rich.console import Console
 
-from service.cli.errors import Wrong
+from service.actor import load_actors
+from service.cli.errors import Wrong, configured, loaded
 from service.cli.files import read_layer, read_map, read_request
-from service.cli.there import plan_there
+from service.cli.progress import interruptible, watching
+from service.errors import Refusal
+from service.instance import InvalidInstance
+from service.jobs.messages import Work
+from service.jobs.runner import load_planner
+
+
+def plan_there(client: Client, plan: Plan, stderr: Console) -> Front:
+    """The front that the service finds, or had found when Ctrl-C was pressed."""
+    job = client.post(plan)
+    try:
+        with watching(stderr, plan) as tell:
+            for progress in job.progress():
+                tell(progress)
+        return job.result()
+    except KeyboardInterrupt:
+        found = job.cancel()
+        if not len(found.tours):
+            raise
+        return found
+
+
+def plan_here(plan: Plan, stderr: Console) -> Front:
+    """The front, as the service would answer it, or what was found when Ctrl-C was pressed."""
+    planner = loaded(lambda its: load_planner(its.actors, its.threads, its.limits), configured())
+    if plan.seconds != 0:
+        with stderr.status("loading the search; the first time it is compiled, for half a minute"):
+            planner.warm_up()
+    with interruptible() as stop, watching(stderr, plan) as tell:
+        try:
+            found = planner.plan(_work(plan), stop, tell)
+        except (Refusal, InvalidInstance) as error:
+            raise Wrong(str(error)) from None
+    status = "cancelled" if stop() else "done"
+    return front_of(json.loads(found.json(id="", status=status)))
+
+
+def _work(plan: Plan) -> Work:
+    upload = None if plan.file is None else plan.file.content
+    return Work("coverage" if plan.path == "/coverage" else "front", plan.json, upload)
+
+
+def actors_here() -> tuple[Actor, ...]:
+    """The networks to choose from."""
+    actors = loaded(lambda its: load_actors(its.actors, its.threads), configured())
+    return tuple(Actor(**asdict(actor.facts)) for _, actor in sorted(actors.items()))
+
 
 Options = Mapping[str, Any]
 
@@ -97,7 +146,7 @@ class Planner:
         if self.url is not None:
             with Client(self.url, api_key=self.api_key) as client:
                 return plan_there(client, plan, stderr)
-        from service.cli.here import plan_here
+        from service.cli.backends import plan_here
 
         return plan_here(plan, stderr)
 
@@ -106,6 +155,6 @@ class Planner:
         if self.url is not None:
             with Client(self.url, api_key=self.api_key) as client:
                 return client.actors()
-        from service.cli.here import actors_here
+        from service.cli.backends import actors_here
 
         return actors_here()

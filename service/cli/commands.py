@@ -167,7 +167,7 @@ def serve(
     workers: Annotated[int | None, Option(help="Plans made at a time.", show_default=False)] = None,
 ) -> None:
     """Answer requests over HTTP; other settings come from PARETOUR_* variables."""
-    from service.cli.serving import run_serve
+    from service.cli.admin import run_serve
 
     run_serve(host, port, workers)
 
@@ -181,7 +181,7 @@ def work(
     ] = False,
 ) -> None:
     """Plan what services with the same PARETOUR_REDIS_URL ask for; needs the extra cluster."""
-    from service.cli.working import run_alive, run_work
+    from service.cli.admin import run_alive, run_work
 
     if alive:
         run_alive()
@@ -194,6 +194,6 @@ def key(
     caller: Annotated[str, Argument(help="Who will show the key.")],
 ) -> None:
     """Make an API key for a caller, and the entry for PARETOUR_API_KEYS that lets it in."""
-    from service.cli.keys import run_key
+    from service.cli.admin import run_key
 
     run_key(caller)

@@ -1,18 +1,16 @@
-"""How the command ends when it cannot do what was asked: a sentence on stderr and a code.
+"""How the command ends when it cannot do what was asked: a sentence on stderr and an exit code."""
 
-0 is a front, also where Ctrl-C ended its search; 2 what the caller can put right: the command, its
-files, the request; 3 a service that cannot be reached, lets nobody in, or fails; 130 Ctrl-C before
-there was a front.
-"""
-
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any, TypeVar
 
 import httpx
 import typer
 from paretour import Refused
+from pydantic import ValidationError
 
 from service.cli.tsplib import NotRead
+from service.settings import Settings
 
 WRONG = 2
 UNAVAILABLE = 3
@@ -43,3 +41,37 @@ def ended(sentence: str, code: int) -> typer.Exit:
     """What ends the command, after the sentence is said."""
     typer.echo(f"paretour: {sentence}", err=True)
     return typer.Exit(code)
+
+
+T = TypeVar("T")
+
+
+def configured(**given: Any) -> Settings:
+    """The settings, of which some are given and not None.
+
+    Raises:
+        Wrong: one of them is not what it must be.
+    """
+    try:
+        return Settings(**{name: value for name, value in given.items() if value is not None})
+    except ValidationError as error:
+        raise Wrong(_explained(error)) from None
+
+
+def loaded(load: Callable[[Settings], T], settings: Settings) -> T:
+    """What is made as the settings say.
+
+    Raises:
+        Wrong: the files that they name are not there, or not what they must be.
+    """
+    try:
+        return load(settings)
+    except (OSError, ValueError) as error:
+        raise Wrong(str(error)) from None
+
+
+def _explained(error: ValidationError) -> str:
+    return "; ".join(
+        f"{'.'.join(str(part) for part in fault['loc'])}: {fault['msg']}, got {fault['input']!r}"
+        for fault in error.errors()
+    )

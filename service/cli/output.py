@@ -1,16 +1,92 @@
-"""What each command does: results on stdout, talk on stderr."""
+"""Results of the command: tables, JSON, CSV and pictures on stdout, talk on stderr."""
 
-from collections.abc import Callable
+import csv
+import io
+import json
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from paretour import Front
+import numpy as np
+from numpy.typing import NDArray
+from paretour import Actor, Front, Tour
 from rich.console import Console
+from rich.table import Table
 from typer import echo
 
-from service.cli import showing
 from service.cli.backends import Asked, Planner
 from service.cli.errors import Wrong, explaining
+
+_ENDS: Mapping[str | None, str] = {
+    None: "still being planned",
+    "converged": "nothing more was found",
+    "time_limit": "stopped at the time limit",
+    "cancelled": "stopped before its time",
+}
+
+
+def front_as_json(front: Front) -> str:
+    """As the service answers it."""
+    return json.dumps(front.document)
+
+
+def front_as_csv(front: Front) -> str:
+    """A line for each tour, with spaces between its cities."""
+    text = io.StringIO()
+    lines = csv.writer(text, lineterminator="\n")
+    lines.writerow(("angle", "length_1", "length_2", "tour"))
+    for angle, lengths, tour in zip(front.angles, front.lengths, front.tours, strict=True):
+        lines.writerow((float(angle), *lengths.tolist(), tour_as_text(tour)))
+    return text.getvalue().rstrip()
+
+
+def front_as_table(front: Front) -> Table:
+    """A row for each tour, without its cities."""
+    table = Table("angle", "first length", "second length")
+    for column in table.columns:
+        column.justify = "right"
+    for angle, lengths in zip(front.angles, front.lengths, strict=True):
+        table.add_row(f"{angle:.2f}", *(f"{length:.6g}" for length in lengths))
+    return table
+
+
+def front_in_words(front: Front) -> str:
+    """What there is to say of it in a line."""
+    kept = f"{len(front.tours)} of {front.points} tours found"
+    bound = front.hypervolume_bound
+    most = "" if bound is None else f", and no front has more than {bound:.2%}"
+    return f"{kept}, hypervolume {front.hypervolume:.2%}{most}; {_ENDS[front.terminated]}"
+
+
+def tour_as_json(tour: Tour) -> str:
+    """As the service answers it, but for the front."""
+    members = {"angle": tour.angle, "lengths": tour.lengths.tolist(), "tour": tour.tour.tolist()}
+    return json.dumps(members)
+
+
+def tour_as_text(tour: NDArray[np.int64]) -> str:
+    """Its cities."""
+    return " ".join(map(str, tour.tolist()))
+
+
+def tour_in_words(tour: Tour) -> str:
+    """Where it stands."""
+    first, second = tour.lengths
+    return f"angle {tour.angle:.2f}, lengths {first:.6g} and {second:.6g}"
+
+
+def actors_as_json(actors: Iterable[Actor]) -> str:
+    """As the service answers them."""
+    return json.dumps({"actors": [vars(actor) for actor in actors]})
+
+
+def actors_as_table(actors: Iterable[Actor]) -> Table:
+    """A row for each."""
+    table = Table("name", "reads", "trained on cities", "digest")
+    for actor in actors:
+        table.add_row(actor.name, actor.inputs, str(actor.sizes), actor.digest[:12])
+    return table
+
 
 _STDERR = Console(stderr=True)
 
@@ -34,7 +110,7 @@ def run_front(asked: Asked, planner: Planner, shown: Shown) -> None:
         _print(front, shown)
         if draw is not None:
             draw(front)
-    _STDERR.print(showing.front_in_words(front), highlight=False)
+    _STDERR.print(front_in_words(front), highlight=False)
 
 
 def run_tour(asked: Asked, planner: Planner, angle: float, as_json: bool) -> None:
@@ -42,8 +118,8 @@ def run_tour(asked: Asked, planner: Planner, angle: float, as_json: bool) -> Non
     with explaining():
         front = planner.front(asked.plan(), _STDERR)
     tour = front.nearest(angle)
-    echo(showing.tour_as_json(tour) if as_json else showing.tour_as_text(tour.tour))
-    _STDERR.print(showing.tour_in_words(tour), highlight=False)
+    echo(tour_as_json(tour) if as_json else tour_as_text(tour.tour))
+    _STDERR.print(tour_in_words(tour), highlight=False)
 
 
 def run_actors(planner: Planner, as_json: bool) -> None:
@@ -51,18 +127,18 @@ def run_actors(planner: Planner, as_json: bool) -> None:
     with explaining():
         actors = planner.actors()
     if as_json:
-        echo(showing.actors_as_json(actors))
+        echo(actors_as_json(actors))
     else:
-        Console().print(showing.actors_as_table(actors))
+        Console().print(actors_as_table(actors))
 
 
 def _print(front: Front, shown: Shown) -> None:
     if shown.as_json:
-        echo(showing.front_as_json(front))
+        echo(front_as_json(front))
     elif shown.as_csv:
-        echo(showing.front_as_csv(front))
+        echo(front_as_csv(front))
     else:
-        Console().print(showing.front_as_table(front))
+        Console().print(front_as_table(front))
 
 
 def _drawing(path: Path) -> Callable[[Front], None]:

@@ -9,9 +9,9 @@ from typing import Any
 from pydantic_core import to_json
 from redis import exceptions
 
-from service.jobs.columns import WORK, columns, front_columns, record_of
 from service.jobs.messages import Snapshot
 from service.jobs.record import Record
+from service.jobs.store import WORK, columns, front_columns, record_of
 from service.jobs.submission import Overdue, Stopped
 
 SCRIPT = (Path(__file__).parent / "records.lua").read_text()

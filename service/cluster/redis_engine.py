@@ -1,4 +1,4 @@
-"""The engine of a replica: its work is done wherever a worker is free."""
+"""The engine of a replica: fronts are planned by whichever worker of the cluster is free."""
 
 import asyncio
 import logging
@@ -6,11 +6,14 @@ from asyncio import Event, Future
 from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from time import time
 
 from redis.asyncio import Redis
+from redis.backoff import NoBackoff
+from redis.retry import Retry
 
-from service.cluster.celery_app import QUEUE
+from service.cluster.celery_app import QUEUE, queue_at, send
 from service.cluster.pubsub import News
 from service.cluster.records import LEASE, Kept, arguments, kept_in
 from service.cluster.redis_store import RedisStore
@@ -195,3 +198,25 @@ async def _within(seconds: float, changed: Event) -> None:
     with suppress(TimeoutError):
         async with asyncio.timeout(seconds):
             await changed.wait()
+
+
+_SECONDS = 2.0  # that one answer of Redis may take
+
+
+def replica(
+    redis_url: str,
+    *,
+    entries: int,
+    max_age: float,
+    queue: int,
+    seconds: float,
+    planned: Callable[[Rendered], None] = lambda _: None,
+) -> tuple[RedisStore, Cluster]:
+    """What all replicas at this Redis do alike."""
+    # Tried once more, because a connection may be of a Redis that has been replaced.
+    redis = Redis.from_url(
+        redis_url, retry=Retry(NoBackoff(), 1), socket_timeout=_SECONDS, socket_keepalive=True
+    )
+    store = RedisStore(redis, entries=entries, max_age=max_age)
+    sending = partial(send, queue_at(redis_url, seconds))
+    return store, Cluster(redis, store, sending, queue=queue, seconds=seconds, planned=planned)

@@ -1,6 +1,7 @@
-"""Redis as a worker writes to it: at once what is worth nothing later, and at last what counts."""
+"""Redis as a worker reads and writes it, and whether this machine's worker takes work."""
 
 from contextlib import suppress
+from socket import gethostname
 from time import monotonic, sleep, time
 from typing import Any
 
@@ -9,6 +10,7 @@ from redis.backoff import NoBackoff
 from redis.commands.core import Script
 from redis.retry import Retry
 
+from service.cluster.celery_app import QUEUE
 from service.cluster.records import (
     GONE,
     LEASE,
@@ -94,3 +96,22 @@ class Ledger:
 
     def _call(self, verb: str, *about: Argument) -> Any:
         return self._script(args=[verb, time(), *about])
+
+
+_LOST_AFTER = LEASE + 1  # until a process that was lost counts as one no more
+_LOOK_EVERY = 0.25  # seconds between two looks
+
+
+def takes_work(redis_url: str) -> bool:
+    """Whether it does, or would: where Redis does not answer, that is no fault of the worker."""
+    look = script_at(redis_url)
+    deadline = monotonic() + _LOST_AFTER
+    try:
+        here, waiting, idle = look(args=["idle", time(), gethostname(), QUEUE])
+        while here and waiting and idle and monotonic() < deadline:
+            sleep(_LOOK_EVERY)
+            here, waiting, still = look(args=["idle", time(), gethostname(), QUEUE])
+            idle = set(idle).intersection(still)
+    except GONE:
+        return True
+    return bool(here) and not (waiting and idle)

@@ -10,9 +10,8 @@ from pathlib import Path
 from time import time
 from typing import TypeVar
 
-from service.jobs.columns import COLUMNS, columns, record_of
 from service.jobs.record import Record
-from service.jobs.store import Expired, Mismatch, Unknown
+from service.jobs.store import COLUMNS, Expired, Mismatch, Unknown, columns, record_of
 
 T = TypeVar("T")
 IN_MEMORY = ":memory:"

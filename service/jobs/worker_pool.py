@@ -14,8 +14,8 @@ from itertools import count
 from service.jobs.engine import Busy, Closed, Cold
 from service.jobs.front_document import Rendered
 from service.jobs.messages import Do, Done, Failed, Found, Started, Stop, Warm, WarmUp, Work
-from service.jobs.process import MakePlanner, Process
 from service.jobs.submission import MOST_ATTEMPTS, Lost, Order, Overdue, Stopped
+from service.jobs.worker_process import MakePlanner, Process
 
 GRACE = 0.15  # seconds for work to come to an end before its process is ended
 _PAUSE = 1.0  # seconds before a process that could not even start is replaced

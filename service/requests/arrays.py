@@ -1,5 +1,6 @@
-"""Matrices of numbers as they travel, and every demand on them."""
+"""Arrays in requests: matrices as JSON or .npy, maps as PNG, and every demand on them."""
 
+import struct
 from collections.abc import Callable, Mapping
 from io import BytesIO
 from math import prod
@@ -8,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.lib.format import read_array_header_1_0, read_array_header_2_0, read_magic
 from numpy.typing import NDArray
+from PIL import Image, UnidentifiedImageError
 from pydantic_core import to_json
 
 from service.errors import Fault, Refusal
@@ -129,3 +131,34 @@ def _check_header(shape: tuple[int, ...], dtype: np.dtype[Any], most: int) -> No
         raise invalid("matrices", f"must have shape (2, n, n) with n at least 1, got {shape}")
     if shape[1] > most:
         raise too_many_cities("matrices", most, shape[1])
+
+
+_START = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR"
+_SIZE = struct.Struct(">II")
+_MODES = ("1", "L", "LA", "P", "RGB", "RGBA")
+_DARK = 128  # of 256 shades: what is darker is an obstacle
+
+
+def read_grid(content: bytes, most: int) -> Array:
+    """A grid of 0 where the image is light and 1 where it is dark, shape (rows, columns).
+
+    Raises:
+        Refusal: it is no PNG that can be read, or declares more cells than are allowed.
+    """
+    if not content.startswith(_START) or len(content) < len(_START) + _SIZE.size:
+        raise invalid("grid", "must be a PNG file")
+    width, height = _SIZE.unpack_from(content, len(_START))
+    if width * height > most:
+        sentence = f"grid must have at most {most} cells, got {height} x {width}"
+        fault = Fault(pointer="/grid", detail=sentence)
+        raise Refusal(
+            413, "too-many-cells", sentence, errors=[fault], limit=most, actual=width * height
+        )
+    try:
+        with Image.open(BytesIO(content), formats=["PNG"]) as image:
+            if image.mode not in _MODES:
+                raise invalid("grid", f"must have 8 bits a channel or fewer, got {image.mode}")
+            shades = np.asarray(image.convert("L"))
+    except (OSError, SyntaxError, ValueError, UnidentifiedImageError) as error:
+        raise invalid("grid", f"must be a PNG file that can be read: {error}") from None
+    return (shades < _DARK).astype(np.float64)

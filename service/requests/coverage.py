@@ -15,12 +15,12 @@ from service.requests.arrays import (
     Array,
     check_costs,
     invalid,
+    read_grid,
     rectangular,
     square,
     too_many_cities,
 )
 from service.requests.front import parsed, plan_schema, within
-from service.requests.png import read_grid
 from service.requests.schemas import LARGEST, Limits, PlanRequest, Positive, Rows, Whole
 
 

@@ -17,11 +17,10 @@ from pydantic import (
 from pydantic.json_schema import SkipJsonSchema
 from pydantic_core.core_schema import no_info_after_validator_function
 
-from service.instance import Instance, Kind
+from service.instance import MOST, Instance, Kind
 from service.planner import Demand
 from service.preferences import fan
 from service.requests.arrays import stacked
-from service.symmetries import MOST
 
 # Between these, lengths and hypervolumes neither overflow nor vanish.
 LARGEST = 1e150

@@ -11,11 +11,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance, tour_lengths
+from service.instance import MOST_ENUMERATED, Instance, all_tours, tour_lengths
 from service.pareto import hypervolume
 from service.search.assignment import augment, make_assignment, price_bound
 from service.search.costs import Costs, make_costs, units
-from service.search.enumeration import MOST_ENUMERATED, all_tours
 from service.search.one_tree import ascend, make_ascent
 from service.search.schedule import bisecting
 

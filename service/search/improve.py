@@ -13,12 +13,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance, tour_lengths
-from service.pareto import nondominated
+from service.instance import MOST_ENUMERATED, Instance, all_tours, tour_lengths
+from service.pareto import best_subset, nondominated
 from service.search.bound import hypervolume_bound
-from service.search.enumeration import MOST_ENUMERATED, all_tours
 from service.search.schedule import Search
-from service.search.subset import best_subset
 
 Array = NDArray[np.float64]
 Termination = Literal["converged", "time_limit", "cancelled"]

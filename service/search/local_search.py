@@ -1,20 +1,46 @@
-"""Descent to a local optimum under a weight, and iterated descent from there.
-
-Iterated local search with a double bridge that stays within a short stretch of the tour: only
-the few cities round it are looked at again, so that an iteration costs the same at any size
-(Johnson and McGeoch, 1997, call it a segment-length double bridge). What an iteration visits
-is offered to the archive whether or not it is better under the weight.
-"""
+"""Iterated local search under one weighted sum."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import compiled, inlined
+from service.jit import allocating, compiled, inlined
 from service.search.archive import Archive, admit, welcome
-from service.search.candidates import Scalar
+from service.search.candidates import Scalar, weighted
 from service.search.costs import lengths
 from service.search.moves import apply, block_swap, change, or_opt, two_opt
 from service.search.working_tour import Route, keep, pop, push, restore
+
+Cities = NDArray[np.int32]
+
+
+@allocating
+def nearest_neighbour(scalar: Scalar, first: int, tour: Cities) -> None:
+    """Fills tour by going to the nearest city not yet visited, candidates before all others."""
+    n = len(tour)
+    rest = np.arange(n).astype(np.int32)  # the unvisited, in the first n - k places
+    place = rest.copy()
+    city = first
+    for k in range(n):
+        tour[k] = city
+        last = rest[n - 1 - k]
+        rest[place[city]] = last
+        place[last] = place[city]
+        place[city] = -1
+        if k == n - 1:
+            break
+        following = -1
+        for other in scalar.near[city]:
+            if place[other] >= 0:
+                following = other
+                break
+        if following < 0:
+            least = np.inf
+            for j in range(n - 1 - k):
+                value = weighted(scalar, city, rest[j])
+                if value < least:
+                    least, following = value, rest[j]
+        city = following
+
 
 LONGEST_STRETCH = 50
 MANY = 1 << 60

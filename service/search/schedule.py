@@ -10,9 +10,8 @@ from service.instance import Instance
 from service.search.archive import admit, area, best, make_archive, welcome
 from service.search.candidates import NEAREST, POOL_WEIGHTS, Scalar, empty_pool, fill_pool, nearest
 from service.search.costs import lengths, make_costs, units
-from service.search.local_search import LEAST_GAIN, climb, descend, submit
+from service.search.local_search import LEAST_GAIN, climb, descend, nearest_neighbour, submit
 from service.search.pareto_local_search import STEPS, Fan, Ground, fill
-from service.search.starts import nearest_neighbour
 from service.search.working_tour import make_route, push_all, take
 
 Array = NDArray[np.float64]

@@ -9,8 +9,8 @@ from pathlib import Path
 import httpx
 import pytest
 
+from service.api.app import Edge
 from service.api.auth import Access, KeyHash, Rates, new_key
-from service.api.edge import Edge
 from tests.api.test_app import CITIES
 from tests.helpers.redis_server import redis_server
 from tests.helpers.serving import app_of, problem, running, serving

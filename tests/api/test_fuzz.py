@@ -18,7 +18,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
-from service.api.edge import Edge
+from service.api.app import Edge
 from tests.helpers.serving import LIMITS, app_of, problem, serving
 
 JSON = {"Content-Type": "application/json"}

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
-from service.api.edge import Edge
+from service.api.app import Edge
 from service.api.metrics import Metrics
 from service.jobs.engine import Standing
 from tests.api.test_app import CITIES

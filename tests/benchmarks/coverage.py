@@ -8,7 +8,7 @@ table and stores `results/coverage.json`. With `--plot` it draws `results/covera
 
 import numpy as np
 
-from models.data.maps import coverage_matrices
+from models.data.generators import coverage_matrices
 from service.instance import Instance
 from tests.benchmarks import coverage_plot
 from tests.benchmarks.beside import measure, parser

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from models.data.maps import drawn_map
+from models.data.generators import drawn_map
 from service.coverage.grid import inflated, laid_out, largest_region
 from service.coverage.survey import Coverage, Survey, survey
 from service.search.improve import improve

@@ -13,9 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from service.instance import Instance, tour_lengths
-from service.pareto import nondominated
+from service.pareto import best_subset, nondominated
 from service.search.improve import improve
-from service.search.subset import best_subset
 from tests.benchmarks.instances import paper_instances
 from tests.benchmarks.methods import methods
 from tests.benchmarks.provenance import RESULTS, load

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from models.data import planes
+from models.data.generators import clustered, streets, uniform
 from service.actor import load_actors
 from service.instance import Instance
 from service.preferences import fan, from_angles
@@ -80,10 +80,10 @@ def _large_box(n: int, generator: Generator) -> Plane:
 
 
 KINDS = {
-    "clusters": (planes.clustered, planes.clustered),
+    "clusters": (clustered, clustered),
     "boxes": (_box, _box),
-    "streets": (planes.streets, planes.streets),
-    "square and box": (planes.uniform, _large_box),
+    "streets": (streets, streets),
+    "square and box": (uniform, _large_box),
 }
 
 

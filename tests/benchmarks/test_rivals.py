@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from service.instance import Instance, tour_lengths
+from service.instance import Instance, all_tours, tour_lengths
 from service.pareto import nondominated
-from service.search.enumeration import all_tours
 from tests.benchmarks.kro import rounded_distances
 from tests.benchmarks.rivals.construction import (
     distances,

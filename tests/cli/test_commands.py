@@ -19,8 +19,8 @@ import pytest
 from paretour import Client
 from PIL import Image
 
+from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
-from service.api.edge import Edge
 from tests.helpers.artifacts import by_row_sums
 from tests.helpers.serving import Shuffler, app_of, serving, serving_released
 

@@ -17,10 +17,10 @@ import redis
 from redis.asyncio import Redis as AsyncRedis
 
 from service.__main__ import main
-from service.cluster.alive import takes_work
 from service.cluster.celery_app import QUEUE
 from service.cluster.redis_engine import Cluster
 from service.cluster.redis_store import RedisStore
+from service.cluster.worker_store import takes_work
 from tests.helpers.engines import PATIENT, Served, engine_of, planning
 from tests.helpers.redis_server import LASTING, Redis, redis_server
 from tests.helpers.serving import Running, Shuffler, engine_app, problem, running, serving, working

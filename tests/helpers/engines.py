@@ -15,15 +15,14 @@ import httpx
 import pytest
 import redis
 
-from service.api.edge import Edge
+from service.api.app import Edge
 from service.cluster.celery_app import queue_at
-from service.cluster.hand import make_hand
-from service.cluster.replica import replica
-from service.cluster.worker import Crew
-from service.jobs.process import MakePlanner
+from service.cluster.redis_engine import replica
+from service.cluster.worker import Crew, make_hand
 from service.jobs.runner import NamedActor, warm_up
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.worker_pool import Workers
+from service.jobs.worker_process import MakePlanner
 from tests.helpers.redis_server import Redis
 from tests.helpers.serving import LIMITS, app_of, engine_app, planner_of, serving, workers_of
 

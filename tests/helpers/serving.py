@@ -21,16 +21,15 @@ import uvicorn
 from fastapi import FastAPI
 
 from service.actor import ActorFacts
-from service.api.app import create_app
-from service.api.edge import Edge
+from service.api.app import Edge, create_app
 from service.instance import Instance, Kind
 from service.jobs.engine import Engine
 from service.jobs.local_engine import Jobs
-from service.jobs.process import MakePlanner
 from service.jobs.runner import FrontPlanner, NamedActor
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
 from service.jobs.worker_pool import Workers
+from service.jobs.worker_process import MakePlanner
 from service.requests.schemas import Limits
 from service.server import build
 from service.settings import Settings

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from httpx_sse import connect_sse
 
+from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
-from service.api.edge import Edge
 from service.instance import Instance, tour_lengths
 from tests.helpers.engines import Clustered, Embedded, engine_of
 from tests.helpers.serving import Broken, Shuffler, problem

@@ -13,8 +13,8 @@ from models import expert, train
 from models.checkpoint import new_run
 from models.config import NetworkConfig, TrainingConfig
 from models.data.dataset import Labels
+from models.data.generators import PLANES
 from models.data.instances import tour_lengths
-from models.data.planes import KINDS
 from models.expert import ExpertConfig, expert_tours
 from service import instance
 from service.instance import Instance
@@ -137,9 +137,9 @@ def test_imitation_without_labels_is_refused(tmp_path: Path) -> None:
         Labels(tmp_path).batch(1, 5, 1, Generator())
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", PLANES)
 def test_every_kind_of_plane_fills_the_unit_square_in_its_own_way(kind: str) -> None:
-    cities = KINDS[kind](300, np.random.default_rng(2))
+    cities = PLANES[kind](300, np.random.default_rng(2))
     assert cities.shape == (300, 2)
     assert cities.min() >= 0
     assert cities.max() <= 1

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, expect
 
+from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
-from service.api.edge import Edge
 from service.settings import Settings
 from tests.helpers.browsing import CHROMIUM, WITHOUT, chromium, done, opened
 from tests.helpers.serving import app_of, planner_of, serving, workers_of

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from service.instance import Instance, tour_lengths
+from service.instance import Instance, all_tours, tour_lengths
 from service.pareto import hypervolume
 from service.search.bound import (
     WEIGHTS,
@@ -18,7 +18,6 @@ from service.search.bound import (
     one_tree_bounds,
 )
 from service.search.costs import make_costs, units
-from service.search.enumeration import all_tours
 from service.search.improve import improve
 
 TOURS = {n: all_tours(n) for n in range(1, 10)}

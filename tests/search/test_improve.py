@@ -11,9 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from service.instance import Instance, tour_lengths
+from service.instance import Instance, all_tours, tour_lengths
 from service.pareto import hypervolume, nondominated
-from service.search.enumeration import all_tours
 from service.search.improve import Improved, Progress, improve
 from service.search.schedule import Search
 

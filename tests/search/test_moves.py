@@ -11,9 +11,8 @@ from service.pareto import hypervolume, nondominated
 from service.search.archive import admit, area, best, make_archive, thin
 from service.search.candidates import Scalar
 from service.search.costs import lengths, make_costs
-from service.search.local_search import improve_at
+from service.search.local_search import improve_at, nearest_neighbour
 from service.search.moves import apply, change
-from service.search.starts import nearest_neighbour
 from service.search.working_tour import make_route, pop, push, push_all, reverse, swap_blocks, take
 
 

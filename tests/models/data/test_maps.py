@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from models.data.maps import KINDS, coverage_map, coverage_matrices, drawn_map
+from models.data.generators import MAPS, coverage_map, coverage_matrices, drawn_map
 from service.coverage.grid import largest_region, regions
 from service.instance import Instance
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", MAPS)
 def test_the_same_seed_draws_the_same_map_and_another_seed_another(kind: str) -> None:
     first, again, other = (drawn_map(np.random.default_rng(seed), kind, 64) for seed in (1, 1, 2))
     np.testing.assert_array_equal(first, again)

@@ -1,9 +1,6 @@
-"""Maps of three kinds and the costs between places on them, drawn from an explicit generator.
+"""Instances drawn at random: planes of several shapes, and coverage maps."""
 
-The kinds are those of PathBench (Toma et al. 2021): cells filled at random, blocks, and a house of
-rooms with doors. With places at random on such maps, they are the instances of the coverage
-experiment of Mehta, Taghipour and Saeedi (2022), arXiv:2203.01298.
-"""
+from collections.abc import Callable
 
 import numpy as np
 from numpy.random import Generator
@@ -15,10 +12,49 @@ from service.coverage.shortest_paths import between, flat, make_grid
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Cells = NDArray[np.int64]
+
+
+def uniform(n: int, generator: Generator) -> Array:
+    """Anywhere in the unit square, shape (n, 2)."""
+    return generator.random((n, 2))
+
+
+def clustered(n: int, generator: Generator) -> Array:
+    """In two to seven Gaussian clusters, which may overlap."""
+    centres = generator.random((generator.integers(2, 8), 2))
+    cities = centres[generator.integers(len(centres), size=n)]
+    return _in_unit_square(cities + generator.normal(scale=0.07, size=(n, 2)))
+
+
+def stretched(n: int, generator: Generator) -> Array:
+    """Evenly in a box whose long side is up to ten times the other."""
+    sides = np.array([1.0, 10 ** -generator.random()])
+    return generator.random((n, 2)) * generator.permutation(sides)
+
+
+def streets(n: int, generator: Generator) -> Array:
+    """Along the streets of a city laid out as a grid, three to ten in either direction."""
+    cities = generator.random((n, 2))
+    across = np.arange(n), generator.integers(2, size=n)
+    count = generator.integers(3, 11)
+    cities[across] = np.rint(cities[across] * (count - 1)) / (count - 1)
+    return cities
+
+
+def _in_unit_square(cities: Array) -> Array:
+    # Of cities that all lie in one place there is nothing to scale.
+    return (cities - cities.min(axis=0)) / max(np.ptp(cities, axis=0).max(), np.finfo(float).tiny)
+
+
+PLANES: dict[str, Callable[[int, Generator], Array]] = {
+    each.__name__: each for each in (uniform, clustered, stretched, streets)
+}
+
+
 Span = tuple[int, int]
 
 SIDE = 64  # cells, as PathBench's maps have
-KINDS = ("random", "blocks", "house")
+MAPS = ("random", "blocks", "house")
 _FILL = (0.1, 0.3)  # least and largest share of cells that are obstacles
 _BLOCK = (3, 12)  # least and largest side of a block
 _ROOM = 9  # no side of a room is shorter
@@ -43,7 +79,7 @@ def coverage_map(generator: Generator, n: int, side: int = SIDE) -> tuple[Mask, 
     Drawn again while its largest region has too few cells.
     """
     while True:
-        free = drawn_map(generator, KINDS[generator.integers(len(KINDS))], side)
+        free = drawn_map(generator, MAPS[generator.integers(len(MAPS))], side)
         cells = np.argwhere(largest_region(free))
         if len(cells) >= n:
             return free, generator.permutation(cells)[:n]
@@ -60,7 +96,7 @@ def drawn_map(generator: Generator, kind: str, side: int) -> Mask:
             house = np.pad(np.ones((side, side), np.bool_), 1)
             _divide(generator, house, (1, side + 1), (1, side + 1))
             return house[1:-1, 1:-1]
-    raise ValueError(f"kind must be one of {', '.join(KINDS)}, got {kind!r}")
+    raise ValueError(f"kind must be one of {', '.join(MAPS)}, got {kind!r}")
 
 
 def uniform_distances(generator: Generator, n: int) -> Array:
