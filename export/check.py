@@ -23,7 +23,7 @@ _TIE = 1e-3
 _ROUNDING, _ROUNDINGS = 1e-6, 8
 
 
-class Mismatch(Exception):
+class TourMismatch(Exception):
     """The ONNX file and the actor build different tours."""
 
 
@@ -48,7 +48,7 @@ def compare(actor: Actor, model: ModelProto, sizes: Sequence[int] = CITIES) -> N
     """Builds tours both ways for every number of cities given and of preferences above.
 
     Raises:
-        Mismatch: some tour differs, and not from a tie on. A dimension of the graph's interface
+        TourMismatch: some tour differs, and not from a tie on. A dimension of the graph's interface
             that should be dynamic is not.
     """
     _check_dimensions(model)
@@ -78,7 +78,7 @@ def _check_dimensions(model: ModelProto) -> None:
     for value in (*model.graph.input, *model.graph.output):
         shape = [d.dim_param or d.dim_value for d in value.type.tensor_type.shape.dim]
         if shape != expected[value.name]:
-            raise Mismatch(f"{value.name} must have shape {expected[value.name]}, got {shape}")
+            raise TourMismatch(f"{value.name} must have shape {expected[value.name]}, got {shape}")
 
 
 def _check_rounding(
@@ -94,7 +94,7 @@ def _check_rounding(
     differs = tours != expected
     for i in (differs.any(dim=1) & robust).nonzero().flatten().tolist():
         parting = int(differs[i].nonzero()[0])
-        raise Mismatch(
+        raise TourMismatch(
             f"tours of {tours.shape[1]} cities part at position {parting}, though cities may be "
             f"rounded by {_ROUNDING:g} of themselves in torch without a change"
         )
@@ -118,7 +118,7 @@ def _check_ties(
         choice = parting - (differs.shape[1] - likelihoods[0].shape[1])
         gap = float((likelihoods[0][i, choice] - likelihoods[1][i, choice]).abs())
         if not gap <= _TIE:
-            raise Mismatch(
+            raise TourMismatch(
                 f"tours of {differs.shape[1]} cities part at position {parting}, where "
                 f"log-likelihoods must differ by at most {_TIE}, got {gap:g}"
             )

@@ -1,100 +1,281 @@
-"""Refusals, and the problem documents (RFC 9457) that say them.
+"""Every refusal and exception of the service, with its status, code and sentence.
 
-A refusal names the thing, the demand and what came; its code is stable, its sentence is not.
+    Exception
+    ├── Refusal                   a request that is not served, answered as a problem document
+    │   ├── InvalidInstance       what was given cannot be planned (also a ValueError)
+    │   │   └── InvalidCoverage   what was given cannot be covered
+    │   │       └── TooManyPlaces
+    │   ├── QueueFull             no place is left for another task
+    │   ├── ShuttingDown          no more tasks are taken
+    │   ├── WarmingUp             the search is still being compiled
+    │   ├── WorkerLost            two workers died over a task
+    │   ├── Cancelled             a task was cancelled before there was a front
+    │   ├── DeadlineExceeded      a task took too long, and there was no front
+    │   ├── IdempotencyMismatch   a key was used for another body
+    │   └── StoreUnavailable      the store does not answer
+    └── LookupError
+        ├── NotFound              the store never had a front under this id
+        └── Expired               the store had one, and dropped it
+
+`PROBLEMS` is the one table of codes. The exception handlers, the HTTP reference and the guide are
+made from it. A code is stable, its sentence is not.
 """
 
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
 from http import HTTPStatus
-from typing import Any
+from typing import Any, NamedTuple
 
-from pydantic import BaseModel, Field
-from pydantic_core import to_json
-from starlette.responses import Response
-
-MEDIA_TYPE = "application/problem+json"
 MOST_FAULTS = 20  # that one document lists
 
-
-class Fault(BaseModel):
-    """One thing wrong with a request."""
-
-    detail: str
-    pointer: str | None = Field(default=None, description="JSON pointer into the body (RFC 6901)")
-    parameter: str | None = Field(default=None, description="name of the query parameter")
+_ALL = ("*",)
+_NONE = ()  # the caller asks for nothing that there is, or the service is at fault
+_PLANS = ("POST /front", "POST /coverage")
+_TOUR = ("GET /tour",)
 
 
-class Problem(BaseModel):
-    """Why a request was refused (RFC 9457)."""
+class Problem(NamedTuple):
+    """The status and sentence of a code, and the operations that refuse so, as "POST /front".
 
-    type: str = Field(description="always about:blank; the code tells problems apart")
-    title: str
+    The sentence has fields in braces, which a refusal fills in.
+    """
+
     status: int
-    code: str = Field(description="stable; the one member to branch on")
+    sentence: str
+    operations: tuple[str, ...] = _ALL
+
+    def concerns(self, operation: str) -> bool:
+        """Whether an operation may refuse so."""
+        return self.operations == _ALL or operation in self.operations
+
+
+PROBLEMS: Mapping[str, Problem] = {
+    "malformed-json": Problem(400, "the body must be JSON: {reason}", _PLANS),
+    "malformed-multipart": Problem(400, "the body must be multipart/form-data: {reason}", _PLANS),
+    "unauthorized": Problem(401, "Authorization must be {demand}"),
+    "no-front": Problem(404, "a tour is of a front: plan one with POST /front first", _TOUR),
+    "no-such-path": Problem(404, "there is nothing at {path}; /docs says what is", _NONE),
+    "no-tour": Problem(404, "front {front} must have a tour, and has none yet", _TOUR),
+    "unknown-front": Problem(404, "there is no front {front}"),
+    "method-not-allowed": Problem(405, "{path} must be asked with {allowed}, got {came}", _NONE),
+    "body-too-slow": Problem(408, "the body must arrive within {limit:g} s, and has not"),
+    "front-expired": Problem(
+        410, "front {front} was kept for a while and is no more: plan it again"
+    ),
+    "body-too-long": Problem(413, "the body must have at most {limit} bytes, got {came}"),
+    "too-many-cells": Problem(
+        413, "grid must have at most {limit} cells, got {came}", ("POST /coverage",)
+    ),
+    "too-many-cities": Problem(413, "{detail}"),
+    "not-json": Problem(
+        415, "Content-Type must be application/json or multipart/form-data, got {came}"
+    ),
+    "not-plain": Problem(415, "Content-Encoding must be identity, got {came}"),
+    "idempotency-mismatch": Problem(
+        422, "an Idempotency-Key must be of one body, got another", _PLANS
+    ),
+    "invalid-instance": Problem(422, "{reason}", _PLANS),
+    "invalid-parts": Problem(422, "{reason}", _PLANS),
+    "invalid-request": Problem(422, "{detail}", (*_PLANS, *_TOUR)),
+    "no-actor": Problem(422, "{kind} need an actor that reads them, and none is loaded", _PLANS),
+    "over-limit": Problem(422, "{name} must be at most {limit:g}, got {actual:g}", _PLANS),
+    "unfit-actor": Problem(
+        422, "actor must read {kind}, as {among}; {name} reads {inputs} alone", _PLANS
+    ),
+    "unknown-actor": Problem(422, "actor must be {among}, got {came}", _PLANS),
+    "refused": Problem(400, "{detail}", _NONE),
+    "rate-limited": Problem(
+        429, "requests must be at most {rate}, and {caller} made more: wait {wait} s"
+    ),
+    "internal-error": Problem(500, "this is a fault of the service, not of the request", _NONE),
+    "queue-full": Problem(
+        503, "the queue must have a free place, and all are taken: ask again", _PLANS
+    ),
+    "shutting-down": Problem(503, "the server is shutting down"),
+    "stopped": Problem(503, "the work was stopped before there was a front", _PLANS),
+    "store-unavailable": Problem(503, "what fronts are kept in must answer, and does not"),
+    "warming-up": Problem(
+        503,
+        "the search is being compiled, once: ask again, or for the network alone with time_limit 0",
+        (*_PLANS, "GET /health/ready"),
+    ),
+    "worker-lost": Problem(
+        503, "the work must leave its worker alive, and two were lost over it", _PLANS
+    ),
+    "overdue": Problem(504, "the work must end in time, and there was no front yet", _PLANS),
+}
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing wrong with a request, and at which JSON pointer (RFC 6901) or parameter."""
+
     detail: str
-    request_id: str
-    errors: list[Fault] | None = None
-    limit: float | None = Field(default=None, description="the most that is allowed")
-    actual: float | None = Field(default=None, description="what came, where it is known")
+    pointer: str | None = None
+    parameter: str | None = None
 
 
 class Refusal(Exception):
-    """A request that will not be served; everything its problem document says."""
+    """A request that is not served: all that its problem document says.
+
+    Args:
+        code: One of PROBLEMS.
+        pointer: The one field at fault, as a JSON pointer into the body.
+        errors: The fields at fault, where more is to be said of them.
+        limit: The most that is allowed.
+        actual: What came, where it is known.
+        headers: HTTP headers that the answer needs.
+        filled: What fills in the sentence of the code.
+    """
+
+    code: str
 
     def __init__(
         self,
-        status: int,
         code: str,
-        detail: str,
         *,
+        pointer: str | None = None,
         errors: Sequence[Fault] = (),
         limit: float | None = None,
         actual: float | None = None,
+        headers: Mapping[str, str] | None = None,
+        **filled: object,
     ) -> None:
-        super().__init__(detail)
-        self._made = partial(
-            Refusal, status, code, detail, errors=errors, limit=limit, actual=actual
-        )
-        self.status = status
-        self.headers = {"Retry-After": "1"} if status == HTTPStatus.SERVICE_UNAVAILABLE else {}
-        self.members: dict[str, Any] = {
-            "type": "about:blank",
-            "title": HTTPStatus(status).phrase,
-            "status": status,
-            "code": code,
-            "detail": detail,
-            "errors": [fault.model_dump(exclude_none=True) for fault in errors] or None,
-            "limit": limit,
-            "actual": actual,
-        }
+        self.code = code
+        self.status = PROBLEMS[code].status
+        self.detail = PROBLEMS[code].sentence.format(limit=limit, actual=actual, **filled)
+        self.errors = tuple(errors) if pointer is None else (Fault(self.detail, pointer),)
+        self.limit = limit
+        self.actual = actual
+        self.headers = dict(headers or {})
+        super().__init__(self.detail)
 
-    def __reduce__(self) -> tuple[Callable[[], "Refusal"], tuple[()]]:
+    def __reduce__(self) -> tuple[Callable[..., "Refusal"], tuple[Any, ...]]:
         """How it travels from one process to another."""
-        return self._made, ()
+        return _unpickled, (type(self), self.__dict__)
 
     def document(self, request_id: str) -> dict[str, Any]:
-        """The problem document."""
-        members = {name: value for name, value in self.members.items() if value is not None}
-        return {**members, "request_id": request_id}
-
-    def response(self, request_id: str) -> Response:
-        """The answer."""
-        document = to_json(self.document(request_id))
-        return Response(document, self.status, headers=self.headers, media_type=MEDIA_TYPE)
-
-
-def bug() -> Refusal:
-    """What is answered where the service itself is at fault."""
-    return Refusal(500, "internal-error", "this is a fault of the service, not of the request")
-
-
-def responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """What the OpenAPI document says of a path's refusals."""
-    schema = {"$ref": "#/components/schemas/Problem"}
-    return {
-        status: {
-            "description": HTTPStatus(status).phrase,
-            "content": {MEDIA_TYPE: {"schema": schema}},
+        """Return the problem document (RFC 9457), without the members that it does not have."""
+        members = {
+            "type": "about:blank",
+            "title": HTTPStatus(self.status).phrase,
+            "status": self.status,
+            "code": self.code,
+            "detail": self.detail,
+            "errors": [_given(asdict(fault)) for fault in self.errors] or None,
+            "limit": self.limit,
+            "actual": self.actual,
+            "request_id": request_id,
         }
-        for status in statuses
-    }
+        return _given(members)
+
+
+class InvalidInstance(Refusal, ValueError):
+    """What was given is no instance."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__("invalid-instance", reason=reason)
+
+
+class InvalidCoverage(InvalidInstance):
+    """What was given is no coverage task. Each fault is a part of it, as places/3, and a demand."""
+
+    code = "invalid-request"
+
+    def __init__(
+        self, *faults: tuple[str, str], limit: int | None = None, actual: int | None = None
+    ) -> None:
+        self.faults = faults
+        errors = [Fault(f"{part} {demand}", f"/{part}") for part, demand in faults]
+        more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+        detail, shown = errors[0].detail + more, errors[:MOST_FAULTS]
+        code = type(self).code
+        Refusal.__init__(self, code, detail=detail, errors=shown, limit=limit, actual=actual)
+
+    def __str__(self) -> str:
+        """All faults, as one sentence."""
+        return "; ".join(f"{part} {demand}" for part, demand in self.faults)
+
+
+class TooManyPlaces(InvalidCoverage):
+    """A spacing lays out more places than are allowed."""
+
+    code = "too-many-cities"
+
+    def __init__(self, limit: int, actual: int) -> None:
+        demand = f"must lay out at most {limit} places, got {actual}"
+        super().__init__(("spacing", demand), limit=limit, actual=actual)
+
+
+class _Plain(Refusal):
+    """A refusal whose sentence has nothing to fill in."""
+
+    def __init__(self) -> None:
+        super().__init__(type(self).code)
+
+
+class QueueFull(_Plain):
+    """No place is left for another task."""
+
+    code = "queue-full"
+
+
+class ShuttingDown(_Plain):
+    """The service takes no more tasks."""
+
+    code = "shutting-down"
+
+
+class WarmingUp(_Plain):
+    """The search is still being compiled, which happens once, or loaded."""
+
+    code = "warming-up"
+
+
+class WorkerLost(_Plain):
+    """Two workers died over the task, which may be why."""
+
+    code = "worker-lost"
+
+
+class Cancelled(_Plain):
+    """The task was cancelled before there was a front."""
+
+    code = "stopped"
+
+
+class DeadlineExceeded(_Plain):
+    """The task took longer than any may, and there was no front yet."""
+
+    code = "overdue"
+
+
+class IdempotencyMismatch(_Plain):
+    """The caller has used this idempotency key for another body."""
+
+    code = "idempotency-mismatch"
+
+
+class StoreUnavailable(_Plain):
+    """The store does not answer."""
+
+    code = "store-unavailable"
+
+
+class NotFound(LookupError):
+    """The caller never had anything under this id, or so long ago that it is forgotten."""
+
+
+class Expired(LookupError):
+    """The store has dropped what the caller had under this id: too old, or the store was full."""
+
+
+def _unpickled(kind: type[Refusal], members: dict[str, Any]) -> Refusal:
+    refusal = kind.__new__(kind)
+    refusal.__dict__.update(members)
+    refusal.args = (refusal.detail,)
+    return refusal
+
+
+def _given(members: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in members.items() if value is not None}

@@ -10,12 +10,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from service.errors import InvalidInstance
+
 Array = NDArray[np.float64]
 Kind = Literal["coordinates", "matrices"]
-
-
-class InvalidInstance(ValueError):
-    """What was given is not an instance; the message names the thing, the demand and what came."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,7 +29,7 @@ class Constructor(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Demand:
+class PlanOptions:
     """What is asked of a front: angles in degrees, shape (k,), and how it is to be reported.
 
     The search that improves it has `time_limit` seconds; at 0 there is none. The caller may bring
@@ -110,7 +110,7 @@ Report = Callable[[Interim], None]
 def plan(
     constructor: Constructor,
     instance: Instance,
-    demand: Demand,
+    demand: PlanOptions,
     stop: Callable[[], bool] = lambda: False,
     report: Report = lambda _: None,
 ) -> Front:
@@ -158,7 +158,7 @@ def _bound(instance: Instance, reference_point: Array) -> float:
 def _improved(
     instance: Instance,
     tours: Tours,
-    demand: Demand,
+    demand: PlanOptions,
     stop: Callable[[], bool],
     report: Report,
 ) -> tuple[Tours, Array, Termination | None]:
@@ -179,7 +179,7 @@ def _improved(
     return found.tours.astype(np.int64), found.points, found.terminated
 
 
-def _interim(instance: Instance, demand: Demand, progress: Progress) -> Interim:
+def _interim(instance: Instance, demand: PlanOptions, progress: Progress) -> Interim:
     def front(size: int) -> Front:
         best = progress.best(min(size, demand.size))
         return Front(
@@ -196,7 +196,7 @@ def _interim(instance: Instance, demand: Demand, progress: Progress) -> Interim:
 
 
 def _constructed(
-    constructor: Constructor, instance: Instance, demand: Demand, stop: Callable[[], bool]
+    constructor: Constructor, instance: Instance, demand: PlanOptions, stop: Callable[[], bool]
 ) -> Tours:
     # Of one or two cities there is one tour, and no network was trained on them.
     if instance.n <= 2:
@@ -216,7 +216,7 @@ def _moved(angles: Array, share: float) -> Array:
     return np.interp(each + share, each, angles)
 
 
-def _reference_point(instance: Instance, demand: Demand) -> Array:
+def _reference_point(instance: Instance, demand: PlanOptions) -> Array:
     if demand.reference_point is not None:
         return demand.reference_point
     return instance.n * instance.scale

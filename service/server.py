@@ -22,11 +22,11 @@ from service.api.auth import Access, Rates
 from service.api.metrics import Metrics
 from service.cluster import check_cluster
 from service.jobs.engine import Engine
-from service.jobs.local_engine import Jobs
+from service.jobs.local_engine import LocalEngine
 from service.jobs.runner import load_planner, warm_up
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
-from service.jobs.worker_pool import Workers
+from service.jobs.worker_pool import WorkerPool
 from service.settings import Settings
 from service.telemetry import logging_config, trace
 
@@ -58,7 +58,7 @@ def build(settings: Settings) -> FastAPI:
 
 def _embedded(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
     """The engine in this process and its children."""
-    workers = Workers(
+    workers = WorkerPool(
         partial(load_planner, settings.actors, settings.threads, settings.limits),
         workers=settings.workers,
         queue=settings.queue,
@@ -68,7 +68,7 @@ def _embedded(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
     store = SqliteStore(
         settings.store, entries=settings.store_entries, max_age=settings.store_seconds
     )
-    return store, Jobs(workers, store)
+    return store, LocalEngine(workers, store)
 
 
 def _shared(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
@@ -126,12 +126,12 @@ def build_work(settings: Settings) -> Callable[[], int]:
     """
     redis_url = _redis_url(settings)
     from service.cluster.celery_app import queue_at
-    from service.cluster.worker import Crew, make_hand
+    from service.cluster.worker import CeleryWorker, make_hand
 
     _check_actors(settings.actors, settings.threads)
     logging.config.dictConfig(logging_config())
     load = partial(load_planner, settings.actors, settings.threads, settings.limits)
-    crew = Crew(
+    crew = CeleryWorker(
         queue=queue_at(redis_url, settings.request_seconds),
         make_hand=partial(make_hand, load, redis_url, settings.request_seconds),
         workers=settings.workers,

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from service.api.auth import KeyHash
-from service.requests.schemas import Limits
+from service.requests.limits import Limits
 
 
 def _cores() -> int:

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from service.instance import Instance, InvalidInstance, tour_lengths
+from service.errors import InvalidInstance
+from service.instance import Instance, tour_lengths
 
 COORDINATES = arrays(
     np.float64, st.tuples(st.integers(1, 6), st.just(4)), elements=st.integers(-5, 5)

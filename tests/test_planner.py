@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 from service.actor import Actor
 from service.instance import Instance, symmetries, tour_lengths
 from service.pareto import hypervolume, nondominated
-from service.planner import Demand, Front, plan
+from service.planner import Front, PlanOptions, plan
 from service.preferences import fan
 from service.settings import Settings
 
@@ -51,7 +51,7 @@ def check(front: Front, instance: Instance) -> None:
 
 @given(SMALL)
 def test_of_every_tour_the_front_keeps_the_nondominated(instance: Instance) -> None:
-    front = plan(Everything(), instance, Demand(angles=fan(3), size=1000))
+    front = plan(Everything(), instance, PlanOptions(angles=fan(3), size=1000))
     check(front, instance)
     every = tour_lengths(instance, Everything().tours(instance, fan(1)))
     kept = every[nondominated(every)]
@@ -62,7 +62,7 @@ def test_of_every_tour_the_front_keeps_the_nondominated(instance: Instance) -> N
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 6, 7, 8])
 def test_no_front_is_better_than_brute_force(actor: Actor, n: int) -> None:
     instance = random_instance(n)
-    front = plan(actor, instance, Demand(angles=fan(20), size=100))
+    front = plan(actor, instance, PlanOptions(angles=fan(20), size=100))
     check(front, instance)
     best = tour_lengths(instance, Everything().tours(instance, fan(1)))
     slack = 1e-9
@@ -74,8 +74,8 @@ def test_no_front_is_better_than_brute_force(actor: Actor, n: int) -> None:
 @pytest.mark.parametrize("size", [1, 2, 5])
 def test_a_larger_front_is_cut_to_size(size: int) -> None:
     instance = random_instance(6)
-    whole = plan(Everything(), instance, Demand(angles=fan(3), size=1000))
-    cut = plan(Everything(), instance, Demand(angles=fan(3), size=size))
+    whole = plan(Everything(), instance, PlanOptions(angles=fan(3), size=1000))
+    cut = plan(Everything(), instance, PlanOptions(angles=fan(3), size=size))
     check(cut, instance)
     assert len(cut.points) == size < whole.found == cut.found
     assert cut.hypervolume <= whole.hypervolume
@@ -86,19 +86,19 @@ def test_a_larger_front_is_cut_to_size(size: int) -> None:
 def test_every_tour_is_reported_from_the_start(data: st.DataObject) -> None:
     instance = data.draw(SMALL)
     start = data.draw(st.integers(0, instance.n - 1))
-    front = plan(Everything(), instance, Demand(angles=fan(3), size=1000, start=start))
+    front = plan(Everything(), instance, PlanOptions(angles=fan(3), size=1000, start=start))
     assert (front.tours[:, 0] == start).all()
     check(front, instance)
 
 
 @pytest.mark.parametrize("n", [1, 2])
 def test_one_or_two_cities_are_a_front_of_one_tour(actor: Actor, n: int) -> None:
-    front = plan(actor, random_instance(n), Demand(angles=fan(3), size=10, start=n - 1))
+    front = plan(actor, random_instance(n), PlanOptions(angles=fan(3), size=10, start=n - 1))
     assert front.tours.tolist() == [[n - 1, 0][:n]]
 
 
 def test_coincident_cities_are_one_point_at_the_origin(actor: Actor) -> None:
-    front = plan(actor, Instance(coordinates=np.ones((4, 4))), Demand(angles=fan(3), size=10))
+    front = plan(actor, Instance(coordinates=np.ones((4, 4))), PlanOptions(angles=fan(3), size=10))
     assert front.points.tolist() == [[0, 0]]
     assert (front.hypervolume, front.angles.tolist()) == (1, [45])
     assert front.reference_point.tolist() == [4, 4]
@@ -106,10 +106,10 @@ def test_coincident_cities_are_one_point_at_the_origin(actor: Actor) -> None:
 
 def test_the_reference_point_is_n_times_the_scale_unless_given() -> None:
     instance = random_instance(5)
-    front = plan(Everything(), instance, Demand(angles=fan(1), size=9))
+    front = plan(Everything(), instance, PlanOptions(angles=fan(1), size=9))
     np.testing.assert_array_equal(front.reference_point, 5 * instance.scale)
     point = np.array([3.0, 4.0])
-    front = plan(Everything(), instance, Demand(angles=fan(1), size=9, reference_point=point))
+    front = plan(Everything(), instance, PlanOptions(angles=fan(1), size=9, reference_point=point))
     np.testing.assert_array_equal(front.reference_point, point)
 
 
@@ -130,7 +130,7 @@ def test_the_nearest_tour_is_nearest_in_scaled_objectives() -> None:
 
 def test_what_the_search_gained_is_what_it_added_to_the_first_tours(actor: Actor) -> None:
     instance = random_instance(30)
-    demand = Demand(angles=fan(5), size=10_000)
+    demand = PlanOptions(angles=fan(5), size=10_000)
     first = plan(actor, instance, demand)
     improved = plan(actor, instance, replace(demand, time_limit=0.1))
     assert first.gained is None
@@ -152,14 +152,14 @@ def test_symmetries_change_no_length_and_are_all_different(instance: Instance, c
 
 @pytest.mark.parametrize("n", [40, 200])
 def test_with_more_symmetries_a_front_is_no_worse(actor: Actor, n: int) -> None:
-    instance, demand = random_instance(n), Demand(angles=fan(20), size=100)
+    instance, demand = random_instance(n), PlanOptions(angles=fan(20), size=100)
     once, often = (plan(actor, instance, replace(demand, augment=count)) for count in (1, 8))
     check(often, instance)
     assert often.hypervolume > once.hypervolume
 
 
 def test_a_plan_that_is_stopped_looks_at_no_further_symmetry(actor: Actor) -> None:
-    demand = Demand(angles=fan(20), size=100, augment=8)
+    demand = PlanOptions(angles=fan(20), size=100, augment=8)
     stopped = plan(actor, random_instance(40), demand, stop=lambda: True)
     at_once = plan(actor, random_instance(40), replace(demand, augment=1))
     np.testing.assert_array_equal(stopped.points, at_once.points)

@@ -12,25 +12,29 @@ from starlette.responses import Response
 
 from service.actor import ActorFacts
 from service.api.auth import Access
-from service.api.body import json_response
-from service.api.exception_handlers import REFUSALS, answer_refusal
+from service.api.exception_handlers import HANDLED, answer_refusal
 from service.api.metrics import Metrics
 from service.api.middleware import (
-    BrowserHeaders,
-    ObservedRequests,
-    RequestIds,
-    TimelyBodies,
+    BodyTimeoutMiddleware,
+    RequestIdMiddleware,
+    RequestLogMiddleware,
+    SecurityHeadersMiddleware,
     log_request,
 )
 from service.api.openapi import illustrate
 from service.api.plan import Answers, FrontRoutes
-from service.api.responses import ActorsAnswer, HealthAnswer
+from service.api.responses import (
+    ActorsAnswer,
+    HealthAnswer,
+    Problem,
+    json_response,
+    problem_responses,
+)
 from service.api.static import page_routes
-from service.api.stored_fronts import KeptRoutes
-from service.errors import Problem, responses
+from service.api.stored_fronts import StoredFrontRoutes
 from service.jobs.engine import Engine
 from service.jobs.store import Store
-from service.requests.schemas import Limits
+from service.requests.limits import Limits
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +49,7 @@ class Edge:
     @property
     def guard(self) -> dict[str, Any]:
         """What a router that is not open to all is included with."""
-        return {"dependencies": self.access.dependencies, "responses": responses(401, 429)}
+        return {"dependencies": self.access.dependencies, "responses": problem_responses(401, 429)}
 
     @property
     def middleware(self) -> list[Middleware]:
@@ -53,11 +57,11 @@ class Edge:
         observers = (self.metrics.answered, log_request)
         cors = [Middleware(CORSMiddleware, **self._cors)] if self.origins else []
         return [
-            Middleware(BrowserHeaders),
-            Middleware(RequestIds),
-            Middleware(ObservedRequests, observers),
+            Middleware(SecurityHeadersMiddleware),
+            Middleware(RequestIdMiddleware),
+            Middleware(RequestLogMiddleware, observers),
             *cors,
-            Middleware(TimelyBodies, self.body_seconds),
+            Middleware(BodyTimeoutMiddleware, self.body_seconds),
         ]
 
     @property
@@ -98,14 +102,14 @@ def create_app(
         lifespan=lifespan,
         middleware=edge.middleware,
         routes=page_routes(),
-        exception_handlers=dict.fromkeys(REFUSALS, answer_refusal),
+        exception_handlers=dict.fromkeys(HANDLED, answer_refusal),
         redirect_slashes=False,
         docs_url=None,
         redoc_url=None,
     )
     fronts = FrontRoutes(actors, engine, Answers(engine, store), limits)
     app.include_router(fronts.router(), **edge.guard)
-    app.include_router(KeptRoutes(store, engine).router(), **edge.guard)
+    app.include_router(StoredFrontRoutes(store, engine).router(), **edge.guard)
     app.include_router(_actor_router(actors), **edge.guard)
     app.include_router(edge.metrics.router(), **edge.guard)
     app.include_router(_HealthRoutes(engine).router())
@@ -140,7 +144,7 @@ def _forget_default_refusals(document: dict[str, Any]) -> None:
 
 def _problem_schema() -> dict[str, Any]:
     schema = Problem.model_json_schema()
-    schema["properties"]["errors"] = {"type": "array", "items": schema.pop("$defs")["Fault"]}
+    schema["properties"]["errors"] = {"type": "array", "items": schema.pop("$defs")["FaultItem"]}
     return schema
 
 
@@ -169,7 +173,7 @@ class _HealthRoutes:
         router.get(
             "/health/ready",
             response_model=HealthAnswer,
-            responses=responses(503),
+            responses=problem_responses(503),
             openapi_extra=_OPEN,
         )(self.ready)
         return router

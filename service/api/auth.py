@@ -88,10 +88,14 @@ class Rates:
             _LOG.warning("rates are not counted: Redis does not answer")
             return
         wait = max(1, math.ceil(window.reset_time - time.time()))
-        sentence = f"requests must be at most {self._rate}, and {caller} made more: wait {wait} s"
-        refusal = Refusal(429, "rate-limited", sentence, limit=self._rate.amount)
-        refusal.headers["Retry-After"] = str(wait)
-        raise refusal
+        raise Refusal(
+            "rate-limited",
+            rate=self._rate,
+            caller=caller,
+            wait=wait,
+            limit=self._rate.amount,
+            headers={"Retry-After": str(wait)},
+        )
 
 
 class Access:
@@ -119,12 +123,12 @@ class Access:
     def _caller(self, request: Request) -> str:
         scheme, _, key = request.headers.get("authorization", "").partition(" ")
         if scheme.lower() != "bearer":
-            raise _unauthorized("Authorization must be Bearer and an API key, and there was none")
+            raise _unauthorized("Bearer and an API key, and there was none")
         digest = _digest(key.strip())
         # No early end: how long it takes says nothing of which hash comes near.
         matches = [hash_.caller for hash_ in self._keys if _same(hash_.digest, digest)]
         if not matches:
-            raise _unauthorized("Authorization must be an API key of this service; this is none")
+            raise _unauthorized("an API key of this service; this is none")
         return matches[0]
 
 
@@ -150,7 +154,5 @@ def _same(one: str, other: str) -> bool:
     return hmac.compare_digest(one, other)
 
 
-def _unauthorized(sentence: str) -> Refusal:
-    refusal = Refusal(401, "unauthorized", sentence)
-    refusal.headers["WWW-Authenticate"] = "Bearer"
-    return refusal
+def _unauthorized(demand: str) -> Refusal:
+    return Refusal("unauthorized", demand=demand, headers={"WWW-Authenticate": "Bearer"})

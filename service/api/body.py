@@ -4,22 +4,16 @@ import asyncio
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from math import inf
-from typing import Any
 
 from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
-from pydantic_core import to_json
 from python_multipart.exceptions import FormParserError
 from python_multipart.multipart import Field, File, FormParser, parse_options_header
 from starlette.requests import Request
-from starlette.responses import Response
 
 from service.actor import ActorFacts
-from service.errors import Refusal
-from service.jobs.messages import Work
-from service.jobs.submission import Lost
-from service.requests.asked import read
-from service.requests.schemas import Limits
-from service.requests.task import Task
+from service.errors import Refusal, WorkerLost
+from service.requests.limits import Limits
+from service.requests.task import Task, Work, read
 
 
 def parts(content_type: str, body: bytes, expected: Collection[str]) -> dict[str, bytes]:
@@ -77,11 +71,11 @@ class _Reader:
 
 
 def _malformed(reason: str) -> Refusal:
-    return Refusal(400, "malformed-multipart", f"the body must be multipart/form-data: {reason}")
+    return Refusal("malformed-multipart", reason=reason)
 
 
 def _unexpected(sentence: str) -> Refusal:
-    return Refusal(422, "invalid-parts", sentence)
+    return Refusal("invalid-parts", reason=sentence)
 
 
 _PARTED = "multipart/form-data"
@@ -126,35 +120,18 @@ async def _whole_body(request: Request, most_bytes: int) -> bytes:
     return b"".join(chunks) if length < _LONG else await asyncio.to_thread(b"".join, chunks)
 
 
-def json_response(answer: Any, status: int = 200) -> Response:
-    """An answer that is known to be well-formed and is not checked again."""
-    return json_bytes(to_json(answer), status)
-
-
-def json_bytes(answer: bytes, status: int = 200) -> Response:
-    """An answer that was written as JSON before."""
-    return Response(answer, status, media_type="application/json")
-
-
 def _checked_type(request: Request) -> str:
     given = request.headers.get("content-type", "")
     if given.partition(";")[0].strip().lower() not in ("application/json", _PARTED):
-        sentence = f"Content-Type must be application/json or {_PARTED}, got {given or 'none'}"
-        raise Refusal(415, "not-json", sentence)
+        raise Refusal("not-json", came=given or "none")
     if (coding := request.headers.get("content-encoding", "identity").lower()) != "identity":
-        raise Refusal(415, "not-plain", f"Content-Encoding must be identity, got {coding}")
+        raise Refusal("not-plain", came=coding)
     return given
 
 
 def _too_long(limit: int, actual: int | None = None) -> Refusal:
     came = "more" if actual is None else actual
-    return Refusal(
-        413,
-        "body-too-long",
-        f"the body must have at most {limit} bytes, got {came}",
-        limit=limit,
-        actual=actual,
-    )
+    return Refusal("body-too-long", came=came, limit=limit, actual=actual)
 
 
 _SHORT = 2**17  # bytes that are read within a few milliseconds; many megabytes take seconds
@@ -179,7 +156,7 @@ class Reader:
         Raises:
             Refusal: there is none, it is over a limit, or no actor serves it.
             InvalidInstance: it cannot be planned.
-            Lost: the process did not survive it, nor did the next.
+            WorkerLost: the process did not survive it, nor did the next.
         """
         if len(work.body) + len(work.upload or b"") <= _SHORT:
             return read(work, self._limits, self._actors)
@@ -192,4 +169,4 @@ class Reader:
                 )
             except BrokenWorkerProcess:
                 continue
-        raise Lost
+        raise WorkerLost

@@ -19,8 +19,8 @@ from prometheus_client.registry import Collector
 from starlette.responses import Response
 
 from service.api.middleware import Answered
-from service.jobs.engine import Standing
-from service.jobs.front_document import Rendered
+from service.jobs.engine import EngineStats
+from service.jobs.front_document import FrontDocument
 
 _METHODS = ("GET", "HEAD", "POST", "DELETE", "OPTIONS")
 _SIZES = (20, 50, 100, 200, 500, 1000)
@@ -31,7 +31,7 @@ _SHARES = (0.0, 0.0001, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
 class Watched(Protocol):
     """What plans fronts."""
 
-    async def standing(self) -> Standing:
+    async def standing(self) -> EngineStats:
         """How it is."""
 
 
@@ -97,7 +97,7 @@ class Metrics:
         """Ask how the workers are whenever Prometheus asks."""
         self._watched = watched
 
-    def planned(self, front: Rendered) -> None:
+    def planned(self, front: FrontDocument) -> None:
         """Count a front: the phases of planning, and the hypervolume that the search gained."""
         cities = _size_class(front.members["cities"])
         for phase, milliseconds in front.members["timings_ms"].items():
@@ -108,7 +108,7 @@ class Metrics:
 
 class _WorkersCollector(Collector):
     def __init__(self) -> None:
-        self.standing: Standing | None = None
+        self.standing: EngineStats | None = None
 
     def collect(self) -> Iterator[Metric]:
         if (workers := self.standing) is None:

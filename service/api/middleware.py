@@ -12,9 +12,8 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from service.api.exception_handlers import refusal_of
-from service.errors import Refusal, bug
-from service.jobs.engine import Closed
+from service.api.responses import problem_response
+from service.errors import Refusal, ShuttingDown
 
 # Everything comes from the service itself; maps of robots are drawn into images (data:).
 _POLICY = (
@@ -30,7 +29,7 @@ _HEADERS = {
 }
 
 
-class BrowserHeaders:
+class SecurityHeadersMiddleware:
     """Tells browsers to load nothing but what the service serves, and to embed none of it."""
 
     def __init__(self, app: ASGIApp) -> None:
@@ -51,7 +50,7 @@ ANONYMOUS = "anonymous"
 _SAFE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 
 
-class RequestIds:
+class RequestIdMiddleware:
     """Gives each request an identity and turns a bug into a problem document that carries it.
 
     Until it has shown a key, its caller is anonymous.
@@ -85,12 +84,14 @@ class RequestIds:
         except asyncio.CancelledError:
             # Only a server that shuts down cancels; nobody else waits for this task.
             if not started:
-                await refusal_of(Closed()).response(request_id)(scope, receive, send_with_id)
+                await problem_response(ShuttingDown(), request_id)(scope, receive, send_with_id)
         except Exception:
             self._log.exception("request %s failed", request_id)
             if started:
                 raise
-            await bug().response(request_id)(scope, receive, send_with_id)
+            await problem_response(Refusal("internal-error"), request_id)(
+                scope, receive, send_with_id
+            )
 
 
 UNMATCHED = "unmatched"
@@ -112,7 +113,7 @@ class Answered:
 Observer = Callable[[Answered], None]
 
 
-class ObservedRequests:
+class RequestLogMiddleware:
     """Tells the observers of every request, once its answer has ended."""
 
     def __init__(self, app: ASGIApp, observers: Iterable[Observer]) -> None:
@@ -155,7 +156,7 @@ def log_request(answered: Answered) -> None:
     logging.getLogger("paretour.requests").info("request", extra=vars(answered))
 
 
-class TimelyBodies:
+class BodyTimeoutMiddleware:
     """Refuses a body of which the last byte comes too late."""
 
     def __init__(self, app: ASGIApp, seconds: float) -> None:
@@ -185,7 +186,4 @@ class TimelyBodies:
         await self._app(scope, receive_in_time, send)
 
     def _late(self) -> Refusal:
-        sentence = f"the body must arrive within {self._seconds:g} s, and has not"
-        refusal = Refusal(408, "body-too-slow", sentence, limit=self._seconds)
-        refusal.headers["Connection"] = "close"
-        return refusal
+        return Refusal("body-too-slow", limit=self._seconds, headers={"Connection": "close"})

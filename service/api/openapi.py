@@ -1,17 +1,17 @@
 """Summaries and examples in the OpenAPI document: of each path a request, its answer, all refusals.
 
 A path's summary is the first line of its docstring. Examples are kept in `reference/examples.json`:
-requests and answers by operation, as "POST /front"; of each refusal what its problem document says,
-and `of`, where not every operation refuses so.
+requests and answers by operation, as "POST /front"; of each refusal what fills in its sentence, and
+where one operation needs another example than the rest, by "code of POST /front".
 """
 
 import json
 from collections.abc import Iterator
-from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
-from service.errors import MEDIA_TYPE
+from service.api.responses import PROBLEM_JSON
+from service.errors import PROBLEMS, Refusal
 
 _EXAMPLES = Path(__file__).parents[1] / "reference" / "examples.json"
 _REQUEST_ID = "2348e4bd4d8a4a028a885757e2b342af"
@@ -31,8 +31,8 @@ def illustrate(document: dict[str, Any]) -> None:
             if status == "200" and name in kept["answers"]:
                 for each in content.values():
                     each["example"] = kept["answers"][name]
-            if MEDIA_TYPE in content:
-                content[MEDIA_TYPE]["examples"] = _refusals(kept["refusals"], name, int(status))
+            if PROBLEM_JSON in content:
+                content[PROBLEM_JSON]["examples"] = _refusals(kept["refusals"], name, int(status))
 
 
 def _operations(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -41,15 +41,15 @@ def _operations(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]
             yield f"{method.upper()} {path}", operation
 
 
-def _refusals(kept: list[dict[str, Any]], name: str, status: int) -> dict[str, Any]:
-    return {
-        refusal["code"]: {"summary": refusal["detail"], "value": _problem(refusal)}
-        for refusal in kept
-        if refusal["status"] == status and name in refusal.get("of", [name])
+def _refusals(examples: dict[str, Any], name: str, status: int) -> dict[str, Any]:
+    found = {
+        code: Refusal(code, **_filled(examples, code, name)).document(_REQUEST_ID)
+        for code, problem in PROBLEMS.items()
+        if problem.status == status and problem.concerns(name)
     }
+    return {code: {"summary": each["detail"], "value": each} for code, each in found.items()}
 
 
-def _problem(refusal: dict[str, Any]) -> dict[str, Any]:
-    members = {member: value for member, value in refusal.items() if member != "of"}
-    title = HTTPStatus(refusal["status"]).phrase
-    return {"type": "about:blank", "title": title, **members, "request_id": _REQUEST_ID}
+def _filled(examples: dict[str, Any], code: str, name: str) -> dict[str, Any]:
+    filled: dict[str, Any] = examples.get(f"{code} of {name}", examples.get(code, {}))
+    return filled

@@ -5,28 +5,32 @@ import hashlib
 import uuid
 from collections.abc import Mapping
 from dataclasses import replace
-from http import HTTPStatus
 from typing import Any
 
 from fastapi import APIRouter
-from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
 
 from service.actor import ActorFacts
-from service.api.body import Reader, json_bytes, json_response, read_body
+from service.api.body import Reader, read_body
 from service.api.request_headers import PARAMETERS, idempotency_key, wants_it_later
-from service.api.responses import AcceptedAnswer, CoverageAnswer, FrontAnswer
-from service.errors import MEDIA_TYPE, responses
+from service.api.responses import (
+    AcceptedAnswer,
+    CoverageAnswer,
+    FrontAnswer,
+    json_bytes,
+    json_response,
+    problem_bytes,
+    problem_responses,
+)
 from service.jobs.engine import Engine, finished
-from service.jobs.front_document import Rendered
-from service.jobs.messages import Work, WorkKind
+from service.jobs.front_document import FrontDocument, nothing_yet
 from service.jobs.record import Record
 from service.jobs.store import Store
-from service.requests.asked import nothing_yet
 from service.requests.coverage import coverage_schema
 from service.requests.front import request_schema
-from service.requests.schemas import Limits
+from service.requests.limits import Limits
+from service.requests.task import Work, WorkKind
 
 
 def caller_of(request: Request) -> str:
@@ -45,14 +49,14 @@ class Answers:
         """Nothing, if more work is taken. A repeat may need no place.
 
         Raises:
-            Busy: the queue is full.
-            Closed: no more work is taken.
+            QueueFull: the queue is full.
+            ShuttingDown: no more work is taken.
         """
         await self._engine.check_open()
         if idempotency_key(request) is None:
             await self._engine.check_place()
 
-    async def answer(self, request: Request, work: Work, nothing_yet: Rendered) -> Response:
+    async def answer(self, request: Request, work: Work, nothing_yet: FrontDocument) -> Response:
         """The front, or where it will be found.
 
         Work without an idempotency key ends when the client goes away. With one the client is
@@ -78,7 +82,7 @@ class Answers:
     async def _now(self, request: Request, record: Record) -> Record:
         leaving = asyncio.ensure_future(_left(request))
         try:
-            return await self._engine.at_once(record, leaving)
+            return await self._engine.run(record, leaving)
         finally:
             leaving.cancel()
 
@@ -110,10 +114,7 @@ def _finished(request: Request, record: Record) -> Response:
     if record.problem is None:
         return json_bytes(record.json())
     # Which may be the problem of a request that this one repeats.
-    problem = {**record.problem, "request_id": request.scope["request_id"]}
-    status: int = problem["status"]
-    headers = {"Retry-After": "1"} if status == HTTPStatus.SERVICE_UNAVAILABLE else {}
-    return Response(to_json(problem), status, headers, MEDIA_TYPE)
+    return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
 
 
 def _digest(work: Work) -> str:
@@ -150,7 +151,7 @@ class FrontRoutes:
         router = APIRouter(tags=["fronts"])
         said: dict[int | str, dict[str, Any]] = {
             202: {"model": AcceptedAnswer, "description": "Accepted", "content": _ACCEPTED},
-            **responses(400, 408, 413, 415, 422, 503, 504),
+            **problem_responses(400, 408, 413, 415, 422, 503, 504),
         }
         router.post(
             "/front",

@@ -50,5 +50,5 @@ def idempotency_key(request: Request) -> str | None:
             f"Idempotency-Key must have 1 to {_LONGEST_KEY} characters of printable ASCII, "
             f"got {len(key)}{such}"
         )
-        raise Refusal(422, "invalid-request", sentence, errors=[Fault(detail=sentence)])
+        raise Refusal("invalid-request", detail=sentence, errors=[Fault(sentence)])
     return key

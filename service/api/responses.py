@@ -1,13 +1,41 @@
-"""What is answered over HTTP."""
+"""Answers: their schemas, and how they become HTTP responses."""
 
+from collections.abc import Mapping
+from http import HTTPStatus
 from typing import Annotated, Any
 
 from pydantic import BaseModel, Field
 from pydantic.json_schema import SkipJsonSchema
+from pydantic_core import to_json
+from starlette.responses import Response
 
-from service.errors import Problem
+from service.errors import Refusal
 from service.jobs.record import Status
 from service.planner import Termination
+
+PROBLEM_JSON = "application/problem+json"
+
+
+class FaultItem(BaseModel):
+    """One thing wrong with a request."""
+
+    detail: str
+    pointer: str | None = Field(default=None, description="JSON pointer into the body (RFC 6901)")
+    parameter: str | None = Field(default=None, description="name of the query parameter")
+
+
+class Problem(BaseModel):
+    """Why a request was refused (RFC 9457)."""
+
+    type: str = Field(description="always about:blank; the code tells problems apart")
+    title: str
+    status: int
+    code: str = Field(description="stable; the one member to branch on")
+    detail: str
+    request_id: str
+    errors: list[FaultItem] | None = None
+    limit: float | None = Field(default=None, description="the most that is allowed")
+    actual: float | None = Field(default=None, description="what came, where it is known")
 
 
 class TourItem(BaseModel):
@@ -101,3 +129,39 @@ class HealthAnswer(BaseModel):
     """How the service is."""
 
     status: str
+
+
+def json_response(answer: Any, status: int = 200) -> Response:
+    """Return an answer that is known to be well-formed and is not checked again."""
+    return json_bytes(to_json(answer), status)
+
+
+def json_bytes(answer: bytes, status: int = 200) -> Response:
+    """Return an answer that was written as JSON before."""
+    return Response(answer, status, media_type="application/json")
+
+
+def problem_response(refusal: Refusal, request_id: str) -> Response:
+    """Return the problem document of a refusal; a 503 asks to come again in a second."""
+    return problem_bytes(refusal.document(request_id), refusal.headers)
+
+
+def problem_bytes(
+    document: Mapping[str, Any], headers: Mapping[str, str] | None = None
+) -> Response:
+    """Return a problem document as a response; a 503 asks to come again in a second."""
+    status: int = document["status"]
+    later = {"Retry-After": "1"} if status == HTTPStatus.SERVICE_UNAVAILABLE else {}
+    return Response(to_json(document), status, {**later, **(headers or {})}, PROBLEM_JSON)
+
+
+def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Return what the OpenAPI document says of a path's refusals."""
+    schema = {"$ref": "#/components/schemas/Problem"}
+    return {
+        status: {
+            "description": HTTPStatus(status).phrase,
+            "content": {PROBLEM_JSON: {"schema": schema}},
+        }
+        for status in statuses
+    }

@@ -10,28 +10,27 @@ from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
-from service.api.body import json_bytes
 from service.api.plan import caller_of
-from service.api.responses import FrontAnswer, TourAnswer
-from service.errors import Refusal, responses
-from service.jobs.engine import Engine, State
+from service.api.responses import FrontAnswer, TourAnswer, json_bytes, problem_responses
+from service.errors import Expired, NotFound, Refusal
+from service.jobs.engine import Engine, JobState
 from service.jobs.messages import Snapshot
 from service.jobs.record import Record
-from service.jobs.store import Expired, Store, Unknown
+from service.jobs.store import Store
 from service.requests.schemas import TourQuery
 
 HEARTBEAT = 15.0  # seconds of silence before a comment says that the stream is alive
 
 
-def event_stream(states: AsyncIterator[State]) -> StreamingResponse:
+def event_stream(watch: AsyncIterator[JobState]) -> StreamingResponse:
     """An answer that goes on until the job is finished."""
     headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
-    return StreamingResponse(_events(states), media_type="text/event-stream", headers=headers)
+    return StreamingResponse(_events(watch), media_type="text/event-stream", headers=headers)
 
 
-async def _events(states: AsyncIterator[State]) -> AsyncIterator[bytes]:
+async def _events(watch: AsyncIterator[JobState]) -> AsyncIterator[bytes]:
     status, progress = None, None
-    async for state in _with_heartbeats(states):
+    async for state in _with_heartbeats(watch):
         if state is None:
             yield KEEPALIVE_COMMENT
             continue
@@ -44,9 +43,9 @@ async def _events(states: AsyncIterator[State]) -> AsyncIterator[bytes]:
             yield _status(state.record)
 
 
-async def _with_heartbeats(states: AsyncIterator[State]) -> AsyncIterator[State | None]:
+async def _with_heartbeats(watch: AsyncIterator[JobState]) -> AsyncIterator[JobState | None]:
     """The states, and none for each while without."""
-    coming = asyncio.ensure_future(anext(states, None))
+    coming = asyncio.ensure_future(anext(watch, None))
     try:
         while True:
             done, _ = await asyncio.wait([coming], timeout=HEARTBEAT)
@@ -56,7 +55,7 @@ async def _with_heartbeats(states: AsyncIterator[State]) -> AsyncIterator[State 
             state = coming.result()
             if state is None:
                 return
-            coming = asyncio.ensure_future(anext(states, None))
+            coming = asyncio.ensure_future(anext(watch, None))
             yield state
     finally:
         coming.cancel()
@@ -79,7 +78,7 @@ def _event(name: str, data: Mapping[str, object]) -> bytes:
     return format_sse_event(event=name, data_str=to_json(data).decode())
 
 
-class KeptRoutes:
+class StoredFrontRoutes:
     """Each caller is told of its own fronts alone."""
 
     def __init__(self, store: Store, engine: Engine) -> None:
@@ -89,7 +88,7 @@ class KeptRoutes:
     def router(self) -> APIRouter:
         """The paths, with what the OpenAPI document says of them."""
         router = APIRouter(tags=["fronts"])
-        missing = responses(404, 410, 503)
+        missing = problem_responses(404, 410, 503)
         stream: dict[str, Any] = {"description": "The events", "content": {"text/event-stream": {}}}
         router.get("/front/{id}", response_model=FrontAnswer, responses=missing)(self.front)
         router.delete(
@@ -102,9 +101,9 @@ class KeptRoutes:
             response_class=StreamingResponse,
             responses={200: stream, **missing},
         )(self.events)
-        router.get("/tour", response_model=TourAnswer, responses=responses(404, 410, 422, 503))(
-            self.tour
-        )
+        router.get(
+            "/tour", response_model=TourAnswer, responses=problem_responses(404, 410, 422, 503)
+        )(self.tour)
         return router
 
     async def front(self, request: Request, id: str) -> Response:  # noqa: A002
@@ -121,14 +120,13 @@ class KeptRoutes:
 
     async def events(self, request: Request, id: str) -> Response:  # noqa: A002
         """Tell how the planning of a front goes, until it has ended."""
-        return event_stream(self._engine.states(await self._record(request, id)))
+        return event_stream(self._engine.watch(await self._record(request, id)))
 
     async def tour(self, request: Request, query: Annotated[TourQuery, Query()]) -> Response:
         """Give the tour of a front whose direction is nearest to an angle."""
         record = await self._record(request, query.front)
         if not record.front.tours:
-            sentence = f"front {record.id} must have a tour, and has none yet"
-            raise Refusal(404, "no-tour", sentence)
+            raise Refusal("no-tour", front=record.id)
         tour = record.front.nearest(query.angle)
         return json_bytes(b'{"front":' + to_json(record.id) + b"," + tour[1:])
 
@@ -137,17 +135,16 @@ class KeptRoutes:
         try:
             kept = store.latest(caller) if front is None else store.get(caller, front)
             return self._engine.state(await kept).record
-        except Unknown:
+        except NotFound:
             _refuse_unknown(front)
         except Expired:
-            sentence = f"front {_named(front)} was kept for a while and is no more: plan it again"
-            raise Refusal(410, "front-expired", sentence) from None
+            raise Refusal("front-expired", front=_named(front)) from None
 
 
 def _refuse_unknown(front: str | None) -> NoReturn:
     if front is None:
-        raise Refusal(404, "no-front", "a tour is of a front: plan one with POST /front first")
-    raise Refusal(404, "unknown-front", f"there is no front {_named(front)}")
+        raise Refusal("no-front")
+    raise Refusal("unknown-front", front=_named(front))
 
 
 def _named(front: str | None) -> str:

@@ -5,7 +5,7 @@ import sys
 import typer
 
 from service.api.auth import KeyHash, new_key
-from service.cli.errors import Wrong, configured, ended, explaining, loaded
+from service.cli.errors import UsageError, configured, ended, explaining, loaded
 from service.server import build, build_work, serve, takes_work
 
 
@@ -41,6 +41,6 @@ def run_key(caller: str) -> None:
         try:
             KeyHash(caller=caller, digest=digest)
         except ValueError as error:
-            raise Wrong(str(error)) from None
+            raise UsageError(str(error)) from None
     typer.echo(f"{key}\n{caller}:{digest}")
     typer.echo("The key, for its caller alone; then its entry for PARETOUR_API_KEYS.", err=True)

@@ -20,13 +20,12 @@ from paretour.values import front_of
 from rich.console import Console
 
 from service.actor import load_actors
-from service.cli.errors import Wrong, configured, loaded
+from service.cli.errors import UsageError, configured, loaded
 from service.cli.files import read_layer, read_map, read_request
 from service.cli.progress import interruptible, watching
-from service.errors import Refusal
-from service.instance import InvalidInstance
-from service.jobs.messages import Work
+from service.errors import InvalidInstance, Refusal
 from service.jobs.runner import load_planner
+from service.requests.task import Work
 
 
 def plan_there(client: Client, plan: Plan, stderr: Console) -> Front:
@@ -54,7 +53,7 @@ def plan_here(plan: Plan, stderr: Console) -> Front:
         try:
             found = planner.plan(_work(plan), stop, tell)
         except (Refusal, InvalidInstance) as error:
-            raise Wrong(str(error)) from None
+            raise UsageError(str(error)) from None
     status = "cancelled" if stop() else "done"
     return front_of(json.loads(found.json(id="", status=status)))
 
@@ -80,9 +79,9 @@ class Asked(Protocol):
         """What is to be planned.
 
         Raises:
-            NotRead: a file is nothing that can be planned.
+            UnreadableFile: a file is nothing that can be planned.
             OSError: there is no such file.
-            Wrong: an option says nothing.
+            UsageError: an option says nothing.
         """
 
 
@@ -108,7 +107,7 @@ class Cities:
             return None if self.angles is None else [float(a) for a in self.angles.split(",")]
         except ValueError:
             sentence = f"--angles must be numbers with commas between, got {self.angles!r}"
-            raise Wrong(sentence) from None
+            raise UsageError(sentence) from None
 
 
 @dataclass(frozen=True, kw_only=True)

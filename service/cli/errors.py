@@ -9,7 +9,7 @@ import typer
 from paretour import Refused
 from pydantic import ValidationError
 
-from service.cli.tsplib import NotRead
+from service.cli.tsplib import UnreadableFile
 from service.settings import Settings
 
 WRONG = 2
@@ -17,7 +17,7 @@ UNAVAILABLE = 3
 _NOT_THE_REQUEST = (401, 403, 408, 429)
 
 
-class Wrong(Exception):
+class UsageError(Exception):
     """What the caller can put right."""
 
 
@@ -26,7 +26,7 @@ def explaining() -> Iterator[None]:
     """Ends the command where something in the block went as wrong as may be expected."""
     try:
         yield
-    except (Wrong, NotRead) as error:
+    except (UsageError, UnreadableFile) as error:
         raise ended(str(error), WRONG) from None
     except (FileNotFoundError, PermissionError, IsADirectoryError) as error:
         raise ended(f"{error.filename}: {error.strerror}", WRONG) from None
@@ -50,24 +50,24 @@ def configured(**given: Any) -> Settings:
     """The settings, of which some are given and not None.
 
     Raises:
-        Wrong: one of them is not what it must be.
+        UsageError: one of them is not what it must be.
     """
     try:
         return Settings(**{name: value for name, value in given.items() if value is not None})
     except ValidationError as error:
-        raise Wrong(_explained(error)) from None
+        raise UsageError(_explained(error)) from None
 
 
 def loaded(load: Callable[[Settings], T], settings: Settings) -> T:
     """What is made as the settings say.
 
     Raises:
-        Wrong: the files that they name are not there, or not what they must be.
+        UsageError: the files that they name are not there, or not what they must be.
     """
     try:
         return load(settings)
     except (OSError, ValueError) as error:
-        raise Wrong(str(error)) from None
+        raise UsageError(str(error)) from None
 
 
 def _explained(error: ValidationError) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.cli import tsplib
-from service.cli.tsplib import NotRead
+from service.cli.tsplib import UnreadableFile
 
 Array = NDArray[np.float64]
 Request = dict[str, Any]
@@ -26,7 +26,7 @@ def read_request(files: Sequence[Path], *, unrounded: bool = False) -> Request:
     which become matrices, or where `unrounded` asks for it coordinates.
 
     Raises:
-        NotRead: nothing of that kind; the message names the file.
+        UnreadableFile: nothing of that kind; the message names the file.
         OSError: no such file.
     """
     if len(files) == 1:
@@ -34,7 +34,7 @@ def read_request(files: Sequence[Path], *, unrounded: bool = False) -> Request:
     first, second = (_read(file, lambda path: _objective(path, unrounded)) for file in files)
     if first.shape != second.shape:
         sizes = " and ".join("x".join(map(str, array.shape)) for array in (first, second))
-        raise NotRead(f"both files must have as many numbers, got {sizes}")
+        raise UnreadableFile(f"both files must have as many numbers, got {sizes}")
     if first.shape[1] == 2:
         return {"coordinates": np.concatenate((first, second), axis=1).tolist()}
     return {"matrices": np.stack((first, second))}
@@ -44,7 +44,7 @@ def read_map(path: Path) -> tuple[Request, bytes | None]:
     """What a JSON file says, a request with its grid; or nothing, and the content of a PNG file.
 
     Raises:
-        NotRead: neither; the message names the file.
+        UnreadableFile: neither; the message names the file.
         OSError: no such file.
     """
     if path.suffix == ".png":
@@ -56,7 +56,7 @@ def read_layer(path: Path) -> Array:
     """The costs on a map, as many as it has cells, from a CSV file.
 
     Raises:
-        NotRead: it is none; the message names the file.
+        UnreadableFile: it is none; the message names the file.
         OSError: no such file.
     """
     return _read(path, _table)
@@ -65,18 +65,18 @@ def read_layer(path: Path) -> Array:
 def _read(path: Path, read: Callable[[Path], T]) -> T:
     try:
         return read(path)
-    except (NotRead, UnicodeDecodeError) as error:
-        raise NotRead(f"{path}: {error}") from None
+    except (UnreadableFile, UnicodeDecodeError) as error:
+        raise UnreadableFile(f"{path}: {error}") from None
 
 
 def _request(path: Path) -> Request:
     if path.suffix in _TSPLIB:
-        raise NotRead("a file of TSPLIB is one objective: name another for the other one")
+        raise UnreadableFile("a file of TSPLIB is one objective: name another for the other one")
     if path.suffix == ".json":
         return _json(path.read_text())
     rows = _table(path)
     if rows.shape[1] != 4:
-        raise NotRead(f"must have 4 columns, x and y in either plane, got {rows.shape[1]}")
+        raise UnreadableFile(f"must have 4 columns, x and y in either plane, got {rows.shape[1]}")
     return {"coordinates": rows.tolist()}
 
 
@@ -84,12 +84,12 @@ def _json(text: str) -> Request:
     try:
         value = json.loads(text)
     except json.JSONDecodeError as error:
-        raise NotRead(f"must be JSON: {error}") from None
+        raise UnreadableFile(f"must be JSON: {error}") from None
     if isinstance(value, list):
         return {"coordinates": value}
     if isinstance(value, dict):
         return value
-    raise NotRead("must be a request, an object, or its coordinates, a list")
+    raise UnreadableFile("must be a request, an object, or its coordinates, a list")
 
 
 def _objective(path: Path, unrounded: bool) -> Array:
@@ -99,7 +99,7 @@ def _objective(path: Path, unrounded: bool) -> Array:
     rows = _table(path)
     if rows.shape[1] not in (2, len(rows)):
         demand = "must have 2 columns, x and y, or as many as rows"
-        raise NotRead(f"{demand}, got {len(rows)} rows of {rows.shape[1]}")
+        raise UnreadableFile(f"{demand}, got {len(rows)} rows of {rows.shape[1]}")
     return rows
 
 
@@ -111,7 +111,7 @@ def _table(path: Path) -> Array:
     if table and not any(_is_number(field) for field in table[0][1]):
         del table[0]
     if not table:
-        raise NotRead("must have a row of numbers for each city, got none")
+        raise UnreadableFile("must have a row of numbers for each city, got none")
     for at, row in table:
         _check_row(at, row, len(table[0][1]))
     return np.array([row for _, row in table], dtype=np.float64)
@@ -119,10 +119,12 @@ def _table(path: Path) -> Array:
 
 def _check_row(at: int, row: list[str], width: int) -> None:
     if len(row) != width:
-        raise NotRead(f"line {at} must have {width} fields, as the first row, got {len(row)}")
+        raise UnreadableFile(
+            f"line {at} must have {width} fields, as the first row, got {len(row)}"
+        )
     for field in row:
         if not _is_number(field):
-            raise NotRead(f"line {at} must hold numbers, got {field[:80]!r}")
+            raise UnreadableFile(f"line {at} must hold numbers, got {field[:80]!r}")
 
 
 def _is_number(field: str) -> bool:

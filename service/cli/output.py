@@ -15,7 +15,7 @@ from rich.table import Table
 from typer import echo
 
 from service.cli.backends import Asked, Planner
-from service.cli.errors import Wrong, explaining
+from service.cli.errors import UsageError, explaining
 
 _ENDS: Mapping[str | None, str] = {
     None: "still being planned",
@@ -104,7 +104,7 @@ def run_front(asked: Asked, planner: Planner, shown: Shown) -> None:
     """Plan a front and show it."""
     with explaining():
         if shown.as_json and shown.as_csv:
-            raise Wrong("a front is printed as --json or as --csv, not as both")
+            raise UsageError("a front is printed as --json or as --csv, not as both")
         draw = None if shown.plot is None else _drawing(shown.plot)
         front = planner.front(asked.plan(), _STDERR)
         _print(front, shown)
@@ -145,6 +145,6 @@ def _drawing(path: Path) -> Callable[[Front], None]:
     try:
         from service.cli.plot import check_format, plot_front
     except ModuleNotFoundError:
-        raise Wrong("--plot needs matplotlib: pip install 'paretour[plot]'") from None
+        raise UsageError("--plot needs matplotlib: pip install 'paretour[plot]'") from None
     check_format(path)
     return lambda front: plot_front(front, path)

@@ -6,20 +6,20 @@ from matplotlib.backend_bases import FigureCanvasBase
 from matplotlib.figure import Figure
 from paretour import Front
 
-from service.cli.errors import Wrong
+from service.cli.errors import UsageError
 
 
 def check_format(path: Path) -> None:
     """Nothing, if the file's name says a format that can be drawn, in a directory that is there.
 
     Raises:
-        Wrong: it does not.
+        UsageError: it does not.
     """
     formats = sorted(FigureCanvasBase.get_supported_filetypes())
     if path.suffix.removeprefix(".") not in formats:
-        raise Wrong(f"--plot must end in one of {', '.join(formats)}, got {path}")
+        raise UsageError(f"--plot must end in one of {', '.join(formats)}, got {path}")
     if not path.parent.is_dir():
-        raise Wrong(f"--plot must be in a directory that is there, got {path}")
+        raise UsageError(f"--plot must be in a directory that is there, got {path}")
 
 
 def plot_front(front: Front, path: Path) -> None:

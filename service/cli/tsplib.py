@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 _HEADINGS = ("NODE_COORD_SECTION", "EDGE_WEIGHT_SECTION", "DISPLAY_DATA_SECTION", "EOF")
 
 
-class NotRead(ValueError):
+class UnreadableFile(ValueError):
     """What is no such file, or of a kind that is not read."""
 
 
@@ -32,7 +32,7 @@ class _File:
     def dimension(self) -> int:
         given = self.facts.get("DIMENSION", "nothing")
         if not given.isdecimal():
-            raise NotRead(f"DIMENSION must be a whole number, got {given}")
+            raise UnreadableFile(f"DIMENSION must be a whole number, got {given}")
         return int(given)
 
 
@@ -40,7 +40,7 @@ def coordinates(text: str) -> Array:
     """Where the cities of an EUC_2D file lie, shape (n, 2)."""
     file = _parsed(text)
     if file.kind != "EUC_2D":
-        raise NotRead(f"EDGE_WEIGHT_TYPE must be EUC_2D, got {file.kind}")
+        raise UnreadableFile(f"EDGE_WEIGHT_TYPE must be EUC_2D, got {file.kind}")
     return _numbers(file, "NODE_COORD_SECTION", (file.dimension, 3))[:, 1:]
 
 
@@ -53,7 +53,7 @@ def matrix(text: str) -> Array:
         return np.floor(distances + 0.5)
     way = file.facts.get("EDGE_WEIGHT_FORMAT", "nothing")
     if (file.kind, way) != ("EXPLICIT", "FULL_MATRIX"):
-        raise NotRead(
+        raise UnreadableFile(
             "EDGE_WEIGHT_TYPE must be EUC_2D, or EXPLICIT with EDGE_WEIGHT_FORMAT FULL_MATRIX,"
             f" got {file.kind} with {way}"
         )
@@ -79,8 +79,8 @@ def _numbers(file: _File, section: str, shape: tuple[int, int]) -> Array:
     words = file.sections.get(section, [])
     if len(words) != shape[0] * shape[1]:
         demand = f"{shape[0]} rows of {shape[1]} numbers, as DIMENSION says"
-        raise NotRead(f"{section} must have {demand}, got {len(words)} numbers")
+        raise UnreadableFile(f"{section} must have {demand}, got {len(words)} numbers")
     try:
         return np.array(words, dtype=np.float64).reshape(shape)
     except ValueError as error:
-        raise NotRead(f"{section} must hold numbers: {error}") from None
+        raise UnreadableFile(f"{section} must hold numbers: {error}") from None

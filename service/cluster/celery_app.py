@@ -4,7 +4,7 @@ from celery import Celery
 from kombu.exceptions import OperationalError
 
 from service.cluster.records import GONE
-from service.jobs.store import Unavailable
+from service.errors import StoreUnavailable
 
 QUEUE = "paretour"
 TASK = "paretour.plan"
@@ -50,9 +50,9 @@ def send(queue: Celery, id: str) -> None:  # noqa: A002
     """Have a record worked on. The same may be said twice.
 
     Raises:
-        Unavailable: Redis does not answer.
+        StoreUnavailable: Redis does not answer.
     """
     try:
         queue.send_task(TASK, args=[id], task_id=id, retry_policy=_ONCE_MORE)
     except (OperationalError, *GONE) as error:
-        raise Unavailable from error
+        raise StoreUnavailable from error

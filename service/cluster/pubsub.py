@@ -16,7 +16,7 @@ _PAUSE = 0.2  # seconds between two tries to listen
 _SILENT = 5.0  # seconds without news after which it is tried whether any could come
 
 
-class News:
+class Subscriptions:
     """Wakes up who waits for a record, whenever that has changed, or may have.
 
     `ended` is told of each that is finished.

@@ -9,14 +9,19 @@ from typing import Any
 from pydantic_core import to_json
 from redis import exceptions
 
+from service.errors import Cancelled, DeadlineExceeded
 from service.jobs.messages import Snapshot
 from service.jobs.record import Record
 from service.jobs.store import WORK, columns, front_columns, record_of
-from service.jobs.submission import Overdue, Stopped
 
 SCRIPT = (Path(__file__).parent / "records.lua").read_text()
 LEASE = 5.0  # seconds after which a worker that was not seen is lost
-REASONS: Mapping[bytes, type[Stopped | Overdue]] = {b"Stopped": Stopped, b"Overdue": Overdue}
+# Why work is to stop, as it is written to Redis: replicas and workers of other versions read it.
+STOP_REASONS: Mapping[type[Cancelled | DeadlineExceeded], bytes] = {
+    Cancelled: b"Stopped",
+    DeadlineExceeded: b"Overdue",
+}
+REASONS = {said: why for why, said in STOP_REASONS.items()}
 
 # What says that it does not answer, or is full.
 GONE = (exceptions.ConnectionError, exceptions.TimeoutError, exceptions.OutOfMemoryError)
@@ -27,7 +32,7 @@ _TEXTS = ("id", "caller", "request_id", "status", "key", "digest", "kind")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Kept:
+class StoredRecord:
     """A record as it stands in Redis, and what Redis knows besides.
 
     `asked` is when it was asked for, in seconds since 1970.
@@ -60,7 +65,7 @@ def flat(fields: Mapping[str, Argument]) -> list[Argument]:
     return [part for field in fields.items() for part in field]
 
 
-def kept_in(*hashes: Iterable[bytes]) -> Kept:
+def kept_in(*hashes: Iterable[bytes]) -> StoredRecord:
     """What is in one hash, or in one and that of its work."""
     found = {name: value for each in hashes for name, value in _fields(each).items()}
     record = record_of(found)
@@ -68,7 +73,7 @@ def kept_in(*hashes: Iterable[bytes]) -> Kept:
         front = replace(record.front, gained=float(found["gained"]))
         record = replace(record, front=front)
     progress = found.get("progress")
-    return Kept(
+    return StoredRecord(
         record=record,
         asked=float(found["kept"]),
         attempts=int(found.get("attempts", 0)),

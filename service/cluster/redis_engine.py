@@ -14,22 +14,28 @@ from redis.backoff import NoBackoff
 from redis.retry import Retry
 
 from service.cluster.celery_app import QUEUE, queue_at, send
-from service.cluster.pubsub import News
-from service.cluster.records import LEASE, Kept, arguments, kept_in
+from service.cluster.pubsub import Subscriptions
+from service.cluster.records import LEASE, STOP_REASONS, StoredRecord, arguments, kept_in
 from service.cluster.redis_store import RedisStore
-from service.jobs.engine import Busy, Closed, Standing, State, finished
-from service.jobs.front_document import Rendered
-from service.jobs.outcomes import ended
-from service.jobs.record import Record
-from service.jobs.store import Expired, Unavailable, Unknown
-from service.jobs.submission import Overdue, Stopped, as_planned
+from service.errors import (
+    Cancelled,
+    DeadlineExceeded,
+    Expired,
+    NotFound,
+    QueueFull,
+    ShuttingDown,
+    StoreUnavailable,
+)
+from service.jobs.engine import EngineStats, JobState, finished
+from service.jobs.front_document import FrontDocument
+from service.jobs.record import Record, as_planned, ended
 
 _AGAIN = 2.0  # seconds without news after which a record is looked at all the same
 _LISTENED = 1.0  # seconds for a worker to end what it is told to end
 _SWEEP = 2.0  # seconds between two looks for work that has lost its worker or its message
 
 
-class Cluster:
+class RedisEngine:
     """Hands the ids of records to `send`, and follows in Redis what becomes of them.
 
     So many may wait beside those that there are workers for. Nobody waits for more than so many
@@ -44,16 +50,16 @@ class Cluster:
         *,
         queue: int,
         seconds: float,
-        planned: Callable[[Rendered], None] = lambda _: None,
+        planned: Callable[[FrontDocument], None] = lambda _: None,
     ) -> None:
         self._store = store
         self._send = send
         self._queue = queue
         self._seconds = seconds
         self._planned = planned
-        self._news = News(redis, self._ended)
+        self._news = Subscriptions(redis, self._ended)
         self._tasks: set[asyncio.Task[None]] = set()
-        self._standing = Standing(waiting=0, working=0, lost=0)
+        self._standing = EngineStats(waiting=0, working=0, lost=0)
         self._closed = False
         self._log = logging.getLogger("paretour")
 
@@ -69,22 +75,22 @@ class Cluster:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
-    async def standing(self) -> Standing:
+    async def standing(self) -> EngineStats:
         """How all replicas and workers are together, as last known."""
-        with suppress(Unavailable):
+        with suppress(StoreUnavailable):
             waiting, working, lost = await self._store.call("standing")
-            self._standing = Standing(waiting=waiting, working=working, lost=lost)
+            self._standing = EngineStats(waiting=waiting, working=working, lost=lost)
         return self._standing
 
     async def check_open(self) -> None:
         """Nothing, if work is taken."""
         if self._closed:
-            raise Closed
+            raise ShuttingDown
 
     async def check_place(self) -> None:
         """Nothing, if there is a place for one more front."""
         if not await self._store.call("has_place", self._queue):
-            raise Busy
+            raise QueueFull
 
     async def check_warm(self) -> None:
         """Nothing: workers take no work before they are warm, and until then it waits."""
@@ -94,7 +100,7 @@ class Cluster:
         await self.check_open()
         await self._store.call("standing")
 
-    async def at_once(self, record: Record, left: Future[None]) -> Record:
+    async def run(self, record: Record, left: Future[None]) -> Record:
         """What becomes of work that somebody waits for, until he has left."""
         await self._store.admit(record)
         try:
@@ -108,7 +114,7 @@ class Cluster:
                 (ending, left), timeout=self._seconds, return_when=asyncio.FIRST_COMPLETED
             )
             if not ending.done():
-                await self._stop(record, Stopped if left.done() else Overdue)
+                await self._stop(record, Cancelled if left.done() else DeadlineExceeded)
             record = await ending
         finally:
             ending.cancel()
@@ -120,46 +126,46 @@ class Cluster:
         """Begin the work of a record that is in the store, whoever waits."""
         await self.check_open()
         if not await self._store.call("has_place", self._queue, record.id):
-            raise Busy
+            raise QueueFull
         await self._have_done(record.id)
 
-    def state(self, record: Record) -> State:
+    def state(self, record: Record) -> JobState:
         """How a record from the store stands."""
-        return State(record)
+        return JobState(record)
 
-    async def states(self, record: Record) -> AsyncIterator[State]:
+    async def watch(self, record: Record) -> AsyncIterator[JobState]:
         """How it stands now, and after each change, until it is finished."""
         told = None
         with self._news.about(record.id) as changed:
             while True:
                 changed.clear()
-                with suppress(Unavailable):
+                with suppress(StoreUnavailable):
                     kept = await self._now(record)
                     record, progress = kept.record, kept.progress
                     standing = record.status, progress and progress.seconds
                     if standing != told:
                         told = standing
-                        yield State(record, progress)
+                        yield JobState(record, progress)
                 if record.finished:
                     return
                 await _within(_AGAIN, changed)
 
     async def cancel(self, record: Record) -> Record:
         """End the work of a record at once; what was found so far is kept."""
-        await self._stop(record, Stopped)
+        await self._stop(record, Cancelled)
         return await finished(self, record)
 
-    async def _now(self, record: Record) -> Kept:
+    async def _now(self, record: Record) -> StoredRecord:
         """How it stands in Redis; once it is forgotten, as if it had been cancelled."""
         try:
             return await self._store.kept("get", record.caller, record.id)
-        except (Unknown, Expired):
+        except (NotFound, Expired):
             gone = replace(record, status="cancelled", work=None)
-            return Kept(record=gone, asked=0, attempts=0, progress=None)
+            return StoredRecord(record=gone, asked=0, attempts=0, progress=None)
 
-    async def _stop(self, record: Record, why: type[Stopped | Overdue]) -> None:
+    async def _stop(self, record: Record, why: type[Cancelled | DeadlineExceeded]) -> None:
         """Have the worker end it, if it has one that listens, and end it anyway."""
-        await self._store.call("stop", record.id, why.__name__)
+        await self._store.call("stop", record.id, STOP_REASONS[why])
         if (await self._now(record)).record.status == "running":
             with suppress(TimeoutError):
                 async with asyncio.timeout(_LISTENED):
@@ -174,7 +180,7 @@ class Cluster:
 
     async def _sweep(self) -> None:
         while True:
-            with suppress(Unavailable):
+            with suppress(StoreUnavailable):
                 for id_ in await self._store.call("stale", LEASE, QUEUE):
                     self._log.warning("front %s has lost its worker, sent again", id_.decode())
                     await self._have_done(id_.decode())
@@ -184,7 +190,7 @@ class Cluster:
         self._spawn(self._count(id))
 
     async def _count(self, id: str) -> None:  # noqa: A002
-        with suppress(Unavailable):
+        with suppress(StoreUnavailable):
             if found := await self._store.call("claim", id):
                 self._planned(as_planned(kept_in(found).record.front))
 
@@ -210,8 +216,8 @@ def replica(
     max_age: float,
     queue: int,
     seconds: float,
-    planned: Callable[[Rendered], None] = lambda _: None,
-) -> tuple[RedisStore, Cluster]:
+    planned: Callable[[FrontDocument], None] = lambda _: None,
+) -> tuple[RedisStore, RedisEngine]:
     """What all replicas at this Redis do alike."""
     # Tried once more, because a connection may be of a Redis that has been replaced.
     redis = Redis.from_url(
@@ -219,4 +225,4 @@ def replica(
     )
     store = RedisStore(redis, entries=entries, max_age=max_age)
     sending = partial(send, queue_at(redis_url, seconds))
-    return store, Cluster(redis, store, sending, queue=queue, seconds=seconds, planned=planned)
+    return store, RedisEngine(redis, store, sending, queue=queue, seconds=seconds, planned=planned)

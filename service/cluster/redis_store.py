@@ -6,9 +6,9 @@ from typing import Any
 
 from redis.asyncio import Redis
 
-from service.cluster.records import GONE, SCRIPT, Argument, Kept, arguments, kept_in
+from service.cluster.records import GONE, SCRIPT, Argument, StoredRecord, arguments, kept_in
+from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
 from service.jobs.record import Record
-from service.jobs.store import Expired, Mismatch, Unavailable, Unknown
 
 
 class RedisStore:
@@ -45,7 +45,7 @@ class RedisStore:
             case b"new":
                 return record
             case b"mismatch":
-                raise Mismatch
+                raise IdempotencyMismatch
             case earlier:
                 return kept_in(earlier).record
 
@@ -73,19 +73,19 @@ class RedisStore:
         """What the script answers.
 
         Raises:
-            Unavailable: Redis does not.
+            StoreUnavailable: Redis does not.
         """
         try:
             return await self._script(args=[verb, self._clock(), *about])
         except GONE as error:
-            raise Unavailable from error
+            raise StoreUnavailable from error
 
-    async def kept(self, verb: str, *about: str) -> Kept:
+    async def kept(self, verb: str, *about: str) -> StoredRecord:
         """What is kept, as `get` or `latest` finds it."""
         await self._make_way()
         match await self.call(verb, *about):
             case b"unknown":
-                raise Unknown
+                raise NotFound
             case b"expired":
                 raise Expired
             case found:

@@ -18,13 +18,13 @@ from celery.exceptions import Reject
 from celery.signals import setup_logging, worker_process_init, worker_shutting_down
 
 from service.cluster.celery_app import TASK
-from service.cluster.records import Kept
-from service.cluster.worker_store import Ledger, Taken
-from service.jobs.front_document import Rendered
+from service.cluster.records import StoredRecord
+from service.cluster.worker_store import TakenOver, WorkerStore
+from service.errors import Cancelled, DeadlineExceeded, WorkerLost
+from service.jobs.front_document import FrontDocument
 from service.jobs.messages import Snapshot
-from service.jobs.outcomes import ended, failed
-from service.jobs.record import Record
-from service.jobs.submission import MOST_ATTEMPTS, Lost, Overdue, Stopped
+from service.jobs.record import Record, ended, failed
+from service.jobs.submission import MOST_ATTEMPTS
 from service.jobs.worker_pool import GRACE
 from service.jobs.worker_process import MakePlanner, Planner, Reporter
 
@@ -38,14 +38,14 @@ class Drained(Exception):
     """The worker ends, and leaves its work to another."""
 
 
-Reason = type[Stopped | Overdue | Taken | Drained]
+Reason = type[Cancelled | DeadlineExceeded | TakenOver | Drained]
 
 
-class Hand:
+class RecordWorker:
     """Plans what records ask for, each within so many seconds."""
 
     def __init__(
-        self, planner: Planner, ledger: Ledger, seconds: float, draining: Draining
+        self, planner: Planner, ledger: WorkerStore, seconds: float, draining: Draining
     ) -> None:
         self._planner = planner
         self._ledger = ledger
@@ -67,7 +67,7 @@ class Hand:
         if kept is None:
             return
         if kept.attempts > MOST_ATTEMPTS:
-            self._ledger.finish(failed(kept.record, Lost(), kept.record.front))
+            self._ledger.finish(failed(kept.record, WorkerLost(), kept.record.front))
             return
         watch = _Watch(kept, self._ledger, time.monotonic() + self._seconds, self._draining)
         found = self._found(kept, watch)
@@ -75,10 +75,10 @@ class Hand:
         if watch.why is Drained:
             self._ledger.hand_back(id)
             raise Drained
-        if watch.why is not Taken:
+        if watch.why is not TakenOver:
             self._ledger.finish(found)
 
-    def _found(self, kept: Kept, watch: "_Watch") -> Record:
+    def _found(self, kept: StoredRecord, watch: "_Watch") -> Record:
         work = kept.record.work
         assert work is not None
         try:
@@ -98,7 +98,9 @@ class Hand:
 class _Watch:
     """Looks, while work goes on, whether it is still wanted, and ends what does not listen."""
 
-    def __init__(self, kept: Kept, ledger: Ledger, deadline: float, draining: Draining) -> None:
+    def __init__(
+        self, kept: StoredRecord, ledger: WorkerStore, deadline: float, draining: Draining
+    ) -> None:
         self.stop = Event()
         self.why: Reason | None = None
         self.front = kept.record.front
@@ -115,9 +117,9 @@ class _Watch:
         self.front = snapshot.front
         self._ledger.tell(self._kept.record.id, snapshot)
 
-    def ended(self, front: Rendered) -> Record:
+    def ended(self, front: FrontDocument) -> Record:
         """The record, which ends now."""
-        why = self.why if self.why in (Stopped, Overdue) else None
+        why = self.why if self.why in (Cancelled, DeadlineExceeded) else None
         return ended(self._kept.record, front, why, time.time() - self._kept.asked)
 
     def end(self) -> None:
@@ -135,30 +137,30 @@ class _Watch:
 
     def _reason(self) -> Reason | None:
         if time.monotonic() > self._deadline:
-            return Overdue
+            return DeadlineExceeded
         return Drained if self._draining() else self._ledger.reason(self._kept.record.id)
 
     def _insist(self) -> None:
         if self.why is Drained:
             self._ledger.hand_back(self._kept.record.id)
-        elif self.why is not Taken:
+        elif self.why is not TakenOver:
             self._ledger.finish(self.ended(self.front))
         os.kill(os.getpid(), signal.SIGKILL)
 
 
 def make_hand(
     make_planner: MakePlanner, redis_url: str, seconds: float, draining: Draining
-) -> Hand:
+) -> RecordWorker:
     """A hand of this process, with a name that no other has."""
     worker = f"{gethostname()}:{os.getpid()}:{uuid.uuid4().hex}"
-    return Hand(make_planner(), Ledger(redis_url, worker), seconds, draining)
+    return RecordWorker(make_planner(), WorkerStore(redis_url, worker), seconds, draining)
 
 
-MakeHand = Callable[[Draining], Hand]
+MakeHand = Callable[[Draining], RecordWorker]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Crew:
+class CeleryWorker:
     """So many processes. Told to end, they finish within so many seconds or hand back."""
 
     queue: Celery
@@ -192,7 +194,7 @@ class _Bench:
     def __init__(self, make_hand: MakeHand, drain_seconds: float) -> None:
         self._make_hand = make_hand
         self._drain_seconds = drain_seconds
-        self._hand: Hand | None = None
+        self._hand: RecordWorker | None = None
         # Memory of all processes, without a lock that one of them could die with.
         self._draining = RawValue(ctypes.c_bool, False)
 

@@ -17,21 +17,21 @@ from service.cluster.records import (
     REASONS,
     SCRIPT,
     Argument,
-    Kept,
+    StoredRecord,
     arguments,
     kept_in,
     progress_arguments,
 )
+from service.errors import Cancelled, DeadlineExceeded
 from service.jobs.messages import Snapshot
 from service.jobs.record import Record
-from service.jobs.submission import Overdue, Stopped
 
 _SECONDS = 2.0  # that one answer of Redis may take
 _PATIENCE = 60.0  # seconds that Redis may be away without anything being lost
 _PAUSE = 0.1  # seconds between two tries
 
 
-class Taken(Exception):
+class TakenOver(Exception):
     """Another worker has the record now."""
 
 
@@ -43,7 +43,7 @@ def script_at(url: str) -> Script:
     return redis.register_script(SCRIPT)
 
 
-class Ledger:
+class WorkerStore:
     """One worker's side of the records. `worker` is its name, which no other has."""
 
     def __init__(self, url: str, worker: str) -> None:
@@ -54,7 +54,7 @@ class Ledger:
         """Say that this worker is there; nothing, if Redis does not answer."""
         self._try("present", self._worker)
 
-    def begin(self, id: str, known_lost: bool) -> Kept | None:  # noqa: A002
+    def begin(self, id: str, known_lost: bool) -> StoredRecord | None:  # noqa: A002
         """The record to work on; none where there is nothing to do, or another worker is at it.
 
         It may be known that whoever was at it is lost.
@@ -63,10 +63,10 @@ class Ledger:
         hashes = self._do("begin", id, self._worker, LEASE, known)
         return kept_in(*hashes) if hashes else None
 
-    def reason(self, id: str) -> type[Stopped | Overdue | Taken] | None:  # noqa: A002
+    def reason(self, id: str) -> type[Cancelled | DeadlineExceeded | TakenOver] | None:  # noqa: A002
         """Why the work on a record is to stop, if it is; and this worker is still at it."""
         said = self._try("seen", id, self._worker)
-        return Taken if said == b"taken" else REASONS.get(said)
+        return TakenOver if said == b"taken" else REASONS.get(said)
 
     def tell(self, id: str, snapshot: Snapshot) -> None:  # noqa: A002
         """Keep how far the work has come; nothing, if Redis does not answer."""

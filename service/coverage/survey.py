@@ -17,40 +17,12 @@ from numpy.typing import NDArray
 
 from service.coverage.grid import inflated, laid_out, largest_region, regions
 from service.coverage.shortest_paths import Grid, between, flat, make_grid, search, traced
-from service.instance import Instance, InvalidInstance
+from service.errors import Cancelled, InvalidCoverage, TooManyPlaces
+from service.instance import Instance
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Cells = NDArray[np.int64]
-
-
-class InvalidCoverage(InvalidInstance):
-    """What was given is no coverage task. Each fault is a part of it, as places/3, and a demand."""
-
-    def __init__(self, *faults: tuple[str, str]) -> None:
-        super().__init__(*faults)
-        self.faults = faults
-
-    def __str__(self) -> str:
-        """All faults, as one sentence."""
-        return "; ".join(f"{part} {demand}" for part, demand in self.faults)
-
-
-class TooManyPlaces(InvalidCoverage):
-    """A spacing lays out more places than are allowed."""
-
-    def __init__(self, limit: int, actual: int) -> None:
-        super().__init__(("spacing", f"must lay out at most {limit} places, got {actual}"))
-        self.limit = limit
-        self.actual = actual
-
-    def __reduce__(self) -> tuple[type["TooManyPlaces"], tuple[int, int]]:
-        """How it travels from one process to another."""
-        return TooManyPlaces, (self.limit, self.actual)
-
-
-class Stopped(Exception):
-    """The survey was told to stop."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -151,7 +123,7 @@ def survey(coverage: Coverage, most: int, stop: Callable[[], bool]) -> Survey:
     Raises:
         InvalidCoverage: nothing is free, a place is not, or no path leads there; the second
             objective is not about as many places or not of costs.
-        Stopped: it was told to stop.
+        Cancelled: it was told to stop.
     """
     free = inflated(coverage.blocked, coverage.cell_size, coverage.robot_radius)
     if not free.any():
@@ -162,7 +134,7 @@ def survey(coverage: Coverage, most: int, stop: Callable[[], bool]) -> Survey:
     grid = make_grid(free, coverage.cost_layer)
     lengths, costs = between(grid, flat(grid, places), stop)
     if stop():
-        raise Stopped
+        raise Cancelled
     second = _second(coverage, costs)
     return Survey(places, Instance(matrices=np.stack((coverage.cell_size * lengths, second))), grid)
 

@@ -9,20 +9,8 @@ from service.jobs.messages import Snapshot
 from service.jobs.record import Record
 
 
-class Busy(Exception):
-    """As many wait as may wait."""
-
-
-class Closed(Exception):
-    """The service is shutting down."""
-
-
-class Cold(Exception):
-    """The search is still being compiled, which happens once, or loaded."""
-
-
 @dataclass(frozen=True, eq=False)
-class State:
+class JobState:
     """How a record stands as of now, and how far a search that goes on has come."""
 
     record: Record
@@ -30,7 +18,7 @@ class State:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Standing:
+class EngineStats:
     """How many fronts wait, how many are being planned, and how many workers were replaced."""
 
     waiting: int
@@ -47,58 +35,58 @@ class Engine(Protocol):
     async def close(self) -> None:
         """Take no more work, and leave unfinished what is."""
 
-    async def standing(self) -> Standing:
+    async def standing(self) -> EngineStats:
         """How it is, for whoever watches."""
 
     async def check_open(self) -> None:
         """Nothing, if work is taken.
 
         Raises:
-            Closed: no more work is taken.
+            ShuttingDown: no more work is taken.
         """
 
     async def check_place(self) -> None:
         """Nothing, if there is a place for one more front.
 
         Raises:
-            Busy: there is none.
+            QueueFull: there is none.
         """
 
     async def check_warm(self) -> None:
         """Nothing, if work may need compiled code.
 
         Raises:
-            Cold: it is not there yet.
+            WarmingUp: it is not there yet.
         """
 
     async def check_ready(self) -> None:
         """Nothing, if work of every kind is taken.
 
         Raises:
-            Closed: no more work is taken.
-            Cold: not yet, or not at the moment.
+            ShuttingDown: no more work is taken.
+            WarmingUp: not yet, or not at the moment.
         """
 
-    async def at_once(self, record: Record, left: Future[None]) -> Record:
+    async def run(self, record: Record, left: Future[None]) -> Record:
         """What becomes of work that somebody waits for, until he has left.
 
         Raises:
-            Busy: the queue is full.
-            Closed: no more work is taken.
+            QueueFull: the queue is full.
+            ShuttingDown: no more work is taken.
         """
 
     async def begin(self, record: Record) -> None:
         """Begin the work of a record that is in the store, whoever waits.
 
         Raises:
-            Busy: the queue is full.
-            Closed: no more work is taken.
+            QueueFull: the queue is full.
+            ShuttingDown: no more work is taken.
         """
 
-    def state(self, record: Record) -> State:
+    def state(self, record: Record) -> JobState:
         """How a record from the store stands."""
 
-    def states(self, record: Record) -> AsyncIterator[State]:
+    def watch(self, record: Record) -> AsyncIterator[JobState]:
         """How it stands now, and after each change, until it is finished."""
 
     async def cancel(self, record: Record) -> Record:
@@ -107,6 +95,6 @@ class Engine(Protocol):
 
 async def finished(engine: Engine, record: Record) -> Record:
     """What becomes of a record in the end."""
-    async for state in engine.states(record):
+    async for state in engine.watch(record):
         record = state.record
     return record

@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 from pydantic_core import to_json
 
+from service.instance import Instance
 from service.planner import Front, Interim
+from service.requests.task import Task
 
 
 @dataclass(frozen=True, eq=False)
-class Rendered:
+class FrontDocument:
     """A front of m tours as JSON.
 
     `members` are all the members of the answer but the tours. `tours` is the inside of the array
@@ -40,7 +42,7 @@ class Rendered:
 
 def rendered(
     front: Front, each: Iterable[Mapping[str, Any]] | None = None, **more: Any
-) -> Rendered:
+) -> FrontDocument:
     """A front as JSON, with other members, of each tour and of the whole."""
     members = {
         "cities": front.n,
@@ -61,10 +63,10 @@ def rendered(
     ]
     ends = np.cumsum([len(tour) + 1 for tour in tours], dtype=np.int64) - 1
     angles = front.angles.tobytes()
-    return Rendered(members, b",".join(tours), ends.tobytes(), angles, front.gained)
+    return FrontDocument(members, b",".join(tours), ends.tobytes(), angles, front.gained)
 
 
-def empty(**more: Any) -> Rendered:
+def empty(**more: Any) -> FrontDocument:
     """A front of which nothing has been found, with other members."""
     members = {
         "points": 0,
@@ -74,7 +76,7 @@ def empty(**more: Any) -> Rendered:
         "terminated": None,
         **more,
     }
-    return Rendered(members, b"", b"", b"")
+    return FrontDocument(members, b"", b"", b"")
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +86,7 @@ class Sketch:
     seconds: float
     hypervolume: float
     points: int
-    front: Callable[[int], Rendered]
+    front: Callable[[int], FrontDocument]
 
 
 def sketched(interim: Interim, **more: Any) -> Sketch:
@@ -94,4 +96,22 @@ def sketched(interim: Interim, **more: Any) -> Sketch:
         interim.hypervolume,
         interim.points,
         lambda size: rendered(interim.front(size), **more),
+    )
+
+
+def nothing_yet(task: Task, actor: Mapping[str, str]) -> FrontDocument:
+    """The front before anything is found."""
+    subject, reference_point = task.subject, task.demand.reference_point
+    if isinstance(subject, Instance):
+        if reference_point is None:
+            reference_point = subject.n * subject.scale
+        known = {"cities": subject.n, "scale": subject.scale.tolist()}
+    else:
+        # What the places cost, and with a spacing which they are, is for a worker to find.
+        places = [] if subject.places is None else subject.places.tolist()
+        known = {"cities": len(places), "scale": None, "places": places}
+    return empty(
+        **known,
+        reference_point=None if reference_point is None else reference_point.tolist(),
+        actor=actor,
     )

@@ -5,12 +5,12 @@ from asyncio import Future
 from collections.abc import AsyncIterator, Coroutine
 from dataclasses import replace
 
-from service.jobs.engine import Busy, Closed, Cold, Standing, State, finished
-from service.jobs.outcomes import cancelled, done, failed
-from service.jobs.record import Record, Status
-from service.jobs.store import Expired, Store, Unknown
-from service.jobs.submission import Order, Stopped
-from service.jobs.worker_pool import Workers
+from service.errors import Cancelled, Expired, NotFound, QueueFull, ShuttingDown, WarmingUp
+from service.jobs.engine import EngineStats, JobState, finished
+from service.jobs.record import Record, Status, cancelled, done, failed
+from service.jobs.store import Store
+from service.jobs.submission import Submission
+from service.jobs.worker_pool import WorkerPool
 
 _PAUSE = 0.5  # seconds between two tries to take up the work of an earlier process
 
@@ -18,22 +18,22 @@ _PAUSE = 0.5  # seconds between two tries to take up the work of an earlier proc
 class _Job:
     """A record that is worked on, and whoever waits for it to change."""
 
-    def __init__(self, record: Record, workers: Workers) -> None:
+    def __init__(self, record: Record, workers: WorkerPool) -> None:
         assert record.work is not None
         self._record = record
         self._changed = asyncio.Event()
         self.ended = False
-        self.order: Order = workers.order(record.work, self._tell, patient=True)
+        self.order: Submission = workers.order(record.work, self._tell, patient=True)
 
     @property
-    def state(self) -> State:
+    def state(self) -> JobState:
         """How it stands."""
         if self._record.finished:
-            return State(self._record)
+            return JobState(self._record)
         snapshot = self.order.snapshot
         status: Status = "running" if self.order.attempts else "queued"
         front = snapshot.front if snapshot else self._record.front
-        return State(replace(self._record, status=status, front=front), snapshot)
+        return JobState(replace(self._record, status=status, front=front), snapshot)
 
     @property
     def changed(self) -> asyncio.Event:
@@ -51,14 +51,14 @@ class _Job:
         told.set()
 
 
-class Jobs:
+class LocalEngine:
     """Does the work of records, and keeps what comes of it in the store.
 
     What is unfinished when the service ends stays in the store, and is begun again by the next
     service that has that store.
     """
 
-    def __init__(self, workers: Workers, store: Store) -> None:
+    def __init__(self, workers: WorkerPool, store: Store) -> None:
         self._workers = workers
         self._store = store
         self._jobs: dict[str, _Job] = {}
@@ -77,10 +77,10 @@ class Jobs:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
-    async def standing(self) -> Standing:
+    async def standing(self) -> EngineStats:
         """How it is, for whoever watches."""
         workers = self._workers
-        return Standing(waiting=workers.waiting, working=workers.working, lost=workers.lost)
+        return EngineStats(waiting=workers.waiting, working=workers.working, lost=workers.lost)
 
     async def check_open(self) -> None:
         """Nothing, if work is taken."""
@@ -98,7 +98,7 @@ class Jobs:
         """Nothing, if work of every kind is taken."""
         self._workers.check_ready()
 
-    async def at_once(self, record: Record, left: Future[None]) -> Record:
+    async def run(self, record: Record, left: Future[None]) -> Record:
         """What becomes of work that somebody waits for, until he has left."""
         assert record.work is not None
         order = self._workers.order(record.work)
@@ -115,19 +115,19 @@ class Jobs:
         job = self._jobs[record.id] = _Job(record, self._workers)
         self._spawn(self._see_through(record, job))
 
-    def state(self, record: Record) -> State:
+    def state(self, record: Record) -> JobState:
         """How a record from the store stands."""
         job = self._jobs.get(record.id)
-        return job.state if job else State(record)
+        return job.state if job else JobState(record)
 
-    async def states(self, record: Record) -> AsyncIterator[State]:
+    async def watch(self, record: Record) -> AsyncIterator[JobState]:
         """How it stands now, and after each change, until it is finished."""
         job = self._jobs.get(record.id)
         while job is not None and not job.ended:
             changed = job.changed
             yield job.state
             await changed.wait()
-        yield job.state if job else State(await self._latest(record))
+        yield job.state if job else JobState(await self._latest(record))
 
     async def cancel(self, record: Record) -> Record:
         """End the work of a record at once; what was found so far is kept."""
@@ -141,7 +141,7 @@ class Jobs:
             return record
         try:
             return await self._store.get(record.caller, record.id)
-        except (Unknown, Expired):
+        except (NotFound, Expired):
             return cancelled(record)
 
     def _spawn(self, work: Coroutine[None, None, None]) -> None:
@@ -156,7 +156,7 @@ class Jobs:
                     self._workers.check_warm()
                     await self.begin(record)
                     break
-                except (Busy, Cold):
+                except (QueueFull, WarmingUp):
                     await asyncio.sleep(_PAUSE)
 
     async def _see_through(self, record: Record, job: _Job) -> None:
@@ -164,17 +164,17 @@ class Jobs:
             ended = await self._ended(record, job.order)
             await self._store.put(ended)
             job.end(ended)
-        except Closed:
+        except ShuttingDown:
             job.end(record)
         finally:
             del self._jobs[record.id]
 
-    async def _ended(self, record: Record, order: Order) -> Record:
+    async def _ended(self, record: Record, order: Submission) -> Record:
         try:
             return done(record, await order.front(), order.stopped)
-        except Stopped:
+        except Cancelled:
             return cancelled(record)
-        except Closed:
+        except ShuttingDown:
             raise
         except Exception as error:
             return failed(record, error, order.snapshot.front if order.snapshot else record.front)

@@ -3,29 +3,14 @@
 import pickle
 import struct
 from asyncio import StreamReader
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from socket import socket
-from typing import Any, Literal
+from typing import Any
 
-from service.jobs.front_document import Rendered
-from service.requests.task import Task
-
-WorkKind = Literal["front", "coverage"]
+from service.jobs.front_document import FrontDocument
+from service.requests.task import Task, Work
 
 _LENGTH = struct.Struct("!Q")
-
-
-@dataclass(frozen=True)
-class Work:
-    """A front to plan: a kind of request, its body, JSON that was checked, and what came beside.
-
-    Where it has been read, it brings the task along, so that no worker reads it again.
-    """
-
-    kind: WorkKind
-    body: bytes
-    upload: bytes | None = None
-    task: Task | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +20,7 @@ class Snapshot:
     seconds: float
     hypervolume: float
     points: int
-    front: Rendered
+    front: FrontDocument
 
 
 @dataclass(frozen=True)
@@ -81,7 +66,7 @@ class Done:
     """From a worker: the work is done."""
 
     number: int
-    front: Rendered
+    front: FrontDocument
 
 
 @dataclass(frozen=True, eq=False)

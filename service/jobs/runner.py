@@ -9,12 +9,10 @@ from typing import Any, Protocol
 from service.actor import ActorFacts, load_actors
 from service.coverage import shortest_paths
 from service.coverage.survey import Coverage, survey
-from service.jobs.front_document import Rendered, Sketch, rendered, sketched
-from service.jobs.messages import Work
+from service.jobs.front_document import FrontDocument, Sketch, rendered, sketched
 from service.planner import Constructor, Report, plan
-from service.requests.asked import read
-from service.requests.schemas import Limits
-from service.requests.task import Task
+from service.requests.limits import Limits
+from service.requests.task import Task, Work, read
 from service.search import improve
 
 
@@ -27,7 +25,7 @@ class NamedActor(Constructor, Protocol):
 
 
 @dataclass(frozen=True)
-class FrontPlanner:
+class TaskRunner:
     """Plans what is asked for within the limits, with the actors that it has."""
 
     actors: Mapping[str, NamedActor]
@@ -39,7 +37,7 @@ class FrontPlanner:
 
     def plan(
         self, work: Work | Task, stop: Callable[[], bool], report: Callable[[Sketch], None]
-    ) -> Rendered:
+    ) -> FrontDocument:
         """The front that is asked for, by work that has not been read yet, or by what it says."""
         task = work if isinstance(work, Task) else read(work, self.limits, self._facts)
         actor = self.actors[task.actor]
@@ -55,7 +53,7 @@ class FrontPlanner:
         coverage: Coverage,
         stop: Callable[[], bool],
         report: Callable[[Sketch], None],
-    ) -> Rendered:
+    ) -> FrontDocument:
         actor = self.actors[task.actor]
         began = time.perf_counter()
         found = survey(coverage, self.limits.cities, stop)
@@ -93,6 +91,6 @@ def warm_up() -> None:
     shortest_paths.warm_up()
 
 
-def load_planner(directory: Path, threads: int, limits: Limits) -> FrontPlanner:
+def load_planner(directory: Path, threads: int, limits: Limits) -> TaskRunner:
     """A planner with the actors of a directory."""
-    return FrontPlanner(load_actors(directory, threads), limits)
+    return TaskRunner(load_actors(directory, threads), limits)

@@ -10,8 +10,9 @@ from pathlib import Path
 from time import time
 from typing import TypeVar
 
+from service.errors import Expired, IdempotencyMismatch, NotFound
 from service.jobs.record import Record
-from service.jobs.store import COLUMNS, Expired, Mismatch, Unknown, columns, record_of
+from service.jobs.store import COLUMNS, columns, record_of
 
 T = TypeVar("T")
 IN_MEMORY = ":memory:"
@@ -118,7 +119,7 @@ class SqliteStore:
         if record.key is not None:
             for kept in self._all("caller = ? AND key = ?", record.caller, record.key):
                 if kept.digest != record.digest:
-                    raise Mismatch
+                    raise IdempotencyMismatch
                 if kept.status != "failed":
                     return kept
                 self._put(replace(kept, key=None))
@@ -131,7 +132,7 @@ class SqliteStore:
             return record
         gone = "SELECT 1 FROM gone WHERE caller = ?" + (" AND id = ?" if values else "")
         known = self._database.execute(gone, (caller, *values)).fetchone()
-        raise Expired if known else Unknown
+        raise Expired if known else NotFound
 
     def _all(self, where: str, *values: str) -> list[Record]:
         rows = self._database.execute(f"SELECT {_COLUMNS} FROM front WHERE {where}", values)

@@ -7,25 +7,9 @@ from typing import Any, Protocol
 
 from pydantic_core import to_json
 
-from service.jobs.front_document import Rendered
-from service.jobs.messages import Work
+from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record
-
-
-class Unknown(LookupError):
-    """The caller never had anything under this id, or so long ago that it is forgotten."""
-
-
-class Expired(LookupError):
-    """What the caller had under this id has made way: it was too old, or the store was full."""
-
-
-class Mismatch(Exception):
-    """The caller has used this idempotency key for another body."""
-
-
-class Unavailable(Exception):
-    """What the records are kept in does not answer."""
+from service.requests.task import Work
 
 
 class Store(Protocol):
@@ -40,14 +24,14 @@ class Store(Protocol):
         One that failed gives up its key, so that a repeat is a new try.
 
         Raises:
-            Mismatch: that one is of another body.
+            IdempotencyMismatch: that one is of another body.
         """
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
         """The caller's record with this id.
 
         Raises:
-            Unknown: there was none.
+            NotFound: there was none.
             Expired: it has made way.
         """
 
@@ -55,7 +39,7 @@ class Store(Protocol):
         """The caller's record that was finished last.
 
         Raises:
-            Unknown: there never was one.
+            NotFound: there never was one.
             Expired: it has made way.
         """
 
@@ -97,7 +81,7 @@ def columns(record: Record) -> dict[str, Any]:
     }
 
 
-def front_columns(front: Rendered) -> dict[str, bytes]:
+def front_columns(front: FrontDocument) -> dict[str, bytes]:
     """The columns of a record's front."""
     return {
         "members": to_json(front.members),
@@ -118,7 +102,7 @@ def record_of(columns: Mapping[str, Any]) -> Record:
         key=columns.get("key"),
         digest=columns["digest"],
         problem=json.loads(columns["problem"]),
-        front=Rendered(
+        front=FrontDocument(
             json.loads(columns["members"]),
             zlib.decompress(columns["tours"]),
             columns["ends"],

@@ -3,46 +3,18 @@
 import asyncio
 from asyncio import Future, TimerHandle
 from collections.abc import Callable
-from dataclasses import replace
 from time import perf_counter
 
-from service.jobs.front_document import Rendered
-from service.jobs.messages import Snapshot, Work
+from service.errors import Cancelled, DeadlineExceeded
+from service.jobs.front_document import FrontDocument
+from service.jobs.messages import Snapshot
+from service.jobs.record import as_ended
+from service.requests.task import Work
 
 MOST_ATTEMPTS = 2
 
 
-class Lost(Exception):
-    """Two workers were lost over the work, which may be why."""
-
-
-class Stopped(Exception):
-    """The work was stopped before there was a front."""
-
-
-class Overdue(Exception):
-    """The work took longer than any may, and there was no front yet."""
-
-
-def as_ended(front: Rendered, seconds: float, late: bool) -> Rendered:
-    """A front that took so long from when it was asked for, and may have been ended for that."""
-    total = 1000 * seconds
-    phases = front.members["timings_ms"]
-    timings = {"queue": total - sum(phases.values()), **phases, "total": total}
-    members = {**front.members, "timings_ms": timings}
-    if front.members["terminated"] in (None, "cancelled"):
-        members["terminated"] = "time_limit" if late else "cancelled"
-    return replace(front, members=members)
-
-
-def as_planned(front: Rendered) -> Rendered:
-    """A front that has ended, with the times of planning alone."""
-    timings = {**front.members["timings_ms"]}
-    del timings["queue"], timings["total"]
-    return replace(front, members={**front.members, "timings_ms": timings})
-
-
-class Order:
+class Submission:
     """Work, who is told when it is begun and when it has come further, and in the end its front.
 
     A patient one has its time limit from when it is begun, another from when it is handed in.
@@ -53,11 +25,11 @@ class Order:
         self.work = work
         self.patient = patient
         self.attempts = 0
-        self.stopped: type[Stopped | Overdue] | None = None
+        self.stopped: type[Cancelled | DeadlineExceeded] | None = None
         self.snapshot: Snapshot | None = None
         self.timer: TimerHandle | None = None
         self._tell = tell
-        self._future: Future[Rendered] = asyncio.get_running_loop().create_future()
+        self._future: Future[FrontDocument] = asyncio.get_running_loop().create_future()
         self._handed_in = perf_counter()
 
     @property
@@ -65,13 +37,13 @@ class Order:
         """Whether it has a front, or never will."""
         return self._future.done()
 
-    async def front(self) -> Rendered:
+    async def front(self) -> FrontDocument:
         """The front, once there is one. Who no longer waits does not end the work.
 
         Raises:
-            Lost: workers died over it.
-            Stopped: it was stopped.
-            Overdue: it took too long.
+            WorkerLost: workers died over it.
+            Cancelled: it was stopped.
+            DeadlineExceeded: it took too long.
         """
         return await asyncio.shield(self._future)
 
@@ -89,11 +61,11 @@ class Order:
         self.snapshot = snapshot
         self._tell()
 
-    def done(self, front: Rendered) -> None:
+    def done(self, front: FrontDocument) -> None:
         """End with a front."""
         self._end()
         seconds = perf_counter() - self._handed_in
-        self._future.set_result(as_ended(front, seconds, late=self.stopped is Overdue))
+        self._future.set_result(as_ended(front, seconds, late=self.stopped is DeadlineExceeded))
 
     def failed(self, error: Exception) -> None:
         """End without a front."""
@@ -105,7 +77,7 @@ class Order:
     def cut_short(self) -> None:
         """End with what was found so far, if anything was."""
         if self.snapshot is None:
-            self.failed((self.stopped or Stopped)())
+            self.failed((self.stopped or Cancelled)())
         else:
             self.done(self.snapshot.front)
 

@@ -11,28 +11,36 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import count
 
-from service.jobs.engine import Busy, Closed, Cold
-from service.jobs.front_document import Rendered
-from service.jobs.messages import Do, Done, Failed, Found, Started, Stop, Warm, WarmUp, Work
-from service.jobs.submission import MOST_ATTEMPTS, Lost, Order, Overdue, Stopped
+from service.errors import (
+    Cancelled,
+    DeadlineExceeded,
+    QueueFull,
+    ShuttingDown,
+    WarmingUp,
+    WorkerLost,
+)
+from service.jobs.front_document import FrontDocument
+from service.jobs.messages import Do, Done, Failed, Found, Started, Stop, Warm, WarmUp
+from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.worker_process import MakePlanner, Process
+from service.requests.task import Work
 
 GRACE = 0.15  # seconds for work to come to an end before its process is ended
 _PAUSE = 1.0  # seconds before a process that could not even start is replaced
 
 
 @dataclass(eq=False)
-class _Hand:
+class _Worker:
     """One worker process and what it is at."""
 
     process: Process
     started: bool = False
     warming: bool = False
     warm: bool = False
-    order: Order | None = None
+    order: Submission | None = None
 
 
-class Workers:
+class WorkerPool:
     """So many processes, and so many orders that may wait for one.
 
     The first process compiles the search, and the others load what it has compiled; meanwhile
@@ -47,15 +55,15 @@ class Workers:
         workers: int,
         queue: int,
         seconds: float = 90.0,
-        planned: Callable[[Rendered], None] = lambda _: None,
+        planned: Callable[[FrontDocument], None] = lambda _: None,
     ) -> None:
         self._make_planner = make_planner
         self._count = workers
         self._places = workers + queue
         self._seconds = seconds
         self._planned = planned
-        self._hands: list[_Hand] = []
-        self._waiting: deque[Order] = deque()
+        self._hands: list[_Worker] = []
+        self._waiting: deque[Submission] = deque()
         self._numbers = count()
         self._tenders: list[asyncio.Task[None]] = []
         self._was_warm = False
@@ -91,7 +99,7 @@ class Workers:
         """Take no more work, drop what is unfinished, and end the processes."""
         self._closed = True
         for order in [*self._waiting, *(hand.order for hand in self._hands if hand.order)]:
-            order.failed(Closed())
+            order.failed(ShuttingDown())
         self._waiting.clear()
         for tender in self._tenders:
             tender.cancel()
@@ -101,59 +109,59 @@ class Workers:
         """Nothing, if work is taken.
 
         Raises:
-            Closed: no more work is taken.
+            ShuttingDown: no more work is taken.
         """
         if self._closed:
-            raise Closed
+            raise ShuttingDown
 
     def check_place(self) -> None:
         """Nothing, if there is a place for one more order.
 
         Raises:
-            Busy: there is none.
+            QueueFull: there is none.
         """
         if self.waiting + self.working >= self._places:
-            raise Busy
+            raise QueueFull
 
     def check_warm(self) -> None:
         """Nothing, if orders may need compiled code: a replacement will soon have it, too.
 
         Raises:
-            Cold: it is not there yet.
+            WarmingUp: it is not there yet.
         """
         if not self._was_warm:
-            raise Cold
+            raise WarmingUp
 
     def check_ready(self) -> None:
         """Nothing, if there is a process that takes work of every kind.
 
         Raises:
-            Closed: no more work is taken.
-            Cold: there is no such process yet, or not at the moment.
+            ShuttingDown: no more work is taken.
+            WarmingUp: there is no such process yet, or not at the moment.
         """
         self.check_open()
         if not any(hand.warm for hand in self._hands):
-            raise Cold
+            raise WarmingUp
 
     def order(
         self, work: Work, tell: Callable[[], None] = lambda: None, patient: bool = False
-    ) -> Order:
+    ) -> Submission:
         """Hand in work.
 
         Raises:
-            Busy: the queue is full.
-            Closed: no more work is taken.
+            QueueFull: the queue is full.
+            ShuttingDown: no more work is taken.
         """
         self.check_open()
         self.check_place()
-        order = Order(next(self._numbers), work, tell, patient)
+        order = Submission(next(self._numbers), work, tell, patient)
         if not patient:
             self._limit(order)
         self._waiting.append(order)
         self._give_out()
         return order
 
-    def stop(self, order: Order, why: type[Stopped | Overdue] = Stopped) -> None:
+    def stop(self, order: Submission, why: type[Cancelled | DeadlineExceeded] = Cancelled) -> None:
         """End an order at once, with the front found so far, if there is one."""
         if order.ended or order.stopped:
             return
@@ -166,19 +174,19 @@ class Workers:
         self._waiting.remove(order)
         order.cut_short()
 
-    def _insist(self, hand: _Hand, order: Order) -> None:
+    def _insist(self, hand: _Worker, order: Submission) -> None:
         if hand.order is order:
             hand.process.kill()
 
-    def _limit(self, order: Order) -> None:
+    def _limit(self, order: Submission) -> None:
         if order.timer is None:
             loop = asyncio.get_running_loop()
-            order.timer = loop.call_later(self._seconds, self.stop, order, Overdue)
+            order.timer = loop.call_later(self._seconds, self.stop, order, DeadlineExceeded)
 
     async def _tend(self) -> None:
         """Keep one process at work."""
         while True:
-            hand = _Hand(await Process.start(self._make_planner))
+            hand = _Worker(await Process.start(self._make_planner))
             self._hands.append(hand)
             try:
                 async for message in hand.process.messages():
@@ -193,20 +201,20 @@ class Workers:
             if not hand.started:
                 await asyncio.sleep(_PAUSE)
 
-    def _take_back(self, hand: _Hand) -> None:
+    def _take_back(self, hand: _Worker) -> None:
         """See to what a process that is gone has left."""
         order = hand.order
         if order is not None and not order.ended:
             if order.stopped:
                 order.cut_short()
             elif order.attempts >= MOST_ATTEMPTS:
-                order.failed(Lost())
+                order.failed(WorkerLost())
             else:
                 self._waiting.appendleft(order)
         self._warm_up()
         self._give_out()
 
-    def _hear(self, hand: _Hand, message: object) -> None:
+    def _hear(self, hand: _Worker, message: object) -> None:
         order = hand.order
         match message:
             case Started():

@@ -16,7 +16,7 @@ from socket import socket, socketpair
 from threading import Lock, Thread
 from typing import Any, Protocol
 
-from service.jobs.front_document import Rendered, Sketch
+from service.jobs.front_document import FrontDocument, Sketch
 from service.jobs.messages import (
     Do,
     Done,
@@ -27,12 +27,11 @@ from service.jobs.messages import (
     Stop,
     Warm,
     WarmUp,
-    Work,
     packed,
     received,
     received_now,
 )
-from service.requests.task import Task
+from service.requests.task import Task, Work
 
 NICENESS = 5  # of a worker: the event loop comes first, and needs little
 MOST_TOURS = 100  # of a snapshot
@@ -48,7 +47,7 @@ class Planner(Protocol):
 
     def plan(
         self, work: Work | Task, stop: Callable[[], bool], report: Callable[[Sketch], None]
-    ) -> Rendered:
+    ) -> FrontDocument:
         """The front that is asked for."""
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 from pydantic_core import to_json
 
-from service.errors import Fault, Refusal
+from service.requests.validation import invalid, too_many_cells, too_many_cities
 
 Array = NDArray[np.float64]
 Rows = list[list[float]]
@@ -85,18 +85,6 @@ def loaded(content: bytes, most: int) -> Array:
     return numbers.reshape(shape, order="F" if by_columns else "C").astype(np.float64)
 
 
-def too_many_cities(name: str, limit: int, actual: int) -> Refusal:
-    """The refusal of more cities than are allowed."""
-    return Refusal(
-        413,
-        "too-many-cities",
-        f"{name} must have at most {limit} rows, got {actual}",
-        errors=[Fault(pointer=f"/{name}", detail="too many rows")],
-        limit=limit,
-        actual=actual,
-    )
-
-
 def check_costs(matrix: Array, name: str, largest: float) -> None:
     """Nothing, if all that stands beside the diagonal, shape (n, n), is a cost.
 
@@ -115,13 +103,6 @@ def check_costs(matrix: Array, name: str, largest: float) -> None:
     else:
         demand = "must not be negative" if cost < 0 else f"must be at most {largest:g}"
     raise invalid(f"{name}/{i}/{j}", f"{demand}, got {shown}")
-
-
-def invalid(name: str, demand: str) -> Refusal:
-    """The refusal of a part of a request, as matrices/0/2, that does not meet a demand."""
-    detail = f"{name} {demand}"
-    fault = Fault(pointer=f"/{name}", detail=detail)
-    return Refusal(422, "invalid-request", detail, errors=[fault])
 
 
 def _check_header(shape: tuple[int, ...], dtype: np.dtype[Any], most: int) -> None:
@@ -149,11 +130,7 @@ def read_grid(content: bytes, most: int) -> Array:
         raise invalid("grid", "must be a PNG file")
     width, height = _SIZE.unpack_from(content, len(_START))
     if width * height > most:
-        sentence = f"grid must have at most {most} cells, got {height} x {width}"
-        fault = Fault(pointer="/grid", detail=sentence)
-        raise Refusal(
-            413, "too-many-cells", sentence, errors=[fault], limit=most, actual=width * height
-        )
+        raise too_many_cells(most, width * height, f"{height} x {width}")
     try:
         with Image.open(BytesIO(content), formats=["PNG"]) as image:
             if image.mode not in _MODES:

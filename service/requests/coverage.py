@@ -9,19 +9,12 @@ from pydantic import Field, GetPydanticSchema, ValidationInfo
 from pydantic_core.core_schema import with_info_after_validator_function
 
 from service.coverage.survey import Coverage
-from service.errors import Fault, Refusal
 from service.instance import Kind
-from service.requests.arrays import (
-    Array,
-    check_costs,
-    invalid,
-    read_grid,
-    rectangular,
-    square,
-    too_many_cities,
-)
-from service.requests.front import parsed, plan_schema, within
-from service.requests.schemas import LARGEST, Limits, PlanRequest, Positive, Rows, Whole
+from service.requests.arrays import Array, check_costs, read_grid, rectangular, square
+from service.requests.front import parsed, plan_schema
+from service.requests.limits import Limits, within
+from service.requests.schemas import LARGEST, PlanRequest, Positive, Rows, Whole
+from service.requests.validation import invalid, too_many_cells, too_many_cities
 
 
 def _as_layer(rows: list[list[float]], info: ValidationInfo) -> Array:
@@ -154,9 +147,7 @@ def _check_grid(grid: Array, most: int) -> None:
     if not grid.size:
         raise invalid("grid", "is required, as rows or as the part map")
     if grid.size > most:
-        sentence = f"grid must have at most {most} cells, got {grid.size}"
-        fault = Fault(pointer="/grid", detail=sentence)
-        raise Refusal(413, "too-many-cells", sentence, errors=[fault], limit=most, actual=grid.size)
+        raise too_many_cells(most, grid.size, grid.size)
     binary = (grid == 0) | (grid == 1)
     if not binary.all():
         row, column = np.unravel_index(binary.argmin(), binary.shape)

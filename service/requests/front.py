@@ -1,16 +1,15 @@
 """Front requests: what they may say under given limits, and what one says."""
 
 from collections.abc import Iterable
-from typing import Any, TypeVar
+from typing import Any
 
 from pydantic import ValidationError
 
-from service.errors import Fault, Refusal
-from service.requests.arrays import check_costs, invalid, loaded, too_many_cities
-from service.requests.schemas import LARGEST, FrontRequest, Limits, PlanRequest
-from service.requests.validation import refused_by
-
-Request = TypeVar("Request", bound=PlanRequest)
+from service.errors import Refusal
+from service.requests.arrays import check_costs, loaded
+from service.requests.limits import Limits, Request, defaults_within, within
+from service.requests.schemas import LARGEST, FrontRequest, PlanRequest
+from service.requests.validation import invalid, refused_by, too_many_cities
 
 
 def request_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
@@ -32,7 +31,7 @@ def plan_schema(model: type[PlanRequest], limits: Limits, actors: Iterable[str])
     count, angles = fields["preferences"]["oneOf"]
     count["maximum"] = angles["maxItems"] = limits.preferences
     fields["size"]["maximum"] = limits.size
-    for name, default in _defaults_within(limits).items():
+    for name, default in defaults_within(limits).items():
         fields[name]["default"] = default
     fields["start"]["maximum"] = limits.cities - 1
     del fields["actor"]["default"]
@@ -69,32 +68,8 @@ def parsed(model: type[Request], body: bytes) -> Request:
         errors = error.errors(include_url=False)
         if errors[0]["type"] == "json_invalid":
             reason = errors[0]["ctx"]["error"]
-            raise Refusal(400, "malformed-json", f"the body must be JSON: {reason}") from None
+            raise Refusal("malformed-json", reason=reason) from None
         raise refused_by(errors) from None
-
-
-def within(limits: Limits, request: Request, n: int) -> Request:
-    """The request, about n cities, with defaults within the limits.
-
-    Raises:
-        Refusal: it is over a limit.
-    """
-    _check_limits(request, n, limits)
-    defaults = _defaults_within(limits).items()
-    asked = request.model_fields_set
-    lowered = {k: v for k, v in defaults if k not in asked and v < getattr(request, k)}
-    return request.model_copy(update=lowered) if lowered else request
-
-
-def _defaults_within(limits: Limits) -> dict[str, float]:
-    """The defaults that a limit may lower: who asks for nothing is never over a limit."""
-    most = {
-        "preferences": limits.preferences,
-        "size": limits.size,
-        "time_limit": limits.seconds,
-    }
-    fields = FrontRequest.model_fields
-    return {name: min(fields[name].default, limit) for name, limit in most.items()}
 
 
 def _check_instance(request: FrontRequest, limits: Limits) -> None:
@@ -102,8 +77,7 @@ def _check_instance(request: FrontRequest, limits: Limits) -> None:
     if len(given) != 1:
         came = "both" if given else "neither"
         sentence = f"either coordinates or matrices are required, got {came}"
-        fault = Fault(pointer="/coordinates", detail=sentence)
-        raise Refusal(422, "invalid-request", sentence, errors=[fault])
+        raise Refusal("invalid-request", detail=sentence, pointer="/coordinates")
     if request.kind == "matrices" and request.augment > 1:
         demand = "must be 1 for matrices, which cannot be turned or mirrored"
         raise invalid("augment", f"{demand}, got {request.augment}")
@@ -113,29 +87,3 @@ def _check_instance(request: FrontRequest, limits: Limits) -> None:
         return
     for m, matrix in enumerate(request.matrices):
         check_costs(matrix, f"matrices/{m}", LARGEST)
-
-
-def _check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
-    if request.start >= n:
-        raise invalid("start", f"must be a city, 0 to {n - 1}, got {request.start}")
-    if "preferences" in request.model_fields_set:
-        looked = request.preferences
-        k = looked if isinstance(looked, int) else len(looked)
-        _check_most("preferences", limits.preferences, k)
-    if "size" in request.model_fields_set:
-        _check_most("size", limits.size, request.size)
-    if "time_limit" in request.model_fields_set:
-        _check_most("time_limit", limits.seconds, request.time_limit)
-    _check_most("initial_tours", limits.size, len(request.initial_tours))
-    for index, tour in enumerate(request.initial_tours):
-        if sorted(tour) != list(range(n)):
-            demand = f"must visit each city, 0 to {n - 1}, once"
-            raise invalid(f"initial_tours/{index}", demand)
-
-
-def _check_most(name: str, limit: float, actual: float) -> None:
-    if actual > limit:
-        fault = Fault(
-            pointer=f"/{name}", detail=f"{name} must be at most {limit:g}, got {actual:g}"
-        )
-        raise Refusal(422, "over-limit", fault.detail, errors=[fault], limit=limit, actual=actual)

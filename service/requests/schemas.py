@@ -1,6 +1,6 @@
 """What is asked over HTTP, and the most that may be."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -18,7 +18,7 @@ from pydantic.json_schema import SkipJsonSchema
 from pydantic_core.core_schema import no_info_after_validator_function
 
 from service.instance import MOST, Instance, Kind
-from service.planner import Demand
+from service.planner import PlanOptions
 from service.preferences import fan
 from service.requests.arrays import stacked
 
@@ -46,18 +46,6 @@ Positive = Annotated[float, Field(ge=_SMALLEST, le=LARGEST, allow_inf_nan=False)
 # The validator comes last: before it, the bounds would be lost to the OpenAPI document.
 Count = Annotated[int, Field(ge=1, le=2**31 - 1), BeforeValidator(_whole)]
 Whole = Annotated[int, Field(ge=0, le=2**31 - 1), BeforeValidator(_whole)]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Limits:
-    """The most that a request may bring or ask for."""
-
-    body_bytes: int
-    cities: int
-    cells: int
-    preferences: int
-    size: int
-    seconds: float
 
 
 class PlanRequest(BaseModel):
@@ -105,10 +93,10 @@ class PlanRequest(BaseModel):
         """The actor asked for, if one is."""
         return self.actor if "actor" in self.model_fields_set else None
 
-    def demand(self) -> Demand:
+    def demand(self) -> PlanOptions:
         """What is asked of the front."""
         looked = self.preferences
-        return Demand(
+        return PlanOptions(
             angles=fan(looked) if isinstance(looked, int) else np.array(looked),
             size=self.size,
             start=self.start,
@@ -158,7 +146,7 @@ class FrontRequest(PlanRequest):
             return Instance(matrices=self.matrices)
         return Instance(coordinates=np.array(self.coordinates, dtype=np.float64))
 
-    def demand(self) -> Demand:
+    def demand(self) -> PlanOptions:
         """What is asked of the front."""
         return replace(super().demand(), augment=self.augment)
 

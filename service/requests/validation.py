@@ -13,7 +13,7 @@ def refused_by(errors: Sequence[ErrorDetails], parameters: bool = False) -> Refu
     """What pydantic found wrong with a body, or with query parameters, as one refusal."""
     faults = [_fault(error, parameters) for error in errors[:MOST_FAULTS]]
     more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
-    return Refusal(422, "invalid-request", faults[0].detail + more, errors=faults)
+    return Refusal("invalid-request", detail=faults[0].detail + more, errors=faults)
 
 
 def _fault(error: ErrorDetails, parameters: bool) -> Fault:
@@ -60,3 +60,19 @@ def _shown(value: object) -> str:
 def shortened(text: str) -> str:
     """What came, as far as a sentence has room for it."""
     return text if len(text) <= 80 else f"{text[:79]}…"
+
+
+def invalid(part: str, demand: str) -> Refusal:
+    """Return the refusal of a part of a request, as matrices/0/2, that misses a demand."""
+    return Refusal("invalid-request", detail=f"{part} {demand}", pointer=f"/{part}")
+
+
+def too_many_cities(part: str, limit: int, actual: int) -> Refusal:
+    """Return the refusal of more rows, each a city, than are allowed."""
+    detail = f"{part} must have at most {limit} rows, got {actual}"
+    return Refusal("too-many-cities", detail=detail, pointer=f"/{part}", limit=limit, actual=actual)
+
+
+def too_many_cells(limit: int, actual: int, came: object) -> Refusal:
+    """Return the refusal of a map of more cells than are allowed."""
+    return Refusal("too-many-cells", came=came, pointer="/grid", limit=limit, actual=actual)

@@ -57,7 +57,7 @@ def above(archive: Archive, bound: float) -> int:
 
 
 @inlined
-def welcome(archive: Archive, first: float, second: float) -> bool:
+def accepts(archive: Archive, first: float, second: float) -> bool:
     """Whether no point is as good in both lengths."""
     k = above(archive, first * (1 + TOLERANCE))
     return k == 0 or archive.points[k - 1, 1] > second * (1 + TOLERANCE)
@@ -96,10 +96,10 @@ def replace(archive: Archive, begin: int, end: int, point: tuple[float, float]) 
 
 
 @compiled
-def admit(archive: Archive, point: tuple[float, float], tour: Cities) -> bool:
+def insert(archive: Archive, point: tuple[float, float], tour: Cities) -> bool:
     """Keeps a tour if it is nondominated, drops those it dominates, and says whether it stays."""
     first, second = point
-    if not welcome(archive, first, second):
+    if not accepts(archive, first, second):
         return False
     if archive.counts[1] == 0:
         thin(archive)

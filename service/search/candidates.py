@@ -23,7 +23,7 @@ class Pool(NamedTuple):
     sizes: Cities  # (n,)
 
 
-class Scalar(NamedTuple):
+class Scalarization(NamedTuple):
     """One objective made of two: costs under a weight, and the candidates under that weight."""
 
     costs: Costs
@@ -40,7 +40,7 @@ def empty_pool(n: int) -> Pool:
 
 
 @inlined
-def weighted(scalar: Scalar, i: int, j: int) -> float:
+def weighted(scalar: Scalarization, i: int, j: int) -> float:
     """The weighted cost of the step from city i to city j."""
     c = pair(scalar.costs, i, j)
     return scalar.w0 * c[0] + scalar.w1 * c[1]

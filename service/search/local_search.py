@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.jit import allocating, compiled, inlined
-from service.search.archive import Archive, admit, welcome
-from service.search.candidates import Scalar, weighted
+from service.search.archive import Archive, accepts, insert
+from service.search.candidates import Scalarization, weighted
 from service.search.costs import lengths
 from service.search.moves import apply, block_swap, change, or_opt, two_opt
 from service.search.working_tour import Route, keep, pop, push, restore
@@ -14,7 +14,7 @@ Cities = NDArray[np.int32]
 
 
 @allocating
-def nearest_neighbour(scalar: Scalar, first: int, tour: Cities) -> None:
+def nearest_neighbour(scalar: Scalarization, first: int, tour: Cities) -> None:
     """Fills tour by going to the nearest city not yet visited, candidates before all others."""
     n = len(tour)
     rest = np.arange(n).astype(np.int32)  # the unvisited, in the first n - k places
@@ -59,7 +59,7 @@ def draw(state: NDArray[np.int64], count: int) -> int:
 
 
 @inlined
-def improve_at(route: Route, scalar: Scalar, city: int, threshold: float) -> bool:
+def improve_at(route: Route, scalar: Scalarization, city: int, threshold: float) -> bool:
     """Makes the best move at a city, if one gains more than a threshold; says whether."""
     if scalar.costs.symmetric:
         move = or_opt(route, scalar, city, threshold)
@@ -76,7 +76,7 @@ def improve_at(route: Route, scalar: Scalar, city: int, threshold: float) -> boo
 
 
 @inlined
-def make(route: Route, scalar: Scalar, start: int, a: int, b: int, flip: bool) -> None:
+def make(route: Route, scalar: Scalarization, start: int, a: int, b: int, flip: bool) -> None:
     """Makes a move and keeps account of both lengths."""
     delta = change(route, scalar, start, a, b, flip)
     apply(route, start, a, b, flip)
@@ -85,7 +85,7 @@ def make(route: Route, scalar: Scalar, start: int, a: int, b: int, flip: bool) -
 
 
 @compiled
-def descend(route: Route, scalar: Scalar, threshold: float, pops: int) -> int:
+def descend(route: Route, scalar: Scalarization, threshold: float, pops: int) -> int:
     """Makes improving moves at queued cities until none waits; gives what is left of pops."""
     while route.ring[1] > 0 and pops > 0:
         improve_at(route, scalar, pop(route), threshold)
@@ -94,7 +94,7 @@ def descend(route: Route, scalar: Scalar, threshold: float, pops: int) -> int:
 
 
 @inlined
-def disturb(route: Route, scalar: Scalar, random: NDArray[np.int64]) -> None:
+def perturb(route: Route, scalar: Scalarization, random: NDArray[np.int64]) -> None:
     """Swaps two neighbouring blocks of random sizes at a random place."""
     n = len(route.tour)
     longest = min(LONGEST_STRETCH, n // 3)
@@ -104,17 +104,17 @@ def disturb(route: Route, scalar: Scalar, random: NDArray[np.int64]) -> None:
 
 
 @compiled
-def submit(route: Route, scalar: Scalar, archive: Archive) -> bool:
+def submit(route: Route, scalar: Scalarization, archive: Archive) -> bool:
     """Offers the tour to the archive, with its lengths summed afresh if they look welcome."""
-    if not welcome(archive, route.length[0], route.length[1]):
+    if not accepts(archive, route.length[0], route.length[1]):
         return False
     point = lengths(scalar.costs, route.tour)
     route.length[0], route.length[1] = point
-    return admit(archive, point, route.tour)
+    return insert(archive, point, route.tour)
 
 
 @compiled
-def descend_keenly(route: Route, scalar: Scalar, archive: Archive, threshold: float) -> None:
+def descend_keenly(route: Route, scalar: Scalarization, archive: Archive, threshold: float) -> None:
     """Descends until no city waits, and offers the archive every tour on the way."""
     while route.ring[1] > 0:
         if improve_at(route, scalar, pop(route), threshold):
@@ -122,9 +122,9 @@ def descend_keenly(route: Route, scalar: Scalar, archive: Archive, threshold: fl
 
 
 @compiled
-def climb(
+def iterated_local_search(
     route: Route,
-    scalar: Scalar,
+    scalar: Scalarization,
     archive: Archive,
     random: NDArray[np.int64],
     steps: int,
@@ -136,7 +136,7 @@ def climb(
     threshold = LEAST_GAIN * value
     keep(route)
     for _ in range(steps):
-        disturb(route, scalar, random)
+        perturb(route, scalar, random)
         if keen:
             descend_keenly(route, scalar, archive, threshold)
         else:

@@ -7,7 +7,7 @@ nothing, and the one to use where costs differ by direction.
 """
 
 from service.jit import inlined
-from service.search.candidates import Scalar, weighted
+from service.search.candidates import Scalarization, weighted
 from service.search.costs import pair
 from service.search.working_tour import Route, push, reverse, swap_blocks, wrap
 
@@ -23,7 +23,7 @@ def beside(route: Route, city: int, direction: int) -> int:
 
 
 @inlined
-def two_opt(route: Route, scalar: Scalar, city: int, least: float) -> Move:
+def two_opt(route: Route, scalar: Scalarization, city: int, least: float) -> Move:
     """The best exchange of two edges, one of them at the city, that gains more than least."""
     n = len(route.tour)
     found = (least, 0, 0, 0, False)
@@ -47,7 +47,7 @@ def two_opt(route: Route, scalar: Scalar, city: int, least: float) -> Move:
 
 
 @inlined
-def or_opt(route: Route, scalar: Scalar, city: int, least: float) -> Move:
+def or_opt(route: Route, scalar: Scalarization, city: int, least: float) -> Move:
     """The best move of up to three cities, the city foremost, that gains more than least."""
     found = (least, 0, 0, 0, False)
     for direction in (1, -1):
@@ -65,7 +65,11 @@ def or_opt(route: Route, scalar: Scalar, city: int, least: float) -> Move:
 
 @inlined
 def insert(
-    route: Route, scalar: Scalar, segment: tuple[int, int, int, int], freed: float, found: Move
+    route: Route,
+    scalar: Scalarization,
+    segment: tuple[int, int, int, int],
+    freed: float,
+    found: Move,
 ) -> Move:
     """The best place for a segment (city, last, size, direction) beside a candidate of the city.
 
@@ -94,7 +98,7 @@ def insert(
 
 
 @inlined
-def block_swap(route: Route, scalar: Scalar, city: int, least: float) -> Move:
+def block_swap(route: Route, scalar: Scalarization, city: int, least: float) -> Move:
     """The best exchange of three edges, one of them leaving the city, that reverses nothing."""
     n = len(route.tour)
     found = (least, 0, 0, 0, False)
@@ -128,7 +132,7 @@ def block_swap(route: Route, scalar: Scalar, city: int, least: float) -> Move:
 
 @inlined
 def change(
-    route: Route, scalar: Scalar, start: int, a: int, b: int, flip: bool
+    route: Route, scalar: Scalarization, start: int, a: int, b: int, flip: bool
 ) -> tuple[float, float]:
     """How much both lengths change by a move."""
     n = len(route.tour)

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from service.jit import compiled, inlined
 from service.search.archive import Archive
-from service.search.candidates import Scalar
+from service.search.candidates import Scalarization
 from service.search.costs import Costs
-from service.search.local_search import climb, draw
+from service.search.local_search import draw, iterated_local_search
 from service.search.working_tour import Route, take
 
 Array = NDArray[np.float64]
@@ -24,7 +24,7 @@ STEPS = 10
 REACH = 5  # points to either side over which the slope of the front is taken
 
 
-class Fan(NamedTuple):
+class WeightedCandidates(NamedTuple):
     """Weights spread over all trade-offs, and the candidate lists under each."""
 
     weights: Array  # (k, 2), rows adding to 1, by ascending first weight
@@ -32,11 +32,11 @@ class Fan(NamedTuple):
     near_costs: Array  # (k, n, nearest)
 
 
-class Ground(NamedTuple):
+class SearchState(NamedTuple):
     """What a search stands on."""
 
     costs: Costs
-    fan: Fan
+    fan: WeightedCandidates
     archive: Archive
     route: Route
     random: NDArray[np.int64]  # (1,), the state of the generator
@@ -69,24 +69,24 @@ def choose(archive: Archive, random: NDArray[np.int64]) -> int:
 
 
 @compiled
-def scalar_at(ground: Ground, k: int) -> Scalar:
+def scalar_at(state: SearchState, k: int) -> Scalarization:
     """The weighted sum under which the front is level round a point."""
-    width, height = span(ground.archive, k, REACH)
+    width, height = span(state.archive, k, REACH)
     w0 = height / (width + height) if width + height > 0 else 0.5
-    fan = ground.fan
+    fan = state.fan
     k = min(int(np.searchsorted(fan.weights[:, 0], w0)), len(fan.weights) - 1)
     weight = fan.weights[k]
-    return Scalar(ground.costs, fan.near[k], fan.near_costs[k], weight[0], weight[1])
+    return Scalarization(state.costs, fan.near[k], fan.near_costs[k], weight[0], weight[1])
 
 
 @compiled
-def fill(ground: Ground, rounds: int) -> None:
+def fill(state: SearchState, rounds: int) -> None:
     """Sets out so many times from a point with room beside it."""
-    archive, route = ground.archive, ground.route
+    archive, route = state.archive, state.route
     for _ in range(rounds):
-        k = choose(archive, ground.random)
+        k = choose(archive, state.random)
         slot = archive.slots[k]
         archive.tries[slot] += 1
-        scalar = scalar_at(ground, k)
+        scalar = scalar_at(state, k)
         take(route, archive.tours[slot], archive.points[k, 0], archive.points[k, 1])
-        climb(route, scalar, archive, ground.random, STEPS, True)
+        iterated_local_search(route, scalar, archive, state.random, STEPS, True)

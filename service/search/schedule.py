@@ -7,11 +7,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
-from service.search.archive import admit, area, best, make_archive, welcome
-from service.search.candidates import NEAREST, POOL_WEIGHTS, Scalar, empty_pool, fill_pool, nearest
+from service.search.archive import accepts, area, best, insert, make_archive
+from service.search.candidates import (
+    NEAREST,
+    POOL_WEIGHTS,
+    Scalarization,
+    empty_pool,
+    fill_pool,
+    nearest,
+)
 from service.search.costs import lengths, make_costs, units
-from service.search.local_search import LEAST_GAIN, climb, descend, nearest_neighbour, submit
-from service.search.pareto_local_search import STEPS, Fan, Ground, fill
+from service.search.local_search import (
+    LEAST_GAIN,
+    descend,
+    iterated_local_search,
+    nearest_neighbour,
+    submit,
+)
+from service.search.pareto_local_search import STEPS, SearchState, WeightedCandidates, fill
 from service.search.working_tour import make_route, push_all, take
 
 Array = NDArray[np.float64]
@@ -58,9 +71,9 @@ class Search:
         weights /= weights.sum(axis=1, keepdims=True)
         self.weights = weights
         near = np.zeros((WEIGHTS, self.n, min(NEAREST, self.n - 1)), np.int32)
-        self.ground = Ground(
+        self.state = SearchState(
             make_costs(instance),
-            Fan(weights, near, np.zeros(near.shape)),
+            WeightedCandidates(weights, near, np.zeros(near.shape)),
             make_archive(self.n),
             make_route(self.n),
             np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
@@ -74,28 +87,28 @@ class Search:
     @property
     def found(self) -> int:
         """How many points the front has."""
-        return int(self.ground.archive.counts[0])
+        return int(self.state.archive.counts[0])
 
     def tours(self, kept: NDArray[np.intp] | None = None) -> NDArray[np.int32]:
         """The tours of the front, or those at the indices kept, by ascending first length."""
-        archive = self.ground.archive
+        archive = self.state.archive
         slots = archive.slots[: self.found]
         return archive.tours[slots if kept is None else slots[kept]]
 
     def points(self) -> Array:
         """The points of the front, in the instance's units."""
-        return self.ground.archive.points[: self.found] / self.units
+        return self.state.archive.points[: self.found] / self.units
 
     def missing(self, tours: NDArray[np.integer]) -> NDArray[np.integer]:
         """Those tours that the front neither dominates nor equals, as room had to be made."""
-        costs, archive = self.ground.costs, self.ground.archive
+        costs, archive = self.state.costs, self.state.archive
         points = [lengths(costs, tour) for tour in np.ascontiguousarray(tours, np.int32)]
-        return tours[[k for k in range(len(tours)) if welcome(archive, *points[k])]]
+        return tours[[k for k in range(len(tours)) if accepts(archive, *points[k])]]
 
     def add(self, tours: NDArray[np.integer]) -> None:
         """Admits tours that came from elsewhere."""
         for tour in np.ascontiguousarray(tours, np.int32):
-            admit(self.ground.archive, lengths(self.ground.costs, tour), tour)
+            insert(self.state.archive, lengths(self.state.costs, tour), tour)
 
     def run(self) -> Iterator[int]:
         """Works, handing back control every millisecond or so with the iterations done since."""
@@ -104,12 +117,12 @@ class Search:
             yield from self._descend(k, build=rank < BUILT)
         for share in (FIRST_SHARE, 1):
             for k in bisecting(WEIGHTS):
-                yield from self._climb(k, self.n // share)
+                yield from self._iterate(k, self.n // share)
         yield from self._compete()
 
     @property
     def _area(self) -> float:
-        return area(self.ground.archive, self.corner[0], self.corner[1])
+        return area(self.state.archive, self.corner[0], self.corner[1])
 
     def _pool_neighbours(self) -> Iterator[int]:
         self.pool = empty_pool(self.n)
@@ -117,17 +130,17 @@ class Search:
         rows = max(1, ROWS // self.n)
         for begin in range(0, self.n, rows):
             end = min(begin + rows, self.n)
-            fill_pool(self.pool, self.ground.costs, self.weights[marks], begin, end)
+            fill_pool(self.pool, self.state.costs, self.weights[marks], begin, end)
             yield 0
 
-    def _scalar(self, k: int) -> Scalar:
+    def _scalar(self, k: int) -> Scalarization:
         w0, w1 = self.weights[k]
-        fan = self.ground.fan
-        return Scalar(self.ground.costs, fan.near[k], fan.near_costs[k], float(w0), float(w1))
+        fan = self.state.fan
+        return Scalarization(self.state.costs, fan.near[k], fan.near_costs[k], float(w0), float(w1))
 
-    def _set_out(self, scalar: Scalar, build: bool) -> None:
+    def _set_out(self, scalar: Scalarization, build: bool) -> None:
         """Takes the best tour known for a weight, or one newly built if that is better."""
-        archive, route = self.ground.archive, self.ground.route
+        archive, route = self.state.archive, self.state.route
         known = self.found > 0
         least = np.inf
         if known:
@@ -143,31 +156,31 @@ class Search:
                 take(route, tour, first, second)
 
     def _descend(self, k: int, build: bool) -> Iterator[int]:
-        ground = self.ground
+        state = self.state
         scalar = self._scalar(k)
         nearest(self.pool, scalar.near, scalar.near_costs, scalar.w0, scalar.w1)
         self._set_out(scalar, build)
-        push_all(ground.route)
-        value = float(self.weights[k] @ ground.route.length)
-        while descend(ground.route, scalar, LEAST_GAIN * value, POPS) == 0:
+        push_all(state.route)
+        value = float(self.weights[k] @ state.route.length)
+        while descend(state.route, scalar, LEAST_GAIN * value, POPS) == 0:
             yield 0
-        submit(ground.route, scalar, ground.archive)
+        submit(state.route, scalar, state.archive)
         yield 1
 
-    def _climb(self, k: int, iterations: int) -> Iterator[int]:
-        ground = self.ground
+    def _iterate(self, k: int, iterations: int) -> Iterator[int]:
+        state = self.state
         scalar = self._scalar(k)
         self._set_out(scalar, build=False)
         left = iterations
         while left > 0:
             steps = min(left, BLOCK)
-            climb(ground.route, scalar, ground.archive, ground.random, steps, False)
+            iterated_local_search(state.route, scalar, state.archive, state.random, steps, False)
             yield steps
             left -= steps
 
     def _fill(self) -> Iterator[int]:
         for _ in range(max(1, self.n // BLOCK)):
-            fill(self.ground, BLOCK // STEPS)
+            fill(self.state, BLOCK // STEPS)
             yield BLOCK
 
     def _compete(self) -> Iterator[int]:
@@ -179,11 +192,11 @@ class Search:
             turn += 1
             behind = int(rates[0] > rates[1])
             kind = behind if turn % PROBE == 0 else 1 - behind
-            before, admitted = self._area, self.ground.archive.counts[2]
+            before, admitted = self._area, self.state.archive.counts[2]
             spent = 0
-            for done in self._fill() if kind else self._climb(next(turns), self.n):
+            for done in self._fill() if kind else self._iterate(next(turns), self.n):
                 spent += done
                 yield done
             rate = (self._area - before) / spent
             rates[kind] = rate if rates[kind] == np.inf else rates[kind] * 0.9 + rate * 0.1
-            quiet = quiet + spent if self.ground.archive.counts[2] == admitted else 0
+            quiet = quiet + spent if self.state.archive.counts[2] == admitted else 0

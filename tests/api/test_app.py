@@ -560,7 +560,7 @@ def test_the_released_actors_plan_over_http() -> None:
 def test_schemathesis_finds_nothing(url: str, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "schemathesis.cli", "run", f"{url}/openapi.json"]
     options = ["--no-color", "--generation-deterministic", "--max-examples=20"]
-    hooks = {"SCHEMATHESIS_HOOKS": "tests.schemathesis_hooks", "PYTHONPATH": str(ROOT)}
+    hooks = {"SCHEMATHESIS_HOOKS": "tests.helpers.schemathesis_hooks", "PYTHONPATH": str(ROOT)}
     found = subprocess.run(
         [*command, *options],
         cwd=tmp_path,

@@ -12,7 +12,7 @@ from prometheus_client.parser import text_string_to_metric_families
 
 from service.api.app import Edge
 from service.api.metrics import Metrics
-from service.jobs.engine import Standing
+from service.jobs.engine import EngineStats
 from tests.api.test_app import CITIES
 from tests.helpers.serving import Broken, app_of, running, serving
 
@@ -69,22 +69,22 @@ def test_a_client_that_goes_away_before_its_body_has_ended_is_no_fault(
 
 
 @dataclass
-class Crew:
+class CeleryWorker:
     """Workers that stand as they stand."""
 
-    now: Standing
+    now: EngineStats
 
-    async def standing(self) -> Standing:
+    async def standing(self) -> EngineStats:
         return self.now
 
 
 def test_the_workers_are_asked_whenever_prometheus_asks() -> None:
-    crew = Crew(Standing(waiting=3, working=2, lost=1))
+    crew = CeleryWorker(EngineStats(waiting=3, working=2, lost=1))
     metrics = Metrics()
     metrics.watch(crew)
     with serving(app_of(edge=Edge(metrics=metrics))) as url:
         counted = samples(url)
-        crew.now = Standing(waiting=0, working=2, lost=1)
+        crew.now = EngineStats(waiting=0, working=2, lost=1)
         later = samples(url)
     assert counted["paretour_queue_depth",] == 3
     assert counted["paretour_workers_busy",] == 2

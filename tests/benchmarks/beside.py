@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from service.actor import Actor, load_actors
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
-from service.planner import Demand, plan
+from service.planner import PlanOptions, plan
 from service.preferences import fan
 from service.search.improve import warm_up
 from tests.benchmarks.instances import check_tours
@@ -85,7 +85,7 @@ def measure(
 
 
 def _planned(constructor: Actor | _Nothing, seconds: float, instance: Instance) -> Tours:
-    demand = Demand(angles=fan(TOURS), size=TOURS, time_limit=seconds)
+    demand = PlanOptions(angles=fan(TOURS), size=TOURS, time_limit=seconds)
     return plan(constructor, instance, demand).tours
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from service.actor import Actor
 from service.instance import Instance
-from service.planner import Demand, plan
+from service.planner import PlanOptions, plan
 from service.preferences import fan
 from service.search.improve import warm_up
 from tests.benchmarks.printed import LITERATURE_CORNERS
@@ -59,7 +59,7 @@ def uniform(n: int, seed: int) -> Instance:
 def measured(actor: Actor, row: str, instance: Instance) -> dict[str, float]:
     """Hypervolume in per cent, and seconds of the processor."""
     corner = np.full(2, float(LITERATURE_CORNERS[instance.n]))
-    demand = Demand(angles=fan(TOURS), size=TOURS, reference_point=corner, **ROWS[row])
+    demand = PlanOptions(angles=fan(TOURS), size=TOURS, reference_point=corner, **ROWS[row])
     began = time.process_time()
     front = plan(actor, instance, demand)
     seconds = time.process_time() - began

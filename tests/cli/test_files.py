@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from service.cli.files import read_request
-from service.cli.tsplib import NotRead
+from service.cli.tsplib import UnreadableFile
 
 EUCLIDEAN = """NAME: three
 TYPE : TSP
@@ -113,7 +113,7 @@ def test_a_file_that_cannot_be_read_is_named(
     tmp_path: Path, name: str, text: str, sentence: str
 ) -> None:
     files = written(tmp_path, (name, text))
-    with pytest.raises(NotRead) as error:
+    with pytest.raises(UnreadableFile) as error:
         read_request(files)
     assert str(error.value).startswith(f"{files[0]}: ")
     assert sentence in str(error.value)
@@ -122,7 +122,7 @@ def test_a_file_that_cannot_be_read_is_named(
 def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_bytes(b"\xff\xfe1")
-    with pytest.raises(NotRead, match=r"a\.csv"):
+    with pytest.raises(UnreadableFile, match=r"a\.csv"):
         read_request([path])
 
 
@@ -142,11 +142,11 @@ WRONG_PAIRS = [
 def test_two_files_that_do_not_go_together_are_refused(
     tmp_path: Path, first: str, text: str, second: str, other: str, sentence: str
 ) -> None:
-    with pytest.raises(NotRead) as error:
+    with pytest.raises(UnreadableFile) as error:
         read_request(written(tmp_path, (first, text), (second, other)))
     assert sentence in str(error.value)
 
 
 def test_planes_need_euclidean_files(tmp_path: Path) -> None:
-    with pytest.raises(NotRead, match="EDGE_WEIGHT_TYPE must be EUC_2D, got EXPLICIT"):
+    with pytest.raises(UnreadableFile, match="EDGE_WEIGHT_TYPE must be EUC_2D, got EXPLICIT"):
         read_request(written(tmp_path, ("a.tsp", EXPLICIT), ("b.tsp", EUCLIDEAN)), unrounded=True)

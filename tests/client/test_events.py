@@ -6,18 +6,18 @@ from collections.abc import Callable
 import pytest
 
 from service.jobs.front_document import empty
-from service.jobs.local_engine import Jobs
-from service.jobs.messages import Work
+from service.jobs.local_engine import LocalEngine
 from service.jobs.record import Record
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
-from service.jobs.submission import Order
-from service.jobs.worker_pool import Workers
+from service.jobs.submission import Submission
+from service.jobs.worker_pool import WorkerPool
+from service.requests.task import Work
 from tests.helpers.serving import Shuffler
 
 FRONT = empty(cities=3)
 
 
-class OrdersOnly(Workers):
+class OrdersOnly(WorkerPool):
     """Workers without processes: the test does the work."""
 
     def __init__(self) -> None:
@@ -25,8 +25,8 @@ class OrdersOnly(Workers):
 
     def order(
         self, work: Work, tell: Callable[[], None] = lambda: None, patient: bool = False
-    ) -> Order:
-        self.given = Order(0, work, tell, patient)
+    ) -> Submission:
+        self.given = Submission(0, work, tell, patient)
         return self.given
 
 
@@ -41,7 +41,7 @@ async def followed(steps: int) -> list[str]:
     """The statuses that are told to who begins to follow so many steps of the loop into the end."""
     store = Immediate(IN_MEMORY, entries=10, max_age=60)
     workers = OrdersOnly()
-    jobs = Jobs(workers, store)
+    jobs = LocalEngine(workers, store)
     record = Record(
         id="0" * 32,
         caller="me",
@@ -62,8 +62,8 @@ async def followed(steps: int) -> list[str]:
     return statuses
 
 
-async def _statuses(jobs: Jobs, record: Record) -> list[str]:
-    return [state.record.status async for state in jobs.states(record)]
+async def _statuses(jobs: LocalEngine, record: Record) -> list[str]:
+    return [state.record.status async for state in jobs.watch(record)]
 
 
 @pytest.mark.parametrize("steps", range(12))

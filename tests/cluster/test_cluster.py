@@ -18,7 +18,7 @@ from redis.asyncio import Redis as AsyncRedis
 
 from service.__main__ import main
 from service.cluster.celery_app import QUEUE
-from service.cluster.redis_engine import Cluster
+from service.cluster.redis_engine import RedisEngine
 from service.cluster.redis_store import RedisStore
 from service.cluster.worker_store import takes_work
 from tests.helpers.engines import PATIENT, Served, engine_of, planning
@@ -265,7 +265,7 @@ def test_a_job_whose_message_was_lost_is_done_all_the_same(serve: Serve) -> None
     with serve() as served:
         connection = AsyncRedis.from_url(served.redis_url)
         store = RedisStore(connection, entries=9, max_age=60)
-        forgetful = Cluster(connection, store, lambda _: None, queue=8, seconds=600)
+        forgetful = RedisEngine(connection, store, lambda _: None, queue=8, seconds=600)
         app = engine_app(store, forgetful, limits=PATIENT)
         with serving(app) as url, httpx.Client(base_url=url) as client:
             path = later(client)

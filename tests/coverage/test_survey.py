@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.coverage.survey import Coverage, InvalidCoverage, Stopped, TooManyPlaces, survey
+from service.coverage.survey import Coverage, survey
+from service.errors import Cancelled, InvalidCoverage, TooManyPlaces
 from service.instance import tour_lengths
 
 ROOT2 = np.sqrt(2)
@@ -183,5 +184,5 @@ def test_what_cannot_be_covered_is_named(
 
 
 def test_a_survey_that_is_told_to_stop_ends() -> None:
-    with pytest.raises(Stopped):
+    with pytest.raises(Cancelled):
         survey(room(), 10, lambda: True)

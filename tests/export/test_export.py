@@ -6,7 +6,7 @@ import onnx
 import pytest
 from onnx import ModelProto, numpy_helper
 
-from export.check import Mismatch, compare
+from export.check import TourMismatch, compare
 from export.graph import to_onnx
 from models.checkpoint import load_weights
 from models.config import NetworkConfig
@@ -45,7 +45,7 @@ def test_a_file_with_other_weights_is_refused(exported: tuple[Actor, ModelProto]
         values = numpy_helper.to_array(weights)
         if values.ndim == 2 and values.dtype == "float32":
             weights.CopyFrom(numpy_helper.from_array(-values, weights.name))
-    with pytest.raises(Mismatch, match=r"tours of .* part at position"):
+    with pytest.raises(TourMismatch, match=r"tours of .* part at position"):
         compare(actor, changed)
 
 
@@ -55,6 +55,6 @@ def test_a_file_with_a_frozen_size_is_refused(exported: tuple[Actor, ModelProto]
     frozen.CopyFrom(model)
     frozen.graph.input[0].type.tensor_type.shape.dim[-2].dim_value = 11
     with pytest.raises(
-        Mismatch, match=r"(cities|matrices) must have shape \[.*'n', .*\], got .*11"
+        TourMismatch, match=r"(cities|matrices) must have shape \[.*'n', .*\], got .*11"
     ):
         compare(actor, frozen)

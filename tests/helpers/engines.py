@@ -18,10 +18,10 @@ import redis
 from service.api.app import Edge
 from service.cluster.celery_app import queue_at
 from service.cluster.redis_engine import replica
-from service.cluster.worker import Crew, make_hand
+from service.cluster.worker import CeleryWorker, make_hand
 from service.jobs.runner import NamedActor, warm_up
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
-from service.jobs.worker_pool import Workers
+from service.jobs.worker_pool import WorkerPool
 from service.jobs.worker_process import MakePlanner
 from tests.helpers.redis_server import Redis
 from tests.helpers.serving import LIMITS, app_of, engine_app, planner_of, serving, workers_of
@@ -122,11 +122,11 @@ class Clustered:
         return url
 
 
-def _first(workers: Workers, _: str) -> int | None:
+def _first(workers: WorkerPool, _: str) -> int | None:
     return workers.pids[0] if workers.working else None
 
 
-def _searching_here(workers: Workers) -> Mapping[Hashable, int]:
+def _searching_here(workers: WorkerPool) -> Mapping[Hashable, int]:
     at_work = [(hand.order, hand.process.pid) for hand in workers._hands]
     return {order: pid for order, pid in at_work if pid and order and order.snapshot}
 
@@ -160,7 +160,7 @@ def crew(
 
 def _work(url: str, make_planner: MakePlanner, seconds: float, workers: int) -> None:
     warm_up()
-    Crew(
+    CeleryWorker(
         queue=queue_at(url, seconds),
         make_hand=partial(make_hand, make_planner, url, seconds),
         workers=workers,

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from service.jobs.front_document import Rendered, Sketch, rendered
-from service.jobs.messages import Work
-from service.jobs.worker_pool import Workers
+from service.jobs.front_document import FrontDocument, Sketch, rendered
+from service.jobs.worker_pool import WorkerPool
 from service.planner import Front
+from service.requests.task import Work
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Puppet:
 
     def plan(
         self, work: Work, stop: Callable[[], bool], report: Callable[[Sketch], None]
-    ) -> Rendered:
+    ) -> FrontDocument:
         match work.body:
             case b"fail":
                 raise KeyError("city")
@@ -82,10 +82,10 @@ def _same(puppet: Puppet) -> Puppet:
 @asynccontextmanager
 async def working(
     puppet: Puppet | None = None, workers: int = 1, queue: int = 0, seconds: float = 60.0
-) -> AsyncIterator[Workers]:
+) -> AsyncIterator[WorkerPool]:
     """Workers at work."""
     make_planner = partial(_same, puppet or Puppet())
-    crew = Workers(make_planner, workers=workers, queue=queue, seconds=seconds)
+    crew = WorkerPool(make_planner, workers=workers, queue=queue, seconds=seconds)
     await crew.start()
     try:
         yield crew

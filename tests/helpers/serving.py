@@ -24,13 +24,13 @@ from service.actor import ActorFacts
 from service.api.app import Edge, create_app
 from service.instance import Instance, Kind
 from service.jobs.engine import Engine
-from service.jobs.local_engine import Jobs
-from service.jobs.runner import FrontPlanner, NamedActor
+from service.jobs.local_engine import LocalEngine
+from service.jobs.runner import NamedActor, TaskRunner
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
-from service.jobs.worker_pool import Workers
+from service.jobs.worker_pool import WorkerPool
 from service.jobs.worker_process import MakePlanner
-from service.requests.schemas import Limits
+from service.requests.limits import Limits
 from service.server import build
 from service.settings import Settings
 
@@ -94,7 +94,7 @@ ACTORS = (Shuffler(), Shuffler(facts=facts_of("pa-one-matrix", "matrices")))
 
 
 @dataclass(frozen=True)
-class ColdPlanner(FrontPlanner):
+class ColdPlanner(TaskRunner):
     """A planner that is warm once there is a file."""
 
     warm: Path = Path("/nowhere")
@@ -109,7 +109,7 @@ def planner_of(
 ) -> MakePlanner:
     by_name = {actor.facts.name: actor for actor in actors or ACTORS}
     if warm is None:
-        return partial(FrontPlanner, by_name, limits)
+        return partial(TaskRunner, by_name, limits)
     return partial(ColdPlanner, by_name, limits, warm)
 
 
@@ -118,21 +118,21 @@ def workers_of(
     workers: int = 1,
     queue: int = 8,
     seconds: float = 60.0,
-) -> Workers:
+) -> WorkerPool:
     make_planner = make_planner or planner_of()
-    return Workers(make_planner, workers=workers, queue=queue, seconds=seconds)
+    return WorkerPool(make_planner, workers=workers, queue=queue, seconds=seconds)
 
 
 def app_of(
     *actors: NamedActor,
     store: SqliteStore | None = None,
-    workers: Workers | None = None,
+    workers: WorkerPool | None = None,
     limits: Limits = LIMITS,
     edge: Edge | None = None,
 ) -> FastAPI:
     store = store or SqliteStore(IN_MEMORY, entries=100, max_age=60)
     workers = workers or workers_of(planner_of(*actors, limits=limits))
-    return engine_app(store, Jobs(workers, store), *actors, limits=limits, edge=edge)
+    return engine_app(store, LocalEngine(workers, store), *actors, limits=limits, edge=edge)
 
 
 def engine_app(

@@ -12,11 +12,12 @@ import pytest
 from redis.asyncio import Redis
 
 from service.cluster.redis_store import RedisStore
+from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
 from service.jobs.front_document import rendered
-from service.jobs.messages import Work
 from service.jobs.record import Record
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
-from service.jobs.store import Expired, Mismatch, Store, Unavailable, Unknown
+from service.jobs.store import Store
+from service.requests.task import Work
 from tests.helpers.puppet import front
 from tests.helpers.redis_server import redis_server
 
@@ -89,9 +90,9 @@ def test_what_was_put_is_given_again_as_it_was(run: Run) -> None:
 
 def test_an_id_never_used_is_unknown(run: Run) -> None:
     async def test(store: Store) -> None:
-        with pytest.raises(Unknown):
+        with pytest.raises(NotFound):
             await store.get("us", "a")
-        with pytest.raises(Unknown):
+        with pytest.raises(NotFound):
             await store.latest("us")
 
     run(test)
@@ -102,13 +103,13 @@ def test_a_caller_sees_its_own_alone(run: Run) -> None:
         await store.put(record("a", caller="us"))
         await store.put(record("b", caller="them"))
         assert (await store.latest("us")).id == "a"
-        with pytest.raises(Unknown):
+        with pytest.raises(NotFound):
             await store.get("them", "a")
         await store.put(record("c", caller="them"))
         # It has made way, which is nobody else's business.
         with pytest.raises(Expired):
             await store.get("us", "a")
-        with pytest.raises(Unknown):
+        with pytest.raises(NotFound):
             await store.get("them", "a")
 
     run(test)
@@ -145,7 +146,7 @@ def test_only_so_many_of_the_gone_are_remembered(run: Run) -> None:
     async def test(store: Store) -> None:
         for id_ in "abcd":
             await store.put(record(id_))
-        with pytest.raises(Unknown):
+        with pytest.raises(NotFound):
             await store.get("us", "a")
         for id_ in "bc":
             with pytest.raises(Expired):
@@ -158,7 +159,7 @@ def test_what_is_forgotten_leaves_nothing(run: Run) -> None:
     async def test(store: Store) -> None:
         await store.put(record("a"))
         await store.forget(record("a"))
-        with pytest.raises(Unknown):
+        with pytest.raises(NotFound):
             await store.get("us", "a")
 
     run(test)
@@ -189,7 +190,7 @@ def test_a_key_gives_the_record_that_it_was_first_used_for(run: Run) -> None:
         first = job("a", key="k", digest="1")
         assert await store.admit(first) is first
         assert (await store.admit(job("b", key="k", digest="1"))).id == "a"
-        with pytest.raises(Mismatch):
+        with pytest.raises(IdempotencyMismatch):
             await store.admit(job("c", key="k", digest="2"))
         other = job("d", caller="them", key="k", digest="2")
         assert await store.admit(other) is other
@@ -232,7 +233,7 @@ def test_a_store_that_does_not_answer_is_unavailable(tmp_path: Path) -> None:
         with redis_server(tmp_path) as redis:
             async with redis_store(redis.url, entries=1, max_age=1) as store:
                 redis.end()
-                with pytest.raises(Unavailable):
+                with pytest.raises(StoreUnavailable):
                     await store.get("us", "a")
 
     asyncio.run(test())

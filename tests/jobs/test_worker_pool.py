@@ -12,15 +12,21 @@ from typing import Any
 
 import pytest
 
-from service.jobs.engine import Busy, Closed, Cold
-from service.jobs.submission import Lost, Overdue, Stopped
-from service.jobs.worker_pool import Workers
+from service.errors import (
+    Cancelled,
+    DeadlineExceeded,
+    QueueFull,
+    ShuttingDown,
+    WarmingUp,
+    WorkerLost,
+)
+from service.jobs.worker_pool import WorkerPool
 from tests.helpers.puppet import Puppet, work, working
 
 ROOT = Path(__file__).parents[2]
 
 
-def run(test: Callable[[Workers], Awaitable[None]], *args: Any, **options: Any) -> None:
+def run(test: Callable[[WorkerPool], Awaitable[None]], *args: Any, **options: Any) -> None:
     """A test with workers at work."""
 
     async def with_workers() -> None:
@@ -35,12 +41,12 @@ async def until(holds: Callable[[], bool]) -> None:
         await asyncio.sleep(0.005)
 
 
-async def front(workers: Workers, body: bytes = b"") -> dict[str, Any]:
+async def front(workers: WorkerPool, body: bytes = b"") -> dict[str, Any]:
     return (await workers.order(work(body)).front()).members
 
 
 def test_work_becomes_a_front_with_the_time_that_it_waited() -> None:
-    async def test(workers: Workers) -> None:
+    async def test(workers: WorkerPool) -> None:
         timings = (await front(workers))["timings_ms"]
         assert timings["construction"] == 1
         assert timings["total"] == pytest.approx(timings["queue"] + 1)
@@ -49,7 +55,7 @@ def test_work_becomes_a_front_with_the_time_that_it_waited() -> None:
 
 
 def test_what_fails_fails_for_whoever_asked_with_the_traceback_of_the_worker() -> None:
-    async def test(workers: Workers) -> None:
+    async def test(workers: WorkerPool) -> None:
         with pytest.raises(KeyError, match="city") as failed:
             await front(workers, b"fail")
         assert 'raise KeyError("city")' in failed.value.__notes__[0]
@@ -59,12 +65,12 @@ def test_what_fails_fails_for_whoever_asked_with_the_traceback_of_the_worker() -
 
 
 def test_work_keeps_its_place_when_nobody_waits_for_it_any_more() -> None:
-    async def test(workers: Workers) -> None:
+    async def test(workers: WorkerPool) -> None:
         order = workers.order(work(b"wait"))
         await until(lambda: workers.working == 1)
         with pytest.raises(TimeoutError):
             await asyncio.wait_for(order.front(), timeout=0.05)
-        with pytest.raises(Busy):
+        with pytest.raises(QueueFull):
             workers.order(work())
         workers.stop(order)
         assert (await order.front()).members["terminated"] == "cancelled"
@@ -73,11 +79,11 @@ def test_work_keeps_its_place_when_nobody_waits_for_it_any_more() -> None:
 
 
 def test_work_that_is_stopped_while_it_waits_gives_up_its_place() -> None:
-    async def test(workers: Workers) -> None:
+    async def test(workers: WorkerPool) -> None:
         workers.order(work(b"wait"))
         waiting = workers.order(work())
         workers.stop(waiting)
-        with pytest.raises(Stopped):
+        with pytest.raises(Cancelled):
             await waiting.front()
         workers.order(work())
 
@@ -85,11 +91,11 @@ def test_work_that_is_stopped_while_it_waits_gives_up_its_place() -> None:
 
 
 def test_work_that_does_not_listen_is_ended_and_its_process_replaced() -> None:
-    async def test(workers: Workers) -> None:
+    async def test(workers: WorkerPool) -> None:
         order = workers.order(work(b"hang"))
         await until(lambda: workers.working == 1)
         workers.stop(order)
-        with pytest.raises(Stopped):
+        with pytest.raises(Cancelled):
             await order.front()
         assert (await front(workers))["terminated"] == "converged"
         assert workers.lost == 1
@@ -99,7 +105,7 @@ def test_work_that_does_not_listen_is_ended_and_its_process_replaced() -> None:
 
 @pytest.mark.parametrize("patient", [True, False])
 def test_work_that_takes_too_long_ends_with_the_best_front_so_far(patient: bool) -> None:
-    async def test(workers: Workers) -> None:
+    async def test(workers: WorkerPool) -> None:
         await workers.order(work(), patient=True).front()
         told: list[None] = []
         order = workers.order(work(b"report and hang"), lambda: told.append(None), patient)
@@ -112,8 +118,8 @@ def test_work_that_takes_too_long_ends_with_the_best_front_so_far(patient: bool)
 
 
 def test_work_that_takes_too_long_and_found_nothing_fails() -> None:
-    async def test(workers: Workers) -> None:
-        with pytest.raises(Overdue):
+    async def test(workers: WorkerPool) -> None:
+        with pytest.raises(DeadlineExceeded):
             await front(workers, b"hang")
 
     run(test, seconds=1.0)
@@ -123,7 +129,7 @@ def test_work_whose_process_is_killed_is_done_by_another(tmp_path: Path) -> None
     lives = tmp_path / "lives"
     lives.write_bytes(b"1")
 
-    async def test(workers: Workers) -> None:
+    async def test(workers: WorkerPool) -> None:
         assert (await front(workers, b"die"))["terminated"] == "converged"
         assert workers.lost == 1
 
@@ -134,9 +140,9 @@ def test_work_that_kills_two_processes_is_given_up_and_others_are_done(tmp_path:
     lives = tmp_path / "lives"
     lives.write_bytes(b"123")
 
-    async def test(workers: Workers) -> None:
+    async def test(workers: WorkerPool) -> None:
         deadly, other = workers.order(work(b"die")), workers.order(work())
-        with pytest.raises(Lost):
+        with pytest.raises(WorkerLost):
             await deadly.front()
         assert (await other.front()).members["terminated"] == "converged"
         assert lives.read_bytes() == b"3"
@@ -145,7 +151,7 @@ def test_work_that_kills_two_processes_is_given_up_and_others_are_done(tmp_path:
 
 
 def test_a_process_killed_while_idle_is_replaced() -> None:
-    async def test(workers: Workers) -> None:
+    async def test(workers: WorkerPool) -> None:
         await front(workers)
         [killed] = workers.pids
         assert killed is not None
@@ -158,10 +164,10 @@ def test_a_process_killed_while_idle_is_replaced() -> None:
 
 
 def test_compiled_code_may_not_be_used_before_it_is_warm(tmp_path: Path) -> None:
-    async def test(workers: Workers) -> None:
+    async def test(workers: WorkerPool) -> None:
         assert (await front(workers))["terminated"] == "converged"
         for check in (workers.check_warm, workers.check_ready):
-            with pytest.raises(Cold):
+            with pytest.raises(WarmingUp):
                 check()
         (tmp_path / "warm").touch()
         await until(lambda: is_warm(workers))
@@ -171,24 +177,24 @@ def test_compiled_code_may_not_be_used_before_it_is_warm(tmp_path: Path) -> None
     run(test, Puppet(warm=tmp_path / "warm"), workers=2)
 
 
-def is_warm(workers: Workers) -> bool:
-    with suppress(Cold):
+def is_warm(workers: WorkerPool) -> bool:
+    with suppress(WarmingUp):
         workers.check_warm()
         return True
     return False
 
 
 def test_after_the_close_no_work_is_taken_and_none_is_waited_for_in_vain() -> None:
-    async def test(workers: Workers) -> None:
+    async def test(workers: WorkerPool) -> None:
         orders = [workers.order(work(b"hang")) for _ in range(2)]
         await until(lambda: workers.working == 1)
         await workers.close()
         for order in orders:
-            with pytest.raises(Closed):
+            with pytest.raises(ShuttingDown):
                 await order.front()
-        with pytest.raises(Closed):
+        with pytest.raises(ShuttingDown):
             workers.check_open()
-        with pytest.raises(Closed):
+        with pytest.raises(ShuttingDown):
             workers.order(work())
 
     run(test, queue=1)

@@ -125,7 +125,7 @@ def test_whole_numbered_matrices_stay_exact() -> None:
     search = Search(instance, 0, 60 * instance.scale)
     for _, _ in zip(range(200), search.run(), strict=False):
         pass
-    points = search.ground.archive.points[: search.found] / search.units
+    points = search.state.archive.points[: search.found] / search.units
     assert np.array_equal(points, tour_lengths(instance, search.tours()))
 
 
@@ -184,7 +184,7 @@ def test_a_given_tour_that_the_archive_had_to_let_go_is_still_returned() -> None
 
 def test_no_cost_beyond_the_coordinates_is_stored_for_many_cities() -> None:
     search = Search(uniform(700), 0, np.full(2, 700.0))
-    assert search.ground.costs.matrix.size == 0
+    assert search.state.costs.matrix.size == 0
 
 
 def test_random_tours_are_improved_a_great_deal() -> None:

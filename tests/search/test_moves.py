@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.pareto import hypervolume, nondominated
-from service.search.archive import admit, area, best, make_archive, thin
-from service.search.candidates import Scalar
+from service.search.archive import area, best, insert, make_archive, thin
+from service.search.candidates import Scalarization
 from service.search.costs import lengths, make_costs
 from service.search.local_search import improve_at, nearest_neighbour
 from service.search.moves import apply, change
@@ -23,12 +23,12 @@ def instance_of(n: int, seed: int, symmetric: bool) -> Instance:
     return Instance(matrices=matrices)
 
 
-def scalar_of(instance: Instance) -> Scalar:
+def scalar_of(instance: Instance) -> Scalarization:
     costs = make_costs(instance)
     sums = costs.matrix.sum(axis=2) + np.diag(np.full(instance.n, np.inf))
     near = np.argsort(sums, axis=1)[:, : min(8, instance.n - 1)]
     near_costs = np.take_along_axis(sums, near, axis=1) / 2
-    return Scalar(costs, np.ascontiguousarray(near, np.int32), near_costs, 0.5, 0.5)
+    return Scalarization(costs, np.ascontiguousarray(near, np.int32), near_costs, 0.5, 0.5)
 
 
 def cycle(tour: NDArray[np.int32]) -> list[int]:
@@ -115,7 +115,7 @@ def test_the_archive_holds_just_the_nondominated_points_and_their_tours(
 ) -> None:
     archive = make_archive(1, 64)
     for k, (first, second) in enumerate(points):
-        admit(archive, (float(first), float(second)), np.array([k], np.int32))
+        insert(archive, (float(first), float(second)), np.array([k], np.int32))
     kept = np.array(points, float)[nondominated(np.array(points, float))]
     size = archive.counts[0]
     assert np.array_equal(archive.points[:size], kept)
@@ -129,7 +129,7 @@ def test_the_archive_holds_just_the_nondominated_points_and_their_tours(
 def test_a_full_archive_makes_room_and_keeps_its_ends() -> None:
     archive = make_archive(1, 16)
     for k in range(60):
-        admit(archive, (1.0 + k, 100.0 - k), np.array([k], np.int32))
+        insert(archive, (1.0 + k, 100.0 - k), np.array([k], np.int32))
     size = archive.counts[0]
     assert 4 <= size <= 16
     assert archive.points[0].tolist() == [1.0, 100.0]
@@ -140,7 +140,7 @@ def test_a_full_archive_makes_room_and_keeps_its_ends() -> None:
 def test_thinning_drops_the_points_that_add_least() -> None:
     archive = make_archive(1, 16)
     for first, second in [(1, 9), (4, 5), (4.1, 4.9), (4.2, 4.8), (8, 1)]:
-        admit(archive, (float(first), float(second)), np.array([0], np.int32))
+        insert(archive, (float(first), float(second)), np.array([0], np.int32))
     thin(archive)
     assert [1.0, 9.0] in archive.points[: archive.counts[0]].tolist()
     assert [4.1, 4.9] not in archive.points[: archive.counts[0]].tolist()
