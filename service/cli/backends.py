@@ -16,7 +16,7 @@ from paretour import (
     coverage_plan,
     front_plan,
 )
-from paretour.values import front_of
+from paretour.values import parse_front
 from rich.console import Console
 
 from service.actor import load_actors
@@ -55,7 +55,7 @@ def plan_here(plan: Plan, stderr: Console) -> Front:
         except (Refusal, InvalidInstance) as error:
             raise UsageError(str(error)) from None
     status = "cancelled" if stop() else "done"
-    return front_of(json.loads(found.json(id="", status=status)))
+    return parse_front(json.loads(found.json(id="", status=status)))
 
 
 def _work(plan: Plan) -> Work:

@@ -1,4 +1,4 @@
-"""The old name of the client, for a release more: import `paretour` instead."""
+"""The client under its old name, for one more release. Import `paretour` instead."""
 
 import warnings
 

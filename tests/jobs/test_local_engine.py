@@ -11,7 +11,7 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
-from httpx_sse import connect_sse
+from paretour.server_sent_events import EventParser
 
 from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
@@ -87,8 +87,9 @@ def check(found: dict[str, Any]) -> None:
 
 
 def events(client: httpx.Client, path: str) -> list[tuple[str, dict[str, Any]]]:
-    with connect_sse(client, "GET", f"{path}/events") as source:
-        return [(event.event, event.json()) for event in source.iter_sse()]
+    answer = client.get(f"{path}/events", headers={"Accept": "text/event-stream"})
+    parsed = EventParser().feed(answer.content)
+    return [(event.type, json.loads(event.data)) for event in parsed]
 
 
 def test_a_front_asked_for_later_is_the_one_that_would_have_been_answered(

@@ -1,13 +1,13 @@
-"""A client of the service, for programs that wait and for programs that await.
+"""The Python client of Paretour.
 
-    from service.client import Client
+    from paretour import Client
 
     with Client("http://localhost:8000") as client:
         front = client.front(coordinates=cities, time_limit=2)
         tour = front.nearest(angle=30).tour
 
-What is asked, and how an answer is read, is written once, in `calls` and `following`; the two
-clients only carry it to and fro. Nothing else of the service is needed.
+AsyncClient is the same for asynchronous programs. Both send the requests of `calls` and read the
+events of `events`; neither needs anything of the service but its address.
 """
 
 from paretour.asynchronous import AsyncClient, AsyncJob

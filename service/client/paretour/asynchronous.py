@@ -1,13 +1,12 @@
-"""The client for programs that await."""
+"""The client for asynchronous programs, and its jobs: sync.py with `await`."""
 
 import asyncio
 from collections.abc import AsyncIterator
 from typing import Self, TypeVar, Unpack
 
 import httpx
-from httpx_sse import aconnect_sse
-from paretour.calls import Call, Calls, identity
-from paretour.events import Following
+from paretour.calls import Call, Calls, auth_headers
+from paretour.events import JobEvents
 from paretour.requests import Plan, coverage_plan, front_plan
 from paretour.values import Actor, CoverageRequest, Front, FrontRequest, Progress, Tour
 
@@ -15,13 +14,13 @@ T = TypeVar("T")
 
 
 class AsyncClient:
-    """A service at a URL; also a context manager that closes its connections.
+    """A client of the service at a URL. As a context manager it closes its connections.
 
-    Arguments are those of Client, `transport` one that awaits.
+    Arguments are those of Client; `transport` is an asynchronous one.
 
     Raises:
-        Refused: by any call, where the service did not do what was asked.
-        httpx.TransportError: by any call, where there was no answer.
+        Refused: By any call, where the service answers with a refusal.
+        httpx.TransportError: By any call, where there is no answer.
     """
 
     def __init__(
@@ -33,51 +32,56 @@ class AsyncClient:
         patience: float = 60.0,
         transport: httpx.AsyncBaseTransport | None = None,
     ) -> None:
-        http = httpx.AsyncClient(base_url=url, headers=identity(api_key), transport=transport)
-        self._driver = _Driver(http)
+        http = httpx.AsyncClient(base_url=url, headers=auth_headers(api_key), transport=transport)
+        self._connection = _Connection(http)
         self._calls = Calls(timeout=timeout, patience=patience)
 
     async def front(self, **request: Unpack[FrontRequest]) -> Front:
-        """The front of the cities, once its time limit is over or nothing more is found."""
+        """Plan a front and wait for it: until its time limit, or until nothing more is found."""
         return await self.plan(front_plan(request))
 
     async def coverage(self, png: bytes | None = None, **request: Unpack[CoverageRequest]) -> Front:
-        """The front of the places on a map, the content of a PNG file unless it is the grid."""
+        """Plan a front over a map and wait for it.
+
+        Args:
+            png: The map as the content of a PNG file, instead of a grid in the request.
+            **request: The members of the request.
+        """
         return await self.plan(coverage_plan(request, png))
 
     async def submit(self, **request: Unpack[FrontRequest]) -> "AsyncJob":
-        """Have a front planned without waiting for it."""
+        """Submit a job that plans a front."""
         return await self.post(front_plan(request))
 
     async def submit_coverage(
         self, png: bytes | None = None, **request: Unpack[CoverageRequest]
     ) -> "AsyncJob":
-        """Have places on a map planned without waiting for it."""
+        """Submit a job that plans a front over a map; arguments as of `coverage`."""
         return await self.post(coverage_plan(request, png))
 
     async def plan(self, plan: Plan) -> Front:
-        """The front of whatever a plan says."""
-        return await self._driver.make(self._calls.plan(plan))
+        """Send a plan that was built before, and wait for the front."""
+        return await self._connection.run(self._calls.plan(plan))
 
     async def post(self, plan: Plan) -> "AsyncJob":
-        """Have whatever a plan says planned without waiting for it."""
-        return self.job(await self._driver.make(self._calls.submit(plan)))
+        """Send a plan that was built before, as a job."""
+        return self.job(await self._connection.run(self._calls.submit(plan)))
 
     def job(self, front: str) -> "AsyncJob":
-        """The job that plans, or planned, the front with this id."""
-        return AsyncJob(front, self._driver, self._calls)
+        """Return the job of a front by its id, without asking whether the service knows it."""
+        return AsyncJob(front, self._connection, self._calls)
 
     async def tour(self, angle: float, front: str | None = None) -> Tour:
-        """The tour nearest to an angle in degrees, of a front by its id, or of the latest."""
-        return await self._driver.make(self._calls.tour(angle, front))
+        """Return the tour nearest to an angle in degrees, of a front by its id or of the latest."""
+        return await self._connection.run(self._calls.tour(angle, front))
 
     async def actors(self) -> tuple[Actor, ...]:
-        """The networks to choose from."""
-        return await self._driver.make(self._calls.actors())
+        """Return the actors that the service has loaded."""
+        return await self._connection.run(self._calls.actors())
 
     async def close(self) -> None:
-        """Close its connections."""
-        await self._driver.close()
+        """Close the connections."""
+        await self._connection.close()
 
     async def __aenter__(self) -> Self:
         return self
@@ -87,65 +91,74 @@ class AsyncClient:
 
 
 class AsyncJob:
-    """A front that is planned while the program does something else; `id` is the front's."""
+    """A front that is planned while the program does something else.
 
-    def __init__(self, front: str, driver: "_Driver", calls: Calls) -> None:
-        self.id = front
-        self._driver = driver
+    Attributes:
+        id: The id of the front.
+    """
+
+    def __init__(self, front_id: str, connection: "_Connection", calls: Calls) -> None:
+        self.id = front_id
+        self._connection = connection
         self._calls = calls
 
     def progress(self) -> AsyncIterator[Progress]:
-        """How far the search has come, again and again until it ends."""
-        return self._driver.follow(self._calls.following(self.id))
+        """Yield the progress of the search until the job ends."""
+        return self._connection.follow(self._calls.events(self.id))
 
     async def front(self) -> Front:
-        """The best front so far."""
-        return await self._driver.make(self._calls.stored(self.id))
+        """Return the best front so far."""
+        return await self._connection.run(self._calls.stored(self.id))
 
     async def result(self) -> Front:
-        """The front, once the job has ended. A job that failed raises Refused."""
+        """Wait for the job to end and return its front.
+
+        Raises:
+            Refused: The job failed.
+        """
         async for _ in self.progress():
             pass
-        return await self._driver.make(self._calls.result(self.id))
+        return await self._connection.run(self._calls.result(self.id))
 
     async def cancel(self) -> Front:
-        """End the job now; the best front so far."""
-        return await self._driver.make(self._calls.cancel(self.id))
+        """End the job now and return the best front so far."""
+        return await self._connection.run(self._calls.cancel(self.id))
 
     async def forget(self) -> None:
-        """Have the service forget a front whose job has ended."""
-        await self._driver.make(self._calls.forget(self.id))
+        """Delete the front of a job that has ended from the service."""
+        await self._connection.run(self._calls.forget(self.id))
 
 
-class _Driver:
-    """Carries calls over connections, one after the other."""
+class _Connection:
+    """An httpx.AsyncClient that runs calls and follows jobs."""
 
     def __init__(self, http: httpx.AsyncClient) -> None:
         self._http = http
         self.close = http.aclose
 
-    async def make(self, call: Call[T]) -> T:
-        ask = next(call)
+    async def run(self, call: Call[T]) -> T:
+        request = next(call)
         while True:
-            await asyncio.sleep(ask.after)
-            answer = await self._http.request(**ask.request)
+            await asyncio.sleep(request.delay)
+            response = await self._http.request(**request.arguments)
             try:
-                ask = call.send(answer)
-            except StopIteration as made:
-                return made.value
+                request = call.send(response)
+            except StopIteration as finished:
+                return finished.value
 
-    async def follow(self, following: Following) -> AsyncIterator[Progress]:
-        while not following.ended:
-            await asyncio.sleep(following.pause)
+    async def follow(self, events: JobEvents) -> AsyncIterator[Progress]:
+        while not events.ended:
+            await asyncio.sleep(events.delay)
             try:
-                async with aconnect_sse(self._http, **following.request) as source:
-                    if source.response.is_error:
-                        await source.response.aread()
-                        following.turned_away(source.response)
+                async with self._http.stream(**events.arguments) as response:
+                    if response.is_error:
+                        await response.aread()
+                        events.retry_refusal(response)
                         continue
-                    async for event in source.aiter_sse():
-                        if (progress := following.hear(event)) is not None:
+                    events.begin(response)
+                    async for chunk in response.aiter_bytes():
+                        for progress in events.read(chunk):
                             yield progress
-                following.closed()
+                events.finish()
             except httpx.TransportError as error:
-                following.broke(error)
+                events.retry_error(error)

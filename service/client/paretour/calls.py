@@ -1,7 +1,7 @@
-"""Every call, without its way over the network.
+"""The calls of the service's HTTP interface, without the sending of requests.
 
-A call is a generator: it yields what to ask, is sent the answer, and returns what was called for.
-A driver, which waits or awaits, is all that it takes to make one.
+A call is a generator: it yields a request, is sent the response, and returns the call's result.
+Both clients run the same calls, one waiting for responses and one awaiting them.
 """
 
 from collections.abc import Generator, Mapping
@@ -9,117 +9,137 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import httpx
-from paretour.errors import ASK_AGAIN, Refused, pause_before_next, refusal
-from paretour.events import Following
+from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
+from paretour.events import JobEvents
 from paretour.requests import Plan
-from paretour.values import FINAL, Actor, Front, Tour, front_of, tour_of
+from paretour.values import FINAL_STATUSES, Actor, Front, Tour, parse_front, parse_tour
 
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
-class Ask:
-    """What to ask, how many seconds to wait for the answer, and how many before asking."""
+@dataclass(frozen=True, kw_only=True)
+class HttpRequest:
+    """A request to send after `delay` seconds, and to wait `timeout` seconds for its response.
+
+    `content` holds what httpx takes beside that: parameters, headers and body.
+    """
 
     method: str
     path: str
-    said: Mapping[str, Any]
+    content: Mapping[str, Any]
     timeout: float
-    after: float = 0.0
+    delay: float = 0.0
 
     @property
-    def request(self) -> dict[str, Any]:
-        """What httpx is told of it."""
-        return {"method": self.method, "url": self.path, "timeout": self.timeout, **self.said}
+    def arguments(self) -> dict[str, Any]:
+        """The keyword arguments of httpx.Client.request."""
+        return {"method": self.method, "url": self.path, "timeout": self.timeout, **self.content}
 
 
-Call = Generator[Ask, httpx.Response, T]
+Call = Generator[HttpRequest, httpx.Response, T]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Calls:
-    """The calls of a client that waits `timeout` seconds for an answer, beside the search's own.
+    """The calls of a client with this timeout and patience.
 
-    Where the service asks to be asked again later (429, 503), it waits for `patience` seconds in
-    all before it raises the refusal.
+    Args:
+        timeout: Seconds to wait for a response, beyond those that the search may take.
+        patience: Seconds, in all, to wait and retry a call where the service asks for it (429,
+            503) before Refused is raised.
     """
 
     timeout: float
     patience: float
 
     def plan(self, plan: Plan) -> Call[Front]:
-        """Have a front planned, and wait for it."""
-        return front_of((yield from self._post(plan, self.timeout + plan.seconds)).json())
+        """Plan a front and wait for it."""
+        return parse_front((yield from self._post(plan, self.timeout + plan.seconds)).json())
 
     def submit(self, plan: Plan) -> Call[str]:
-        """Have a front planned; the job's id."""
-        answer = yield from self._post(plan, self.timeout, Prefer="respond-async")
-        return answer.json()["id"]
+        """Submit a job that plans a front; return the front's id."""
+        response = yield from self._post(plan, self.timeout, Prefer="respond-async")
+        return response.json()["id"]
 
-    def stored(self, front: str) -> Call[Front]:
-        """A front as it is by now."""
-        return front_of((yield from self._get(_path(front))).json())
+    def stored(self, front_id: str) -> Call[Front]:
+        """Return a front as it is now."""
+        return parse_front((yield from self._get(_path(front_id))).json())
 
-    def result(self, front: str) -> Call[Front]:
-        """A front that is final, or the refusal that it failed with."""
-        answer = yield from self._get(_path(front))
-        if answer.json()["status"] == "failed":
-            raise Refused(answer.json()["problem"])
-        return front_of(answer.json())
+    def result(self, front_id: str) -> Call[Front]:
+        """Return the front of a job that has ended.
 
-    def cancel(self, front: str) -> Call[Front]:
-        """The front as its job ended, or the best so far of one that ended just now."""
-        found = yield from self.stored(front)
-        if found.status in FINAL:  # where deleting would forget it
-            return found
-        answer = yield from self._ask(self._delete(front))
-        return found if answer.status_code == httpx.codes.NO_CONTENT else front_of(answer.json())
+        Raises:
+            Refused: The job failed.
+        """
+        response = yield from self._get(_path(front_id))
+        if response.json()["status"] == "failed":
+            raise Refused(response.json()["problem"])
+        return parse_front(response.json())
 
-    def forget(self, front: str) -> Call[None]:
-        """Have a front that is final forgotten."""
-        yield from self._ask(self._delete(front))
+    def cancel(self, front_id: str) -> Call[Front]:
+        """Cancel a job; return its front, as the job ended."""
+        front = yield from self.stored(front_id)
+        if front.status in FINAL_STATUSES:  # to delete it would forget it
+            return front
+        response = yield from self._send(self._delete(front_id))
+        if response.status_code == httpx.codes.NO_CONTENT:  # it ended meanwhile
+            return front
+        return parse_front(response.json())
 
-    def tour(self, angle: float, front: str | None) -> Call[Tour]:
-        """The tour nearest to an angle, of one front or of the latest."""
-        params = {"angle": angle} if front is None else {"angle": angle, "front": front}
-        return tour_of((yield from self._get("/tour", params)).json())
+    def forget(self, front_id: str) -> Call[None]:
+        """Delete the front of a job that has ended."""
+        yield from self._send(self._delete(front_id))
+
+    def tour(self, angle: float, front_id: str | None) -> Call[Tour]:
+        """Return the tour nearest to an angle in degrees, of one front or of the latest."""
+        params = {"angle": angle} if front_id is None else {"angle": angle, "front": front_id}
+        return parse_tour((yield from self._get("/tour", params)).json())
 
     def actors(self) -> Call[tuple[Actor, ...]]:
-        """The networks to choose from."""
-        answer = yield from self._get("/actors")
-        return tuple(Actor(**facts) for facts in answer.json()["actors"])
+        """Return the actors that the service has loaded."""
+        response = yield from self._get("/actors")
+        return tuple(Actor(**facts) for facts in response.json()["actors"])
 
-    def following(self, front: str) -> Following:
-        """How to follow a job's progress."""
-        return Following(front, self.timeout, self.patience)
+    def events(self, front_id: str) -> JobEvents:
+        """Return the events of a job, none of them read yet."""
+        return JobEvents(front_id, self.timeout, self.patience)
 
-    def _ask(self, ask: Ask) -> Call[httpx.Response]:
+    def _send(self, request: HttpRequest) -> Call[httpx.Response]:
+        """Return the response to a request, sent again while the service asks for it.
+
+        Raises:
+            Refused: The last response is an error.
+        """
         waited = 0.0
-        while (answer := (yield ask)).status_code in ASK_AGAIN:
-            ask = replace(ask, after=pause_before_next(answer))
-            waited += ask.after
+        while (response := (yield request)).status_code in RETRY_STATUSES:
+            request = replace(request, delay=retry_after(response))
+            waited += request.delay
             if waited > self.patience:
                 break
-        if answer.is_success:
-            return answer
-        raise refusal(answer)
+        if response.is_success:
+            return response
+        raise refused(response)
 
     def _get(self, path: str, params: Mapping[str, Any] | None = None) -> Call[httpx.Response]:
-        return (yield from self._ask(Ask("GET", path, {"params": params}, timeout=self.timeout)))
+        content = {"params": params}
+        request = HttpRequest(method="GET", path=path, content=content, timeout=self.timeout)
+        return (yield from self._send(request))
 
-    def _delete(self, front: str) -> Ask:
-        return Ask("DELETE", _path(front), {}, timeout=self.timeout)
+    def _delete(self, front_id: str) -> HttpRequest:
+        path = _path(front_id)
+        return HttpRequest(method="DELETE", path=path, content={}, timeout=self.timeout)
 
     def _post(self, plan: Plan, timeout: float, **headers: str) -> Call[httpx.Response]:
         body = plan.body
-        said = {**body, "headers": {**body.get("headers", {}), **headers}}
-        return (yield from self._ask(Ask("POST", plan.path, said, timeout=timeout)))
+        content = {**body, "headers": {**body.get("headers", {}), **headers}}
+        request = HttpRequest(method="POST", path=plan.path, content=content, timeout=timeout)
+        return (yield from self._send(request))
 
 
-def identity(api_key: str | None) -> dict[str, str]:
-    """The headers that say who asks."""
+def auth_headers(api_key: str | None) -> dict[str, str]:
+    """Return the headers that carry an API key."""
     return {} if api_key is None else {"Authorization": f"Bearer {api_key}"}
 
 
-def _path(front: str) -> str:
-    return f"/front/{front}"
+def _path(front_id: str) -> str:
+    return f"/front/{front_id}"

@@ -1,4 +1,4 @@
-"""Why the service did not do what was asked, and when to ask again."""
+"""The exception for a refusal of the service, and the seconds to wait before a retry."""
 
 from collections.abc import Mapping
 from datetime import UTC, datetime
@@ -7,15 +7,23 @@ from typing import Any
 
 import httpx
 
-ASK_AGAIN = (429, 503)
-_SOONEST = 0.1  # seconds; whoever says 0 is not asked without a pause
+RETRY_STATUSES = (429, 503)
+_LEAST_SECONDS = 0.1  # between two tries, even where Retry-After is 0
+_DEFAULT_SECONDS = 1.0
 
 
 class Refused(Exception):
-    """A problem document (RFC 9457); `code` is the member to branch on.
+    """A problem document (RFC 9457) that the service answered with.
 
-    `errors` are the fields at fault, each with its `detail` and a JSON `pointer` or `parameter`.
-    An answer that is no problem document, from a proxy in between, has the code `unknown`.
+    Attributes:
+        status: The HTTP status.
+        code: What went wrong, in a word that stays the same over releases. A response that is no
+            problem document, from a proxy in between, has the code `unknown`.
+        detail: What went wrong, in a sentence.
+        request_id: What the service's log calls the request.
+        errors: The fields at fault, each with its `detail` and a JSON `pointer` or `parameter`.
+        limit: The most that is allowed, where a limit was exceeded.
+        actual: What came instead.
     """
 
     def __init__(self, document: Mapping[str, Any]) -> None:
@@ -32,22 +40,22 @@ class Refused(Exception):
         return f"{self.detail} ({self.code})"
 
 
-def refusal(response: httpx.Response) -> Refused:
-    """What an answer that is an error says, once it has been read."""
-    kind = response.headers.get("content-type", "").partition(";")[0]
-    if kind == "application/problem+json":
+def refused(response: httpx.Response) -> Refused:
+    """Return the exception for an error response that has been read."""
+    content_type = response.headers.get("content-type", "").partition(";")[0]
+    if content_type == "application/problem+json":
         return Refused(response.json())
     detail = f"{response.url} answered {response.status_code} {response.reason_phrase}"
     return Refused({"status": response.status_code, "code": "unknown", "detail": detail})
 
 
-def pause_before_next(answer: httpx.Response) -> float:
-    """Seconds that Retry-After asks for, written as a number or as a date."""
-    given = answer.headers.get("retry-after", "1")
-    if given.strip().isdecimal():
-        return max(float(given), _SOONEST)
+def retry_after(response: httpx.Response) -> float:
+    """Return the seconds that Retry-After asks for, as a number or as a date."""
+    header = response.headers.get("retry-after", str(int(_DEFAULT_SECONDS)))
+    if header.strip().isdecimal():
+        return max(float(header), _LEAST_SECONDS)
     try:
-        moment = parsedate_to_datetime(given)
+        date = parsedate_to_datetime(header)
     except ValueError:
-        return 1.0
-    return max((moment - datetime.now(UTC)).total_seconds(), _SOONEST)
+        return _DEFAULT_SECONDS
+    return max((date - datetime.now(UTC)).total_seconds(), _LEAST_SECONDS)

@@ -1,74 +1,95 @@
-"""The progress of a job, over as many connections as it takes."""
+"""Follow a job's progress over as many connections as it takes."""
 
+import json
 from typing import Any
 
 import httpx
-from httpx_sse import ServerSentEvent
-from paretour.errors import ASK_AGAIN, pause_before_next, refusal
-from paretour.values import FINAL, Progress
+from paretour.errors import RETRY_STATUSES, refused, retry_after
+from paretour.server_sent_events import EventParser, ServerSentEvent
+from paretour.values import FINAL_STATUSES, Progress
 
-HEARTBEAT = 15.0  # seconds between two signs of life
-_RECONNECT = 1.0  # seconds before a connection that broke is made anew
+HEARTBEAT_SECONDS = 15.0  # between two signs of life from the service
+_RECONNECT_SECONDS = 1.0  # before a connection that broke is made anew
 
 
-class Following:
-    """What has been heard of a job, and whether and when to listen again.
+class JobEvents:
+    """The events of one job: what arrived, whether it has ended, and when to connect again.
 
-    Connections may break, or be refused for now, for `patience` seconds between two news.
+    It opens no connection itself. Connections may break, or be refused for now, for `patience`
+    seconds between two events.
     """
 
-    def __init__(self, front: str, timeout: float, patience: float) -> None:
+    def __init__(self, front_id: str, timeout: float, patience: float) -> None:
         self.ended = False
-        self.pause = 0.0  # seconds before the next connection
-        self._front = front
+        self.delay = 0.0  # seconds before the next connection
+        self._front_id = front_id
         self._timeout = timeout
         self._patience = patience
         self._waited = 0.0
+        self._parser = EventParser()
 
     @property
-    def request(self) -> dict[str, Any]:
-        """How to connect."""
+    def arguments(self) -> dict[str, Any]:
+        """The keyword arguments of httpx.Client.stream for a connection."""
         return {
             "method": "GET",
-            "url": f"/front/{self._front}/events",
-            "timeout": httpx.Timeout(self._timeout, read=self._timeout + HEARTBEAT),
+            "url": f"/front/{self._front_id}/events",
+            "headers": {"Accept": "text/event-stream", "Cache-Control": "no-store"},
+            "timeout": httpx.Timeout(self._timeout, read=self._timeout + HEARTBEAT_SECONDS),
         }
 
-    def hear(self, event: ServerSentEvent) -> Progress | None:
-        """The progress in an event, if it is of that kind."""
+    def begin(self, response: httpx.Response) -> None:
+        """Begin to read a response that is no error.
+
+        Raises:
+            httpx.RemoteProtocolError: It is no stream of events.
+        """
+        self._parser = EventParser()
+        content_type = response.headers.get("content-type", "")
+        if "text/event-stream" not in content_type.partition(";")[0]:
+            demand = "Content-Type must be text/event-stream"
+            raise httpx.RemoteProtocolError(f"{demand}, got {content_type!r}")
+
+    def read(self, chunk: bytes) -> list[Progress]:
+        """Return the progress that a chunk of the stream reports."""
+        events = self._parser.feed(chunk)
+        return [progress for event in events if (progress := self._read(event)) is not None]
+
+    def _read(self, event: ServerSentEvent) -> Progress | None:
         self._waited = 0.0
-        if event.event == "status":
-            self.ended = event.json()["status"] in FINAL
-        return Progress(**event.json()) if event.event == "progress" else None
+        if event.type == "status":
+            self.ended = json.loads(event.data)["status"] in FINAL_STATUSES
+        return Progress(**json.loads(event.data)) if event.type == "progress" else None
 
-    def turned_away(self, answer: httpx.Response) -> None:
-        """Wait as long as a refusal asks for.
-
-        Raises:
-            Refused: it is no use, or too late.
-        """
-        if answer.status_code not in ASK_AGAIN or not self._wait(pause_before_next(answer)):
-            raise refusal(answer)
-
-    def broke(self, error: httpx.TransportError) -> None:
-        """Wait a little after a connection broke.
+    def finish(self) -> None:
+        """Check that a stream which is over did not end before the job.
 
         Raises:
-            TransportError: that one, if it is too late.
-        """
-        if not self._wait(_RECONNECT):
-            raise error
-
-    def closed(self) -> None:
-        """The connection is over.
-
-        Raises:
-            TransportError: and should not be yet.
+            httpx.RemoteProtocolError: It did.
         """
         if not self.ended:
             raise httpx.RemoteProtocolError("the events ended before the job did")
 
+    def retry_refusal(self, response: httpx.Response) -> None:
+        """Set the delay that a refusal asks for.
+
+        Raises:
+            Refused: Connecting again would not help, or patience is over.
+        """
+        if response.status_code not in RETRY_STATUSES or not self._wait(retry_after(response)):
+            raise refused(response)
+
+    def retry_error(self, error: httpx.TransportError) -> None:
+        """Set a short delay after a connection broke.
+
+        Raises:
+            httpx.TransportError: The error given, once patience is over.
+        """
+        if not self._wait(_RECONNECT_SECONDS):
+            raise error
+
     def _wait(self, seconds: float) -> bool:
-        self.pause = seconds
+        """Set the delay; return whether patience lasts so long."""
+        self.delay = seconds
         self._waited += seconds
         return self._waited <= self._patience

@@ -1,4 +1,4 @@
-"""Requests to plan, as they travel: JSON, and beside it what is better sent as a file."""
+"""Build the requests that have a front planned: JSON, and a file beside it where one is better."""
 
 import json
 from collections.abc import Mapping
@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from paretour.values import CoverageRequest, FrontRequest
 
-_USUAL_TIME_LIMIT = 1.0  # what the service takes where a request says nothing
-_BOUND_SECONDS = 5.0  # what it takes at most to prove a bound
+_DEFAULT_TIME_LIMIT = 1.0  # seconds, the service's own
+_BOUND_SECONDS = 5.0  # that the service takes at most to prove a bound
 
 
 @dataclass(frozen=True)
 class File:
-    """The content of a part of a request, and the part's name."""
+    """A file of a multipart request: the name of its part, and its content."""
 
     part: str
     content: bytes
@@ -23,7 +23,7 @@ class File:
 
 @dataclass(frozen=True)
 class Plan:
-    """Where a request is posted, and what it says."""
+    """A request to plan: the path to post to, its JSON members, and maybe a file."""
 
     path: str
     request: Mapping[str, Any]
@@ -31,19 +31,19 @@ class Plan:
 
     @property
     def seconds(self) -> float:
-        """How long the search for an answer may take, by what is asked, if that makes sense."""
-        limit = self.request.get("time_limit", _USUAL_TIME_LIMIT)
+        """The most seconds that search and bound may take; the default for an invalid limit."""
+        limit = self.request.get("time_limit", _DEFAULT_TIME_LIMIT)
         bound = _BOUND_SECONDS if self.request.get("bound") else 0.0
-        return bound + (limit if isinstance(limit, int | float) else _USUAL_TIME_LIMIT)
+        return bound + (limit if isinstance(limit, int | float) else _DEFAULT_TIME_LIMIT)
 
     @property
     def json(self) -> bytes:
-        """What is not in the file."""
-        return json.dumps(self.request, default=_plain).encode()
+        """The members as JSON, without the file."""
+        return json.dumps(self.request, default=_listed).encode()
 
     @property
     def body(self) -> dict[str, Any]:
-        """What httpx is told of it."""
+        """The keyword arguments of httpx.Client.request for the body."""
         if self.file is None:
             return {"content": self.json, "headers": {"Content-Type": "application/json"}}
         parts = {"request": self.json, self.file.part: self.file.content}
@@ -51,20 +51,20 @@ class Plan:
 
 
 def front_plan(request: FrontRequest) -> Plan:
-    """A plan for cities. Matrices that are an array travel as it lies in memory."""
-    given: dict[str, Any] = dict(request)
-    if not isinstance(given.get("matrices"), np.ndarray):
-        return Plan("/front", given)
+    """Return the request to POST /front, with matrices that are an array as a NumPy file."""
+    members: dict[str, Any] = dict(request)
+    if not isinstance(members.get("matrices"), np.ndarray):
+        return Plan("/front", members)
     content = BytesIO()
-    np.save(content, given.pop("matrices"), allow_pickle=False)
-    return Plan("/front", given, File("matrices", content.getvalue()))
+    np.save(content, members.pop("matrices"), allow_pickle=False)
+    return Plan("/front", members, File("matrices", content.getvalue()))
 
 
 def coverage_plan(request: CoverageRequest, png: bytes | None) -> Plan:
-    """A plan for a map, which is the request's grid or the content of a PNG file."""
+    """Return the request to POST /coverage. The map is its grid, or the content of a PNG file."""
     return Plan("/coverage", request, None if png is None else File("map", png))
 
 
-def _plain(array: Any) -> Any:
-    """What JSON has for an array, or for a number of one."""
+def _listed(array: Any) -> Any:
+    """Return an array as nested lists, and a scalar of NumPy as a number."""
     return array.tolist()

@@ -1,13 +1,12 @@
-"""The client for programs that wait."""
+"""The client for synchronous programs, and its jobs."""
 
 import time
 from collections.abc import Iterator
 from typing import Self, TypeVar, Unpack
 
 import httpx
-from httpx_sse import connect_sse
-from paretour.calls import Call, Calls, identity
-from paretour.events import Following
+from paretour.calls import Call, Calls, auth_headers
+from paretour.events import JobEvents
 from paretour.requests import Plan, coverage_plan, front_plan
 from paretour.values import Actor, CoverageRequest, Front, FrontRequest, Progress, Tour
 
@@ -15,18 +14,19 @@ T = TypeVar("T")
 
 
 class Client:
-    """A service at a URL; also a context manager that closes its connections.
+    """A client of the service at a URL. As a context manager it closes its connections.
 
     Args:
-        url: Where the service answers.
-        api_key: For a service that asks for one.
-        timeout: Seconds to wait for an answer, beyond the time limit of what was asked.
-        patience: Seconds, in all, to wait and ask again where the service says later (429, 503).
-        transport: What carries requests instead of the network.
+        url: The address of the service.
+        api_key: The API key, for a service that demands one.
+        timeout: Seconds to wait for a response, beyond those that the search may take.
+        patience: Seconds, in all, to wait and retry a call where the service asks for it (429,
+            503) before Refused is raised.
+        transport: A transport of httpx in place of the network.
 
     Raises:
-        Refused: by any call, where the service did not do what was asked.
-        httpx.TransportError: by any call, where there was no answer.
+        Refused: By any call, where the service answers with a refusal.
+        httpx.TransportError: By any call, where there is no answer.
     """
 
     def __init__(
@@ -38,51 +38,56 @@ class Client:
         patience: float = 60.0,
         transport: httpx.BaseTransport | None = None,
     ) -> None:
-        http = httpx.Client(base_url=url, headers=identity(api_key), transport=transport)
-        self._driver = _Driver(http)
+        http = httpx.Client(base_url=url, headers=auth_headers(api_key), transport=transport)
+        self._connection = _Connection(http)
         self._calls = Calls(timeout=timeout, patience=patience)
 
     def front(self, **request: Unpack[FrontRequest]) -> Front:
-        """The front of the cities, once its time limit is over or nothing more is found."""
+        """Plan a front and wait for it: until its time limit, or until nothing more is found."""
         return self.plan(front_plan(request))
 
     def coverage(self, png: bytes | None = None, **request: Unpack[CoverageRequest]) -> Front:
-        """The front of the places on a map, the content of a PNG file unless it is the grid."""
+        """Plan a front over a map and wait for it.
+
+        Args:
+            png: The map as the content of a PNG file, instead of a grid in the request.
+            **request: The members of the request.
+        """
         return self.plan(coverage_plan(request, png))
 
     def submit(self, **request: Unpack[FrontRequest]) -> "Job":
-        """Have a front planned without waiting for it."""
+        """Submit a job that plans a front."""
         return self.post(front_plan(request))
 
     def submit_coverage(
         self, png: bytes | None = None, **request: Unpack[CoverageRequest]
     ) -> "Job":
-        """Have places on a map planned without waiting for it."""
+        """Submit a job that plans a front over a map; arguments as of `coverage`."""
         return self.post(coverage_plan(request, png))
 
     def plan(self, plan: Plan) -> Front:
-        """The front of whatever a plan says."""
-        return self._driver.make(self._calls.plan(plan))
+        """Send a plan that was built before, and wait for the front."""
+        return self._connection.run(self._calls.plan(plan))
 
     def post(self, plan: Plan) -> "Job":
-        """Have whatever a plan says planned without waiting for it."""
-        return self.job(self._driver.make(self._calls.submit(plan)))
+        """Send a plan that was built before, as a job."""
+        return self.job(self._connection.run(self._calls.submit(plan)))
 
     def job(self, front: str) -> "Job":
-        """The job that plans, or planned, the front with this id."""
-        return Job(front, self._driver, self._calls)
+        """Return the job of a front by its id, without asking whether the service knows it."""
+        return Job(front, self._connection, self._calls)
 
     def tour(self, angle: float, front: str | None = None) -> Tour:
-        """The tour nearest to an angle in degrees, of a front by its id, or of the latest."""
-        return self._driver.make(self._calls.tour(angle, front))
+        """Return the tour nearest to an angle in degrees, of a front by its id or of the latest."""
+        return self._connection.run(self._calls.tour(angle, front))
 
     def actors(self) -> tuple[Actor, ...]:
-        """The networks to choose from."""
-        return self._driver.make(self._calls.actors())
+        """Return the actors that the service has loaded."""
+        return self._connection.run(self._calls.actors())
 
     def close(self) -> None:
-        """Close its connections."""
-        self._driver.close()
+        """Close the connections."""
+        self._connection.close()
 
     def __enter__(self) -> Self:
         return self
@@ -92,65 +97,73 @@ class Client:
 
 
 class Job:
-    """A front that is planned while the program does something else; `id` is the front's."""
+    """A front that is planned while the program does something else.
 
-    def __init__(self, front: str, driver: "_Driver", calls: Calls) -> None:
-        self.id = front
-        self._driver = driver
+    Attributes:
+        id: The id of the front.
+    """
+
+    def __init__(self, front_id: str, connection: "_Connection", calls: Calls) -> None:
+        self.id = front_id
+        self._connection = connection
         self._calls = calls
 
     def progress(self) -> Iterator[Progress]:
-        """How far the search has come, again and again until it ends."""
-        return self._driver.follow(self._calls.following(self.id))
+        """Yield the progress of the search until the job ends."""
+        return self._connection.follow(self._calls.events(self.id))
 
     def front(self) -> Front:
-        """The best front so far."""
-        return self._driver.make(self._calls.stored(self.id))
+        """Return the best front so far."""
+        return self._connection.run(self._calls.stored(self.id))
 
     def result(self) -> Front:
-        """The front, once the job has ended. A job that failed raises Refused."""
+        """Wait for the job to end and return its front.
+
+        Raises:
+            Refused: The job failed.
+        """
         for _ in self.progress():
             pass
-        return self._driver.make(self._calls.result(self.id))
+        return self._connection.run(self._calls.result(self.id))
 
     def cancel(self) -> Front:
-        """End the job now; the best front so far."""
-        return self._driver.make(self._calls.cancel(self.id))
+        """End the job now and return the best front so far."""
+        return self._connection.run(self._calls.cancel(self.id))
 
     def forget(self) -> None:
-        """Have the service forget a front whose job has ended."""
-        self._driver.make(self._calls.forget(self.id))
+        """Delete the front of a job that has ended from the service."""
+        self._connection.run(self._calls.forget(self.id))
 
 
-class _Driver:
-    """Carries calls over connections, one after the other."""
+class _Connection:
+    """An httpx.Client that runs calls and follows jobs."""
 
     def __init__(self, http: httpx.Client) -> None:
         self._http = http
         self.close = http.close
 
-    def make(self, call: Call[T]) -> T:
-        ask = next(call)
+    def run(self, call: Call[T]) -> T:
+        request = next(call)
         while True:
-            time.sleep(ask.after)
-            answer = self._http.request(**ask.request)
+            time.sleep(request.delay)
+            response = self._http.request(**request.arguments)
             try:
-                ask = call.send(answer)
-            except StopIteration as made:
-                return made.value
+                request = call.send(response)
+            except StopIteration as finished:
+                return finished.value
 
-    def follow(self, following: Following) -> Iterator[Progress]:
-        while not following.ended:
-            time.sleep(following.pause)
+    def follow(self, events: JobEvents) -> Iterator[Progress]:
+        while not events.ended:
+            time.sleep(events.delay)
             try:
-                with connect_sse(self._http, **following.request) as source:
-                    if source.response.is_error:
-                        source.response.read()
-                        following.turned_away(source.response)
+                with self._http.stream(**events.arguments) as response:
+                    if response.is_error:
+                        response.read()
+                        events.retry_refusal(response)
                         continue
-                    for event in source.iter_sse():
-                        if (progress := following.hear(event)) is not None:
-                            yield progress
-                following.closed()
+                    events.begin(response)
+                    for chunk in response.iter_bytes():
+                        yield from events.read(chunk)
+                events.finish()
             except httpx.TransportError as error:
-                following.broke(error)
+                events.retry_error(error)

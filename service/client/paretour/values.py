@@ -1,4 +1,4 @@
-"""What is asked of the service and what it answers, as typed values with arrays."""
+"""Typed requests, and answers as immutable values with arrays."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
-A = TypeVar("A", bound=NDArray[Any])
-FINAL = ("done", "cancelled", "failed")
+AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
+FINAL_STATUSES = ("done", "cancelled", "failed")
 Status = Literal["queued", "running", "done", "cancelled", "failed"]
 
 
 class PlanRequest(TypedDict, total=False):
-    """What any request may ask of a front. The service's documentation says what each means."""
+    """The members that every request to plan may have; the service's /docs explains them."""
 
     preferences: int | ArrayLike
     time_limit: float
@@ -28,7 +28,7 @@ class PlanRequest(TypedDict, total=False):
 
 
 class FrontRequest(PlanRequest, total=False):
-    """The members of a request to POST /front: coordinates or matrices, and how to plan."""
+    """The members of a request to POST /front, with either coordinates or matrices."""
 
     coordinates: ArrayLike
     matrices: ArrayLike
@@ -36,7 +36,7 @@ class FrontRequest(PlanRequest, total=False):
 
 
 class CoverageRequest(PlanRequest, total=False):
-    """The members of a request to POST /coverage: a map, places, a second objective."""
+    """The members of a request to POST /coverage: map, places, second objective."""
 
     grid: ArrayLike
     cell_size: float
@@ -51,7 +51,7 @@ class CoverageRequest(PlanRequest, total=False):
 
 @dataclass(frozen=True, kw_only=True)
 class Progress:
-    """How far a job has come: hypervolume and number of points, so many seconds into its search."""
+    """The hypervolume and the number of points of a job, `seconds` after its search began."""
 
     seconds: float
     hypervolume: float
@@ -60,7 +60,12 @@ class Progress:
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """The cells of a map, rows and columns, shape (m, 2), that a tour leads over and back."""
+    """The way of a tour over a map, and its length.
+
+    Attributes:
+        cells: Rows and columns, shape (m, 2), from the first place back to it.
+        metres: The length.
+    """
 
     cells: NDArray[np.int64]
     metres: float
@@ -68,9 +73,14 @@ class Path:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Tour:
-    """A tour of the front with this id: cities, shape (n,), both lengths, and its angle.
+    """A tour of a front.
 
-    Over a map it visits places, and has a path where paths were asked for.
+    Attributes:
+        front: The id of the front.
+        angle: The direction of its lengths in objective space, in degrees.
+        lengths: Its length under each objective, shape (2,).
+        tour: Its cities, or over a map its places, in order, shape (n,).
+        path: Its way over a map, where the request asked for paths.
     """
 
     front: str
@@ -82,11 +92,24 @@ class Tour:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Front:
-    """Tours, shape (m, n), with lengths, shape (m, 2), and angles in degrees, shape (m,).
+    """The tours of a front, in order of their first length.
 
-    They ascend by their first length. Of `points` nondominated tours found these are the ones
-    returned. Over a map, cities are `places`, rows and columns, shape (n, 2), and each tour has a
-    path where paths were asked for. `document` is the answer as it came, with every member.
+    Attributes:
+        id: The id under which the service stores the front.
+        status: The status of its job.
+        tours: The cities of each tour in order, shape (m, n).
+        lengths: The lengths of each tour, shape (m, 2).
+        angles: The direction of the lengths of each tour, in degrees, shape (m,).
+        points: The number of nondominated tours found, of which these are returned.
+        hypervolume: The share of the box at the reference point that the points found dominate.
+        hypervolume_bound: The most that any front can have, where a bound was asked for.
+        reference_point: The reference point of the hypervolume, shape (2,).
+        scale: The length that is 1 in scaled objectives, shape (2,).
+        actor: The name of the network.
+        terminated: Why the search ended; None while it runs.
+        places: Over a map, the row and column of each city, shape (n, 2).
+        paths: Over a map, the way of each tour, where the request asked for paths.
+        document: The answer as it came, with every member.
     """
 
     id: str
@@ -106,10 +129,10 @@ class Front:
     document: Mapping[str, Any]
 
     def nearest(self, angle: float) -> Tour:
-        """The tour whose direction is nearest to an angle in degrees.
+        """Return the tour whose direction is nearest to an angle in degrees.
 
         Raises:
-            ValueError: the front is still empty.
+            ValueError: The front is still empty.
         """
         index = int(np.abs(self.angles - angle).argmin())
         return Tour(
@@ -123,7 +146,18 @@ class Front:
 
 @dataclass(frozen=True, kw_only=True)
 class Actor:
-    """A network to choose: SHA-256 of its file, what it reads, and what was measured of it."""
+    """A network that the service has loaded.
+
+    Attributes:
+        name: The name to choose it by.
+        digest: The SHA-256 of its file.
+        inputs: The kind of instance that it reads, `coordinates` or `matrices`.
+        commit: The commit of the source that exported it.
+        sizes: The least and the most cities that it was trained on.
+        angles: The least and the greatest angle that it was trained on, in degrees.
+        config: The configuration of its training.
+        figures: Its hypervolumes, as measured at export.
+    """
 
     name: str
     digest: str
@@ -135,11 +169,11 @@ class Actor:
     figures: Any
 
 
-def front_of(document: Mapping[str, Any]) -> Front:
-    """The front in an answer."""
+def parse_front(document: Mapping[str, Any]) -> Front:
+    """Return the front in a JSON answer."""
     items: Sequence[Mapping[str, Any]] = document["front"]
-    tours = _whole([item["tour"] for item in items])
-    paths = tuple(path for item in items if (path := _path_of(item)) is not None)
+    tours = _integers([item["tour"] for item in items])
+    paths = tuple(path for item in items if (path := _parse_path(item)) is not None)
     return Front(
         id=document["id"],
         status=document["status"],
@@ -153,37 +187,37 @@ def front_of(document: Mapping[str, Any]) -> Front:
         scale=_floats(document["scale"]),
         actor=document["actor"]["name"],
         terminated=document["terminated"],
-        places=_whole(document["places"]) if "places" in document else None,
+        places=_integers(document["places"]) if "places" in document else None,
         paths=paths or None,
         document=document,
     )
 
 
-def tour_of(document: Mapping[str, Any]) -> Tour:
-    """The tour in an answer."""
+def parse_tour(document: Mapping[str, Any]) -> Tour:
+    """Return the tour in a JSON answer."""
     return Tour(
         front=document["front"],
         angle=document["angle"],
         lengths=_floats(document["lengths"]),
-        tour=_whole(document["tour"]),
-        path=_path_of(document),
+        tour=_integers(document["tour"]),
+        path=_parse_path(document),
     )
 
 
-def _path_of(item: Mapping[str, Any]) -> Path | None:
+def _parse_path(item: Mapping[str, Any]) -> Path | None:
     if "path" not in item:
         return None
-    return Path(_whole(item["path"]["cells"]), item["path"]["metres"])
+    return Path(_integers(item["path"]["cells"]), item["path"]["metres"])
 
 
-def _whole(values: Any) -> NDArray[np.int64]:
-    return _fixed(np.array(values, dtype=np.int64))
+def _integers(values: Any) -> NDArray[np.int64]:
+    return _read_only(np.array(values, dtype=np.int64))
 
 
 def _floats(values: Any) -> Array:
-    return _fixed(np.array(values, dtype=np.float64))
+    return _read_only(np.array(values, dtype=np.float64))
 
 
-def _fixed(array: A) -> A:
+def _read_only(array: AnyArray) -> AnyArray:
     array.setflags(write=False)
     return array

@@ -1,0 +1,59 @@
+"""Parse server-sent events, by the grammar in section 9.2 of the WHATWG's HTML standard.
+
+Event ids and reconnection times are skipped: the service resumes a stream without them.
+"""
+
+import codecs
+import re
+from dataclasses import dataclass
+
+_LINE_END = re.compile("\r\n|\r|\n")
+
+
+@dataclass(frozen=True)
+class ServerSentEvent:
+    """An event: its type, and its data, lines with a line feed between them."""
+
+    type: str
+    data: str
+
+
+class EventParser:
+    """A parser of one stream, which is fed chunks of bytes that may end anywhere."""
+
+    def __init__(self) -> None:
+        # "utf-8-sig" drops a byte order mark at the beginning, as the standard demands.
+        self._decoder = codecs.getincrementaldecoder("utf-8-sig")(errors="replace")
+        self._after_return = False  # whether a line feed would belong to the line end before it
+        self._line = ""
+        self._type = ""
+        self._data: list[str] = []
+
+    def feed(self, chunk: bytes) -> list[ServerSentEvent]:
+        """Return the events that end in a chunk."""
+        text = self._decoder.decode(chunk)
+        if not text:
+            return []
+        if self._after_return:
+            text = text.removeprefix("\n")
+        self._after_return = text.endswith("\r")
+        *lines, self._line = _LINE_END.split(self._line + text)
+        return [event for line in lines if (event := self._read(line)) is not None]
+
+    def _read(self, line: str) -> ServerSentEvent | None:
+        """Return the event that a line ends, an empty one after data."""
+        if not line:
+            return self._dispatch()
+        field, _, value = line.partition(":")  # of a comment, the field is empty
+        value = value.removeprefix(" ")
+        if field == "event":
+            self._type = value
+        elif field == "data":
+            self._data.append(value)
+        return None
+
+    def _dispatch(self) -> ServerSentEvent | None:
+        event = ServerSentEvent(self._type or "message", "\n".join(self._data))
+        ended = bool(self._data)
+        self._type, self._data = "", []
+        return event if ended else None

@@ -1,0 +1,47 @@
+"""What a request to plan says on its way to the service."""
+
+import json
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+import pytest
+from paretour import coverage_plan, front_plan
+
+CITIES = np.random.default_rng(3).random((12, 4))
+
+
+def test_arrays_travel_as_numbers() -> None:
+    plan = front_plan(
+        {"coordinates": CITIES[:2], "preferences": np.array([1.5]), "seed": np.int64(3)}
+    )
+    sent = json.loads(plan.body["content"])
+    assert plan.path == "/front"
+    assert sent == {"coordinates": CITIES[:2].tolist(), "preferences": [1.5], "seed": 3}
+
+
+def test_matrices_that_are_an_array_travel_as_a_file() -> None:
+    matrices = np.arange(18.0).reshape(2, 3, 3)
+    parts = front_plan({"matrices": matrices, "size": 5}).body["files"]
+    assert json.loads(parts["request"][1]) == {"size": 5}
+    np.testing.assert_array_equal(np.load(BytesIO(parts["matrices"][1])), matrices)
+
+
+def test_a_map_is_a_file_or_a_grid() -> None:
+    of_picture, of_grid = coverage_plan({}, b"PNG"), coverage_plan({"grid": [[0]]}, None)
+    assert of_picture.path == of_grid.path == "/coverage"
+    assert of_picture.body["files"]["map"] == ("map", b"PNG")
+    assert json.loads(of_grid.body["content"]) == {"grid": [[0]]}
+
+
+@pytest.mark.parametrize(
+    ("request_", "seconds"),
+    [
+        ({}, 1),
+        ({"time_limit": 60}, 60),
+        ({"time_limit": 2, "bound": True}, 7),
+        ({"time_limit": "long"}, 1),
+    ],
+)
+def test_a_plan_knows_how_long_it_may_take(request_: dict[str, Any], seconds: float) -> None:
+    assert front_plan(request_).seconds == seconds  # type: ignore[arg-type]

@@ -1,0 +1,33 @@
+"""Answers become values."""
+
+import pytest
+from paretour.values import parse_front, parse_tour
+
+from tests.helpers.answers import EMPTY, FRONT
+
+
+def test_arrays_cannot_be_written_to() -> None:
+    front = parse_front(FRONT)
+    with pytest.raises(ValueError, match="read-only"):
+        front.tours[0, 0] = 1
+
+
+def test_an_empty_front_has_shapes_all_the_same() -> None:
+    front = parse_front(EMPTY)
+    assert (front.tours.shape, front.lengths.shape, front.angles.shape) == ((0, 3), (0, 2), (0,))
+    with pytest.raises(ValueError, match="empty"):
+        front.nearest(45)
+
+
+def test_the_nearest_tour_is_that_of_the_nearest_angle() -> None:
+    tour = parse_front(FRONT).nearest(40)
+    assert (tour.front, tour.angle, tour.tour.tolist()) == ("f", 30.0, [0, 2, 1])
+
+
+def test_a_tour_over_a_map_has_its_path() -> None:
+    path = {"cells": [[0, 0], [0, 1]], "metres": 2.0}
+    tour = parse_tour(
+        {"front": "f", "angle": 45.0, "lengths": [1, 2], "tour": [0, 1], "path": path}
+    )
+    assert tour.path is not None
+    assert (tour.path.cells.tolist(), tour.path.metres) == ([[0, 0], [0, 1]], 2.0)
