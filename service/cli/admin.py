@@ -1,43 +1,41 @@
-"""The commands of an operator: serve, work, key."""
+"""The commands of an operator: serve, work and key."""
 
 import sys
 
 import typer
 
 from service.api.auth import KeyHash, new_key
-from service.cli.errors import UsageError, configured, ended, explaining, loaded
+from service.cli.configuration import load_settings, load_with
+from service.cli.errors import EXIT_STALLED, UsageError, exit_on_error, exit_with
 from service.server import build, build_work, serve, takes_work
 
 
 def run_serve(host: str | None, port: int | None, workers: int | None) -> None:
-    """Answer requests until told to stop. What is None is left to the settings."""
-    with explaining():
-        settings = configured(host=host, port=port, workers=workers)
-        app = loaded(build, settings)
+    """Answer requests until a signal ends it. An option that is None is left to the settings."""
+    with exit_on_error():
+        settings = load_settings(host=host, port=port, workers=workers)
+        app = load_with(build, settings)
     serve(app, settings)
 
 
-STALLED = 1
-
-
 def run_work(workers: int | None) -> None:
-    """Plan what replicas ask for until told to stop. What is None is left to the settings."""
-    with explaining():
-        work = loaded(build_work, configured(workers=workers))
+    """Run a worker of a cluster until a signal ends it; exit with its status."""
+    with exit_on_error():
+        work = load_with(build_work, load_settings(workers=workers))
     sys.exit(work())
 
 
 def run_alive() -> None:
-    """End with 0, or where what works on this machine takes no work with 1."""
-    with explaining():
-        if not loaded(takes_work, configured()):
-            raise ended("no worker of this machine takes what waits", STALLED)
+    """Exit with 0 if the worker on this machine takes tasks, with EXIT_STALLED if it does not."""
+    with exit_on_error():
+        if not load_with(takes_work, load_settings()):
+            raise exit_with("no worker of this machine takes what waits", EXIT_STALLED)
 
 
 def run_key(caller: str) -> None:
-    """Print a new key, and what the settings need to know of it."""
+    """Print a new API key for a caller, and its entry for PARETOUR_API_KEYS."""
     key, digest = new_key()
-    with explaining():
+    with exit_on_error():
         try:
             KeyHash(caller=caller, digest=digest)
         except ValueError as error:

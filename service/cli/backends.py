@@ -1,159 +1,117 @@
-"""Who plans for the command: this process, or a service at a URL."""
+"""The two backends that plan for the command: this process, and a service at a URL."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from pathlib import Path
-from typing import Any, Protocol, cast
+from typing import Protocol
 
-from paretour import (
-    Actor,
-    Client,
-    CoverageRequest,
-    Front,
-    FrontRequest,
-    Plan,
-    coverage_plan,
-    front_plan,
-)
+from paretour import Actor, Client, Front, Plan
 from paretour.values import parse_front
 from rich.console import Console
 
-from service.actor import load_actors
-from service.cli.errors import UsageError, configured, loaded
-from service.cli.files import read_layer, read_map, read_request
-from service.cli.progress import interruptible, watching
-from service.errors import InvalidInstance, Refusal
-from service.jobs.runner import load_planner
-from service.requests.task import Work
+from service.cli.errors import UsageError
+from service.cli.progress import interrupt_flag, progress_bar
 
 
-def plan_there(client: Client, plan: Plan, stderr: Console) -> Front:
-    """The front that the service finds, or had found when Ctrl-C was pressed."""
-    job = client.post(plan)
-    try:
-        with watching(stderr, plan) as tell:
-            for progress in job.progress():
-                tell(progress)
-        return job.result()
-    except KeyboardInterrupt:
-        found = job.cancel()
-        if not len(found.tours):
-            raise
-        return found
+class Backend(Protocol):
+    """A planner of fronts, with progress on a console while it plans.
 
+    Ctrl-C ends a search early: the front is then the best so far.
+    """
 
-def plan_here(plan: Plan, stderr: Console) -> Front:
-    """The front, as the service would answer it, or what was found when Ctrl-C was pressed."""
-    planner = loaded(lambda its: load_planner(its.actors, its.threads, its.limits), configured())
-    if plan.seconds != 0:
-        with stderr.status("loading the search; the first time it is compiled, for half a minute"):
-            planner.warm_up()
-    with interruptible() as stop, watching(stderr, plan) as tell:
-        try:
-            found = planner.plan(_work(plan), stop, tell)
-        except (Refusal, InvalidInstance) as error:
-            raise UsageError(str(error)) from None
-    status = "cancelled" if stop() else "done"
-    return parse_front(json.loads(found.json(id="", status=status)))
-
-
-def _work(plan: Plan) -> Work:
-    upload = None if plan.file is None else plan.file.content
-    return Work("coverage" if plan.path == "/coverage" else "front", plan.json, upload)
-
-
-def actors_here() -> tuple[Actor, ...]:
-    """The networks to choose from."""
-    actors = loaded(lambda its: load_actors(its.actors, its.threads), configured())
-    return tuple(Actor(**asdict(actor.facts)) for _, actor in sorted(actors.items()))
-
-
-Options = Mapping[str, Any]
-
-
-class Asked(Protocol):
-    """What files and options ask for together."""
-
-    def plan(self) -> Plan:
-        """What is to be planned.
+    def front(self, plan: Plan, console: Console) -> Front:
+        """Plan a front.
 
         Raises:
-            UnreadableFile: a file is nothing that can be planned.
-            OSError: there is no such file.
-            UsageError: an option says nothing.
+            KeyboardInterrupt: Ctrl-C was pressed before there was a front.
         """
 
-
-@dataclass(frozen=True, kw_only=True)
-class Cities:
-    """Cities in a file, or one for each objective; options that are None leave it to the file."""
-
-    file: Path
-    file2: Path | None
-    unrounded: bool
-    angles: str | None = None
-    options: Options
-
-    def plan(self) -> Plan:
-        """The cities' front."""
-        files = [self.file] if self.file2 is None else [self.file, self.file2]
-        read = read_request(files, unrounded=self.unrounded)
-        given = {**self.options, "preferences": self._angles()}
-        return front_plan(cast(FrontRequest, {**read, **_without_none(given)}))
-
-    def _angles(self) -> list[float] | None:
-        try:
-            return None if self.angles is None else [float(a) for a in self.angles.split(",")]
-        except ValueError:
-            sentence = f"--angles must be numbers with commas between, got {self.angles!r}"
-            raise UsageError(sentence) from None
+    def actors(self) -> tuple[Actor, ...]:
+        """Return the actors to choose from."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Map:
-    """A map in a file, costs on it in another; options that are None leave it to the file."""
-
-    file: Path
-    cost_layer: Path | None
-    options: Options
-
-    def plan(self) -> Plan:
-        """The front of places on the map."""
-        read, png = read_map(self.file)
-        layer = None if self.cost_layer is None else read_layer(self.cost_layer)
-        given = _without_none({**self.options, "cost_layer": layer})
-        return coverage_plan(cast(CoverageRequest, {**read, **given}), png)
-
-
-def _without_none(options: Options) -> dict[str, Any]:
-    return {name: value for name, value in options.items() if value is not None}
+def backend_for(url: str | None, api_key: str | None) -> Backend:
+    """Return the service at a URL as a backend, or without a URL this process."""
+    return LocalBackend() if url is None else RemoteBackend(url, api_key)
 
 
 @dataclass(frozen=True)
-class Planner:
-    """The service at a URL, or this process.
+class RemoteBackend:
+    """A service at a URL, which is told what to plan as a job."""
 
-    What plans in this process is imported where it does, as it takes a second and the compiler.
-    """
-
-    url: str | None
+    url: str
     api_key: str | None
 
-    def front(self, plan: Plan, stderr: Console) -> Front:
-        """The front that is to be planned."""
-        if self.url is not None:
-            with Client(self.url, api_key=self.api_key) as client:
-                return plan_there(client, plan, stderr)
-        from service.cli.backends import plan_here
+    def front(self, plan: Plan, console: Console) -> Front:
+        """Plan a front.
 
-        return plan_here(plan, stderr)
+        Raises:
+            Refused: The service does not plan it.
+            KeyboardInterrupt: Ctrl-C was pressed before there was a front.
+        """
+        with self._client() as client:
+            job = client.post(plan)
+            try:
+                with progress_bar(console, plan.seconds) as show:
+                    for progress in job.progress():
+                        show(progress)
+                return job.result()
+            except KeyboardInterrupt:
+                front = job.cancel()
+                if not len(front.tours):
+                    raise
+                return front
 
     def actors(self) -> tuple[Actor, ...]:
-        """The networks to choose from."""
-        if self.url is not None:
-            with Client(self.url, api_key=self.api_key) as client:
-                return client.actors()
-        from service.cli.backends import actors_here
+        """Return the actors that the service has loaded."""
+        with self._client() as client:
+            return client.actors()
 
-        return actors_here()
+    def _client(self) -> Client:
+        return Client(self.url, api_key=self.api_key)
+
+
+class LocalBackend:
+    """This process.
+
+    The service's own modules are imported where they are needed: they take a second and load the
+    compiler, which a command does not wait for that is refused or has a URL.
+    """
+
+    def front(self, plan: Plan, console: Console) -> Front:
+        """Plan a front.
+
+        Raises:
+            UsageError: The request cannot be planned.
+        """
+        from service.cli.configuration import load_settings, load_with
+        from service.errors import Refusal
+        from service.jobs.runner import load_planner
+        from service.requests.task import Work
+
+        planner = load_with(
+            lambda settings: load_planner(settings.actors, settings.threads, settings.limits),
+            load_settings(),
+        )
+        upload = None if plan.file is None else plan.file.content
+        work = Work("coverage" if plan.path == "/coverage" else "front", plan.json, upload)
+        if plan.seconds != 0:
+            announcement = "loading the search; the first time it is compiled, for half a minute"
+            with console.status(announcement):
+                planner.warm_up()
+        with interrupt_flag() as interrupted, progress_bar(console, plan.seconds) as show:
+            try:
+                document = planner.plan(work, interrupted, show)
+            except Refusal as error:
+                raise UsageError(str(error)) from None
+        status = "cancelled" if interrupted() else "done"
+        return parse_front(json.loads(document.json(id="", status=status)))
+
+    def actors(self) -> tuple[Actor, ...]:
+        """Return the actors in the directory that the settings name."""
+        from service.actor import load_actors
+        from service.cli.configuration import load_settings, load_with
+
+        loaded = load_with(
+            lambda settings: load_actors(settings.actors, settings.threads), load_settings()
+        )
+        return tuple(Actor(**asdict(actor.facts)) for _, actor in sorted(loaded.items()))

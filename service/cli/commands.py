@@ -1,8 +1,10 @@
-"""The commands of `paretour`.
+"""The commands of `paretour`, with their arguments and options.
 
-Each imports what it needs where it runs: help, or the refusal of an option, waits for nothing.
+Each command imports the modules that it needs when it runs, so that --help, and the refusal of an
+option, come at once.
 """
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -57,15 +59,16 @@ def front(  # noqa: PLR0913  an option each
     api_key: ApiKey = None,
 ) -> None:
     """Plan the front of tours through the cities of a file, or of one for each objective."""
-    from service.cli.backends import Cities, Planner
-    from service.cli.output import Shown, run_front
+    from service.cli.backends import backend_for
+    from service.cli.output import OutputFormat, run_front
+    from service.cli.plans import plan_cities
 
     options = {"time_limit": time_limit, "size": size, "start": start, "seed": seed, "actor": actor}
     options["augment"] = augment
     run_front(
-        Cities(file=file, file2=file2, unrounded=unrounded, angles=angles, options=options),
-        Planner(url, api_key),
-        Shown(as_json=as_json, as_csv=as_csv, plot=plot),
+        partial(plan_cities, file, file2, unrounded=unrounded, angles=angles, options=options),
+        backend_for(url, api_key),
+        OutputFormat(as_json=as_json, as_csv=as_csv, plot=plot),
     )
 
 
@@ -88,13 +91,14 @@ def tour(  # noqa: PLR0913  an option each
     api_key: ApiKey = None,
 ) -> None:
     """Plan a front and print its tour nearest to an angle."""
-    from service.cli.backends import Cities, Planner
+    from service.cli.backends import backend_for
     from service.cli.output import run_tour
+    from service.cli.plans import plan_cities
 
     options = {"time_limit": time_limit, "start": start, "seed": seed, "actor": actor}
     options["augment"] = augment
-    asked = Cities(file=file, file2=file2, unrounded=unrounded, options=options)
-    run_tour(asked, Planner(url, api_key), angle, as_json)
+    build_plan = partial(plan_cities, file, file2, unrounded=unrounded, options=options)
+    run_tour(build_plan, backend_for(url, api_key), angle, as_json)
 
 
 @app.command()
@@ -128,8 +132,9 @@ def coverage(  # noqa: PLR0913  an option each
     api_key: ApiKey = None,
 ) -> None:
     """Plan the front of tours of a robot through places all over a map."""
-    from service.cli.backends import Map, Planner
-    from service.cli.output import Shown, run_front
+    from service.cli.backends import backend_for
+    from service.cli.output import OutputFormat, run_front
+    from service.cli.plans import plan_map
 
     options = {
         "cell_size": cell_size,
@@ -143,19 +148,19 @@ def coverage(  # noqa: PLR0913  an option each
         "actor": actor,
     }
     run_front(
-        Map(file=file, cost_layer=cost_layer, options=options),
-        Planner(url, api_key),
-        Shown(as_json=as_json, as_csv=as_csv, plot=plot),
+        partial(plan_map, file, cost_layer, options),
+        backend_for(url, api_key),
+        OutputFormat(as_json=as_json, as_csv=as_csv, plot=plot),
     )
 
 
 @app.command()
 def actors(as_json: AsJson = False, url: Url = None, api_key: ApiKey = None) -> None:
     """List the networks to choose from."""
-    from service.cli.backends import Planner
+    from service.cli.backends import backend_for
     from service.cli.output import run_actors
 
-    run_actors(Planner(url, api_key), as_json)
+    run_actors(backend_for(url, api_key), as_json)
 
 
 @app.command()

@@ -1,77 +1,47 @@
-"""How the command ends when it cannot do what was asked: a sentence on stderr and an exit code."""
+"""The errors that a caller can cause, and the exit codes that the command ends with."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, TypeVar
 
 import httpx
 import typer
 from paretour import Refused
-from pydantic import ValidationError
 
-from service.cli.tsplib import UnreadableFile
-from service.settings import Settings
-
-WRONG = 2
-UNAVAILABLE = 3
-_NOT_THE_REQUEST = (401, 403, 408, 429)
+EXIT_STALLED = 1  # of `paretour work --alive`
+EXIT_USAGE = 2
+EXIT_UNAVAILABLE = 3
+_NOT_THE_REQUEST = (401, 403, 408, 429)  # refusals that another request would meet too
 
 
 class UsageError(Exception):
-    """What the caller can put right."""
+    """A mistake of the caller: an option, a request, or a setting."""
+
+
+class UnreadableFile(ValueError):
+    """A file that is not of its format, or of a kind that is not supported."""
 
 
 @contextmanager
-def explaining() -> Iterator[None]:
-    """Ends the command where something in the block went as wrong as may be expected."""
+def exit_on_error() -> Iterator[None]:
+    """End the command with a sentence and an exit code where the block raises an expected error.
+
+    Raises:
+        typer.Exit: In place of the error.
+    """
     try:
         yield
     except (UsageError, UnreadableFile) as error:
-        raise ended(str(error), WRONG) from None
+        raise exit_with(str(error), EXIT_USAGE) from None
     except (FileNotFoundError, PermissionError, IsADirectoryError) as error:
-        raise ended(f"{error.filename}: {error.strerror}", WRONG) from None
+        raise exit_with(f"{error.filename}: {error.strerror}", EXIT_USAGE) from None
     except Refused as error:
         faulty = 400 <= error.status < 500 and error.status not in _NOT_THE_REQUEST
-        raise ended(str(error), WRONG if faulty else UNAVAILABLE) from None
+        raise exit_with(str(error), EXIT_USAGE if faulty else EXIT_UNAVAILABLE) from None
     except httpx.TransportError as error:
-        raise ended(f"the service does not answer: {error}", UNAVAILABLE) from None
+        raise exit_with(f"the service does not answer: {error}", EXIT_UNAVAILABLE) from None
 
 
-def ended(sentence: str, code: int) -> typer.Exit:
-    """What ends the command, after the sentence is said."""
+def exit_with(sentence: str, code: int) -> typer.Exit:
+    """Print a sentence on stderr; return the exception that ends the command with a code."""
     typer.echo(f"paretour: {sentence}", err=True)
     return typer.Exit(code)
-
-
-T = TypeVar("T")
-
-
-def configured(**given: Any) -> Settings:
-    """The settings, of which some are given and not None.
-
-    Raises:
-        UsageError: one of them is not what it must be.
-    """
-    try:
-        return Settings(**{name: value for name, value in given.items() if value is not None})
-    except ValidationError as error:
-        raise UsageError(_explained(error)) from None
-
-
-def loaded(load: Callable[[Settings], T], settings: Settings) -> T:
-    """What is made as the settings say.
-
-    Raises:
-        UsageError: the files that they name are not there, or not what they must be.
-    """
-    try:
-        return load(settings)
-    except (OSError, ValueError) as error:
-        raise UsageError(str(error)) from None
-
-
-def _explained(error: ValidationError) -> str:
-    return "; ".join(
-        f"{'.'.join(str(part) for part in fault['loc'])}: {fault['msg']}, got {fault['input']!r}"
-        for fault in error.errors()
-    )

@@ -1,4 +1,4 @@
-"""A picture of a front. The extra `plot` brings what this needs."""
+"""Draw a front with matplotlib, which the extra `plot` installs."""
 
 from pathlib import Path
 
@@ -9,12 +9,8 @@ from paretour import Front
 from service.cli.errors import UsageError
 
 
-def check_format(path: Path) -> None:
-    """Nothing, if the file's name says a format that can be drawn, in a directory that is there.
-
-    Raises:
-        UsageError: it does not.
-    """
+def check_path(path: Path) -> None:
+    """Raise UsageError if a file's suffix is no format to draw in, or it has no directory."""
     formats = sorted(FigureCanvasBase.get_supported_filetypes())
     if path.suffix.removeprefix(".") not in formats:
         raise UsageError(f"--plot must end in one of {', '.join(formats)}, got {path}")
@@ -23,7 +19,7 @@ def check_format(path: Path) -> None:
 
 
 def plot_front(front: Front, path: Path) -> None:
-    """Draw both lengths of every tour into a file."""
+    """Draw the lengths of every tour into a file, the first to the right and the second up."""
     figure = Figure(figsize=(6, 4.5), layout="constrained")
     axes = figure.add_subplot()
     first, second = front.lengths.T

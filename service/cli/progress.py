@@ -1,4 +1,4 @@
-"""What is said on stderr while a front is planned, and how Ctrl-C ends its search."""
+"""Progress on stderr while a front is planned, and Ctrl-C as the end of its search."""
 
 import signal
 from collections.abc import Callable, Iterator
@@ -7,50 +7,59 @@ from threading import Event
 from types import FrameType
 from typing import Any, Protocol
 
-from paretour import Plan
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 
-class Heard(Protocol):
-    """How far a search has come."""
+class SearchProgress(Protocol):
+    """The progress of a search, be it here or of the service."""
 
     @property
     def seconds(self) -> float:
-        """Since it began."""
+        """Seconds since the search began."""
 
     @property
     def hypervolume(self) -> float:
-        """Of all points found."""
+        """The hypervolume of all points found."""
 
     @property
     def points(self) -> int:
-        """How many were found."""
+        """The number of points found."""
 
 
 @contextmanager
-def watching(stderr: Console, plan: Plan) -> Iterator[Callable[[Heard], None]]:
-    """A bar over the time that a plan takes, where somebody looks, and whom to tell of progress."""
+def progress_bar(console: Console, seconds: float) -> Iterator[Callable[[SearchProgress], None]]:
+    """Show a bar over the seconds that a plan may take, if the console is a terminal.
+
+    Yields:
+        A function that shows progress in it.
+    """
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
         TextColumn("{task.fields[found]}"),
         TimeElapsedColumn(),
     )
-    hidden = not stderr.is_terminal
-    with Progress(*columns, console=stderr, transient=True, disable=hidden) as bar:
-        task = bar.add_task("planning", total=plan.seconds, found="")
+    hidden = not console.is_terminal
+    with Progress(*columns, console=console, transient=True, disable=hidden) as bar:
+        task = bar.add_task("planning", total=seconds, found="")
 
-        def tell(heard: Heard) -> None:
-            found = f"hypervolume {heard.hypervolume:.2%}, {heard.points} tours"
-            bar.update(task, completed=heard.seconds, found=found)
+        def show(progress: SearchProgress) -> None:
+            found = f"hypervolume {progress.hypervolume:.2%}, {progress.points} tours"
+            bar.update(task, completed=progress.seconds, found=found)
 
-        yield tell
+        yield show
 
 
 @contextmanager
-def interruptible() -> Iterator[Callable[[], bool]]:
-    """Whether Ctrl-C was pressed, instead of an exception; the second time it is one again."""
+def interrupt_flag() -> Iterator[Callable[[], bool]]:
+    """Set a flag at the first Ctrl-C instead of raising KeyboardInterrupt.
+
+    A second Ctrl-C does what Ctrl-C did before the block.
+
+    Yields:
+        A function that returns whether the flag is set.
+    """
     pressed = Event()
 
     def press(_signal: int, _frame: FrameType | None) -> None:

@@ -1,7 +1,7 @@
-"""Files of TSPLIB (Reinelt, 1991): what one objective costs, from one city to another.
+"""Parse files of TSPLIB (Reinelt, 1991): the costs of one objective from city to city.
 
-Of its kinds of distances two are read: EUC_2D, Euclidean and by definition rounded to the nearest
-whole number, and EXPLICIT as a FULL_MATRIX.
+Two of its kinds of distances are supported: EUC_2D, Euclidean and by definition rounded to the
+nearest whole number, and EXPLICIT as a FULL_MATRIX.
 """
 
 from dataclasses import dataclass
@@ -9,73 +9,80 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from service.cli.errors import UnreadableFile
+
 Array = NDArray[np.float64]
-_HEADINGS = ("NODE_COORD_SECTION", "EDGE_WEIGHT_SECTION", "DISPLAY_DATA_SECTION", "EOF")
-
-
-class UnreadableFile(ValueError):
-    """What is no such file, or of a kind that is not read."""
+_SECTIONS = ("NODE_COORD_SECTION", "EDGE_WEIGHT_SECTION", "DISPLAY_DATA_SECTION", "EOF")
 
 
 @dataclass(frozen=True)
-class _File:
-    """What a file says before its sections, and the numbers of each section."""
+class _TsplibFile:
+    """The header of a file, and the words of each section."""
 
-    facts: dict[str, str]
+    header: dict[str, str]
     sections: dict[str, list[str]]
 
     @property
     def kind(self) -> str:
-        return self.facts.get("EDGE_WEIGHT_TYPE", "nothing")
+        return self.header.get("EDGE_WEIGHT_TYPE", "nothing")
 
     @property
     def dimension(self) -> int:
-        given = self.facts.get("DIMENSION", "nothing")
-        if not given.isdecimal():
-            raise UnreadableFile(f"DIMENSION must be a whole number, got {given}")
-        return int(given)
+        value = self.header.get("DIMENSION", "nothing")
+        if not value.isdecimal():
+            raise UnreadableFile(f"DIMENSION must be a whole number, got {value}")
+        return int(value)
 
 
-def coordinates(text: str) -> Array:
-    """Where the cities of an EUC_2D file lie, shape (n, 2)."""
-    file = _parsed(text)
+def parse_coordinates(text: str) -> Array:
+    """Return the coordinates of the cities in an EUC_2D file, shape (n, 2).
+
+    Raises:
+        UnreadableFile: It is no such file.
+    """
+    file = _split(text)
     if file.kind != "EUC_2D":
         raise UnreadableFile(f"EDGE_WEIGHT_TYPE must be EUC_2D, got {file.kind}")
     return _numbers(file, "NODE_COORD_SECTION", (file.dimension, 3))[:, 1:]
 
 
-def matrix(text: str) -> Array:
-    """What it costs to go from each city to each other, shape (n, n)."""
-    file = _parsed(text)
+def parse_matrix(text: str) -> Array:
+    """Return the costs from each city to each other one, shape (n, n).
+
+    Raises:
+        UnreadableFile: It is no file of a supported kind.
+    """
+    file = _split(text)
     if file.kind == "EUC_2D":
-        cities = coordinates(text)
+        cities = parse_coordinates(text)
         distances = np.linalg.norm(cities[:, np.newaxis] - cities, axis=-1)
         return np.floor(distances + 0.5)
-    way = file.facts.get("EDGE_WEIGHT_FORMAT", "nothing")
-    if (file.kind, way) != ("EXPLICIT", "FULL_MATRIX"):
+    layout = file.header.get("EDGE_WEIGHT_FORMAT", "nothing")
+    if (file.kind, layout) != ("EXPLICIT", "FULL_MATRIX"):
         raise UnreadableFile(
             "EDGE_WEIGHT_TYPE must be EUC_2D, or EXPLICIT with EDGE_WEIGHT_FORMAT FULL_MATRIX,"
-            f" got {file.kind} with {way}"
+            f" got {file.kind} with {layout}"
         )
     return _numbers(file, "EDGE_WEIGHT_SECTION", (file.dimension, file.dimension))
 
 
-def _parsed(text: str) -> _File:
-    facts: dict[str, str] = {}
+def _split(text: str) -> _TsplibFile:
+    header: dict[str, str] = {}
     sections: dict[str, list[str]] = {}
-    numbers: list[str] | None = None  # of the section that a line is in
+    words: list[str] | None = None  # of the section that a line is in
     for line in text.splitlines():
-        if line.strip() in _HEADINGS:
-            numbers = sections.setdefault(line.strip(), [])
-        elif numbers is not None:
-            numbers.extend(line.split())
+        if line.strip() in _SECTIONS:
+            words = sections.setdefault(line.strip(), [])
+        elif words is not None:
+            words.extend(line.split())
         elif ":" in line:
             name, _, value = line.partition(":")
-            facts[name.strip()] = value.strip()
-    return _File(facts, sections)
+            header[name.strip()] = value.strip()
+    return _TsplibFile(header, sections)
 
 
-def _numbers(file: _File, section: str, shape: tuple[int, int]) -> Array:
+def _numbers(file: _TsplibFile, section: str, shape: tuple[int, int]) -> Array:
+    """Return the numbers of a section in rows and columns."""
     words = file.sections.get(section, [])
     if len(words) != shape[0] * shape[1]:
         demand = f"{shape[0]} rows of {shape[1]} numbers, as DIMENSION says"

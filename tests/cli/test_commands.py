@@ -1,15 +1,10 @@
-"""The command, run as people run it, and what it leaves on stdout, on stderr and as a code."""
+"""The commands, run as people run them, and what they leave on stdout and stderr."""
 
 import csv
 import io
 import json
-import os
-import pty
-import signal
 import subprocess
 import sys
-import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,42 +13,11 @@ import numpy as np
 import pytest
 from paretour import Client
 from PIL import Image
+from typer.testing import CliRunner
 
-from service.api.app import Edge
-from service.api.auth import Access, KeyHash, new_key
+from service.cli.commands import app
 from tests.helpers.artifacts import by_row_sums
-from tests.helpers.serving import Shuffler, app_of, serving, serving_released
-
-ROOT = Path(__file__).parents[2]
-EXAMPLE = ROOT / "service/examples/city-deliveries.json"
-COMMAND = [sys.executable, "-m", "service"]
-Ended = subprocess.CompletedProcess[str]
-
-
-def paretour(*arguments: object, **settings: str) -> Ended:
-    command = [*COMMAND, *map(str, arguments)]
-    return subprocess.run(
-        command,
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        env={**os.environ, **settings},
-    )
-
-
-@pytest.fixture(scope="module")
-def url() -> Iterator[str]:
-    with serving_released() as address:
-        yield address
-
-
-@pytest.fixture
-def cities(tmp_path: Path) -> Path:
-    """A file of so few cities that a search of them converges."""
-    path = tmp_path / "cities.json"
-    path.write_text(json.dumps(np.random.default_rng(2).random((10, 4)).tolist()))
-    return path
+from tests.helpers.command import EXAMPLE, ROOT, paretour
 
 
 def found(answer: dict[str, Any]) -> dict[str, Any]:
@@ -141,13 +105,6 @@ def test_a_picture_of_a_map_is_covered_as_its_grid_is(tmp_path: Path) -> None:
     assert all(item["path"]["metres"] > 0 for item in answer["front"])
 
 
-def test_the_actors_are_those_of_the_service(url: str) -> None:
-    here = paretour("actors", "--json")
-    there = paretour("actors", "--json", "--url", url)
-    assert json.loads(here.stdout) == json.loads(there.stdout) == httpx.get(f"{url}/actors").json()
-    assert "pa-one" in paretour("actors").stdout
-
-
 WRONG = [
     (["front"], "Missing argument"),
     (["front", "none.json"], "none.json: No such file"),
@@ -165,35 +122,14 @@ WRONG = [
 
 
 @pytest.mark.parametrize(("arguments", "sentence"), WRONG)
-def test_what_the_caller_can_put_right_ends_with_2(arguments: list[object], sentence: str) -> None:
-    ended = paretour(*arguments)
-    assert (ended.returncode, ended.stdout) == (2, "")
+def test_a_mistake_of_the_caller_ends_with_2(
+    arguments: list[object], sentence: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    ended = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    assert (ended.exit_code, ended.stdout) == (2, "")
     assert sentence in ended.stderr
-    assert "Traceback" not in ended.stderr
-
-
-def test_what_the_service_refuses_ends_with_2(url: str) -> None:
-    ended = paretour("front", EXAMPLE, "--start", 61, "--url", url)
-    assert (ended.returncode, ended.stdout) == (2, "")
-    assert "start must be a city, 0 to 60, got 61" in ended.stderr
-
-
-def test_a_service_that_is_not_there_ends_with_3(cities: Path) -> None:
-    ended = paretour("front", cities, "--url", "http://127.0.0.1:1")
-    assert (ended.returncode, ended.stdout) == (3, "")
-    assert "does not answer" in ended.stderr
-
-
-def test_a_key_is_given_by_option_or_by_variable(cities: Path) -> None:
-    key, digest = new_key()
-    edge = Edge(access=Access([KeyHash(caller="me", digest=digest)]))
-    with serving(app_of(edge=edge)) as address:
-        asked = ("front", cities, "--time-limit", 0, "--url", address)
-        assert paretour(*asked, "--api-key", key).returncode == 0
-        assert paretour(*asked, PARETOUR_API_KEY=key).returncode == 0
-        refused = paretour(*asked, "--api-key", digest)
-    assert refused.returncode == 3
-    assert "(unauthorized)" in refused.stderr
+    assert isinstance(ended.exception, SystemExit)
 
 
 def test_without_matplotlib_a_plot_is_refused_before_anything_is_planned(cities: Path) -> None:
@@ -206,40 +142,6 @@ def test_without_matplotlib_a_plot_is_refused_before_anything_is_planned(cities:
     assert "pip install 'paretour[plot]'" in ended.stderr
 
 
-@pytest.mark.parametrize("by_service", [False, True])
-def test_ctrl_c_ends_the_search_with_the_best_front_so_far(url: str, by_service: bool) -> None:
-    terminal, its_end = pty.openpty()
-    command = [*COMMAND, "front", str(EXAMPLE), "--json", "--time-limit", "60"]
-    command += ["--url", url] if by_service else []
-    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=its_end) as running:
-        os.close(its_end)
-        shown = b""
-        while b"hypervolume" not in shown:
-            shown += os.read(terminal, 1024)
-        running.send_signal(signal.SIGINT)
-        began = time.monotonic()
-        assert running.stdout is not None
-        answer = json.loads(running.stdout.read())
-    os.close(terminal)
-    assert running.returncode == 0
-    assert time.monotonic() - began < 30
-    assert (answer["status"], answer["terminated"]) == ("cancelled", "cancelled")
-    assert len(answer["front"]) > 10
-
-
-def test_ctrl_c_before_there_is_a_front_ends_with_130(cities: Path, tmp_path: Path) -> None:
-    with serving(app_of(Shuffler(gate=tmp_path / "gate"))) as address:
-        command = [*COMMAND, "front", str(cities), "--url", address, "--time-limit", "0"]
-        with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE) as running:
-            while not (tmp_path / "gate.started").exists():
-                time.sleep(0.05)
-            running.send_signal(signal.SIGINT)
-            assert running.stdout is not None
-            assert running.stdout.read() == b""
-        (tmp_path / "gate").touch()
-    assert running.returncode == 130
-
-
 def test_help_waits_for_nothing_heavy() -> None:
     code = (
         "import sys; from service.__main__ import main\n"
@@ -247,11 +149,3 @@ def test_help_waits_for_nothing_heavy() -> None:
         "except SystemExit: sys.exit(len({'numpy', 'httpx', 'fastapi'} & set(sys.modules)))"
     )
     subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True)
-
-
-def test_with_a_service_neither_compiler_nor_network_is_loaded() -> None:
-    code = (
-        "import sys, service.commands.run;"
-        "sys.exit(len({'numba', 'onnxruntime', 'fastapi'} & set(sys.modules)))"
-    )
-    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True)

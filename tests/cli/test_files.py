@@ -2,34 +2,11 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from service.cli.files import read_request
-from service.cli.tsplib import UnreadableFile
-
-EUCLIDEAN = """NAME: three
-TYPE : TSP
-DIMENSION: 3
-EDGE_WEIGHT_TYPE : EUC_2D
-NODE_COORD_SECTION
-1 0 0
-2 3.4 0
-3 0 0.5e0
-EOF
-"""
-EXPLICIT = """NAME: three
-DIMENSION: 3
-EDGE_WEIGHT_TYPE: EXPLICIT
-EDGE_WEIGHT_FORMAT: FULL_MATRIX
-EDGE_WEIGHT_SECTION
-0 1 2 3
-0 4 5
-6 0
-DISPLAY_DATA_SECTION
-1 7 7
-EOF
-"""
+from service.cli.errors import UnreadableFile
+from service.cli.files import read_layer, read_map, read_request
+from tests.helpers.tsplib_files import EUCLIDEAN, EXPLICIT
 
 
 def written(folder: Path, *texts: tuple[str, str]) -> list[Path]:
@@ -81,20 +58,6 @@ def test_files_of_tsplib_are_planes_where_that_is_asked_for(tmp_path: Path) -> N
     assert read_request(files, unrounded=True) == {"coordinates": expected}
 
 
-@pytest.mark.parametrize("n", [1, 20])
-def test_distances_are_rounded_as_tsplib_says(tmp_path: Path, n: int) -> None:
-    cities = np.random.default_rng(n).integers(0, 50, (n, 2)).tolist()
-    lines = "\n".join(f"{i} {x} {y}" for i, (x, y) in enumerate(cities, 1))
-    text = f"DIMENSION: {n}\nEDGE_WEIGHT_TYPE: EUC_2D\nNODE_COORD_SECTION\n{lines}\n"
-    files = written(tmp_path, ("a.tsp", text), ("b.tsp", text))
-    [matrix, _] = read_request(files)["matrices"]
-    for (x1, y1), row in zip(cities, matrix, strict=True):
-        for (x2, y2), distance in zip(cities, row, strict=True):
-            squared = (x1 - x2) ** 2 + (y1 - y2) ** 2
-            # Twice the distance lies within one of twice the root: whole numbers, no root taken.
-            assert max(2 * distance - 1, 0) ** 2 <= 4 * squared < (2 * distance + 1) ** 2
-
-
 WRONG = [
     ("a.csv", "", "must have a row of numbers for each city, got none"),
     ("a.csv", "a,b,c,d\n", "must have a row of numbers"),
@@ -127,14 +90,9 @@ def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
 
 
 WRONG_PAIRS = [
+    ("a.tsp", "", "b.tsp", EXPLICIT, "a.tsp: EDGE_WEIGHT_TYPE must be EUC_2D"),
     ("a.csv", "1,2\n3,4\n5,6\n", "b.csv", "1,2\n3,4\n", "got 3x2 and 2x2"),
     ("a.csv", "1,2,3\n", "b.csv", "1,2\n", "must have 2 columns, x and y, or as many as rows"),
-    ("a.tsp", EUCLIDEAN.replace("EUC_2D", "GEO"), "b.tsp", EUCLIDEAN, "got GEO with nothing"),
-    ("a.tsp", EXPLICIT.replace("FULL_MATRIX", "UPPER_ROW"), "b.tsp", EXPLICIT, "with UPPER_ROW"),
-    ("a.tsp", EXPLICIT.replace("6 0", "6"), "b.tsp", EXPLICIT, "3 rows of 3 numbers"),
-    ("a.tsp", EXPLICIT.replace("6 0", "6 x"), "b.tsp", EXPLICIT, "must hold numbers"),
-    ("a.tsp", "", "b.tsp", EXPLICIT, "got nothing"),
-    ("a.tsp", EUCLIDEAN.replace(": 3", ": three"), "b.tsp", EXPLICIT, "got three"),
 ]
 
 
@@ -147,6 +105,12 @@ def test_two_files_that_do_not_go_together_are_refused(
     assert sentence in str(error.value)
 
 
-def test_planes_need_euclidean_files(tmp_path: Path) -> None:
-    with pytest.raises(UnreadableFile, match="EDGE_WEIGHT_TYPE must be EUC_2D, got EXPLICIT"):
-        read_request(written(tmp_path, ("a.tsp", EXPLICIT), ("b.tsp", EUCLIDEAN)), unrounded=True)
+def test_a_map_is_a_request_or_a_picture(tmp_path: Path) -> None:
+    written(tmp_path, ("map.json", '{"grid": [[0]]}'), ("map.png", "PNG"))
+    assert read_map(tmp_path / "map.json") == ({"grid": [[0]]}, None)
+    assert read_map(tmp_path / "map.png") == ({}, b"PNG")
+
+
+def test_costs_on_a_map_are_a_table(tmp_path: Path) -> None:
+    [file] = written(tmp_path, ("people.csv", "1,2,3\n4,5,6\n"))
+    assert read_layer(file).tolist() == [[1, 2, 3], [4, 5, 6]]

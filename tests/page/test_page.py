@@ -15,7 +15,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Browser, Locator, Page, Route, expect
 
-from service.cli.tsplib import matrix
+from service.cli.tsplib import parse_matrix
 from service.server import build
 from service.settings import Settings
 from tests.helpers.browsing import CHROMIUM, DESK, PHONE, WITHOUT, chromium, done, drawn, opened
@@ -276,7 +276,9 @@ def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
     expect(page.get_by_label("Distances rounded")).to_be_checked()
     page.get_by_role("button", name="Plan").click()
     done(page)
-    assert asked_by_curl(page)["matrices"] == [matrix(file.read_text()).tolist() for file in pair]
+    assert asked_by_curl(page)["matrices"] == [
+        parse_matrix(file.read_text()).tolist() for file in pair
+    ]
     link = page.get_by_role("button", name="Copy link")
     link.click()
     expect(link).to_have_text("Copied")

@@ -1,0 +1,94 @@
+"""Fronts, tours and actors in the formats that the command prints."""
+
+import csv
+import io
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+from paretour import Front, Plan
+from paretour.values import parse_front
+from rich.console import Console
+
+from service.cli.output import (
+    OutputFormat,
+    front_as_csv,
+    front_as_json,
+    front_as_table,
+    front_summary,
+    run_front,
+    run_tour,
+    tour_as_json,
+    tour_as_text,
+    tour_summary,
+)
+from tests.helpers.answers import FRONT
+
+THE_FRONT = parse_front(FRONT)
+
+
+class Prepared:
+    """A backend that has a front already."""
+
+    def front(self, plan: Plan, console: Console) -> Front:
+        assert (plan.path, console.stderr) == ("/front", True)
+        return THE_FRONT
+
+    def actors(self) -> tuple[Any, ...]:
+        return ()
+
+
+def build_plan() -> Plan:
+    return Plan("/front", {})
+
+
+def test_json_is_the_answer_of_the_service() -> None:
+    assert json.loads(front_as_json(THE_FRONT)) == FRONT
+
+
+def test_csv_has_a_line_for_each_tour() -> None:
+    rows = list(csv.DictReader(io.StringIO(front_as_csv(THE_FRONT))))
+    assert rows[0] == {"angle": "60.0", "length_1": "1.0", "length_2": "2.0", "tour": "0 1 2"}
+    assert len(rows) == 2
+
+
+def test_a_table_has_a_row_for_each_tour() -> None:
+    assert front_as_table(THE_FRONT).row_count == 2
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({}, "2 of 2 tours found, hypervolume 50.00%; nothing more was found"),
+        ({"hypervolume_bound": 0.75}, "hypervolume 50.00%, and no front has more than 75.00%;"),
+        ({"points": 9, "terminated": "cancelled"}, "2 of 9 tours found, hypervolume 50.00%; stop"),
+    ],
+)
+def test_a_summary_says_how_good_a_front_is(changed: dict[str, Any], words: str) -> None:
+    assert words in front_summary(parse_front(FRONT | changed))
+
+
+def test_a_tour_is_its_cities_or_an_item_of_the_front() -> None:
+    tour = THE_FRONT.nearest(60)
+    assert tour_as_text(np.array([0, 1, 2])) == "0 1 2"
+    assert json.loads(tour_as_json(tour)) == FRONT["front"][0]  # type: ignore[index]
+    assert tour_summary(tour) == "angle 60.00, lengths 1 and 2"
+
+
+@pytest.mark.parametrize(
+    ("output", "first"),
+    [(OutputFormat(as_json=True), "{"), (OutputFormat(as_csv=True), "angle,length_1")],
+)
+def test_a_front_is_printed_in_the_format_asked_for(
+    output: OutputFormat, first: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run_front(build_plan, Prepared(), output)
+    printed = capsys.readouterr()
+    assert printed.out.startswith(first)
+    assert printed.err == front_summary(THE_FRONT) + "\n"
+
+
+def test_the_tour_at_an_angle_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    run_tour(build_plan, Prepared(), 30, as_json=False)
+    assert capsys.readouterr() == ("0 2 1\n", "angle 30.00, lengths 2 and 1\n")

@@ -1,0 +1,47 @@
+"""Files and options become a plan."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from service.cli.errors import UsageError
+from service.cli.plans import plan_cities, plan_map
+
+
+def test_options_stand_over_the_file_where_they_are_given(tmp_path: Path) -> None:
+    file = tmp_path / "a.json"
+    file.write_text('{"coordinates": [[1, 2, 3, 4]], "seed": 3, "size": 5}')
+    plan = plan_cities(file, angles="10,45.5", options={"seed": 4, "size": None})
+    assert plan.path == "/front"
+    assert plan.request == {
+        "coordinates": [[1, 2, 3, 4]],
+        "preferences": [10.0, 45.5],
+        "seed": 4,
+        "size": 5,
+    }
+
+
+def test_two_files_are_one_plan(tmp_path: Path) -> None:
+    for name in ("a.csv", "b.csv"):
+        (tmp_path / name).write_text("0,1,2\n3,0,4\n5,6,0\n")
+    plan = plan_cities(tmp_path / "a.csv", tmp_path / "b.csv", options={})
+    assert plan.file is not None
+    assert plan.file.part == "matrices"
+
+
+def test_angles_must_be_numbers(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("1,2,3,4\n")
+    with pytest.raises(UsageError, match="--angles must be numbers with commas between, got '1,b'"):
+        plan_cities(tmp_path / "a.csv", angles="1,b", options={})
+
+
+def test_a_map_is_a_file_beside_its_options_and_costs(tmp_path: Path) -> None:
+    (tmp_path / "map.png").write_bytes(b"PNG")
+    (tmp_path / "costs.csv").write_text("1,2\n3,4\n")
+    plan = plan_map(tmp_path / "map.png", tmp_path / "costs.csv", {"spacing": 2.0, "paths": None})
+    assert plan.file is not None
+    assert (plan.path, plan.file.content) == ("/coverage", b"PNG")
+    np.testing.assert_array_equal(plan.request["cost_layer"], [[1, 2], [3, 4]])
+    assert json.loads(plan.json).keys() == {"spacing", "cost_layer"}

@@ -1,0 +1,23 @@
+"""A front drawn into a file."""
+
+from pathlib import Path
+
+import pytest
+from paretour.values import parse_front
+
+from service.cli.errors import UsageError
+from service.cli.plot import check_path, plot_front
+from tests.helpers.answers import FRONT
+
+
+def test_a_front_is_a_picture(tmp_path: Path) -> None:
+    path = tmp_path / "front.png"
+    check_path(path)
+    plot_front(parse_front(FRONT), path)
+    assert path.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("name", ["front.txt", "front", "none/front.png"])
+def test_a_path_that_cannot_be_drawn_into_is_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(UsageError, match=f"got {tmp_path / name}"):
+        check_path(tmp_path / name)
