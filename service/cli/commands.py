@@ -5,27 +5,34 @@ option, come at once.
 """
 
 from functools import partial
-from pathlib import Path
 from typing import Annotated
 
 from typer import Argument, Option, Typer
 
 from service.cli.options import (
     ActorName,
+    Angle,
     Angles,
     ApiKey,
     AsCsv,
     AsJson,
     Augment,
+    CellSize,
+    CostLayer,
     File,
+    MapFile,
+    Paths,
     Plot,
+    RobotRadius,
     SecondFile,
     Seed,
     Size,
+    Spacing,
     Start,
     TimeLimit,
     Unrounded,
     Url,
+    Workers,
 )
 
 app = Typer(
@@ -63,8 +70,14 @@ def front(  # noqa: PLR0913  an option each
     from service.cli.output import OutputFormat, run_front
     from service.cli.plans import plan_cities
 
-    options = {"time_limit": time_limit, "size": size, "start": start, "seed": seed, "actor": actor}
-    options["augment"] = augment
+    options = {
+        "time_limit": time_limit,
+        "size": size,
+        "start": start,
+        "seed": seed,
+        "actor": actor,
+        "augment": augment,
+    }
     run_front(
         partial(plan_cities, file, file2, unrounded=unrounded, angles=angles, options=options),
         backend_for(url, api_key),
@@ -77,9 +90,7 @@ def tour(  # noqa: PLR0913  an option each
     file: File,
     file2: SecondFile = None,
     *,
-    angle: Annotated[
-        float, Option(min=0, max=90, help="The trade-off: near 0 the second length is small.")
-    ],
+    angle: Angle,
     time_limit: TimeLimit = None,
     start: Start = None,
     seed: Seed = None,
@@ -95,31 +106,25 @@ def tour(  # noqa: PLR0913  an option each
     from service.cli.output import run_tour
     from service.cli.plans import plan_cities
 
-    options = {"time_limit": time_limit, "start": start, "seed": seed, "actor": actor}
-    options["augment"] = augment
+    options = {
+        "time_limit": time_limit,
+        "start": start,
+        "seed": seed,
+        "actor": actor,
+        "augment": augment,
+    }
     build_plan = partial(plan_cities, file, file2, unrounded=unrounded, options=options)
     run_tour(build_plan, backend_for(url, api_key), angle, as_json)
 
 
 @app.command()
 def coverage(  # noqa: PLR0913  an option each
-    file: Annotated[
-        Path,
-        Argument(
-            metavar="MAP", help="PNG, dark where there are obstacles; or JSON, a whole request."
-        ),
-    ],
-    cell_size: Annotated[float | None, Option(help="Metres that a pixel is wide.")] = None,
-    robot_radius: Annotated[float | None, Option(help="In metres.", show_default="0")] = None,
-    spacing: Annotated[
-        float | None, Option(help="A place is visited in each square of so many metres.")
-    ] = None,
-    cost_layer: Annotated[
-        Path | None, Option(help="The second objective: CSV, a cost for each pixel.")
-    ] = None,
-    paths: Annotated[
-        bool | None, Option("--paths", help="Have the cells of each tour's path, with --json.")
-    ] = None,
+    file: MapFile,
+    cell_size: CellSize = None,
+    robot_radius: RobotRadius = None,
+    spacing: Spacing = None,
+    cost_layer: CostLayer = None,
+    paths: Paths = None,
     time_limit: TimeLimit = None,
     size: Size = None,
     start: Start = None,
@@ -169,7 +174,7 @@ def serve(
     port: Annotated[
         int | None, Option(help="Port to listen on; 0 takes a free one.", show_default=False)
     ] = None,
-    workers: Annotated[int | None, Option(help="Plans made at a time.", show_default=False)] = None,
+    workers: Workers = None,
 ) -> None:
     """Answer requests over HTTP; other settings come from PARETOUR_* variables."""
     from service.cli.admin import run_serve
@@ -179,7 +184,7 @@ def serve(
 
 @app.command()
 def work(
-    workers: Annotated[int | None, Option(help="Plans made at a time.", show_default=False)] = None,
+    workers: Workers = None,
     alive: Annotated[
         bool,
         Option("--alive", help="Only say, by exit code 0 or 1, if what works here takes work."),

@@ -1,4 +1,4 @@
-"""Arguments and options that several commands share."""
+"""Arguments and options of the commands. A default shown is the service's own."""
 
 from pathlib import Path
 from typing import Annotated
@@ -41,8 +41,26 @@ Unrounded = Annotated[
 ]
 AsJson = Annotated[bool, Option("--json", help="Print the answer as the service gives it.")]
 AsCsv = Annotated[bool, Option("--csv", help="Print a line for each tour.")]
+Angle = Annotated[
+    float, Option(min=0, max=90, help="The trade-off: near 0 the second length is small.")
+]
 Plot = Annotated[Path | None, Option(help="Draw the front into this file.")]
 Url = Annotated[str | None, Option(help="A running service that shall plan, not this process.")]
 ApiKey = Annotated[
     str | None, Option(help="For a service that asks for one.", envvar="PARETOUR_API_KEY")
 ]
+
+MapFile = Annotated[
+    Path,
+    Argument(metavar="MAP", help="PNG, dark where there are obstacles; or JSON, a whole request."),
+]
+CellSize = Annotated[float | None, Option(help="Metres that a pixel is wide.")]
+RobotRadius = Annotated[float | None, Option(help="In metres.", show_default="0")]
+Spacing = Annotated[
+    float | None, Option(help="A place is visited in each square of so many metres.")
+]
+CostLayer = Annotated[Path | None, Option(help="The second objective: CSV, a cost for each pixel.")]
+Paths = Annotated[
+    bool | None, Option("--paths", help="Have the cells of each tour's path, with --json.")
+]
+Workers = Annotated[int | None, Option(help="Plans made at a time.", show_default=False)]
