@@ -158,7 +158,7 @@ def symmetries(instance: Instance, count: int) -> Iterator[Instance]:
         yield Instance(coordinates=turned.reshape(-1, 4))
 
 
-MOST_ENUMERATED = 7  # cities, and 720 tours
+MAX_ENUMERATED = 7  # cities, and 720 tours
 
 
 def all_tours(n: int) -> NDArray[np.int32]:

@@ -13,7 +13,7 @@ from service.instance import Instance, symmetries, tour_lengths
 from service.pareto import best_subset, hypervolume, nondominated
 from service.preferences import angles, from_angles
 from service.search.bound import hypervolume_bound
-from service.search.improve import Progress, improve
+from service.search.improve import SearchProgress, improve
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
@@ -179,7 +179,7 @@ def _improved(
     return found.tours.astype(np.int64), found.points, found.terminated
 
 
-def _interim(instance: Instance, demand: PlanOptions, progress: Progress) -> Interim:
+def _interim(instance: Instance, demand: PlanOptions, progress: SearchProgress) -> Interim:
     def front(size: int) -> Front:
         best = progress.best(min(size, demand.size))
         return Front(

@@ -1,4 +1,4 @@
-"""All the nondominated tours found so far, sorted by their first length."""
+"""The archive: all nondominated tours found so far, sorted by their first length."""
 
 from typing import NamedTuple
 
@@ -10,42 +10,42 @@ from service.jit import allocating, compiled, inlined
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
 
-MOST_POINTS = 50_000
-MOST_BYTES = 2**28
-TOLERANCE = 1e-12  # lengths nearer to one another than this share are held to be equal
+MAX_POINTS = 50_000
+MAX_BYTES = 2**28  # of tours
+TOLERANCE = 1e-12  # lengths whose relative difference is less count as equal
 
 
 class Archive(NamedTuple):
     """Points by ascending first length, so by descending second length, and their tours.
 
     Point k belongs to the tour in row slots[k] of tours. Memory for tours is reserved but not
-    touched before it is needed, and rows that become free are used again first.
+    touched before it is needed, and rows that become free are reused first.
     """
 
-    points: Array  # (most, 2)
-    slots: Cities  # (most,)
-    tours: Cities  # (most, n)
-    free: Cities  # (most,), a stack
-    tries: Cities  # (most,), by row: how often the search has set out from the tour
-    counts: NDArray[np.int64]  # (3,): points, free rows, tours ever admitted
+    points: Array  # (capacity, 2), scaled by cost_factors()
+    slots: Cities  # (capacity,)
+    tours: Cities  # (capacity, n)
+    free: Cities  # (capacity,), a stack of unused rows
+    tries: Cities  # (capacity,), by row: how often a search has started from the tour
+    counts: NDArray[np.int64]  # (3,): points, unused rows, tours ever inserted
 
 
-def make_archive(n: int, most: int = MOST_POINTS) -> Archive:
-    """An empty archive for tours of n cities."""
-    most = max(16, min(most, MOST_BYTES // (4 * n)))
+def make_archive(n: int, capacity: int = MAX_POINTS) -> Archive:
+    """Return an empty archive for tours of n cities."""
+    capacity = max(16, min(capacity, MAX_BYTES // (4 * n)))
     return Archive(
-        np.empty((most, 2)),
-        np.empty(most, np.int32),
-        np.empty((most, n), np.int32),
-        np.arange(most - 1, -1, -1, dtype=np.int32),
-        np.empty(most, np.int32),
-        np.array([0, most, 0], np.int64),
+        np.empty((capacity, 2)),
+        np.empty(capacity, np.int32),
+        np.empty((capacity, n), np.int32),
+        np.arange(capacity - 1, -1, -1, dtype=np.int32),
+        np.empty(capacity, np.int32),
+        np.array([0, capacity, 0], np.int64),
     )
 
 
 @inlined
-def above(archive: Archive, bound: float) -> int:
-    """How many points have a first length of at most the bound."""
+def count_up_to(archive: Archive, bound: float) -> int:
+    """Return how many points have a first length of at most `bound`. O(log m)."""
     low, high = 0, archive.counts[0]
     while low < high:
         middle = (low + high) >> 1
@@ -58,14 +58,14 @@ def above(archive: Archive, bound: float) -> int:
 
 @inlined
 def accepts(archive: Archive, first: float, second: float) -> bool:
-    """Whether no point is as good in both lengths."""
-    k = above(archive, first * (1 + TOLERANCE))
+    """Return whether no point dominates or equals the given one. O(log m)."""
+    k = count_up_to(archive, first * (1 + TOLERANCE))
     return k == 0 or archive.points[k - 1, 1] > second * (1 + TOLERANCE)
 
 
 @inlined
-def move_point(archive: Archive, source: int, target: int) -> None:
-    """Copies one point to another place."""
+def copy_point(archive: Archive, source: int, target: int) -> None:
+    """Copy a point from one place to another."""
     archive.points[target, 0] = archive.points[source, 0]
     archive.points[target, 1] = archive.points[source, 1]
     archive.slots[target] = archive.slots[source]
@@ -73,7 +73,7 @@ def move_point(archive: Archive, source: int, target: int) -> None:
 
 @compiled
 def replace(archive: Archive, begin: int, end: int, point: tuple[float, float]) -> int:
-    """Puts one point where those from begin to end were, and gives the row for its tour."""
+    """Replace the points begin to end - 1 by one, and return the row for its tour."""
     size = archive.counts[0]
     for k in range(begin, end):
         archive.free[archive.counts[1]] = archive.slots[k]
@@ -81,10 +81,10 @@ def replace(archive: Archive, begin: int, end: int, point: tuple[float, float]) 
     shift = 1 - (end - begin)
     if shift > 0:
         for k in range(size - 1, end - 1, -1):
-            move_point(archive, k, k + 1)
+            copy_point(archive, k, k + 1)
     elif shift < 0:
         for k in range(end, size):
-            move_point(archive, k, k + shift)
+            copy_point(archive, k, k + shift)
     archive.counts[0] = size + shift
     archive.counts[1] -= 1
     archive.counts[2] += 1
@@ -97,13 +97,16 @@ def replace(archive: Archive, begin: int, end: int, point: tuple[float, float]) 
 
 @compiled
 def insert(archive: Archive, point: tuple[float, float], tour: Cities) -> bool:
-    """Keeps a tour if it is nondominated, drops those it dominates, and says whether it stays."""
+    """Insert a tour unless it is dominated or equalled, and drop those that it dominates.
+
+    Returns whether it was inserted. A full archive is thinned first. O(m + n).
+    """
     first, second = point
     if not accepts(archive, first, second):
         return False
     if archive.counts[1] == 0:
         thin(archive)
-    begin = above(archive, first)
+    begin = count_up_to(archive, first)
     while begin > 0 and archive.points[begin - 1, 0] >= first:
         begin -= 1
     end = begin
@@ -117,41 +120,44 @@ def insert(archive: Archive, point: tuple[float, float], tour: Cities) -> bool:
 
 @allocating
 def thin(archive: Archive) -> None:
-    """Makes room: of the third that adds least hypervolume, drops what has no dropped neighbour."""
+    """Drop points among the third that contribute least hypervolume, never two neighbours.
+
+    Both ends stay. O(m log m).
+    """
     size = archive.counts[0]
-    added = np.empty(size)
-    added[0] = added[-1] = np.inf
+    contribution = np.empty(size)
+    contribution[0] = contribution[-1] = np.inf
     for k in range(1, size - 1):
         width = archive.points[k + 1, 0] - archive.points[k, 0]
-        added[k] = width * (archive.points[k - 1, 1] - archive.points[k, 1])
-    limit = np.sort(added)[size // 3]
-    kept = 0
+        contribution[k] = width * (archive.points[k - 1, 1] - archive.points[k, 1])
+    limit = np.sort(contribution)[size // 3]
+    left = 0
     dropped = False
     for k in range(size):
-        dropped = not dropped and added[k] <= limit
+        dropped = not dropped and contribution[k] <= limit
         if dropped:
             archive.free[archive.counts[1]] = archive.slots[k]
             archive.counts[1] += 1
         else:
-            move_point(archive, k, kept)
-            kept += 1
-    archive.counts[0] = kept
+            copy_point(archive, k, left)
+            left += 1
+    archive.counts[0] = left
 
 
 @compiled
-def best(archive: Archive, w0: float, w1: float) -> int:
-    """Which point has the least weighted sum."""
-    least, found = np.inf, 0
+def best_point(archive: Archive, w0: float, w1: float) -> int:
+    """Return the index of the point with the least weighted sum, the first of equal ones."""
+    least, index = np.inf, 0
     for k in range(archive.counts[0]):
         value = w0 * archive.points[k, 0] + w1 * archive.points[k, 1]
         if value < least:
-            least, found = value, k
-    return found
+            least, index = value, k
+    return index
 
 
 @compiled
-def area(archive: Archive, first: float, second: float) -> float:
-    """The hypervolume up to a reference point, as an area."""
+def dominated_area(archive: Archive, first: float, second: float) -> float:
+    """Return the area dominated up to the reference point (first, second). O(m)."""
     total = 0.0
     ceiling = second
     for k in range(archive.counts[0]):

@@ -1,4 +1,8 @@
-"""Candidate lists: for each city, the few that are worth going to under a weight."""
+"""Candidate lists: for each city, the few cheapest to go to under a weighted sum.
+
+Ranking all n cities anew under each of many weights takes O(n^2) a weight. So the cheapest under
+a few weights are pooled once, and the lists of all other weights are ranked from that pool.
+"""
 
 from typing import NamedTuple
 
@@ -6,49 +10,54 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.jit import allocating, inlined
-from service.search.costs import Costs, pair
+from service.search.costs import Costs, step_costs
 
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
 
-NEAREST = 8  # 5 to 12 make no difference that could be measured
-POOL_WEIGHTS = 5
+CANDIDATES_PER_CITY = 8  # from 5 to 12 make no difference that could be measured
+POOL_WEIGHTS = 5  # weights under which the pool collects candidates
 
 
-class Pool(NamedTuple):
-    """For each city, all that are nearest under some weight, with what they cost."""
+class CandidatePool(NamedTuple):
+    """For each city, the union of its cheapest successors under a few weights, unordered."""
 
     cities: Cities  # (n, width)
-    costs: Array  # (n, width, 2)
-    sizes: Cities  # (n,)
+    costs: Array  # (n, width, 2), both costs of going there
+    sizes: Cities  # (n,), how many of a row are used
 
 
 class Scalarization(NamedTuple):
-    """One objective made of two: costs under a weight, and the candidates under that weight."""
+    """The weighted sum w0 f1 + w1 f2 as one objective, with its candidate lists."""
 
     costs: Costs
-    near: Cities  # (n, nearest), ascending by weighted cost
-    near_costs: Array  # (n, nearest), the weighted costs
+    candidates: Cities  # (n, candidates), ascending by weighted cost
+    candidate_costs: Array  # (n, candidates), the weighted costs
     w0: float
     w1: float
 
 
-def empty_pool(n: int) -> Pool:
-    """A pool of n cities, yet to be filled."""
-    width = min(n - 1, NEAREST * POOL_WEIGHTS)
-    return Pool(np.zeros((n, width), np.int32), np.zeros((n, width, 2)), np.zeros(n, np.int32))
+def make_candidate_pool(n: int) -> CandidatePool:
+    """Return an empty pool for n cities."""
+    width = min(n - 1, CANDIDATES_PER_CITY * POOL_WEIGHTS)
+    return CandidatePool(
+        np.zeros((n, width), np.int32), np.zeros((n, width, 2)), np.zeros(n, np.int32)
+    )
 
 
 @inlined
-def weighted(scalar: Scalarization, i: int, j: int) -> float:
-    """The weighted cost of the step from city i to city j."""
-    c = pair(scalar.costs, i, j)
-    return scalar.w0 * c[0] + scalar.w1 * c[1]
+def weighted_cost(scalarization: Scalarization, i: int, j: int) -> float:
+    """Return the weighted cost of the step from city i to city j."""
+    c = step_costs(scalarization.costs, i, j)
+    return scalarization.w0 * c[0] + scalarization.w1 * c[1]
 
 
 @inlined
-def smallest(keys: Array, skipped: int, chosen: Cities, chosen_keys: Array) -> None:
-    """Fills chosen with the indices of the smallest keys, ascending, leaving one index out."""
+def select_smallest(keys: Array, skipped: int, chosen: Cities, chosen_keys: Array) -> None:
+    """Fill `chosen` with the indices of the smallest keys, ascending, without index `skipped`.
+
+    Of equal keys the lower index comes first. Insertion into a list of k: O(n k).
+    """
     kept = len(chosen)
     chosen_keys[:] = np.inf
     for j in range(len(keys)):
@@ -65,22 +74,22 @@ def smallest(keys: Array, skipped: int, chosen: Cities, chosen_keys: Array) -> N
 
 
 @allocating
-def fill_pool(pool: Pool, costs: Costs, weights: Array, begin: int, end: int) -> None:
-    """Pools the nearest cities of cities begin to end, under weights (k, 2)."""
+def fill_pool(pool: CandidatePool, costs: Costs, weights: Array, begin: int, end: int) -> None:
+    """Fill the rows begin to end - 1 of a pool with the cheapest cities under weights (k, 2)."""
     n = len(pool.cities)
     rows = np.empty((2, n))
     keys = np.empty(n)
-    chosen = np.empty(min(NEAREST, n - 1), np.int32)
+    chosen = np.empty(min(CANDIDATES_PER_CITY, n - 1), np.int32)
     chosen_keys = np.empty(len(chosen))
     seen = np.full(n, -1, np.int32)
     for i in range(begin, end):
         pool.sizes[i] = 0
         for j in range(n):
-            rows[0, j], rows[1, j] = pair(costs, i, j)
+            rows[0, j], rows[1, j] = step_costs(costs, i, j)
         for k in range(len(weights)):
             for m in range(n):
                 keys[m] = weights[k, 0] * rows[0, m] + weights[k, 1] * rows[1, m]
-            smallest(keys, i, chosen, chosen_keys)
+            select_smallest(keys, i, chosen, chosen_keys)
             for c in range(len(chosen)):
                 j = chosen[c]
                 if seen[j] != i:
@@ -93,16 +102,18 @@ def fill_pool(pool: Pool, costs: Costs, weights: Array, begin: int, end: int) ->
 
 
 @allocating
-def nearest(pool: Pool, near: Cities, near_costs: Array, w0: float, w1: float) -> None:
-    """Fills near and near_costs, shape (n, nearest), from the pool, under a weight."""
+def rank_candidates(
+    pool: CandidatePool, candidates: Cities, candidate_costs: Array, w0: float, w1: float
+) -> None:
+    """Fill the candidate lists of one weight, shape (n, candidates), from the pool."""
     keys = np.empty(pool.cities.shape[1])
-    chosen = np.empty(near.shape[1], np.int32)
-    chosen_keys = np.empty(near.shape[1])
-    for i in range(len(near)):
+    chosen = np.empty(candidates.shape[1], np.int32)
+    chosen_keys = np.empty(candidates.shape[1])
+    for i in range(len(candidates)):
         size = pool.sizes[i]
         for k in range(size):
             keys[k] = w0 * pool.costs[i, k, 0] + w1 * pool.costs[i, k, 1]
-        smallest(keys[:size], -1, chosen, chosen_keys)
+        select_smallest(keys[:size], -1, chosen, chosen_keys)
         for k in range(len(chosen)):
-            near[i, k] = pool.cities[i, chosen[k]]
-            near_costs[i, k] = chosen_keys[k]
+            candidates[i, k] = pool.cities[i, chosen[k]]
+            candidate_costs[i, k] = chosen_keys[k]

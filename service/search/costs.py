@@ -1,4 +1,4 @@
-"""What a step from one city to another costs under both objectives, for compiled code."""
+"""Both costs of a step from one city to another, for compiled code."""
 
 from typing import NamedTuple
 
@@ -10,13 +10,13 @@ from service.jit import compiled, inlined
 
 Array = NDArray[np.float64]
 
-# From here on two square roots are faster than a look-up that misses the second-level cache,
-# and memory stays linear in the number of cities.
+# From this many cities on, two square roots are faster than a look-up that misses the
+# second-level cache, and memory stays linear in the number of cities.
 DENSE_BELOW = 600
 
 
 class Costs(NamedTuple):
-    """Costs of an instance: a matrix where there is one, coordinates where there is none."""
+    """The scaled costs of an instance: a matrix, or coordinates where that is empty."""
 
     cities: Array  # (n, 4)
     matrix: Array  # (n, n, 2), or (0, 0, 2) where the coordinates are used
@@ -24,19 +24,19 @@ class Costs(NamedTuple):
 
 
 def make_costs(instance: Instance) -> Costs:
-    """Costs divided by the power of two next below each objective's scale.
+    """Return an instance's costs, multiplied by its cost_factors().
 
-    Such a division rounds nothing, so sums of whole-numbered costs stay exact, and neither
-    huge nor tiny units overflow or underflow in a product of two lengths.
+    A power of two rounds nothing, so sums of whole-numbered costs stay exact, and neither huge
+    nor tiny units overflow or underflow in a product of two lengths.
     """
-    shrink = units(instance)
+    factors = cost_factors(instance)
     if instance.coordinates is None:
         assert instance.matrices is not None
-        planes = instance.matrices * shrink[:, None, None]
+        planes = instance.matrices * factors[:, None, None]
         matrix = np.ascontiguousarray(planes.transpose(1, 2, 0))
         return Costs(np.zeros((instance.n, 4)), matrix, instance.symmetric)
-    middle = instance.coordinates.min(axis=0)
-    cities = (instance.coordinates - middle) * shrink.repeat(2)
+    corner = instance.coordinates.min(axis=0)
+    cities = (instance.coordinates - corner) * factors.repeat(2)
     sparse = Costs(cities, np.zeros((0, 0, 2)), True)
     if instance.n >= DENSE_BELOW:
         return sparse
@@ -45,14 +45,14 @@ def make_costs(instance: Instance) -> Costs:
     return Costs(cities, matrix, True)
 
 
-def units(instance: Instance) -> Array:
-    """What own lengths are multiplied by, shape (2,): powers of two."""
+def cost_factors(instance: Instance) -> Array:
+    """Return a power of two for each objective, shape (2,), that brings its scale into [1, 2)."""
     return np.ldexp(1.0, 1 - np.frexp(instance.scale)[1])
 
 
 @inlined
-def pair(costs: Costs, i: int, j: int) -> tuple[float, float]:
-    """Both costs of the step from city i to city j."""
+def step_costs(costs: Costs, i: int, j: int) -> tuple[float, float]:
+    """Return both scaled costs of the step from city i to city j."""
     if len(costs.matrix):
         return costs.matrix[i, j, 0], costs.matrix[i, j, 1]
     cities = costs.cities
@@ -63,18 +63,18 @@ def pair(costs: Costs, i: int, j: int) -> tuple[float, float]:
 
 @compiled
 def tabulate(costs: Costs, matrix: Array) -> None:
-    """Fills a matrix, shape (n, n, 2), with the costs of all steps."""
+    """Fill a matrix, shape (n, n, 2), with the costs of all steps."""
     for i in range(len(matrix)):
         for j in range(len(matrix)):
-            matrix[i, j, 0], matrix[i, j, 1] = pair(costs, i, j)
+            matrix[i, j, 0], matrix[i, j, 1] = step_costs(costs, i, j)
 
 
 @compiled
 def lengths(costs: Costs, tour: NDArray[np.int32]) -> tuple[float, float]:
-    """Both lengths of a closed tour."""
-    first, second = pair(costs, tour[-1], tour[0])
+    """Return both scaled lengths of a closed tour, summed afresh. O(n)."""
+    first, second = step_costs(costs, tour[-1], tour[0])
     for k in range(len(tour) - 1):
-        c = pair(costs, tour[k], tour[k + 1])
+        c = step_costs(costs, tour[k], tour[k + 1])
         first += c[0]
         second += c[1]
     return first, second

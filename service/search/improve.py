@@ -1,7 +1,7 @@
-"""A local search that pushes the whole front of an instance forward, for as long as it may.
+"""improve(...): the search for a whole front, within a deadline, and its reports of progress.
 
-Weighted sums are searched first, each from the best tour that the others have found; then the
-front is filled between what they reach. Everything nondominated that is visited is kept.
+Weighted sums are searched first, each from the best tour that the others have found; then the gaps
+between what they reach are filled. Every nondominated tour that is visited is kept.
 """
 
 import time
@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import MOST_ENUMERATED, Instance, all_tours, tour_lengths
+from service.instance import MAX_ENUMERATED, Instance, all_tours, tour_lengths
 from service.pareto import best_subset, nondominated
 from service.search.bound import hypervolume_bound
 from service.search.schedule import Search
@@ -25,25 +25,26 @@ REPORT_EVERY = 0.1  # seconds
 
 
 @dataclass(frozen=True, eq=False)
-class Improved:
+class SearchResult:
     """A front: tours, shape (p, n), and points, shape (p, 2), by ascending first length."""
 
     tours: NDArray[np.int32]
     points: Array
-    terminated: Termination | None  # none while the search goes on
+    terminated: Termination | None  # None while the search goes on
 
 
 @dataclass(frozen=True)
-class Progress:
-    """How far a search has come.
+class SearchProgress:
+    """How far a search has come: seconds since it began, hypervolume and number of points.
 
-    `best` copies the best so many tours found so far, and may be asked until the report returns.
+    `best` copies the subset of so many tours with the largest hypervolume. It may be called until
+    the report returns.
     """
 
     seconds: float
     hypervolume: float
     points: int
-    best: Callable[[int], Improved]
+    best: Callable[[int], SearchResult]
 
 
 def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a default
@@ -54,46 +55,48 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
     iterations: int | None = None,
     seed: int = 0,
     stop: Callable[[], bool] | None = None,
-    report: Callable[[Progress], None] | None = None,
+    report: Callable[[SearchProgress], None] | None = None,
     reference_point: Array | None = None,
-) -> Improved:
-    """The front that a search finds, each of the given tours dominated or equalled by it.
+) -> SearchResult:
+    """Return the front that a search finds; it dominates or equals each of the given tours.
+
+    Up to seven cities that is the exact front, by enumeration.
 
     Args:
-        instance: What is planned.
-        tours: Tours to set out from, shape (m, n); m may be 0.
-        deadline: When to stop, as a moment of time.monotonic(); None sets no limit.
-        iterations: How many local optima to visit; None sets no limit. Without a deadline, the
+        instance: The instance.
+        tours: Tours to start from, shape (m, n); m may be 0.
+        deadline: Time to stop, by time.monotonic(); None sets no limit.
+        iterations: Number of local optima to visit; None sets no limit. Without a deadline, the
             same seed and the same iterations give the same front.
         seed: Of all random choices.
-        stop: Asked every millisecond or two; True ends the search at once.
-        report: Told now and then how far the search has come.
-        reference_point: For the reported hypervolume, in the instance's units; (n, n) scaled
-            unless given. The search puts its effort where this hypervolume grows.
+        stop: Called every millisecond or two; True ends the search at once.
+        report: Called about ten times a second with the progress of the search.
+        reference_point: Shape (2,), of the hypervolume, in the instance's units; by default n
+            times the scale. The search works where this hypervolume grows fastest.
     """
-    if instance.n <= MOST_ENUMERATED:
+    if instance.n <= MAX_ENUMERATED:
         return _front(instance, all_tours(instance.n), "converged")
     if reference_point is None:
         reference_point = instance.n * instance.scale
     search = Search(instance, seed, reference_point)
     search.add(tours)
-    terminated = _watch(search, deadline, iterations, stop, report)
-    if not search.found:
+    terminated = _run(search, deadline, iterations, stop, report)
+    if not search.size:
         search.add(np.arange(instance.n)[None])
-    lost = search.missing(tours)
-    if len(lost):
-        return _front(instance, np.concatenate((search.tours(), lost)), terminated)
-    return Improved(search.tours(), search.points(), terminated)
+    dropped = search.not_covered(tours)
+    if len(dropped):
+        return _front(instance, np.concatenate((search.tours(), dropped)), terminated)
+    return SearchResult(search.tours(), search.points(), terminated)
 
 
-def _watch(
+def _run(
     search: Search,
     deadline: float | None,
     iterations: int | None,
     stop: Callable[[], bool] | None,
-    report: Callable[[Progress], None] | None,
+    report: Callable[[SearchProgress], None] | None,
 ) -> Termination:
-    """Lets a search run until it has converged or is out of time, of iterations or of favour."""
+    """Run a search until it converges, or its deadline, its iterations or `stop` end it."""
     began = reported = time.monotonic()
     spent = 0
     for done in search.run():
@@ -107,26 +110,30 @@ def _watch(
             return "time_limit"
         if report is not None and now - reported >= REPORT_EVERY:
             reported = now
-            report(Progress(now - began, search.share, search.found, partial(_best, search)))
+            report(
+                SearchProgress(
+                    now - began, search.hypervolume, search.size, partial(_best_found, search)
+                )
+            )
     return "converged"
 
 
-def _best(search: Search, size: int) -> Improved:
-    """The best so many of what a search has found so far."""
+def _best_found(search: Search, size: int) -> SearchResult:
+    """Return the best subset of a size of the front that a search has found so far."""
     points = search.points()
-    kept = best_subset(points, size, search.corner / search.units)
-    return Improved(search.tours(kept), points[kept], None)
+    indices = best_subset(points, size, search.corner / search.cost_factors)
+    return SearchResult(search.tours(indices), points[indices], None)
 
 
-def _front(instance: Instance, tours: NDArray[np.integer], terminated: Termination) -> Improved:
-    """The nondominated among tours."""
+def _front(instance: Instance, tours: NDArray[np.integer], terminated: Termination) -> SearchResult:
+    """Return the nondominated among tours."""
     points = tour_lengths(instance, tours)
-    kept = nondominated(points)
-    return Improved(tours[kept].astype(np.int32), points[kept], terminated)
+    indices = nondominated(points)
+    return SearchResult(tours[indices].astype(np.int32), points[indices], terminated)
 
 
 def warm_up() -> None:
-    """Compiles all that a request can need, or loads it from the cache of an earlier process."""
+    """Compile all that a request can need, or load it from the cache of an earlier process."""
     cities = np.arange(12.0)
     coordinates = np.stack([cities, cities**2 % 11, cities**2 % 7, cities], axis=1)
     matrices = np.outer(cities, cities)[None] % np.array([7, 5]).reshape(2, 1, 1)

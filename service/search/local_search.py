@@ -1,150 +1,169 @@
-"""Iterated local search under one weighted sum."""
+"""Local search under one weighted sum: construction, descent, and iterated local search."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.jit import allocating, compiled, inlined
 from service.search.archive import Archive, accepts, insert
-from service.search.candidates import Scalarization, weighted
+from service.search.candidates import Scalarization, weighted_cost
 from service.search.costs import lengths
-from service.search.moves import apply, block_swap, change, or_opt, two_opt
-from service.search.working_tour import Route, keep, pop, push, restore
+from service.search.moves import apply_move, block_swap, length_change, or_opt, two_opt
+from service.search.working_tour import WorkingTour, dequeue, enqueue, restore, save
 
 Cities = NDArray[np.int32]
 
+LONGEST_BLOCK = 50  # cities that a perturbation moves at once
+UNLIMITED = 1 << 60
+LEAST_GAIN = 1e-12  # as a share of the weighted length, far above what rounding adds
+
 
 @allocating
-def nearest_neighbour(scalar: Scalarization, first: int, tour: Cities) -> None:
-    """Fills tour by going to the nearest city not yet visited, candidates before all others."""
+def nearest_neighbour(scalarization: Scalarization, first: int, tour: Cities) -> None:
+    """Fill `tour` from city `first` on, always going to the nearest unvisited city.
+
+    Candidates are looked up first, and all unvisited cities only where no candidate is left.
+    """
     n = len(tour)
-    rest = np.arange(n).astype(np.int32)  # the unvisited, in the first n - k places
-    place = rest.copy()
+    unvisited = np.arange(n).astype(np.int32)  # in the first n - k places
+    place = unvisited.copy()
     city = first
     for k in range(n):
         tour[k] = city
-        last = rest[n - 1 - k]
-        rest[place[city]] = last
+        last = unvisited[n - 1 - k]
+        unvisited[place[city]] = last
         place[last] = place[city]
         place[city] = -1
         if k == n - 1:
             break
         following = -1
-        for other in scalar.near[city]:
+        for other in scalarization.candidates[city]:
             if place[other] >= 0:
                 following = other
                 break
         if following < 0:
             least = np.inf
             for j in range(n - 1 - k):
-                value = weighted(scalar, city, rest[j])
+                value = weighted_cost(scalarization, city, unvisited[j])
                 if value < least:
-                    least, following = value, rest[j]
+                    least, following = value, unvisited[j]
         city = following
 
 
-LONGEST_STRETCH = 50
-MANY = 1 << 60
-LEAST_GAIN = 1e-12  # as a share of the weighted length, far above what rounding adds
-
-
 @inlined
-def draw(state: NDArray[np.int64], count: int) -> int:
-    """A whole number from 0 to count - 1, count below 2**31, by xorshift (Marsaglia, 2003)."""
+def random_below(state: NDArray[np.int64], count: int) -> int:
+    """Draw a whole number from 0 to count - 1, count below 2**31, by xorshift (Marsaglia, 2003)."""
     x = state[0]
     x ^= x << 13
-    x ^= (x >> 7) & ((1 << 57) - 1)  # the sign must not be drawn in
+    x ^= (x >> 7) & ((1 << 57) - 1)  # a logical shift: the sign bit is masked out
     x ^= x << 17
     state[0] = x
     return int((x >> 33) & 0x7FFFFFFF) % count
 
 
 @inlined
-def improve_at(route: Route, scalar: Scalarization, city: int, threshold: float) -> bool:
-    """Makes the best move at a city, if one gains more than a threshold; says whether."""
-    if scalar.costs.symmetric:
-        move = or_opt(route, scalar, city, threshold)
-        other = two_opt(route, scalar, city, move[0])
+def improve_at(
+    working: WorkingTour, scalarization: Scalarization, city: int, threshold: float
+) -> bool:
+    """Make the best move at a city if it gains more than a threshold; return whether one did."""
+    if scalarization.costs.symmetric:
+        move = or_opt(working, scalarization, city, threshold)
+        other = two_opt(working, scalarization, city, move[0])
         if other[2]:
             move = other
     else:
-        move = block_swap(route, scalar, city, threshold)
+        move = block_swap(working, scalarization, city, threshold)
     if move[2] == 0:
         return False
-    make(route, scalar, move[1], move[2], move[3], move[4])
-    push(route, city)
+    make_move(working, scalarization, move[1], move[2], move[3], move[4])
+    enqueue(working, city)
     return True
 
 
 @inlined
-def make(route: Route, scalar: Scalarization, start: int, a: int, b: int, flip: bool) -> None:
-    """Makes a move and keeps account of both lengths."""
-    delta = change(route, scalar, start, a, b, flip)
-    apply(route, start, a, b, flip)
-    route.length[0] += delta[0]
-    route.length[1] += delta[1]
+def make_move(
+    working: WorkingTour, scalarization: Scalarization, start: int, a: int, b: int, flip: bool
+) -> None:
+    """Make a move and update both lengths."""
+    delta = length_change(working, scalarization, start, a, b, flip)
+    apply_move(working, start, a, b, flip)
+    working.length[0] += delta[0]
+    working.length[1] += delta[1]
 
 
 @compiled
-def descend(route: Route, scalar: Scalarization, threshold: float, pops: int) -> int:
-    """Makes improving moves at queued cities until none waits; gives what is left of pops."""
-    while route.ring[1] > 0 and pops > 0:
-        improve_at(route, scalar, pop(route), threshold)
-        pops -= 1
-    return pops
+def descend(
+    working: WorkingTour, scalarization: Scalarization, threshold: float, budget: int
+) -> int:
+    """Make improving moves at queued cities until the queue or `budget`, in cities, is used up.
+
+    Returns what is left of the budget: 0 if the descent may not have ended.
+    """
+    while working.ring[1] > 0 and budget > 0:
+        improve_at(working, scalarization, dequeue(working), threshold)
+        budget -= 1
+    return budget
 
 
 @inlined
-def perturb(route: Route, scalar: Scalarization, random: NDArray[np.int64]) -> None:
-    """Swaps two neighbouring blocks of random sizes at a random place."""
-    n = len(route.tour)
-    longest = min(LONGEST_STRETCH, n // 3)
-    start = draw(random, n)
-    a, b = 1 + draw(random, longest), 1 + draw(random, longest)
-    make(route, scalar, start, a, b, False)
+def perturb(working: WorkingTour, scalarization: Scalarization, random: NDArray[np.int64]) -> None:
+    """Swap two adjacent blocks of random sizes at a random place."""
+    n = len(working.tour)
+    longest = min(LONGEST_BLOCK, n // 3)
+    start = random_below(random, n)
+    a, b = 1 + random_below(random, longest), 1 + random_below(random, longest)
+    make_move(working, scalarization, start, a, b, False)
 
 
 @compiled
-def submit(route: Route, scalar: Scalarization, archive: Archive) -> bool:
-    """Offers the tour to the archive, with its lengths summed afresh if they look welcome."""
-    if not accepts(archive, route.length[0], route.length[1]):
+def offer(working: WorkingTour, scalarization: Scalarization, archive: Archive) -> bool:
+    """Offer the tour to the archive, and return whether it was inserted.
+
+    Lengths that would be accepted are summed afresh first, as updates gather rounding errors.
+    """
+    if not accepts(archive, working.length[0], working.length[1]):
         return False
-    point = lengths(scalar.costs, route.tour)
-    route.length[0], route.length[1] = point
-    return insert(archive, point, route.tour)
+    point = lengths(scalarization.costs, working.tour)
+    working.length[0], working.length[1] = point
+    return insert(archive, point, working.tour)
 
 
 @compiled
-def descend_keenly(route: Route, scalar: Scalarization, archive: Archive, threshold: float) -> None:
-    """Descends until no city waits, and offers the archive every tour on the way."""
-    while route.ring[1] > 0:
-        if improve_at(route, scalar, pop(route), threshold):
-            submit(route, scalar, archive)
+def descend_and_offer(
+    working: WorkingTour, scalarization: Scalarization, archive: Archive, threshold: float
+) -> None:
+    """Descend until the queue is empty, and offer the archive every tour on the way."""
+    while working.ring[1] > 0:
+        if improve_at(working, scalarization, dequeue(working), threshold):
+            offer(working, scalarization, archive)
 
 
 @compiled
 def iterated_local_search(
-    route: Route,
-    scalar: Scalarization,
+    working: WorkingTour,
+    scalarization: Scalarization,
     archive: Archive,
     random: NDArray[np.int64],
     steps: int,
-    keen: bool,
+    offer_all: bool,
 ) -> None:
-    """Disturbs and descends so many times; if keen, tours on the way are offered as well."""
-    w0, w1 = scalar.w0, scalar.w1
-    value = w0 * route.length[0] + w1 * route.length[1]
+    """Perturb and descend `steps` times, returning to the tour before wherever that was better.
+
+    Every local optimum is offered to the archive; with `offer_all`, so is every tour on the way.
+    """
+    w0, w1 = scalarization.w0, scalarization.w1
+    value = w0 * working.length[0] + w1 * working.length[1]
     threshold = LEAST_GAIN * value
-    keep(route)
+    save(working)
     for _ in range(steps):
-        perturb(route, scalar, random)
-        if keen:
-            descend_keenly(route, scalar, archive, threshold)
+        perturb(working, scalarization, random)
+        if offer_all:
+            descend_and_offer(working, scalarization, archive, threshold)
         else:
-            descend(route, scalar, threshold, MANY)
-        submit(route, scalar, archive)
-        reached = w0 * route.length[0] + w1 * route.length[1]
+            descend(working, scalarization, threshold, UNLIMITED)
+        offer(working, scalarization, archive)
+        reached = w0 * working.length[0] + w1 * working.length[1]
         if reached <= value + threshold:
             value = reached
-            keep(route)
+            save(working)
         else:
-            restore(route)
+            restore(working)

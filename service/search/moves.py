@@ -1,15 +1,18 @@
-"""Moves that change a tour in a few places, found by their gain under a weight.
+"""Moves: exchanges of two or three edges of a tour, found by their gain under a weighted sum.
 
-A move is (gain, start, a, b, flip): the block of a cities from position start on is reversed
-if flip says so, and then swapped with the b cities that follow it. With b = 0 that is 2-opt,
-with a at most 3 Or-opt (Or, 1976); without flip it is the only 3-opt exchange that reverses
-nothing, and the one to use where costs differ by direction.
+A move is (gain, start, a, b, flip): the block of `a` cities from position start on is reversed
+if `flip` is true, and then swapped with the `b` cities that follow it. With b = 0 that is 2-opt,
+with a <= 3 Or-opt (Or, 1976). Without flip it is the only 3-opt exchange that reverses nothing,
+and so the one for costs that differ by direction. A move with a = 0 means that none was found.
+
+All searches go through the candidates of a city by ascending cost, and stop at the first from
+which on no move can gain enough.
 """
 
 from service.jit import inlined
-from service.search.candidates import Scalarization, weighted
-from service.search.costs import pair
-from service.search.working_tour import Route, push, reverse, swap_blocks, wrap
+from service.search.candidates import Scalarization, weighted_cost
+from service.search.costs import step_costs
+from service.search.working_tour import WorkingTour, enqueue, reverse_block, swap_blocks, wrap
 
 Move = tuple[float, int, int, int, bool]
 
@@ -17,138 +20,171 @@ LONGEST_SEGMENT = 3
 
 
 @inlined
-def beside(route: Route, city: int, direction: int) -> int:
-    """The city one position after (1) or before (-1) a city."""
-    return route.tour[wrap(route.position[city] + direction, len(route.tour))]
+def neighbour(working: WorkingTour, city: int, direction: int) -> int:
+    """Return the city one position after (direction 1) or before (-1) a city."""
+    return working.tour[wrap(working.position[city] + direction, len(working.tour))]
 
 
 @inlined
-def two_opt(route: Route, scalar: Scalarization, city: int, least: float) -> Move:
-    """The best exchange of two edges, one of them at the city, that gains more than least."""
-    n = len(route.tour)
-    found = (least, 0, 0, 0, False)
+def two_opt(working: WorkingTour, scalarization: Scalarization, city: int, least: float) -> Move:
+    """Return the best 2-opt move of an edge at the city, if it gains more than `least`."""
+    n = len(working.tour)
+    best = (least, 0, 0, 0, False)
     for direction in (1, -1):
-        after = beside(route, city, direction)
-        removed = weighted(scalar, city, after)
-        for k in range(scalar.near.shape[1]):
-            other = scalar.near[city, k]
-            added = scalar.near_costs[city, k]
+        after = neighbour(working, city, direction)
+        removed = weighted_cost(scalarization, city, after)
+        for k in range(scalarization.candidates.shape[1]):
+            other = scalarization.candidates[city, k]
+            added = scalarization.candidate_costs[city, k]
             if added >= removed:
                 break
-            end = beside(route, other, direction)
-            gain = removed - added + weighted(scalar, other, end) - weighted(scalar, after, end)
-            if gain > found[0]:
+            end = neighbour(working, other, direction)
+            gain = (
+                removed
+                - added
+                + weighted_cost(scalarization, other, end)
+                - weighted_cost(scalarization, after, end)
+            )
+            if gain > best[0]:
                 first = after if direction == 1 else city
                 last = other if direction == 1 else end
-                start = route.position[first]
-                size = wrap(route.position[last] - start, n) + 1
-                found = (gain, start, size, 0, True)
-    return found
+                start = working.position[first]
+                size = wrap(working.position[last] - start, n) + 1
+                best = (gain, start, size, 0, True)
+    return best
 
 
 @inlined
-def or_opt(route: Route, scalar: Scalarization, city: int, least: float) -> Move:
-    """The best move of up to three cities, the city foremost, that gains more than least."""
-    found = (least, 0, 0, 0, False)
+def or_opt(working: WorkingTour, scalarization: Scalarization, city: int, least: float) -> Move:
+    """Return the best Or-opt move of a segment that begins or ends at the city.
+
+    If none gains more than `least`, the move has a = 0.
+    """
+    best = (least, 0, 0, 0, False)
     for direction in (1, -1):
-        before = beside(route, city, -direction)
-        entering = weighted(scalar, before, city)
+        before = neighbour(working, city, -direction)
+        entering = weighted_cost(scalarization, before, city)
         last = city
         for size in range(1, LONGEST_SEGMENT + 1):
-            after = beside(route, last, direction)
-            freed = entering + weighted(scalar, last, after) - weighted(scalar, before, after)
-            if freed > found[0]:
-                found = insert(route, scalar, (city, last, size, direction), freed, found)
+            after = neighbour(working, last, direction)
+            freed = (
+                entering
+                + weighted_cost(scalarization, last, after)
+                - weighted_cost(scalarization, before, after)
+            )
+            if freed > best[0]:
+                best = best_insertion(
+                    working, scalarization, (city, last, size, direction), freed, best
+                )
             last = after
-    return found
+    return best
 
 
 @inlined
-def insert(
-    route: Route,
-    scalar: Scalarization,
+def best_insertion(
+    working: WorkingTour,
+    scalarization: Scalarization,
     segment: tuple[int, int, int, int],
     freed: float,
-    found: Move,
+    best: Move,
 ) -> Move:
-    """The best place for a segment (city, last, size, direction) beside a candidate of the city.
+    """Return the better of `best` and the best insertion of a segment.
 
-    Freed is what taking it out gains. A move found before stays unless this one gains more.
+    Args:
+        working: The tour.
+        scalarization: The weighted sum, and the candidates beside which to insert.
+        segment: (city, last, size, direction): `size` cities from city to last, read in the
+            direction, of which city comes to lie beside one of its candidates.
+        freed: The gain of taking the segment out.
+        best: The best move found before.
     """
-    n = len(route.tour)
+    n = len(working.tour)
     city, last, size, direction = segment
-    start = route.position[city if direction == 1 else last]
-    for k in range(scalar.near.shape[1]):
-        other = scalar.near[city, k]
-        open_gain = freed - scalar.near_costs[city, k]
-        if open_gain <= found[0]:
+    start = working.position[city if direction == 1 else last]
+    for k in range(scalarization.candidates.shape[1]):
+        other = scalarization.candidates[city, k]
+        open_gain = freed - scalarization.candidate_costs[city, k]
+        if open_gain <= best[0]:
             break
-        if wrap(route.position[other] - start, n) < size:
+        if wrap(working.position[other] - start, n) < size:
             continue
         for side in (1, -1):
-            beyond = beside(route, other, side)
+            beyond = neighbour(working, other, side)
             if beyond in (city, last):
                 continue
-            gain = open_gain + weighted(scalar, other, beyond) - weighted(scalar, last, beyond)
-            if gain > found[0]:
+            gain = (
+                open_gain
+                + weighted_cost(scalarization, other, beyond)
+                - weighted_cost(scalarization, last, beyond)
+            )
+            if gain > best[0]:
                 left = other if side == 1 else beyond
-                gap = wrap(route.position[left] - start - size + n, n) + 1
-                found = (gain, start, size, gap, side != direction)
-    return found
+                gap = wrap(working.position[left] - start - size + n, n) + 1
+                best = (gain, start, size, gap, side != direction)
+    return best
 
 
 @inlined
-def block_swap(route: Route, scalar: Scalarization, city: int, least: float) -> Move:
-    """The best exchange of three edges, one of them leaving the city, that reverses nothing."""
-    n = len(route.tour)
-    found = (least, 0, 0, 0, False)
-    start = wrap(route.position[city] + 1, n)
-    second = route.tour[start]
-    removed = weighted(scalar, city, second)
-    for k in range(scalar.near.shape[1]):
-        third = scalar.near[city, k]
-        open_gain = removed - scalar.near_costs[city, k]
-        if open_gain <= found[0]:
+def block_swap(working: WorkingTour, scalarization: Scalarization, city: int, least: float) -> Move:
+    """Return the best swap of two blocks of which the first begins right after the city.
+
+    If none gains more than `least`, the move has a = 0.
+    """
+    n = len(working.tour)
+    best = (least, 0, 0, 0, False)
+    start = wrap(working.position[city] + 1, n)
+    second = working.tour[start]
+    removed = weighted_cost(scalarization, city, second)
+    for k in range(scalarization.candidates.shape[1]):
+        third = scalarization.candidates[city, k]
+        open_gain = removed - scalarization.candidate_costs[city, k]
+        if open_gain <= best[0]:
             break
-        a = wrap(route.position[third] - start, n)
+        a = wrap(working.position[third] - start, n)
         if a == 0:
             continue
-        tail = beside(route, third, -1)
-        open_gain += weighted(scalar, tail, third)
-        for m in range(scalar.near.shape[1]):
-            head = scalar.near[tail, m]
-            gain = open_gain - scalar.near_costs[tail, m]
-            if gain <= found[0]:
+        tail = neighbour(working, third, -1)
+        open_gain += weighted_cost(scalarization, tail, third)
+        for m in range(scalarization.candidates.shape[1]):
+            head = scalarization.candidates[tail, m]
+            gain = open_gain - scalarization.candidate_costs[tail, m]
+            if gain <= best[0]:
                 break
-            b = wrap(route.position[head] - start, n) - a
+            b = wrap(working.position[head] - start, n) - a
             if b <= 0:
                 continue
-            left = beside(route, head, -1)
-            gain += weighted(scalar, left, head) - weighted(scalar, left, second)
-            if gain > found[0]:
-                found = (gain, start, a, b, False)
-    return found
+            left = neighbour(working, head, -1)
+            gain += weighted_cost(scalarization, left, head) - weighted_cost(
+                scalarization, left, second
+            )
+            if gain > best[0]:
+                best = (gain, start, a, b, False)
+    return best
 
 
 @inlined
-def change(
-    route: Route, scalar: Scalarization, start: int, a: int, b: int, flip: bool
+def length_change(
+    working: WorkingTour, scalarization: Scalarization, start: int, a: int, b: int, flip: bool
 ) -> tuple[float, float]:
-    """How much both lengths change by a move."""
-    n = len(route.tour)
-    before, first = route.tour[wrap(start - 1, n)], route.tour[start]
-    last, after = route.tour[wrap(start + a - 1, n)], route.tour[wrap(start + a, n)]
-    costs = scalar.costs
-    entered, left = pair(costs, before, first), pair(costs, last, after)
+    """Return by how much a move changes both lengths. O(1)."""
+    n = len(working.tour)
+    before, first = working.tour[wrap(start - 1, n)], working.tour[start]
+    last, after = working.tour[wrap(start + a - 1, n)], working.tour[wrap(start + a, n)]
+    costs = scalarization.costs
+    entered, left = step_costs(costs, before, first), step_costs(costs, last, after)
     if b == 0:
-        x, y = pair(costs, before, last), pair(costs, first, after)
+        x, y = step_costs(costs, before, last), step_costs(costs, first, after)
         return x[0] + y[0] - entered[0] - left[0], x[1] + y[1] - entered[1] - left[1]
     end = wrap(start + a + b - 1, n)
-    tail, beyond = route.tour[end], route.tour[wrap(end + 1, n)]
+    tail, beyond = working.tour[end], working.tour[wrap(end + 1, n)]
     if flip:
         first, last = last, first
-    x, y, z = pair(costs, before, after), pair(costs, tail, first), pair(costs, last, beyond)
-    broken = pair(costs, tail, beyond)
+    x, y, z = (
+        step_costs(costs, before, after),
+        step_costs(costs, tail, first),
+        step_costs(costs, last, beyond),
+    )
+    broken = step_costs(costs, tail, beyond)
     return (
         x[0] + y[0] + z[0] - entered[0] - left[0] - broken[0],
         x[1] + y[1] + z[1] - entered[1] - left[1] - broken[1],
@@ -156,18 +192,18 @@ def change(
 
 
 @inlined
-def apply(route: Route, start: int, a: int, b: int, flip: bool) -> None:
-    """Makes a move, and queues the cities at its ends."""
-    n = len(route.tour)
-    push(route, route.tour[wrap(start - 1, n)])
-    push(route, route.tour[start])
-    push(route, route.tour[wrap(start + a - 1, n)])
-    push(route, route.tour[wrap(start + a, n)])
+def apply_move(working: WorkingTour, start: int, a: int, b: int, flip: bool) -> None:
+    """Make a move, and queue the cities at the ends of the edges that it exchanges."""
+    n = len(working.tour)
+    enqueue(working, working.tour[wrap(start - 1, n)])
+    enqueue(working, working.tour[start])
+    enqueue(working, working.tour[wrap(start + a - 1, n)])
+    enqueue(working, working.tour[wrap(start + a, n)])
     if b:
         end = wrap(start + a + b - 1, n)
-        push(route, route.tour[end])
-        push(route, route.tour[wrap(end + 1, n)])
+        enqueue(working, working.tour[end])
+        enqueue(working, working.tour[wrap(end + 1, n)])
     if flip:
-        reverse(route, start, a)
+        reverse_block(working, start, a)
     if b:
-        swap_blocks(route, start, a, b)
+        swap_blocks(working, start, a, b)

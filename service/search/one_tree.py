@@ -1,9 +1,9 @@
-"""Lower bounds on the length of a tour where costs are the same in both directions.
+"""Held-Karp lower bounds on the length of a tour, for symmetric costs.
 
-A tour is a spanning tree of all cities but one, plus two edges at that one: no shorter than the
-least such 1-tree, whatever penalties are added to the cities and taken off again (Held and
-Karp, 1971). The penalties climb by subgradient with the step lengths of Volgenant and Jonker
-(1982).
+A tour is a 1-tree: a spanning tree of all cities but one, plus two edges at that one. So it is no
+shorter than the least 1-tree, and that stays true under any penalties added to the costs of all
+edges of a city, once twice their sum is deducted (Held and Karp, 1971). The penalties are improved
+by subgradient ascent with the step lengths of Volgenant and Jonker (1982).
 """
 
 from typing import NamedTuple
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.jit import allocating, compiled
-from service.search.costs import Costs, pair
+from service.search.costs import Costs, step_costs
 
 Array = NDArray[np.float64]
 
@@ -21,9 +21,9 @@ Array = NDArray[np.float64]
 def one_tree(
     costs: Costs, w0: float, w1: float, penalties: Array, degrees: NDArray[np.int64]
 ) -> float:
-    """The length of a least 1-tree under weights and penalties; degrees are filled in.
+    """Return the length of a least 1-tree under weights and penalties, and fill in its degrees.
 
-    City 0 is the one outside the tree; the tree grows from city 1 (Prim, 1957).
+    City 0 is the one outside the tree; the tree grows from city 1 (Prim, 1957). O(n^2).
     """
     n = len(penalties)
     degrees[:] = 0
@@ -37,7 +37,7 @@ def one_tree(
         for j in range(2, n):
             if not waiting[j]:
                 continue
-            c = pair(costs, city, j)
+            c = step_costs(costs, city, j)
             value = w0 * c[0] + w1 * c[1] + penalties[city] + penalties[j]
             if value < distance[j]:
                 distance[j], parent[j] = value, city
@@ -48,16 +48,18 @@ def one_tree(
         degrees[parent[closest]] += 1
         total += distance[closest]
         city = closest
-    return total + tie(costs, w0, w1, penalties, degrees)
+    return total + two_shortest_edges(costs, w0, w1, penalties, degrees)
 
 
 @compiled
-def tie(costs: Costs, w0: float, w1: float, penalties: Array, degrees: NDArray[np.int64]) -> float:
-    """The length of the two shortest edges at city 0."""
+def two_shortest_edges(
+    costs: Costs, w0: float, w1: float, penalties: Array, degrees: NDArray[np.int64]
+) -> float:
+    """Return the length of the two shortest edges at city 0, and count them in the degrees."""
     least, second = np.inf, np.inf
     nearest, runner_up = 0, 0
     for j in range(1, len(penalties)):
-        c = pair(costs, 0, j)
+        c = step_costs(costs, 0, j)
         value = w0 * c[0] + w1 * c[1] + penalties[0] + penalties[j]
         if value < least:
             second, runner_up = least, nearest
@@ -71,17 +73,17 @@ def tie(costs: Costs, w0: float, w1: float, penalties: Array, degrees: NDArray[n
 
 
 class Ascent(NamedTuple):
-    """Penalties under way, and the best so far."""
+    """The state of a subgradient ascent: the present penalties, and the best so far."""
 
     penalties: Array  # (n,)
-    kept: Array  # (n,): those that proved the best bound
-    best: Array  # (1,)
+    best_penalties: Array  # (n,): those that proved the best bound
+    best_bound: Array  # (1,)
     degrees: NDArray[np.int64]  # (n,)
-    earlier: NDArray[np.int64]  # (n,): degrees one step before
+    previous_degrees: NDArray[np.int64]  # (n,), one step before
 
 
 def make_ascent(penalties: Array) -> Ascent:
-    """An ascent from given penalties."""
+    """Return the start of an ascent from given penalties."""
     n = len(penalties)
     degrees = np.full(n, 2)
     return Ascent(penalties.copy(), penalties.copy(), np.full(1, -np.inf), degrees, degrees.copy())
@@ -89,16 +91,17 @@ def make_ascent(penalties: Array) -> Ascent:
 
 @allocating
 def ascend(costs: Costs, w0: float, w1: float, ascent: Ascent, shares: Array) -> None:
-    """Takes one step for each of the shares that the step length should have of its largest."""
+    """Take a step for each of the shares, which are of the greatest step length. O(n^2) each."""
     n = len(ascent.penalties)
     for share in shares:
-        ascent.earlier[:] = ascent.degrees
+        ascent.previous_degrees[:] = ascent.degrees
         length = one_tree(costs, w0, w1, ascent.penalties, ascent.degrees)
         bound = length - 2 * ascent.penalties.sum()
-        if bound > ascent.best[0]:
-            ascent.best[0] = bound
-            ascent.kept[:] = ascent.penalties
-        step = share * ascent.best[0] / (2 * n)
+        if bound > ascent.best_bound[0]:
+            ascent.best_bound[0] = bound
+            ascent.best_penalties[:] = ascent.penalties
+        step = share * ascent.best_bound[0] / (2 * n)
         for j in range(n):
-            slope = 0.6 * (ascent.degrees[j] - 2) + 0.4 * (ascent.earlier[j] - 2)
+            degree, previous = ascent.degrees[j], ascent.previous_degrees[j]
+            slope = 0.6 * (degree - 2) + 0.4 * (previous - 2)
             ascent.penalties[j] += step * slope

@@ -1,8 +1,9 @@
-"""Filling the front between the points that weighted sums reach.
+"""A Pareto local search that fills the gaps between the points that weighted sums reach.
 
-A Pareto local search (Paquete, Chiarandini and Stuetzle, 2004) that looks round one tour of the
-front at a time. Neighbours are drawn, by iterated descent under the weight at which the front
-slopes just there, rather than enumerated; each is judged under both objectives.
+Pareto local search (Paquete, Chiarandini and Stuetzle, 2004) explores the neighbourhood of one
+tour of the front at a time. Here neighbours are sampled rather than enumerated: by iterated
+local search under the weighted sum that is tangent to the front at the tour's point. Every tour
+on the way is offered to the archive, under both objectives.
 """
 
 from typing import NamedTuple
@@ -14,37 +15,37 @@ from service.jit import compiled, inlined
 from service.search.archive import Archive
 from service.search.candidates import Scalarization
 from service.search.costs import Costs
-from service.search.local_search import draw, iterated_local_search
-from service.search.working_tour import Route, take
+from service.search.local_search import iterated_local_search, random_below
+from service.search.working_tour import WorkingTour, load
 
 Array = NDArray[np.float64]
 
-CONTESTANTS = 8
-STEPS = 10
-REACH = 5  # points to either side over which the slope of the front is taken
+TOURNAMENT_SIZE = 8  # points drawn, of which one is chosen
+STEPS = 10  # of the iterated local search at each point
+SLOPE_REACH = 5  # points to either side over which the slope of the front is taken
 
 
 class WeightedCandidates(NamedTuple):
-    """Weights spread over all trade-offs, and the candidate lists under each."""
+    """Weights spread over all trade-offs, and the candidate lists under each of them."""
 
     weights: Array  # (k, 2), rows adding to 1, by ascending first weight
-    near: NDArray[np.int32]  # (k, n, nearest)
-    near_costs: Array  # (k, n, nearest)
+    candidates: NDArray[np.int32]  # (k, n, candidates)
+    candidate_costs: Array  # (k, n, candidates)
 
 
 class SearchState(NamedTuple):
-    """What a search stands on."""
+    """All that the compiled part of a search reads and changes."""
 
     costs: Costs
-    fan: WeightedCandidates
+    weighted_candidates: WeightedCandidates
     archive: Archive
-    route: Route
-    random: NDArray[np.int64]  # (1,), the state of the generator
+    working: WorkingTour
+    random: NDArray[np.int64]  # (1,), the state of random_below()
 
 
 @inlined
-def span(archive: Archive, k: int, reach: int) -> tuple[float, float]:
-    """Width and height of the stretch of front round a point."""
+def front_span(archive: Archive, k: int, reach: int) -> tuple[float, float]:
+    """Return width and height of the front from `reach` points before a point to `reach` after."""
     before, after = max(k - reach, 0), min(k + reach, archive.counts[0] - 1)
     return (
         archive.points[after, 0] - archive.points[before, 0],
@@ -53,40 +54,41 @@ def span(archive: Archive, k: int, reach: int) -> tuple[float, float]:
 
 
 @compiled
-def choose(archive: Archive, random: NDArray[np.int64]) -> int:
-    """Of a few points drawn at random, the one with most to win beside it.
+def choose_point(archive: Archive, random: NDArray[np.int64]) -> int:
+    """Choose by tournament a point beside which there is much hypervolume to gain.
 
-    That is the hypervolume left between its neighbours, the less the more often it was sought.
+    Of a few points drawn at random, that is the one whose neighbours span the largest box, divided
+    by one more than the number of times that a search has started from it.
     """
-    found, most = 0, -1.0
-    for _ in range(CONTESTANTS):
-        k = draw(random, archive.counts[0])
-        width, height = span(archive, k, 1)
+    chosen, largest = 0, -1.0
+    for _ in range(TOURNAMENT_SIZE):
+        k = random_below(random, archive.counts[0])
+        width, height = front_span(archive, k, 1)
         value = width * height / (1 + archive.tries[archive.slots[k]])
-        if value > most:
-            found, most = k, value
-    return found
+        if value > largest:
+            chosen, largest = k, value
+    return chosen
 
 
 @compiled
-def scalar_at(state: SearchState, k: int) -> Scalarization:
-    """The weighted sum under which the front is level round a point."""
-    width, height = span(state.archive, k, REACH)
+def scalarization_at(state: SearchState, k: int) -> Scalarization:
+    """Return the weighted sum, of those in the state, that is most nearly tangent at a point."""
+    width, height = front_span(state.archive, k, SLOPE_REACH)
     w0 = height / (width + height) if width + height > 0 else 0.5
-    fan = state.fan
-    k = min(int(np.searchsorted(fan.weights[:, 0], w0)), len(fan.weights) - 1)
-    weight = fan.weights[k]
-    return Scalarization(state.costs, fan.near[k], fan.near_costs[k], weight[0], weight[1])
+    weights, candidates, candidate_costs = state.weighted_candidates
+    k = min(int(np.searchsorted(weights[:, 0], w0)), len(weights) - 1)
+    weight = weights[k]
+    return Scalarization(state.costs, candidates[k], candidate_costs[k], weight[0], weight[1])
 
 
 @compiled
-def fill(state: SearchState, rounds: int) -> None:
-    """Sets out so many times from a point with room beside it."""
-    archive, route = state.archive, state.route
+def fill_gaps(state: SearchState, rounds: int) -> None:
+    """Search from so many points of the front, one after another, each chosen anew."""
+    archive, working = state.archive, state.working
     for _ in range(rounds):
-        k = choose(archive, state.random)
+        k = choose_point(archive, state.random)
         slot = archive.slots[k]
         archive.tries[slot] += 1
-        scalar = scalar_at(state, k)
-        take(route, archive.tours[slot], archive.points[k, 0], archive.points[k, 1])
-        iterated_local_search(route, scalar, archive, state.random, STEPS, True)
+        scalarization = scalarization_at(state, k)
+        load(working, archive.tours[slot], archive.points[k, 0], archive.points[k, 1])
+        iterated_local_search(working, scalarization, archive, state.random, STEPS, True)

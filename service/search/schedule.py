@@ -1,4 +1,8 @@
-"""The course of a search: one weight after another, then wherever the front gains most."""
+"""The schedule of a search: under which weight, and for how long, or where to fill the front.
+
+First every weight gets a tour by descent, then each gets iterated local search, twice. From then
+on weights and gaps in the front compete for the time, by the hypervolume that they lately gained.
+"""
 
 from collections.abc import Iterator
 from itertools import cycle
@@ -7,41 +11,41 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
-from service.search.archive import accepts, area, best, insert, make_archive
+from service.search.archive import accepts, best_point, dominated_area, insert, make_archive
 from service.search.candidates import (
-    NEAREST,
+    CANDIDATES_PER_CITY,
     POOL_WEIGHTS,
     Scalarization,
-    empty_pool,
     fill_pool,
-    nearest,
+    make_candidate_pool,
+    rank_candidates,
 )
-from service.search.costs import lengths, make_costs, units
+from service.search.costs import cost_factors, lengths, make_costs
 from service.search.local_search import (
     LEAST_GAIN,
     descend,
     iterated_local_search,
     nearest_neighbour,
-    submit,
+    offer,
 )
-from service.search.pareto_local_search import STEPS, SearchState, WeightedCandidates, fill
-from service.search.working_tour import make_route, push_all, take
+from service.search.pareto_local_search import STEPS, SearchState, WeightedCandidates, fill_gaps
+from service.search.working_tour import enqueue_all, load, make_working_tour
 
 Array = NDArray[np.float64]
 
 WEIGHTS = 50  # at 500 cities and 0.3 s better than 100, which get too little time each, and than 35
-BUILT = 17  # weights that are offered a tour built from nothing
-STEEPEST = 1e-3  # at the ends of the fan the other length still counts, to break ties
-FIRST_SHARE = 4  # the first time round, weights get a quarter of the iterations they get later
-BLOCK = 300  # iterations between two looks at the clock, about a millisecond
-ROWS = 200_000  # costs computed between two looks at the clock
-POPS = 2_000
-PROBE = 10  # every so many turns, what has lately won less is tried
+CONSTRUCTIONS = 17  # weights for which a tour is constructed as well
+LEAST_SHARE = 1e-3  # of a weight: the other length still counts at the ends, to break ties
+FIRST_DIVISOR = 4  # in the first round a weight gets a quarter of the iterations of later ones
+BLOCK = 300  # iterations between two checks of the deadline, about a millisecond
+POOL_BLOCK = 200_000  # costs computed between two checks of the deadline
+DESCENT_BLOCK = 2_000  # cities from the queue between two checks of the deadline
+EXPLORE_EVERY = 10  # turns, of which one goes to what has lately gained less
 PATIENCE = 1_000  # iterations per city without a new tour, after which the search has converged
 
 
-def bisecting(count: int) -> list[int]:
-    """0 to count - 1, both ends first, then the middles of ever shorter intervals.
+def bisection_order(count: int) -> list[int]:
+    """Return 0 to count - 1: both ends first, then the middles of ever shorter intervals.
 
     Each weight then has neighbours on either side whose tours are good starts for it.
     """
@@ -56,147 +60,176 @@ def bisecting(count: int) -> list[int]:
 
 
 class Search:
-    """A search of one instance of at least eight cities.
+    """A search for the front of one instance of at least eight cities.
 
-    What it does next depends on the seed and on what it has found, never on the clock, so that
-    a search stopped after the same number of iterations has found the same.
+    It depends on the seed and on what it has found, never on the clock: stopped after the same
+    number of iterations, it has found the same.
+
+    Args:
+        instance: The instance.
+        seed: Of all random choices.
+        reference_point: Shape (2,), positive, in the instance's units.
     """
 
     def __init__(self, instance: Instance, seed: int, reference_point: Array) -> None:
-        self.units = units(instance)
-        self.corner = reference_point * self.units
         self.n = instance.n
-        share = np.linspace(0.0, 1.0, WEIGHTS).clip(STEEPEST, 1 - STEEPEST)
-        weights = np.stack([share, 1 - share], axis=1) / (instance.scale * self.units)
+        self.cost_factors = cost_factors(instance)
+        self.corner = reference_point * self.cost_factors
+        share = np.linspace(0.0, 1.0, WEIGHTS).clip(LEAST_SHARE, 1 - LEAST_SHARE)
+        weights = np.stack([share, 1 - share], axis=1) / (instance.scale * self.cost_factors)
         weights /= weights.sum(axis=1, keepdims=True)
         self.weights = weights
-        near = np.zeros((WEIGHTS, self.n, min(NEAREST, self.n - 1)), np.int32)
+        candidates = np.zeros((WEIGHTS, self.n, min(CANDIDATES_PER_CITY, self.n - 1)), np.int32)
         self.state = SearchState(
             make_costs(instance),
-            WeightedCandidates(weights, near, np.zeros(near.shape)),
+            WeightedCandidates(weights, candidates, np.zeros(candidates.shape)),
             make_archive(self.n),
-            make_route(self.n),
+            make_working_tour(self.n),
             np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
         )
 
     @property
-    def share(self) -> float:
-        """The hypervolume of what was found, as a share of the box to the reference point."""
+    def hypervolume(self) -> float:
+        """The hypervolume of the front found so far, 0 to 1."""
         return self._area / float(self.corner.prod())
 
     @property
-    def found(self) -> int:
-        """How many points the front has."""
+    def size(self) -> int:
+        """The number of points of the front found so far."""
         return int(self.state.archive.counts[0])
 
-    def tours(self, kept: NDArray[np.intp] | None = None) -> NDArray[np.int32]:
-        """The tours of the front, or those at the indices kept, by ascending first length."""
+    def tours(self, indices: NDArray[np.intp] | None = None) -> NDArray[np.int32]:
+        """Return the tours of the front, or those at indices, by ascending first length."""
         archive = self.state.archive
-        slots = archive.slots[: self.found]
-        return archive.tours[slots if kept is None else slots[kept]]
+        slots = archive.slots[: self.size]
+        return archive.tours[slots if indices is None else slots[indices]]
 
     def points(self) -> Array:
-        """The points of the front, in the instance's units."""
-        return self.state.archive.points[: self.found] / self.units
+        """Return the points of the front, shape (p, 2), in the instance's units."""
+        return self.state.archive.points[: self.size] / self.cost_factors
 
-    def missing(self, tours: NDArray[np.integer]) -> NDArray[np.integer]:
-        """Those tours that the front neither dominates nor equals, as room had to be made."""
+    def not_covered(self, tours: NDArray[np.integer]) -> NDArray[np.integer]:
+        """Return the tours that the front neither dominates nor equals.
+
+        Of tours that were added there are some only where a full archive had to drop them.
+        """
         costs, archive = self.state.costs, self.state.archive
         points = [lengths(costs, tour) for tour in np.ascontiguousarray(tours, np.int32)]
         return tours[[k for k in range(len(tours)) if accepts(archive, *points[k])]]
 
     def add(self, tours: NDArray[np.integer]) -> None:
-        """Admits tours that came from elsewhere."""
+        """Add tours, shape (m, n), to the front."""
         for tour in np.ascontiguousarray(tours, np.int32):
             insert(self.state.archive, lengths(self.state.costs, tour), tour)
 
     def run(self) -> Iterator[int]:
-        """Works, handing back control every millisecond or so with the iterations done since."""
-        yield from self._pool_neighbours()
-        for rank, k in enumerate(bisecting(WEIGHTS)):
-            yield from self._descend(k, build=rank < BUILT)
-        for share in (FIRST_SHARE, 1):
-            for k in bisecting(WEIGHTS):
-                yield from self._iterate(k, self.n // share)
+        """Search, and yield about every millisecond the number of iterations done since.
+
+        Ends when the search has converged.
+        """
+        yield from self.pool_candidates()
+        for rank, k in enumerate(bisection_order(WEIGHTS)):
+            yield from self._descend(k, construct=rank < CONSTRUCTIONS)
+        for divisor in (FIRST_DIVISOR, 1):
+            for k in bisection_order(WEIGHTS):
+                yield from self._iterate(k, self.n // divisor)
         yield from self._compete()
+
+    def pool_candidates(self) -> Iterator[int]:
+        """Fill the pool from which the candidates under each weight are ranked."""
+        self.pool = make_candidate_pool(self.n)
+        pooled = np.linspace(0, WEIGHTS - 1, POOL_WEIGHTS).astype(int)
+        rows = max(1, POOL_BLOCK // self.n)
+        for begin in range(0, self.n, rows):
+            end = min(begin + rows, self.n)
+            fill_pool(self.pool, self.state.costs, self.weights[pooled], begin, end)
+            yield 0
 
     @property
     def _area(self) -> float:
-        return area(self.state.archive, self.corner[0], self.corner[1])
+        return dominated_area(self.state.archive, self.corner[0], self.corner[1])
 
-    def _pool_neighbours(self) -> Iterator[int]:
-        self.pool = empty_pool(self.n)
-        marks = np.linspace(0, WEIGHTS - 1, POOL_WEIGHTS).astype(int)
-        rows = max(1, ROWS // self.n)
-        for begin in range(0, self.n, rows):
-            end = min(begin + rows, self.n)
-            fill_pool(self.pool, self.state.costs, self.weights[marks], begin, end)
-            yield 0
+    def _scalarization(self, k: int) -> Scalarization:
+        w0, w1 = self.weights[k].tolist()
+        _, candidates, candidate_costs = self.state.weighted_candidates
+        return Scalarization(self.state.costs, candidates[k], candidate_costs[k], w0, w1)
 
-    def _scalar(self, k: int) -> Scalarization:
-        w0, w1 = self.weights[k]
-        fan = self.state.fan
-        return Scalarization(self.state.costs, fan.near[k], fan.near_costs[k], float(w0), float(w1))
-
-    def _set_out(self, scalar: Scalarization, build: bool) -> None:
-        """Takes the best tour known for a weight, or one newly built if that is better."""
-        archive, route = self.state.archive, self.state.route
-        known = self.found > 0
+    def _load_start(self, scalarization: Scalarization, construct: bool) -> None:
+        """Load the best tour known for a weighted sum, or a constructed one if that is better."""
+        archive, working = self.state.archive, self.state.working
         least = np.inf
-        if known:
-            k = best(archive, scalar.w0, scalar.w1)
+        if self.size > 0:
+            k = best_point(archive, scalarization.w0, scalarization.w1)
             first, second = archive.points[k].tolist()
-            least = scalar.w0 * first + scalar.w1 * second
-            take(route, archive.tours[archive.slots[k]], first, second)
-        if build or not known:
+            least = scalarization.w0 * first + scalarization.w1 * second
+            load(working, archive.tours[archive.slots[k]], first, second)
+        if construct or self.size == 0:
             tour = np.empty(self.n, np.int32)
-            nearest_neighbour(scalar, 0, tour)
-            first, second = lengths(scalar.costs, tour)
-            if scalar.w0 * first + scalar.w1 * second < least:
-                take(route, tour, first, second)
+            nearest_neighbour(scalarization, 0, tour)
+            first, second = lengths(scalarization.costs, tour)
+            if scalarization.w0 * first + scalarization.w1 * second < least:
+                load(working, tour, first, second)
 
-    def _descend(self, k: int, build: bool) -> Iterator[int]:
-        state = self.state
-        scalar = self._scalar(k)
-        nearest(self.pool, scalar.near, scalar.near_costs, scalar.w0, scalar.w1)
-        self._set_out(scalar, build)
-        push_all(state.route)
-        value = float(self.weights[k] @ state.route.length)
-        while descend(state.route, scalar, LEAST_GAIN * value, POPS) == 0:
+    def _descend(self, k: int, construct: bool) -> Iterator[int]:
+        """Rank the candidates of weight k, and descend to a local optimum under it."""
+        working = self.state.working
+        scalarization = self._scalarization(k)
+        rank_candidates(
+            self.pool,
+            scalarization.candidates,
+            scalarization.candidate_costs,
+            scalarization.w0,
+            scalarization.w1,
+        )
+        self._load_start(scalarization, construct)
+        enqueue_all(working)
+        threshold = LEAST_GAIN * float(self.weights[k] @ working.length)
+        while descend(working, scalarization, threshold, DESCENT_BLOCK) == 0:
             yield 0
-        submit(state.route, scalar, state.archive)
+        offer(working, scalarization, self.state.archive)
         yield 1
 
     def _iterate(self, k: int, iterations: int) -> Iterator[int]:
+        """Run so many iterations of iterated local search under weight k."""
         state = self.state
-        scalar = self._scalar(k)
-        self._set_out(scalar, build=False)
+        scalarization = self._scalarization(k)
+        self._load_start(scalarization, construct=False)
         left = iterations
         while left > 0:
             steps = min(left, BLOCK)
-            iterated_local_search(state.route, scalar, state.archive, state.random, steps, False)
+            iterated_local_search(
+                state.working, scalarization, state.archive, state.random, steps, False
+            )
             yield steps
             left -= steps
 
-    def _fill(self) -> Iterator[int]:
+    def _fill_gaps(self) -> Iterator[int]:
+        """Run about n iterations of Pareto local search."""
         for _ in range(max(1, self.n // BLOCK)):
-            fill(self.state, BLOCK // STEPS)
+            fill_gaps(self.state, BLOCK // STEPS)
             yield BLOCK
 
     def _compete(self) -> Iterator[int]:
-        """Presses weights or fills gaps, whichever has lately won more hypervolume, until dry."""
-        turns = cycle(bisecting(WEIGHTS))
+        """Iterate under weights or fill gaps, whichever lately gained more, until convergence.
+
+        Gain is hypervolume per iteration, as a moving average.
+        """
+        next_weight = cycle(bisection_order(WEIGHTS))
         rates = [np.inf, np.inf]
         quiet, turn = 0, 0
         while quiet < PATIENCE * self.n:
             turn += 1
-            behind = int(rates[0] > rates[1])
-            kind = behind if turn % PROBE == 0 else 1 - behind
-            before, admitted = self._area, self.state.archive.counts[2]
+            slower = int(rates[0] > rates[1])
+            kind = slower if turn % EXPLORE_EVERY == 0 else 1 - slower
+            area, inserted = self._area, self.state.archive.counts[2]
             spent = 0
-            for done in self._fill() if kind else self._iterate(next(turns), self.n):
+            for done in self._fill_gaps() if kind else self._iterate(next(next_weight), self.n):
                 spent += done
                 yield done
-            rate = (self._area - before) / spent
-            rates[kind] = rate if rates[kind] == np.inf else rates[kind] * 0.9 + rate * 0.1
-            quiet = quiet + spent if self.state.archive.counts[2] == admitted else 0
+            rate = (self._area - area) / spent
+            rates[kind] = _moving_average(rates[kind], rate)
+            quiet = quiet + spent if self.state.archive.counts[2] == inserted else 0
+
+
+def _moving_average(average: float, value: float) -> float:
+    return value if average == np.inf else average * 0.9 + value * 0.1

@@ -1,4 +1,8 @@
-"""A tour that is being changed: cities by position, positions by city, and what to look at."""
+"""The tour that a search is changing, and the queue of cities where a move may now gain.
+
+The queue serves as don't-look bits (Bentley, 1992): only around cities that it holds are moves
+tried, and a move queues the cities at the ends of the edges that it exchanged.
+"""
 
 from typing import NamedTuple
 
@@ -10,25 +14,25 @@ from service.jit import compiled, inlined
 Cities = NDArray[np.int32]
 
 
-class Route(NamedTuple):
-    """A tour with its inverse, and the queue of cities whose surroundings changed."""
+class WorkingTour(NamedTuple):
+    """A tour, its inverse, both lengths, a saved copy of these, and a queue of cities."""
 
     tour: Cities  # (n,)
     position: Cities  # (n,)
     length: NDArray[np.float64]  # (2,)
-    kept_tour: Cities  # (n,), what to come back to
-    kept_position: Cities  # (n,)
-    kept_length: NDArray[np.float64]  # (2,)
-    buffer: Cities  # (n,)
-    queue: Cities  # (n,), a ring
-    queued: NDArray[np.bool_]  # (n,)
-    ring: NDArray[np.int64]  # (2,): where the queue begins, how many wait
+    saved_tour: Cities  # (n,), what restore() returns to
+    saved_position: Cities  # (n,)
+    saved_length: NDArray[np.float64]  # (2,)
+    buffer: Cities  # (n,), scratch space of swap_blocks()
+    queue: Cities  # (n,), a ring buffer
+    queued: NDArray[np.bool_]  # (n,), by city: whether the queue holds it
+    ring: NDArray[np.int64]  # (2,): place of the queue's head, number of cities in the queue
 
 
-def make_route(n: int) -> Route:
-    """A route through n cities in order, with nothing to look at."""
+def make_working_tour(n: int) -> WorkingTour:
+    """Return a working tour through n cities in order, with an empty queue."""
     order = np.arange(n, dtype=np.int32)
-    return Route(
+    return WorkingTour(
         order,
         order.copy(),
         np.zeros(2),
@@ -43,108 +47,111 @@ def make_route(n: int) -> Route:
 
 
 @inlined
-def push(route: Route, city: int) -> None:
-    """Puts a city at the queue's end, unless it waits already."""
-    if route.queued[city]:
+def enqueue(working: WorkingTour, city: int) -> None:
+    """Append a city to the queue, unless the queue holds it."""
+    if working.queued[city]:
         return
-    route.queued[city] = True
-    n = len(route.tour)
-    place = route.ring[0] + route.ring[1]
-    route.queue[place if place < n else place - n] = city
-    route.ring[1] += 1
+    working.queued[city] = True
+    n = len(working.tour)
+    place = working.ring[0] + working.ring[1]
+    working.queue[place if place < n else place - n] = city
+    working.ring[1] += 1
 
 
 @inlined
-def pop(route: Route) -> int:
-    """Takes the city at the queue's beginning."""
-    head = route.ring[0]
-    city = route.queue[head]
-    route.queued[city] = False
-    route.ring[0] = head + 1 if head + 1 < len(route.tour) else 0
-    route.ring[1] -= 1
+def dequeue(working: WorkingTour) -> int:
+    """Remove the city at the head of the queue and return it."""
+    head = working.ring[0]
+    city = working.queue[head]
+    working.queued[city] = False
+    working.ring[0] = head + 1 if head + 1 < len(working.tour) else 0
+    working.ring[1] -= 1
     return city
 
 
 @inlined
 def wrap(place: int, n: int) -> int:
-    """A position up to n too large or too small, brought back into the tour."""
+    """Return a position modulo n, for positions from -n to 2n - 1."""
     if place >= n:
         return place - n
     return place + n if place < 0 else place
 
 
 @inlined
-def put(route: Route, place: int, city: int) -> None:
-    """Has a position hold a city."""
-    route.tour[place] = city
-    route.position[city] = place
+def set_city(working: WorkingTour, place: int, city: int) -> None:
+    """Put a city at a position."""
+    working.tour[place] = city
+    working.position[city] = place
 
 
 @compiled
-def push_all(route: Route) -> None:
-    """Queues all cities in the order of the tour."""
-    for k in range(len(route.tour)):
-        push(route, route.tour[k])
+def enqueue_all(working: WorkingTour) -> None:
+    """Queue all cities in the order of the tour."""
+    for k in range(len(working.tour)):
+        enqueue(working, working.tour[k])
 
 
 @inlined
-def copy(source: Cities, target: Cities) -> None:
-    """Copies cities one by one; assigning a slice would compile a check of shapes each time."""
+def copy_cities(source: Cities, target: Cities) -> None:
+    """Copy an array element by element: assigning a slice would check shapes at every call."""
     for k in range(len(source)):
         target[k] = source[k]
 
 
 @inlined
-def keep(route: Route) -> None:
-    """Remembers the tour as it is now."""
-    copy(route.tour, route.kept_tour)
-    copy(route.position, route.kept_position)
-    route.kept_length[0], route.kept_length[1] = route.length[0], route.length[1]
+def save(working: WorkingTour) -> None:
+    """Save the tour, its inverse and its lengths."""
+    copy_cities(working.tour, working.saved_tour)
+    copy_cities(working.position, working.saved_position)
+    working.saved_length[0], working.saved_length[1] = working.length[0], working.length[1]
 
 
 @inlined
-def restore(route: Route) -> None:
-    """Comes back to the tour that was kept."""
-    copy(route.kept_tour, route.tour)
-    copy(route.kept_position, route.position)
-    route.length[0], route.length[1] = route.kept_length[0], route.kept_length[1]
+def restore(working: WorkingTour) -> None:
+    """Return to what was saved last; the queue is left as it is."""
+    copy_cities(working.saved_tour, working.tour)
+    copy_cities(working.saved_position, working.position)
+    working.length[0], working.length[1] = working.saved_length[0], working.saved_length[1]
 
 
 @compiled
-def take(route: Route, tour: Cities, first: float, second: float) -> None:
-    """Makes the route follow a tour of known lengths, with nothing to look at."""
-    while route.ring[1] > 0:
-        pop(route)
+def load(working: WorkingTour, tour: Cities, first: float, second: float) -> None:
+    """Replace the tour by another of known lengths, empty the queue, and save."""
+    while working.ring[1] > 0:
+        dequeue(working)
     for k in range(len(tour)):
-        put(route, k, tour[k])
-    route.length[0], route.length[1] = first, second
-    keep(route)
+        set_city(working, k, tour[k])
+    working.length[0], working.length[1] = first, second
+    save(working)
 
 
 @inlined
-def reverse(route: Route, start: int, size: int) -> None:
-    """Reverses the block of so many cities from position start on, or all the others."""
-    n = len(route.tour)
+def reverse_block(working: WorkingTour, start: int, size: int) -> None:
+    """Reverse the block of `size` cities from position start on, or else all other cities.
+
+    Both give the same closed tour where costs are symmetric; the shorter part is reversed.
+    """
+    n = len(working.tour)
     if 2 * size > n:
         start = wrap(start + size, n)
         size = n - size
     left, right = start, wrap(start + size - 1, n)
     for _ in range(size // 2):
-        first, last = route.tour[left], route.tour[right]
-        put(route, left, last)
-        put(route, right, first)
+        first, last = working.tour[left], working.tour[right]
+        set_city(working, left, last)
+        set_city(working, right, first)
         left = left + 1 if left + 1 < n else 0
         right = right - 1 if right > 0 else n - 1
 
 
 @inlined
-def swap_blocks(route: Route, start: int, a: int, b: int) -> None:
-    """Swaps the block of a cities from position start on with the b cities that follow it.
+def swap_blocks(working: WorkingTour, start: int, a: int, b: int) -> None:
+    """Swap the block of `a` cities from position start on with the `b` cities that follow it.
 
-    With c cities left over, A B C becomes B A C; read round the tour this is the same as
-    swapping B with C or C with A, so the longest of the three stays where it is.
+    With c cities left over, A B C becomes B A C. As a closed tour this is the same as swapping
+    B with C or C with A, so the longest of the three blocks stays where it is.
     """
-    n = len(route.tour)
+    n = len(working.tour)
     c = n - a - b
     if c < a and b <= a:
         start, a, b = wrap(start + a, n), b, c
@@ -153,13 +160,13 @@ def swap_blocks(route: Route, start: int, a: int, b: int) -> None:
     source = wrap(start + a, n)
     place = start
     for k in range(a):
-        route.buffer[k] = route.tour[place]
+        working.buffer[k] = working.tour[place]
         place = place + 1 if place + 1 < n else 0
     place = start
     for _ in range(b):
-        put(route, place, route.tour[source])
+        set_city(working, place, working.tour[source])
         place = place + 1 if place + 1 < n else 0
         source = source + 1 if source + 1 < n else 0
     for k in range(a):
-        put(route, place, route.buffer[k])
+        set_city(working, place, working.buffer[k])
         place = place + 1 if place + 1 < n else 0

@@ -24,7 +24,7 @@ from service.actor import Actor
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.preferences import fan, from_angles
-from service.search.candidates import NEAREST, empty_pool
+from service.search.candidates import CANDIDATES_PER_CITY, make_candidate_pool
 from service.search.costs import tabulate
 from service.search.improve import improve, warm_up
 from service.search.schedule import WEIGHTS, Search
@@ -116,11 +116,11 @@ def edges_as_candidates(tours: NDArray[np.integer]) -> Iterator[None]:
         np.add.at(joined, (tours.ravel(), there.ravel()), 1.0)
 
     def pooled(search: Search) -> Iterator[int]:
-        search.pool = empty_pool(n)
+        search.pool = make_candidate_pool(n)
         cities, costs, sizes = search.pool
         width = cities.shape[1]
         steps = np.empty((n, n, 2))
-        tabulate(search.ground.costs, steps)
+        tabulate(search.state.costs, steps)
         equal = steps @ search.weights[WEIGHTS // 2]
         np.fill_diagonal(equal, 2 * equal.max() + 1)
         ranked = equal - 2 * equal.max() * joined
@@ -128,10 +128,10 @@ def edges_as_candidates(tours: NDArray[np.integer]) -> Iterator[None]:
         by_rank = np.take_along_axis(ranked, first, axis=1).argsort(axis=1)
         cities[:] = np.take_along_axis(first, by_rank, axis=1)
         costs[:] = steps[np.arange(n)[:, np.newaxis], cities]
-        sizes[:] = np.clip((joined > 0).sum(axis=1), min(NEAREST, n - 1), width)
+        sizes[:] = np.clip((joined > 0).sum(axis=1), min(CANDIDATES_PER_CITY, n - 1), width)
         yield 0
 
-    with mock.patch.object(Search, "_pool_neighbours", pooled):
+    with mock.patch.object(Search, "pool_candidates", pooled):
         yield
 
 

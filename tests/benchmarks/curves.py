@@ -22,7 +22,7 @@ from tqdm import tqdm
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve, warm_up
-from service.search.schedule import bisecting
+from service.search.schedule import bisection_order
 from tests.benchmarks.instances import check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import RESULTS, load, provenance, store
 from tests.benchmarks.rivals import fast_tsp_weights, ortools_routing
@@ -111,7 +111,7 @@ def weighted_sums(instance: Instance, solve: Callable[[Array], NDArray[np.int64]
     solve(costs[0])  # fills caches
     tours, seconds = [], []
     began = time.process_time()
-    for k in bisecting(WEIGHTS):
+    for k in bisection_order(WEIGHTS):
         tours.append(solve(weights[k, 0] * costs[0] + weights[k, 1] * costs[1]))
         seconds.append(time.process_time() - began)
     check_tours(np.array(tours), instance.n)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance, all_tours, tour_lengths
 from service.pareto import hypervolume, nondominated
-from service.search.improve import Improved, Progress, improve
+from service.search.improve import SearchProgress, SearchResult, improve
 from service.search.schedule import Search
 
 KINDS = ("coordinates", "symmetric", "asymmetric")
@@ -43,7 +43,7 @@ def shuffled(n: int, m: int, seed: int = 0) -> NDArray[np.int64]:
     return np.array([rng.permutation(n) for _ in range(m)], np.int64).reshape(m, n)
 
 
-def is_front(instance: Instance, found: Improved) -> bool:
+def is_front(instance: Instance, found: SearchResult) -> bool:
     """Whether permutations and points go together, sorted, and none dominates another."""
     return (
         (np.sort(found.tours, axis=1) == np.arange(instance.n)).all()
@@ -125,7 +125,7 @@ def test_whole_numbered_matrices_stay_exact() -> None:
     search = Search(instance, 0, 60 * instance.scale)
     for _, _ in zip(range(200), search.run(), strict=False):
         pass
-    points = search.state.archive.points[: search.found] / search.units
+    points = search.state.archive.points[: search.size] / search.cost_factors
     assert np.array_equal(points, tour_lengths(instance, search.tours()))
 
 
@@ -155,31 +155,31 @@ def test_a_deadline_that_has_passed_still_gives_a_tour() -> None:
 
 def test_a_stopped_search_keeps_what_it_found() -> None:
     instance = uniform(100)
-    asked = iter(range(300))
-    found = improve(instance, none(100), stop=lambda: next(asked) == 250)
+    calls = iter(range(300))
+    found = improve(instance, none(100), stop=lambda: next(calls) == 250)
     assert found.terminated == "cancelled"
-    assert next(asked) == 251
+    assert next(calls) == 251
     assert len(found.tours) > 20
 
 
 def test_progress_is_reported_and_only_ever_upwards() -> None:
-    told: list[Progress] = []
-    improve(uniform(100), none(100), deadline=time.monotonic() + 0.5, report=told.append)
-    assert len(told) >= 2
-    shares = [progress.hypervolume for progress in told]
+    reported: list[SearchProgress] = []
+    improve(uniform(100), none(100), deadline=time.monotonic() + 0.5, report=reported.append)
+    assert len(reported) >= 2
+    shares = [progress.hypervolume for progress in reported]
     assert shares == sorted(shares)
     assert 0 < shares[0] < 1
-    assert told[-1].points > 20
+    assert reported[-1].points > 20
 
 
 def test_a_given_tour_that_the_archive_had_to_let_go_is_still_returned() -> None:
     search = Search(uniform(20), 0, np.full(2, 20.0))
     tours = shuffled(20, 3)
     search.add(tours[:1])
-    lost = search.missing(tours)
+    lost = search.not_covered(tours)
     assert all(tour.tolist() != tours[0].tolist() for tour in lost)
     search.add(lost)
-    assert not len(search.missing(tours))
+    assert not len(search.not_covered(tours))
 
 
 def test_no_cost_beyond_the_coordinates_is_stored_for_many_cities() -> None:
@@ -199,9 +199,9 @@ def test_random_tours_are_improved_a_great_deal() -> None:
 def test_the_search_works_where_no_compiled_code_can_be_kept() -> None:
     """With none of numba's ways to find a place for it but one that does not apply."""
     code = (
-        "import numpy as np, service.improve as improve;"
+        "import numpy as np; from service.pareto import best_subset;"
         "points = np.stack([np.arange(9.0), 9 - np.arange(9.0)], axis=1);"
-        "print(len(improve.best_subset(points, 3, np.full(2, 10.0))))"
+        "print(len(best_subset(points, 3, np.full(2, 10.0))))"
     )
     environment = {
         **os.environ,

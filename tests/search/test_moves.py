@@ -8,12 +8,20 @@ from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.pareto import hypervolume, nondominated
-from service.search.archive import area, best, insert, make_archive, thin
+from service.search.archive import best_point, dominated_area, insert, make_archive, thin
 from service.search.candidates import Scalarization
 from service.search.costs import lengths, make_costs
 from service.search.local_search import improve_at, nearest_neighbour
-from service.search.moves import apply, change
-from service.search.working_tour import make_route, pop, push, push_all, reverse, swap_blocks, take
+from service.search.moves import apply_move, length_change
+from service.search.working_tour import (
+    dequeue,
+    enqueue,
+    enqueue_all,
+    load,
+    make_working_tour,
+    reverse_block,
+    swap_blocks,
+)
 
 
 def instance_of(n: int, seed: int, symmetric: bool) -> Instance:
@@ -26,9 +34,11 @@ def instance_of(n: int, seed: int, symmetric: bool) -> Instance:
 def scalar_of(instance: Instance) -> Scalarization:
     costs = make_costs(instance)
     sums = costs.matrix.sum(axis=2) + np.diag(np.full(instance.n, np.inf))
-    near = np.argsort(sums, axis=1)[:, : min(8, instance.n - 1)]
-    near_costs = np.take_along_axis(sums, near, axis=1) / 2
-    return Scalarization(costs, np.ascontiguousarray(near, np.int32), near_costs, 0.5, 0.5)
+    candidates = np.argsort(sums, axis=1)[:, : min(8, instance.n - 1)]
+    candidate_costs = np.take_along_axis(sums, candidates, axis=1) / 2
+    return Scalarization(
+        costs, np.ascontiguousarray(candidates, np.int32), candidate_costs, 0.5, 0.5
+    )
 
 
 def cycle(tour: NDArray[np.int32]) -> list[int]:
@@ -42,66 +52,68 @@ def test_swapping_blocks_equals_cutting_and_joining_lists(
 ) -> None:
     start, a = start % n, 1 + a % (n - 2)
     b = 1 + b % (n - a - 1)
-    route = make_route(n)
-    swap_blocks(route, start, a, b)
+    working = make_working_tour(n)
+    swap_blocks(working, start, a, b)
     turned = np.roll(np.arange(n), -start)
     expected = np.concatenate((turned[a : a + b], turned[:a], turned[a + b :]))
-    assert cycle(route.tour) == cycle(expected)
-    assert np.array_equal(route.tour[route.position], np.arange(n))
+    assert cycle(working.tour) == cycle(expected)
+    assert np.array_equal(working.tour[working.position], np.arange(n))
 
 
 @given(n=st.integers(8, 20), start=st.integers(0, 19), size=st.integers(1, 19))
 def test_reversing_equals_reversing_a_list_up_to_direction(n: int, start: int, size: int) -> None:
     start, size = start % n, 1 + size % (n - 1)
-    route = make_route(n)
-    reverse(route, start, size)
+    working = make_working_tour(n)
+    reverse_block(working, start, size)
     turned = np.roll(np.arange(n), -start)
     turned[:size] = turned[:size][::-1].copy()
-    assert cycle(route.tour) in (cycle(turned), cycle(turned[::-1]))
-    assert np.array_equal(route.tour[route.position], np.arange(n))
+    assert cycle(working.tour) in (cycle(turned), cycle(turned[::-1]))
+    assert np.array_equal(working.tour[working.position], np.arange(n))
 
 
 @given(seed=st.integers(0, 10**6), flip=st.booleans(), data=st.data())
 def test_a_move_changes_lengths_as_foretold(seed: int, flip: bool, data: st.DataObject) -> None:
     n = 12
     instance = instance_of(n, seed, symmetric=flip)
-    scalar = scalar_of(instance)
-    start, a = data.draw(st.integers(0, n - 1)), data.draw(st.integers(1, 3))
-    b = data.draw(st.integers(0 if flip else 1, n - a - 1))
-    route = make_route(n)
-    before = np.array(lengths(scalar.costs, route.tour))
-    foretold = np.array(change(route, scalar, start, a, b, flip))
-    apply(route, start, a, b, flip)
-    assert np.array(lengths(scalar.costs, route.tour)) == pytest.approx(before + foretold)
+    scalarization = scalar_of(instance)
+    start, a = data.random_below(st.integers(0, n - 1)), data.random_below(st.integers(1, 3))
+    b = data.random_below(st.integers(0 if flip else 1, n - a - 1))
+    working = make_working_tour(n)
+    before = np.array(lengths(scalarization.costs, working.tour))
+    foretold = np.array(length_change(working, scalarization, start, a, b, flip))
+    apply_move(working, start, a, b, flip)
+    assert np.array(lengths(scalarization.costs, working.tour)) == pytest.approx(before + foretold)
 
 
 @settings(max_examples=30)
 @given(seed=st.integers(0, 10**6), symmetric=st.booleans(), n=st.integers(8, 40))
 def test_every_improving_move_gains_what_it_says(seed: int, symmetric: bool, n: int) -> None:
-    scalar = scalar_of(instance_of(n, seed, symmetric))
-    route = make_route(n)
-    take(route, route.tour.copy(), *lengths(scalar.costs, route.tour))
-    push_all(route)
-    while route.ring[1] > 0:
-        before = route.length.sum()
-        if improve_at(route, scalar, pop(route), 1e-9):
-            assert route.length.sum() < before
-            assert lengths(scalar.costs, route.tour) == pytest.approx(tuple(route.length))
-    assert np.array_equal(np.sort(route.tour), np.arange(n))
+    scalarization = scalar_of(instance_of(n, seed, symmetric))
+    working = make_working_tour(n)
+    load(working, working.tour.copy(), *lengths(scalarization.costs, working.tour))
+    enqueue_all(working)
+    while working.ring[1] > 0:
+        before = working.length.sum()
+        if improve_at(working, scalarization, dequeue(working), 1e-9):
+            assert working.length.sum() < before
+            assert lengths(scalarization.costs, working.tour) == pytest.approx(
+                tuple(working.length)
+            )
+    assert np.array_equal(np.sort(working.tour), np.arange(n))
 
 
 def test_a_city_waits_only_once() -> None:
-    route = make_route(9)
-    push_all(route)
-    push(route, 4)
-    assert [pop(route) for _ in range(int(route.ring[1]))] == list(range(9))
+    working = make_working_tour(9)
+    enqueue_all(working)
+    enqueue(working, 4)
+    assert [dequeue(working) for _ in range(int(working.ring[1]))] == list(range(9))
 
 
 @pytest.mark.parametrize("symmetric", [True, False])
 def test_the_nearest_neighbour_tour_visits_all(symmetric: bool) -> None:
-    scalar = scalar_of(instance_of(30, 1, symmetric))
+    scalarization = scalar_of(instance_of(30, 1, symmetric))
     tour = np.empty(30, np.int32)
-    nearest_neighbour(scalar, 5, tour)
+    nearest_neighbour(scalarization, 5, tour)
     assert tour[0] == 5
     assert np.array_equal(np.sort(tour), np.arange(30))
 
@@ -121,9 +133,11 @@ def test_the_archive_holds_just_the_nondominated_points_and_their_tours(
     assert np.array_equal(archive.points[:size], kept)
     owners = archive.tours[archive.slots[:size], 0]
     assert np.array_equal(np.array(points, float)[owners], kept)
-    assert area(archive, 13.0, 13.0) == pytest.approx(169 * hypervolume(kept, np.full(2, 13.0)))
+    assert dominated_area(archive, 13.0, 13.0) == pytest.approx(
+        169 * hypervolume(kept, np.full(2, 13.0))
+    )
     # Powers of two, so that equal sums are equal to the last bit.
-    assert best(archive, 0.25, 0.75) == np.argmin(kept @ [0.25, 0.75])
+    assert best_point(archive, 0.25, 0.75) == np.argmin(kept @ [0.25, 0.75])
 
 
 def test_a_full_archive_makes_room_and_keeps_its_ends() -> None:
