@@ -1,4 +1,4 @@
-"""An instance: cities and two costs between them, checked where it is made."""
+"""Instances: cities and the costs between them; the lengths of tours; symmetries and all tours."""
 
 import math
 from collections.abc import Iterator
@@ -15,19 +15,28 @@ from service.errors import InvalidInstance
 Array = NDArray[np.float64]
 Kind = Literal["coordinates", "matrices"]
 
+OBJECTIVES = 2  # lengths of a tour
+PLANE = 2  # coordinates of a city in the plane of an objective
+MAX_SYMMETRIES = 8  # of a square
+MAX_ENUMERATED = 7  # cities, and 720 tours
+
 
 @dataclass(frozen=True, eq=False)
 class Instance:
-    """Cities and what it costs, under each of two objectives, to go from one to another.
+    """Cities, and the cost under each of two objectives of going from one to another.
 
-    Either from coordinates, shape (n, 4), plane 1 in columns 0-1 and plane 2 in columns 2-3,
-    where cost m is the Euclidean distance in plane m; or from matrices, shape (2, n, n), where
-    cost m of going from i to j is matrices[m, i, j] and the diagonal is disregarded. Exactly
-    one of the two is given. Any unit will do, and the two objectives need not share one.
+    Exactly one of coordinates and matrices is given. Both are copied and made read-only. Any unit
+    will do, and the two objectives need not share one.
+
+    Args:
+        coordinates: Shape (n, 4), plane 1 in columns 0-1 and plane 2 in columns 2-3. Cost m is the
+            Euclidean distance in plane m.
+        matrices: Shape (2, n, n). Cost m of going from i to j is matrices[m, i, j]. The diagonal
+            is ignored.
 
     Raises:
-        InvalidInstance: wrong shape, no city, not finite, a negative cost, or costs so large
-            that the length of a tour could overflow.
+        InvalidInstance: A shape is wrong, there is no city, a number is not finite, a cost is
+            negative, or costs are so large that the length of a tour could overflow.
     """
 
     coordinates: Array | None = None
@@ -55,15 +64,15 @@ class Instance:
 
     @property
     def kind(self) -> Kind:
-        """What the instance was made from."""
+        """Whether the instance was made from coordinates or from matrices."""
         return "matrices" if self.coordinates is None else "coordinates"
 
     @cached_property
     def scale(self) -> Array:
-        """The unit of each objective, shape (2,), in which network, search and angles work.
+        """The unit of each objective, shape (2,), in which the network and angles work.
 
-        The longer side of the plane's bounding box, or the largest entry of the matrix; 1 where
-        that is 0.
+        That is the longer side of the plane's bounding box, or the largest entry of the matrix; 1
+        where this is 0.
         """
         return np.where(self._extents > 0, self._extents, 1.0)
 
@@ -79,31 +88,40 @@ class Instance:
         """Coordinates, shape (n, 4), with each plane moved and scaled into the unit square.
 
         Raises:
-            InvalidInstance: the instance was made from matrices.
+            InvalidInstance: The instance was made from matrices.
         """
         if self.coordinates is None:
             raise InvalidInstance("an instance made from matrices has no coordinates")
-        return (self.coordinates - self.coordinates.min(axis=0)) / self.scale.repeat(2)
+        return (self.coordinates - self.coordinates.min(axis=0)) / self.scale.repeat(PLANE)
 
     @property
     def scaled_matrices(self) -> Array:
-        """Costs, shape (2, n, n), each objective's in units of its scale."""
+        """Costs, shape (2, n, n), each in units of its objective's scale."""
         if self.matrices is not None:
             return self.matrices / self.scale[:, np.newaxis, np.newaxis]
         steps = self.scaled_coordinates[:, np.newaxis] - self.scaled_coordinates
-        return np.hypot(steps[..., 0::2], steps[..., 1::2]).transpose(2, 0, 1)
+        return np.hypot(steps[..., 0::PLANE], steps[..., 1::PLANE]).transpose(2, 0, 1)
 
     @cached_property
     def _extents(self) -> Array:
         if self.coordinates is not None:
             with np.errstate(over="ignore"):
-                return np.ptp(self.coordinates, axis=0).reshape(2, 2).max(axis=1)
+                return np.ptp(self.coordinates, axis=0).reshape(OBJECTIVES, PLANE).max(axis=1)
         assert self.matrices is not None
         return self.matrices.max(axis=(1, 2))
 
 
 def tour_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
-    """Both lengths, shape (k, 2), of closed tours, shape (k, n), in the instance's own units."""
+    """Return the lengths, shape (k, 2), of closed tours, shape (k, n), in the instance's units.
+
+    The step from the last city back to the first is included. O(k n).
+
+    >>> corners = np.array([[0, 0, 0, 0], [3, 0, 0, 1], [3, 4, 2, 1], [0, 4, 2, 0]])
+    >>> square = Instance(coordinates=corners)
+    >>> tour_lengths(square, np.array([[0, 1, 2, 3], [3, 2, 1, 0]]))
+    array([[14.,  6.],
+           [14.,  6.]])
+    """
     if instance.coordinates is not None:
         # As complex numbers, (x, y) are looked up together, and numpy's abs() is a faster hypot().
         visited = instance.coordinates.view(np.complex128)[tours]
@@ -113,11 +131,39 @@ def tour_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
     return instance.matrices[:, tours, following].sum(axis=2).T
 
 
-def _checked_coordinates(given: Array) -> Array:
-    coordinates = np.array(given, dtype=np.float64, order="C")
-    if coordinates.ndim != 2 or coordinates.shape[1] != 4 or not len(coordinates):
+def symmetries(instance: Instance, count: int) -> Iterator[Instance]:
+    """Yield the instance, then its images under `count` - 1 more of the 8 symmetries of a square.
+
+    Tours have the same lengths in all of them. Both planes are mirrored and turned alike. An
+    instance made from matrices is yielded once, whatever the count.
+    """
+    yield instance
+    if instance.coordinates is None:
+        return
+    for number in range(1, count):
+        planes = instance.coordinates.reshape(-1, OBJECTIVES, PLANE)
+        mirrored = planes * np.where([number & 1, number & 2], -1.0, 1.0)
+        turned = mirrored[..., ::-1] if number & 4 else mirrored
+        yield Instance(coordinates=turned.reshape(-1, OBJECTIVES * PLANE))
+
+
+def all_tours(n: int) -> NDArray[np.int32]:
+    """Return every tour of n cities that begins at city 0, shape ((n - 1)!, n).
+
+    >>> all_tours(3)
+    array([[0, 1, 2],
+           [0, 2, 1]], dtype=int32)
+    """
+    return np.array([(0, *rest) for rest in permutations(range(1, n))], np.int32)
+
+
+def _checked_coordinates(coordinates: Array) -> Array:
+    coordinates = np.array(coordinates, dtype=np.float64, order="C")
+    shape = coordinates.shape
+    if coordinates.ndim != 2 or shape[1] != OBJECTIVES * PLANE or not shape[0]:
+        columns = OBJECTIVES * PLANE
         raise InvalidInstance(
-            f"coordinates must have shape (n, 4) with n at least 1, got {coordinates.shape}"
+            f"coordinates must have shape (n, {columns}) with n at least 1, got {shape}"
         )
     if not np.isfinite(coordinates).all():
         raise InvalidInstance("coordinates must be finite")
@@ -125,11 +171,13 @@ def _checked_coordinates(given: Array) -> Array:
     return coordinates
 
 
-def _checked_matrices(given: Array | None) -> Array:
-    matrices = np.array(given, dtype=np.float64)
+def _checked_matrices(matrices: Array | None) -> Array:
+    matrices = np.array(matrices, dtype=np.float64)
     shape = matrices.shape
-    if matrices.ndim != 3 or shape[0] != 2 or shape[1] != shape[2] or not shape[1]:
-        raise InvalidInstance(f"matrices must have shape (2, n, n) with n at least 1, got {shape}")
+    if matrices.ndim != 3 or shape[0] != OBJECTIVES or shape[1] != shape[2] or not shape[1]:
+        raise InvalidInstance(
+            f"matrices must have shape ({OBJECTIVES}, n, n) with n at least 1, got {shape}"
+        )
     matrices[:, np.arange(shape[1]), np.arange(shape[1])] = 0.0
     if not np.isfinite(matrices).all():
         raise InvalidInstance("costs must be finite")
@@ -137,30 +185,3 @@ def _checked_matrices(given: Array | None) -> Array:
         raise InvalidInstance(f"costs must not be negative, got {matrices.min():g}")
     matrices.setflags(write=False)
     return matrices
-
-
-MOST = 8  # of a square
-
-
-def symmetries(instance: Instance, count: int) -> Iterator[Instance]:
-    """The instance itself, and then as it looks under others of the eight symmetries of a square.
-
-    All have the same tours and the same lengths. Both planes are mirrored alike. Of matrices there
-    is one view.
-    """
-    yield instance
-    if instance.coordinates is None:
-        return
-    for number in range(1, count):
-        planes = instance.coordinates.reshape(-1, 2, 2)
-        mirrored = planes * np.where([number & 1, number & 2], -1.0, 1.0)
-        turned = mirrored[..., ::-1] if number & 4 else mirrored
-        yield Instance(coordinates=turned.reshape(-1, 4))
-
-
-MAX_ENUMERATED = 7  # cities, and 720 tours
-
-
-def all_tours(n: int) -> NDArray[np.int32]:
-    """Every tour of n cities that sets out from city 0."""
-    return np.array([(0, *rest) for rest in permutations(range(1, n))], np.int32)

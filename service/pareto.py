@@ -1,4 +1,9 @@
-"""Dominance, hypervolume and best subsets of points under two objectives, both minimised."""
+"""Dominance, hypervolume and best subsets of points under two objectives, both minimised.
+
+A point dominates another if it is no worse in both objectives and better in one. The hypervolume
+of points is the share of the box between the origin and a reference point that they dominate: a
+number from 0 to 1, without a unit.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,10 +14,17 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 
-def nondominated(points: Array) -> NDArray[np.intp]:
-    """Indices of the nondominated points among points, shape (m, 2), by ascending first length.
+def nondominated(points: Array) -> Indices:
+    """Return the indices of the nondominated points, by ascending first length.
 
-    Of equal points the first one given stays. O(m log m).
+    Of equal points the first one stays. So along the result the first length strictly ascends
+    and the second strictly descends. O(m log m).
+
+    Args:
+        points: Shape (m, 2), in any order and unit; m may be 0.
+
+    >>> nondominated(np.array([[5, 5], [4, 6], [2, 7], [7, 4], [6, 6], [2, 7]]))
+    array([2, 1, 0, 3])
     """
     order = np.lexsort((points[:, 1], points[:, 0]))
     second = points[order, 1]
@@ -21,13 +33,23 @@ def nondominated(points: Array) -> NDArray[np.intp]:
 
 
 def hypervolume(points: Array, reference_point: Array) -> float:
-    """Share of the box from the origin to the reference point that the points dominate, 0 to 1.
+    """Return the hypervolume of points: the share of the box that they dominate, 0 to 1.
 
-    Exact, by a sweep over the nondominated points; points beyond the reference point add
-    nothing. The points, shape (m, 2), may be in any order and may repeat.
+    Exact, by a sweep over the nondominated points. Dominated points, repeated ones, and those that
+    do not lie below the reference point in both objectives add nothing. O(m log m).
+
+    Args:
+        points: Shape (m, 2), not negative, in any order; m may be 0.
+        reference_point: Shape (2,), positive, in the unit of the points.
 
     Raises:
-        ValueError: a component of the reference point is not positive.
+        ValueError: A component of the reference point is not positive.
+
+    The example of moocore's documentation, where the area is 38 of 100:
+
+    >>> points = np.array([[5, 5], [4, 6], [2, 7], [7, 4]])
+    >>> round(hypervolume(points, np.array([10, 10])), 12)
+    0.38
     """
     if not (reference_point > 0).all():
         raise ValueError(f"the reference point must be positive, got {reference_point.tolist()}")
@@ -39,14 +61,23 @@ def hypervolume(points: Array, reference_point: Array) -> float:
 
 
 def best_subset(points: Array, size: int, reference_point: Array) -> Indices:
-    """Indices, ascending, of the size points whose hypervolume together is largest. Exact.
+    """Return the ascending indices of the `size` points with the largest joint hypervolume.
 
-    Points, shape (m, 2), in any order. All of them, where they are no more than size. Places
-    that no point can fill with profit go to nondominated points, then to others, evenly spread
-    along the first length. O(m log m + m size).
+    Exact (Bringmann, Friedrich and Klitzke, 2014). If there are no more points than that, all are
+    returned. If fewer points than that contribute to the hypervolume, the rest are nondominated
+    points, and after these others, evenly spread along the first length. O(m log m + m size).
+
+    Args:
+        points: Shape (m, 2), in any order.
+        size: How many points to choose, at least 1.
+        reference_point: Shape (2,), positive, in the unit of the points.
 
     Raises:
-        ValueError: size is not positive.
+        ValueError: The size is not positive.
+
+    >>> points = np.array([[5.0, 5.0], [4.0, 6.0], [2.0, 7.0], [7.0, 4.0]])
+    >>> best_subset(points, 2, np.array([10.0, 10.0]))
+    array([0, 2])
     """
     if size < 1:
         raise ValueError(f"size must be at least 1, got {size}")
@@ -57,7 +88,7 @@ def best_subset(points: Array, size: int, reference_point: Array) -> Indices:
     inside = (shares < 1).all(axis=1)
     useful = front[inside]
     if len(useful) > size:
-        return np.sort(useful[_chosen(np.ascontiguousarray(shares[inside]), size)])
+        return np.sort(useful[_best_of_front(np.ascontiguousarray(shares[inside]), size)])
     spare = np.setdiff1d(front, useful)
     if len(useful) + len(spare) < size:
         useful = front
@@ -68,12 +99,13 @@ def best_subset(points: Array, size: int, reference_point: Array) -> Indices:
 
 
 @allocating
-def _chosen(shares: Array, size: int) -> Indices:
-    """Places of the best size of more nondominated shares, sorted and all below 1.
+def _best_of_front(shares: Array, size: int) -> Indices:
+    """Return the indices of the best `size` of more than so many points of a front.
 
-    With x ascending and y descending, the best j points of which i is the last have hypervolume
+    The points are scaled so that the reference point is (1, 1), and all lie below it. With x
+    ascending and y descending, the best j points of which i is the last have hypervolume
     h(j, i) = max over l < i of h(j - 1, l) + (1 - x[i]) (y[l] - y[i]): for each l a line in
-    1 - x[i]. Slopes and arguments both descend, so one pass along the lines' upper envelope
+    1 - x[i]. Slopes and arguments both descend, so one pass along the upper envelope of the lines
     serves all i (Bringmann, Friedrich and Klitzke, 2014).
     """
     m = len(shares)
@@ -81,7 +113,7 @@ def _chosen(shares: Array, size: int) -> Indices:
     value = (1 - shares[:, 0]) * (1 - shares[:, 1])
     hull = np.empty(m, np.int32)
     for j in range(1, size):
-        value = _longer(shares, value, before[j], hull, j)
+        value = _one_point_more(shares, value, before[j], hull, j)
     last = np.argmax(value[size - 1 :]) + size - 1
     chosen = np.empty(size, np.intp)
     for j in range(size - 1, -1, -1):
@@ -91,10 +123,10 @@ def _chosen(shares: Array, size: int) -> Indices:
 
 
 @allocating
-def _longer(
+def _one_point_more(
     shares: Array, value: Array, before: NDArray[np.int32], hull: NDArray[np.int32], j: int
 ) -> Array:
-    """The hypervolume of the best j + 1 points by the last of them, from that of the best j."""
+    """Return h(j + 1, i) for all i from h(j, l), and fill in the l that it was reached from."""
     extended = np.full(len(shares), -np.inf)
     head, tail = 0, 0
     for i in range(j, len(shares)):
@@ -114,13 +146,13 @@ def _longer(
 
 @inlined
 def _at(shares: Array, value: Array, line: int, x: float) -> float:
-    """The height of a line at x."""
+    """Return the height at x of the line of point `line`."""
     return value[line] + x * shares[line, 1]
 
 
 @inlined
 def _hidden(shares: Array, value: Array, a: int, b: int, c: int) -> bool:
-    """Whether line b, between a and c by slope, is nowhere above both of them."""
+    """Return whether line b, between a and c by slope, is nowhere above both of them."""
     ab = (value[b] - value[a]) * (shares[b, 1] - shares[c, 1])
     bc = (value[c] - value[b]) * (shares[a, 1] - shares[b, 1])
     return bc >= ab

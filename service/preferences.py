@@ -1,4 +1,4 @@
-"""What an angle means.
+"""Preferences: angles in degrees, directions in objective space, and weights.
 
 A preference is a *direction* in objective space: the unit vector (cos a, sin a) along which
 the point (f1, f2) of a tour should lie, both lengths scaled. At 0 degrees a tour would have
@@ -16,23 +16,47 @@ Array = NDArray[np.float64]
 
 
 def fan(k: int) -> Array:
-    """Angles in degrees that cut the open interval (0, 90) into k equal parts, at their middles."""
+    """Return the middles of k equal parts of the interval from 0 to 90 degrees, ascending.
+
+    >>> fan(3)
+    array([15., 45., 75.])
+    """
     return (np.arange(k, dtype=np.float64) + 0.5) * (90.0 / k)
 
 
 def from_angles(degrees: Array) -> Array:
-    """Unit vectors, shape (k, 2), of angles in degrees, shape (k,)."""
+    """Return unit vectors, shape (k, 2), of angles from 0 to 90 degrees, shape (k,).
+
+    >>> from_angles(np.array([0.0, 30.0, 90.0])).round(4)
+    array([[1.   , 0.   ],
+           [0.866, 0.5  ],
+           [0.   , 1.   ]])
+    """
     radians = np.deg2rad(degrees)
     return np.stack((np.cos(radians), np.sin(radians)), axis=-1).clip(0.0, 1.0)
 
 
 def angles(points: Array) -> Array:
-    """Angles in degrees, shape (k,), of scaled points, shape (k, 2); the origin counts as 45."""
+    """Return the angles in degrees, shape (k,), of scaled points, shape (k, 2).
+
+    The origin has the angle 45.
+
+    >>> angles(np.array([[2.0, 0.0], [1.0, 1.0], [0.0, 0.0]]))
+    array([ 0., 45., 45.])
+    """
     at_origin = (points == 0).all(axis=-1)
     degrees = np.rad2deg(np.arctan2(points[:, 1], points[:, 0]))
     return np.where(at_origin, 45.0, degrees)
 
 
 def weights(preferences: Array) -> Array:
-    """Weights of the weighted sum that goes with each direction, shape (k, 2), rows adding to 1."""
+    """Return the weights, rows adding to 1, of the weighted sum that goes with each direction.
+
+    Args:
+        preferences: Directions, shape (k, 2), as of from_angles().
+
+    >>> weights(np.array([[0.6, 0.8], [1.0, 0.0]])).round(4)
+    array([[0.5714, 0.4286],
+           [0.    , 1.    ]])
+    """
     return preferences[:, ::-1] / preferences.sum(axis=1, keepdims=True)

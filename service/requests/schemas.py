@@ -17,7 +17,7 @@ from pydantic import (
 from pydantic.json_schema import SkipJsonSchema
 from pydantic_core.core_schema import no_info_after_validator_function
 
-from service.instance import MOST, Instance, Kind
+from service.instance import MAX_SYMMETRIES, Instance, Kind
 from service.planner import PlanOptions
 from service.preferences import fan
 from service.requests.arrays import stacked
@@ -124,7 +124,7 @@ class FrontRequest(PlanRequest):
         " each (column); the diagonal is disregarded",
     )
 
-    augment: Annotated[int, Field(ge=1, le=MOST), BeforeValidator(_whole)] = Field(
+    augment: Annotated[int, Field(ge=1, le=MAX_SYMMETRIES), BeforeValidator(_whole)] = Field(
         default=1,
         description="how many times the network is called: each time it sees the coordinates under"
         " another symmetry of the square, and aims between the angles of the other calls",

@@ -1,0 +1,15 @@
+"""The examples in docstrings are true."""
+
+import doctest
+from types import ModuleType
+
+import pytest
+
+from service import instance, pareto, preferences
+
+
+@pytest.mark.parametrize("module", [instance, pareto, preferences], ids=lambda m: m.__name__)
+def test_the_examples_in_docstrings_are_true(module: ModuleType) -> None:
+    results = doctest.testmod(module)
+    assert results.attempted > 0
+    assert results.failed == 0
