@@ -1,4 +1,8 @@
-"""The middle of the program: from an instance to its front, with no HTTP in it."""
+"""plan(...): from an instance to its front.
+
+A constructor, which is a network, builds first tours; the search improves them; the best subset
+of the size asked for is reported. Nothing here knows of HTTP, jobs or files.
+"""
 
 import time
 from collections.abc import Callable
@@ -17,25 +21,34 @@ from service.search.improve import SearchProgress, improve
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
-BOUND_SECONDS = 5.0  # after which a bound, valid all along, is tight enough
+BOUND_SECONDS = 5.0  # after these a bound, which is valid all along, is tight enough
+MIN_CONSTRUCTED = 3  # cities: of fewer there is one tour, and no network was trained on them
 Termination = Literal["converged", "time_limit", "cancelled"]
 
 
 class Constructor(Protocol):
-    """Builds tours from nothing."""
+    """A builder of tours from nothing but an instance and preferences."""
 
     def tours(self, instance: Instance, preferences: Array) -> Tours:
-        """One tour, a row of shape (n,), for each preference, a row of shape (k, 2)."""
+        """Return tours, shape (k, n), one for each preference, shape (k, 2)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PlanOptions:
-    """What is asked of a front: angles in degrees, shape (k,), and how it is to be reported.
+    """The options of plan(...).
 
-    The search that improves it has `time_limit` seconds; at 0 there is none. The caller may bring
-    tours, shape (m, n), that the front shall dominate or equal. Without a reference point it is
-    n times the scale: where every step costs a whole unit. The network is called so many
-    times, each under another symmetry of the cities' coordinates and for angles in between.
+    Args:
+        angles: Of the preferences for which tours are constructed, in degrees, shape (k,).
+        size: The greatest number of tours of the front.
+        start: The city from which every tour is reported.
+        reference_point: Of the hypervolume, shape (2,), in the instance's units; by default n
+            times the scale.
+        time_limit: Seconds for the search; at 0 there is no search.
+        initial_tours: Shape (m, n): tours that the front shall dominate or equal as well.
+        bound: Whether to compute an upper bound on the hypervolume of any front.
+        seed: Of the search's random choices.
+        augment: How often the constructor is called, each time with another symmetry of the
+            coordinates and with angles between those of the other calls.
     """
 
     angles: Array
@@ -50,9 +63,9 @@ class PlanOptions:
 
     @property
     def needs_compiled_code(self) -> bool:
-        """Whether more than the network is asked for."""
-        built = len(self.angles) * self.augment
-        return self.time_limit > 0 or self.bound or built > self.size
+        """Whether code is needed that is compiled at its first use: search, bound or subset."""
+        constructed = len(self.angles) * self.augment
+        return self.time_limit > 0 or self.bound or constructed > self.size
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,32 +123,35 @@ Report = Callable[[Interim], None]
 def plan(
     constructor: Constructor,
     instance: Instance,
-    demand: PlanOptions,
+    options: PlanOptions,
     stop: Callable[[], bool] = lambda: False,
     report: Report = lambda _: None,
 ) -> Front:
-    """The best front found for the instance, within the time limit and until told to stop.
+    """Return the best front found for an instance within the time limit.
 
-    Meanwhile the report is told, ten times a second, how far it has come.
+    Args:
+        constructor: Builds the tours that the search starts from.
+        instance: The instance.
+        options: What front is wanted, and how much may be spent on it.
+        stop: Called every millisecond or two; True ends the planning with what was found so far.
+        report: Called about ten times a second with the progress of the search.
     """
     clock = _Clock()
-    first = _constructed(constructor, instance, demand, stop)
-    if demand.initial_tours is not None:
-        first = np.concatenate((first, demand.initial_tours))
+    reference_point = _reference_point(instance, options)
+    options = replace(options, reference_point=reference_point)
+    first = _first_tours(constructor, instance, options, stop)
     clock.ends("construction")
-    reference_point = _reference_point(instance, demand)
-    demand = replace(demand, reference_point=reference_point)
-    tours, points, terminated = _improved(instance, first, demand, stop, report)
+    tours, points, terminated = _improved(instance, first, options, stop, report)
     clock.ends("improvement")
-    searched = demand.time_limit > 0
+    searched = options.time_limit > 0
     gained = _gained(instance, first, points, reference_point) if searched else None
-    kept = best_subset(points, demand.size, reference_point)
+    chosen = best_subset(points, options.size, reference_point)
     clock.ends("selection")
-    bound = _bound(instance, reference_point) if demand.bound and not stop() else None
+    bound = _bound(instance, reference_point) if options.bound and not stop() else None
     clock.ends("bound")
     return Front(
-        tours=_starting_at(demand.start, tours[kept]),
-        points=points[kept],
+        tours=_starting_at(options.start, tours[chosen]),
+        points=points[chosen],
         found=len(points),
         scale=instance.scale,
         reference_point=reference_point,
@@ -146,35 +162,63 @@ def plan(
     )
 
 
-def _gained(instance: Instance, first: Tours, points: Array, reference_point: Array) -> float:
-    before = hypervolume(tour_lengths(instance, first), reference_point)
-    return hypervolume(points, reference_point) - before
+def _reference_point(instance: Instance, options: PlanOptions) -> Array:
+    if options.reference_point is not None:
+        return options.reference_point
+    return instance.n * instance.scale
 
 
-def _bound(instance: Instance, reference_point: Array) -> float:
-    return hypervolume_bound(instance, reference_point, time.monotonic() + BOUND_SECONDS)
+def _first_tours(
+    constructor: Constructor, instance: Instance, options: PlanOptions, stop: Callable[[], bool]
+) -> Tours:
+    """Return the constructor's tours, then the caller's."""
+    tours = _constructed(constructor, instance, options, stop)
+    if options.initial_tours is None:
+        return tours
+    return np.concatenate((tours, options.initial_tours))
+
+
+def _constructed(
+    constructor: Constructor, instance: Instance, options: PlanOptions, stop: Callable[[], bool]
+) -> Tours:
+    """Return a tour for each angle and each of the symmetries, until told to stop."""
+    if instance.n < MIN_CONSTRUCTED:
+        return np.arange(instance.n, dtype=np.int64)[np.newaxis]
+    tours = []
+    for call, image in enumerate(symmetries(instance, options.augment)):
+        angles = _shifted(options.angles, call / options.augment)
+        tours.append(constructor.tours(image, from_angles(angles)))
+        if stop():
+            break
+    return np.concatenate(tours)
+
+
+def _shifted(angles: Array, share: float) -> Array:
+    """Return the angles, each shifted by a share of the way to the next; the last stays."""
+    index = np.arange(len(angles))
+    return np.interp(index + share, index, angles)
 
 
 def _improved(
     instance: Instance,
     tours: Tours,
-    demand: PlanOptions,
+    options: PlanOptions,
     stop: Callable[[], bool],
     report: Report,
 ) -> tuple[Tours, Array, Termination | None]:
-    """The nondominated tours, their points, and how the search for more of them ended."""
-    if demand.time_limit == 0:
+    """Return nondominated tours, their points, and why the search for them ended."""
+    if options.time_limit == 0:
         points = tour_lengths(instance, tours)
         front = nondominated(points)
         return tours[front], points[front], "converged"
     found = improve(
         instance,
         tours,
-        deadline=time.monotonic() + demand.time_limit,
-        seed=demand.seed,
+        deadline=time.monotonic() + options.time_limit,
+        seed=options.seed,
         stop=stop,
-        report=lambda progress: report(_interim(instance, demand, progress)),
-        reference_point=demand.reference_point,
+        report=lambda progress: report(_interim(instance, options, progress)),
+        reference_point=options.reference_point,
     )
     return found.tours.astype(np.int64), found.points, found.terminated
 
@@ -195,41 +239,25 @@ def _interim(instance: Instance, demand: PlanOptions, progress: SearchProgress) 
     return Interim(progress.seconds, progress.hypervolume, progress.points, front)
 
 
-def _constructed(
-    constructor: Constructor, instance: Instance, demand: PlanOptions, stop: Callable[[], bool]
-) -> Tours:
-    # Of one or two cities there is one tour, and no network was trained on them.
-    if instance.n <= 2:
-        return np.arange(instance.n, dtype=np.int64)[np.newaxis]
-    tours = []
-    for call, seen in enumerate(symmetries(instance, demand.augment)):
-        angles = _moved(demand.angles, call / demand.augment)
-        tours.append(constructor.tours(seen, from_angles(angles)))
-        if stop():
-            break
-    return np.concatenate(tours)
+def _gained(instance: Instance, first: Tours, points: Array, reference_point: Array) -> float:
+    """Return the hypervolume that the search added to that of the first tours."""
+    before = hypervolume(tour_lengths(instance, first), reference_point)
+    return hypervolume(points, reference_point) - before
 
 
-def _moved(angles: Array, share: float) -> Array:
-    """The angles, each moved by a share of the way to the next; the last stays."""
-    each = np.arange(len(angles))
-    return np.interp(each + share, each, angles)
-
-
-def _reference_point(instance: Instance, demand: PlanOptions) -> Array:
-    if demand.reference_point is not None:
-        return demand.reference_point
-    return instance.n * instance.scale
+def _bound(instance: Instance, reference_point: Array) -> float:
+    return hypervolume_bound(instance, reference_point, time.monotonic() + BOUND_SECONDS)
 
 
 def _starting_at(start: int, tours: NDArray[np.integer]) -> NDArray[np.integer]:
+    """Return closed tours rotated so that they begin at a city."""
     n = tours.shape[1]
     first = (tours == start).argmax(axis=1)
     return np.take_along_axis(tours, (first[:, np.newaxis] + np.arange(n)) % n, axis=1)
 
 
 class _Clock:
-    """Milliseconds since the last phase ended."""
+    """A stopwatch: the milliseconds that each phase took, by name."""
 
     def __init__(self) -> None:
         self.phases: dict[str, float] = {}

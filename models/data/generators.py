@@ -7,7 +7,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from service.coverage.grid import largest_region
-from service.coverage.shortest_paths import between, flat, make_grid
+from service.coverage.shortest_paths import cell_numbers, make_grid, pairwise_paths
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -69,7 +69,7 @@ def coverage_matrices(generator: Generator, n: int, side: int = SIDE) -> Array:
     """
     free, places = coverage_map(generator, n, side)
     grid = make_grid(free)
-    lengths, _ = between(grid, flat(grid, places), lambda: False)
+    lengths, _ = pairwise_paths(grid, cell_numbers(grid, places), lambda: False)
     return np.stack((lengths, uniform_distances(generator, n)))
 
 

@@ -1,4 +1,4 @@
-"""Where on an occupancy grid a robot can be."""
+"""Occupancy grids: the cells free for a robot, their regions, and places that cover a region."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,44 +7,53 @@ from scipy import ndimage
 Mask = NDArray[np.bool_]
 Cells = NDArray[np.int64]
 
-_SLACK = 1e-9  # a distance and a radius that differ by no more than rounding are the same
+_SLACK = 1e-9  # relative: a distance and a radius that differ by less count as equal
 
 
-def inflated(blocked: Mask, cell_size: float, radius: float) -> Mask:
-    """The cells that are free for a robot of this radius in the unit of the cell size.
+def free_cells(blocked: Mask, cell_size: float, robot_radius: float) -> Mask:
+    """Return the cells that are free for a robot: the complement of the inflated obstacles.
 
-    Those whose centre is farther than the radius from the centre of every blocked cell. What lies
-    outside the grid blocks nothing.
+    The centre of a free cell is farther than the radius from the centre of every blocked cell.
+    Outside the grid there are no obstacles. O(cells).
+
+    Args:
+        blocked: Obstacles, shape (rows, columns).
+        cell_size: The side of a cell, in any unit.
+        robot_radius: In the same unit.
     """
     if not blocked.any():
         return ~blocked
     distances = cell_size * ndimage.distance_transform_edt(~blocked)
-    return distances > radius * (1 + _SLACK)
+    return distances > robot_radius * (1 + _SLACK)
 
 
 def regions(free: Mask) -> NDArray[np.int32]:
-    """The number of the region that each cell is in, from 1; 0 where it is not free.
+    """Return the number of each cell's region, from 1; 0 for cells that are not free.
 
-    A region is what can be reached without cutting a corner: by straight steps alone.
+    A region is a connected component of the free cells over their four sides: the cells that a
+    robot can reach from one another without cutting a corner.
     """
     return ndimage.label(free, output=np.int32)[0]
 
 
 def largest_region(free: Mask) -> Mask:
-    """The free cells of the region that has most; of equally large ones, of the first."""
-    numbered = regions(free)
-    sizes = np.bincount(numbered.ravel())
+    """Return the cells of the region with the most cells, the first of equally large ones."""
+    numbers = regions(free)
+    sizes = np.bincount(numbers.ravel())
     sizes[0] = 0
-    return free & (numbered == sizes.argmax())
+    return free & (numbers == sizes.argmax())
 
 
-def laid_out(region: Mask, spacing: float) -> Cells:
-    """Places from which a region is covered, rows and columns, shape (n, 2), row by row.
+def covering_places(region: Mask, spacing: float) -> Cells:
+    """Return places that cover a region: rows and columns, shape (n, 2), row by row.
 
-    The grid-based decomposition of Bormann, Jordan, Hampp and Hägele (2018): squares with sides of
-    `spacing` cells are laid over the region from its upper left, and of each square the free cell
-    nearest to its middle is a place. So none is farther than the diagonal of a square from one.
-    Squares smaller than a cell are as large as a cell.
+    The grid-based decomposition of Bormann, Jordan, Hampp and Hägele (2018): the region is divided
+    into squares from its upper left, and of each square the free cell nearest to its middle is a
+    place. So no cell is farther from a place than the diagonal of a square.
+
+    Args:
+        region: The cells to cover, shape (rows, columns).
+        spacing: The side of a square in cells; below 1 it counts as 1.
     """
     spacing = max(spacing, 1.0)
     cells = np.argwhere(region)

@@ -1,12 +1,12 @@
-"""Shortest paths on a grid from one cell to others, exactly.
+"""Exact shortest paths on a grid from one cell to others.
 
-A step goes to one of the eight cells around, for 1 or for the square root of 2; a diagonal one
-only where both cells beside it are free, so that no corner is cut. Among equally short paths, the
-one along which a cost layer adds up to least is taken.
+A step goes to one of the eight neighbours of a cell and has length 1, or the square root of 2 if
+it is diagonal; a diagonal step needs both cells beside it free, so that no corner is cut. Of
+equally short paths, one of least cost by a cost layer is taken.
 
-The search is Dijkstra's with the queue of Denardo and Fox (1979): where no step is shorter than a
-bucket is wide, whatever is in the nearest bucket is final. It takes time linear in the cells, 10
-ms on 512 x 512 of them: a third of what scipy.sparse.csgraph.dijkstra takes with its heap.
+The algorithm is Dijkstra's with the bucket queue of Denardo and Fox (1979): where no step is
+shorter than a bucket is wide, all cells of the nearest bucket are final. It takes time linear in
+the cells, 10 ms for 512 x 512 of them: a third of scipy.sparse.csgraph.dijkstra with its heap.
 """
 
 from collections.abc import Callable
@@ -25,142 +25,152 @@ DIAGONAL = np.sqrt(2.0)
 
 
 class Grid(NamedTuple):
-    """Cells and what it costs to be there, inside a frame of blocked ones; row by row, flat."""
+    """Free cells and a cost layer, flattened row by row, with a frame of blocked cells around."""
 
-    free: Mask
-    layer: Array
-    width: int
+    free: Mask  # (cells,)
+    layer: Array  # (cells,)
+    width: int  # of a row, frame included
 
 
-class Reached(NamedTuple):
-    """Of each cell of a grid, how it is reached.
+class PathTree(NamedTuple):
+    """The shortest paths from a source to the cells of a grid.
 
-    How long the path is (infinite where none was sought or found), how many of its steps are
-    diagonal, what the cost layer adds up to along it, where a step costs its length times the
-    mean of the layer at both its ends, and the cell before.
+    A step's cost is its length times the mean of the cost layer at both its ends.
     """
 
-    length: Array
-    turns: NDArray[np.int32]
-    cost: Array
-    before: NDArray[np.int32]
+    length: Array  # (cells,), infinite where no path was found
+    diagonals: NDArray[np.int32]  # (cells,), the number of diagonal steps of the path
+    cost: Array  # (cells,), along the path
+    predecessor: NDArray[np.int32]  # (cells,), the cell before on the path, or -1
 
 
-class Search(NamedTuple):
-    """What a search goes over, what it has found, and the cells that it has yet to leave."""
+class DijkstraState(NamedTuple):
+    """The grid, the paths found so far, and the bucket queue of cells yet to be expanded."""
 
     grid: Grid
-    reached: Reached
+    tree: PathTree
     buckets: NDArray[np.int32]  # (3, cells), by the whole part of a cell's length, modulo 3
     sizes: Cells  # (3,)
 
 
 def make_grid(free: Mask, layer: Array | None = None) -> Grid:
-    """A grid of cells, shape (rows, columns), with a cost layer of the same shape or none."""
+    """Return a grid of free cells, shape (rows, columns), and maybe a cost layer of that shape."""
     framed = np.pad(free, 1)
     costs = np.zeros(framed.shape) if layer is None else np.pad(layer, 1)
     return Grid(framed.ravel(), costs.ravel(), framed.shape[1])
 
 
-def flat(grid: Grid, cells: Cells) -> Cells:
-    """Numbers of cells in a grid, shape (n,), of rows and columns, shape (n, 2)."""
+def cell_numbers(grid: Grid, cells: Cells) -> Cells:
+    """Return the numbers, shape (n,), in a grid of rows and columns, shape (n, 2)."""
     return (cells[:, 0] + 1) * grid.width + cells[:, 1] + 1
 
 
-def traced(grid: Grid, reached: Reached, cell: int) -> Cells:
-    """Rows and columns, shape (m, 2), of the path to a cell, from where the search began."""
+def trace_path(grid: Grid, tree: PathTree, cell: int) -> Cells:
+    """Return the rows and columns, shape (m, 2), of the path from the source to a cell."""
     path = [cell]
-    while reached.before[path[-1]] >= 0:
-        path.append(int(reached.before[path[-1]]))
+    while tree.predecessor[path[-1]] >= 0:
+        path.append(int(tree.predecessor[path[-1]]))
     return np.stack(np.divmod(np.array(path[::-1]), grid.width), axis=1) - 1
 
 
-def between(grid: Grid, cells: Cells, stop: Callable[[], bool]) -> tuple[Array, Array]:
-    """Lengths and layer costs, each (n, n) and symmetric, of the paths between cells, shape (n,).
+def pairwise_paths(grid: Grid, cells: Cells, stop: Callable[[], bool]) -> tuple[Array, Array]:
+    """Return lengths and costs of the shortest paths between all pairs of cells.
 
-    Infinite and 0 where there is no path; meaningless once told to stop.
+    Args:
+        grid: The grid.
+        cells: Numbers of cells in the grid, shape (n,).
+        stop: Called before each of n - 1 searches; once it returns True, the rest is left out.
+
+    Returns:
+        Lengths in cells, and costs by the layer, both symmetric, shape (n, n). Where there is no
+        path, the length is infinite and the cost 0.
     """
     n = len(cells)
     lengths, costs = np.zeros((n, n)), np.zeros((n, n))
     for i in range(n - 1):
         if stop():
             break
-        reached = search(grid, cells[i], cells[i + 1 :])
-        lengths[i, i + 1 :] = lengths[i + 1 :, i] = reached.length[cells[i + 1 :]]
-        costs[i, i + 1 :] = costs[i + 1 :, i] = reached.cost[cells[i + 1 :]]
+        tree = find_paths(grid, cells[i], cells[i + 1 :])
+        lengths[i, i + 1 :] = lengths[i + 1 :, i] = tree.length[cells[i + 1 :]]
+        costs[i, i + 1 :] = costs[i + 1 :, i] = tree.cost[cells[i + 1 :]]
     return lengths, costs
 
 
 def warm_up() -> None:
-    """Compiles the search, or loads it from the cache of an earlier process."""
+    """Compile the search, or load it from the cache of an earlier process."""
     grid = make_grid(np.ones((1, 2), np.bool_))
-    between(grid, flat(grid, np.array([[0, 0], [0, 1]])), lambda: False)
+    pairwise_paths(grid, cell_numbers(grid, np.array([[0, 0], [0, 1]])), lambda: False)
 
 
 @allocating
-def search(grid: Grid, source: int, targets: Cells) -> Reached:
-    """Paths from a source to all cells that are no farther away than the farthest target."""
+def find_paths(grid: Grid, source: int, targets: Cells) -> PathTree:
+    """Return shortest paths from a source to targets, and to all cells that are nearer.
+
+    Cells are given by their numbers; targets have shape (n,). O(cells).
+    """
     cells = len(grid.free)
-    reached = Reached(
+    tree = PathTree(
         np.full(cells, np.inf),
         np.zeros(cells, np.int32),
         np.zeros(cells),
         np.full(cells, -1, np.int32),
     )
-    # A step leads at most two buckets on, so three take turns.
-    state = Search(grid, reached, np.empty((3, cells), np.int32), np.zeros(3, np.int64))
-    wanted = np.zeros(cells, np.bool_)
-    wanted[targets] = True
-    missing = wanted.sum()
-    reached.length[source] = 0.0
-    _put(state, source)
+    # A step leads at most two buckets ahead, so three suffice.
+    state = DijkstraState(grid, tree, np.empty((3, cells), np.int32), np.zeros(3, np.int64))
+    is_target = np.zeros(cells, np.bool_)
+    is_target[targets] = True
+    missing = is_target.sum()
+    tree.length[source] = 0.0
+    _enqueue(state, source)
     now = 0
     while missing > 0 and state.sizes.sum() > 0:
         for k in range(state.sizes[now % 3]):
             cell = state.buckets[now % 3, k]
-            # What has come nearer since it was put here was left from a nearer bucket.
-            if int(reached.length[cell]) == now:
-                missing -= wanted[cell]
-                _leave(state, cell)
+            # A cell that came nearer after it was queued here was expanded from that bucket.
+            if int(tree.length[cell]) == now:
+                missing -= is_target[cell]
+                _expand(state, cell)
         state.sizes[now % 3] = 0
         now += 1
-    return reached
+    return tree
 
 
 @inlined
-def _leave(state: Search, cell: int) -> None:
-    """Takes the steps from a cell to those around it that make a better path."""
+def _expand(state: DijkstraState, cell: int) -> None:
+    """Relax the steps from a cell to its free neighbours."""
     free, width = state.grid.free, state.grid.width
-    turns = state.reached.turns[cell]
-    # From whole counts each time, so that lengths are equal where counts are, and only there.
-    straight = np.rint(state.reached.length[cell] - turns * DIAGONAL)
-    near, far = straight + 1 + turns * DIAGONAL, straight + (turns + 1) * DIAGONAL
+    diagonals = state.tree.diagonals[cell]
+    # Computed from counts of steps, so that lengths are equal exactly where the counts are.
+    straight = np.rint(state.tree.length[cell] - diagonals * DIAGONAL)
+    by_side = straight + 1 + diagonals * DIAGONAL
+    by_corner = straight + (diagonals + 1) * DIAGONAL
     for down in (-width, 0, width):
         if free[cell + down]:
             for right in (-1, 0, 1):
                 if free[cell + right] and free[cell + down + right]:
-                    turned = down * right != 0
-                    _step(state, cell, cell + down + right, far if turned else near, turned)
+                    diagonal = down * right != 0
+                    length = by_corner if diagonal else by_side
+                    _relax(state, cell, cell + down + right, length, diagonal)
 
 
 @inlined
-def _step(state: Search, cell: int, beside: int, length: float, turned: bool) -> None:
-    """Makes a step part of the path to its end, if that is shorter, or as short and cheaper."""
-    reached, layer = state.reached, state.grid.layer
-    before = reached.length[beside]
-    if length > before:
+def _relax(state: DijkstraState, cell: int, beside: int, length: float, diagonal: bool) -> None:
+    """Let the path to a neighbour come from a cell if that is shorter, or as short and cheaper."""
+    tree, layer = state.tree, state.grid.layer
+    known = tree.length[beside]
+    if length > known:
         return
-    cost = reached.cost[cell] + (DIAGONAL if turned else 1.0) * (layer[cell] + layer[beside]) / 2
-    if length == before and cost >= reached.cost[beside]:
+    cost = tree.cost[cell] + (DIAGONAL if diagonal else 1.0) * (layer[cell] + layer[beside]) / 2
+    if length == known and cost >= tree.cost[beside]:
         return
-    reached.length[beside], reached.turns[beside] = length, reached.turns[cell] + turned
-    reached.cost[beside], reached.before[beside] = cost, cell
-    if before >= int(length) + 1:
-        _put(state, beside)
+    tree.length[beside], tree.diagonals[beside] = length, tree.diagonals[cell] + diagonal
+    tree.cost[beside], tree.predecessor[beside] = cost, cell
+    if known >= int(length) + 1:
+        _enqueue(state, beside)
 
 
 @inlined
-def _put(state: Search, cell: int) -> None:
-    bucket = int(state.reached.length[cell]) % 3
+def _enqueue(state: DijkstraState, cell: int) -> None:
+    bucket = int(state.tree.length[cell]) % 3
     state.buckets[bucket, state.sizes[bucket]] = cell
     state.sizes[bucket] += 1

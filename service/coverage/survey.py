@@ -1,11 +1,10 @@
-"""Coverage planning: from places on an occupancy grid to an instance, and from tours to paths.
+"""survey(...): from a grid and places on it to an instance; Survey.paths: from tours to paths.
 
-The first objective is the length in metres of the shortest path between two places on which the
-robot keeps off obstacles: over the eight cells around each, no corner cut. The second is what the
-caller gives: a matrix; the distances between points in a plane; or a layer of costs on the grid,
-where going from a place to another costs the sum over the steps of the path of the step's length
-in metres times the mean of the layer at its two ends. Of the shortest paths, the cheapest by the
-layer is meant; without a layer, any.
+The first objective is the length in metres of the shortest path between two places that keeps
+clear of obstacles. The second is the caller's: a matrix; distances between points in a plane; or a
+cost layer on the grid. By a layer, a path costs the sum over its steps of the step's length in
+metres times the mean of the layer at the step's two ends; of equally short paths the cheapest is
+taken.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -15,8 +14,15 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from service.coverage.grid import inflated, laid_out, largest_region, regions
-from service.coverage.shortest_paths import Grid, between, flat, make_grid, search, traced
+from service.coverage.grid import covering_places, free_cells, largest_region, regions
+from service.coverage.shortest_paths import (
+    Grid,
+    cell_numbers,
+    find_paths,
+    make_grid,
+    pairwise_paths,
+    trace_path,
+)
 from service.errors import Cancelled, InvalidCoverage, TooManyPlaces
 from service.instance import Instance
 
@@ -27,15 +33,25 @@ Cells = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Coverage:
-    """What is to be covered: a grid, shape (rows, columns), and the places, or how far apart.
+    """A coverage task: a grid, a robot, places to visit, and a second objective.
 
-    Places are rows and columns, shape (n, 2). Without them they are laid out over the largest
-    free region, one in each square with sides of `spacing`. Cell size, radius and spacing are in
-    metres. Exactly one of the last three is given: a matrix of shape (n, n), a layer of the
-    grid's shape, or coordinates of shape (n, 2). All tours are reported from place `start`.
+    Exactly one of `places` and `spacing` is given, and exactly one of the last three.
+
+    Args:
+        blocked: Obstacles, shape (rows, columns).
+        cell_size: The side of a cell, in metres.
+        robot_radius: In metres.
+        places: Rows and columns of the places, shape (n, 2).
+        spacing: In metres. The places cover the largest free region, one in each square of this
+            side.
+        start: The place from which all tours are reported.
+        second_matrix: Costs between places, shape (n, n).
+        cost_layer: Costs on the grid, shape (rows, columns).
+        second_coordinates: Coordinates of the places in a plane, shape (n, 2).
 
     Raises:
-        InvalidCoverage: a size is not positive, or both or neither of two alternatives are given.
+        InvalidCoverage: A size is not positive, a cost layer does not fit the grid or has an
+            invalid cost, or both or neither of two alternatives are given.
     """
 
     blocked: Mask
@@ -59,7 +75,7 @@ class Coverage:
         if self.spacing is not None and not 0 < self.spacing < np.inf:
             raise InvalidCoverage(("spacing", f"must be positive, got {self.spacing:g}"))
         second = (self.second_matrix, self.cost_layer, self.second_coordinates)
-        if sum(each is not None for each in second) != 1:
+        if sum(source is not None for source in second) != 1:
             demand = "or cost_layer or second_coordinates is required, and only one of them"
             raise InvalidCoverage(("second_matrix", demand))
         self._check_layer()
@@ -79,8 +95,8 @@ class Coverage:
 
 
 @dataclass(frozen=True, eq=False)
-class Path:
-    """The cells of a closed way through all places, shape (m, 2), the first also last."""
+class CoveragePath:
+    """The closed path of a tour: rows and columns, shape (m, 2), the first also last."""
 
     cells: Cells
     metres: float
@@ -88,68 +104,81 @@ class Path:
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """Places, rows and columns, shape (n, 2), and what it costs to go between them."""
+    """Places, rows and columns, shape (n, 2), and the instance of the costs between them."""
 
     places: Cells
     instance: Instance
     grid: Grid
 
-    def paths(self, tours: NDArray[np.integer]) -> Iterator[Path]:
-        """The path of each tour, a row of shape (n,)."""
-        ahead = np.roll(tours, -1, axis=1)
-        steps = np.unique(np.sort(np.stack((tours.ravel(), ahead.ravel()), axis=1)), axis=0)
-        ways = dict(self._ways(steps.tolist()))
+    def paths(self, tours: NDArray[np.integer]) -> Iterator[CoveragePath]:
+        """Yield the path of each of the tours, shape (k, n)."""
+        following = np.roll(tours, -1, axis=1)
+        steps = np.unique(np.sort(np.stack((tours.ravel(), following.ravel()), axis=1)), axis=0)
+        paths = dict(self._paths_of_steps(steps.tolist()))
         assert self.instance.matrices is not None
-        for tour, following in zip(tours.tolist(), ahead.tolist(), strict=True):
-            legs = [ways[step] for step in zip(tour, following, strict=True)]
+        for tour, successors in zip(tours.tolist(), following.tolist(), strict=True):
+            legs = [paths[step] for step in zip(tour, successors, strict=True)]
             cells = np.concatenate([legs[0], *(leg[1:] for leg in legs[1:])])
-            yield Path(cells, float(self.instance.matrices[0, tour, following].sum()))
+            yield CoveragePath(cells, float(self.instance.matrices[0, tour, successors].sum()))
 
-    def _ways(self, steps: list[tuple[int, int]]) -> Iterator[tuple[tuple[int, int], Cells]]:
-        """The cells of each step from a place to a later one, and those of the way back."""
-        numbers = flat(self.grid, self.places)
+    def _paths_of_steps(
+        self, steps: list[tuple[int, int]]
+    ) -> Iterator[tuple[tuple[int, int], Cells]]:
+        """Yield each step between two places with its cells, in both directions.
+
+        Steps are sorted, so that those from one place need one search.
+        """
+        numbers = cell_numbers(self.grid, self.places)
         for origin, group in groupby(steps, key=lambda step: step[0]):
             ends = [end for _, end in group]
-            reached = search(self.grid, numbers[origin], numbers[ends])
+            tree = find_paths(self.grid, numbers[origin], numbers[ends])
             for end in ends:
-                way = traced(self.grid, reached, numbers[end])
-                yield (origin, end), way
-                yield (end, origin), way[::-1]
+                path = trace_path(self.grid, tree, numbers[end])
+                yield (origin, end), path
+                yield (end, origin), path[::-1]
 
 
-def survey(coverage: Coverage, most: int, stop: Callable[[], bool]) -> Survey:
-    """The places, no more than `most` of them, and what it costs to go between them.
+def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Survey:
+    """Return the places of a coverage task and the instance of the costs between them.
+
+    Args:
+        coverage: The task.
+        max_places: The greatest number of places that a spacing may give.
+        stop: Called once for each place; True ends the survey.
 
     Raises:
-        InvalidCoverage: nothing is free, a place is not, or no path leads there; the second
-            objective is not about as many places or not of costs.
-        Cancelled: it was told to stop.
+        InvalidCoverage: No cell is free, a place is not free or cannot be reached, or the second
+            objective is not of as many places.
+        TooManyPlaces: The spacing gives more than `max_places`.
+        InvalidInstance: The second objective's costs are not valid.
+        Cancelled: `stop` returned True.
     """
-    free = inflated(coverage.blocked, coverage.cell_size, coverage.robot_radius)
+    free = free_cells(coverage.blocked, coverage.cell_size, coverage.robot_radius)
     if not free.any():
         raise InvalidCoverage(
             ("grid", f"must have a free cell {_far_enough(coverage)}, and there is none")
         )
-    places = _places(coverage, free, most)
+    places = _places(coverage, free, max_places)
     grid = make_grid(free, coverage.cost_layer)
-    lengths, costs = between(grid, flat(grid, places), stop)
+    lengths, costs = pairwise_paths(grid, cell_numbers(grid, places), stop)
     if stop():
         raise Cancelled
-    second = _second(coverage, costs)
-    return Survey(places, Instance(matrices=np.stack((coverage.cell_size * lengths, second))), grid)
+    matrices = np.stack((coverage.cell_size * lengths, _second_objective(coverage, costs)))
+    return Survey(places, Instance(matrices=matrices), grid)
 
 
-def _places(coverage: Coverage, free: Mask, most: int) -> Cells:
+def _places(coverage: Coverage, free: Mask, max_places: int) -> Cells:
+    """Return the caller's places, or those that cover the largest region, checked."""
     if coverage.places is None:
         assert coverage.spacing is not None
-        places = laid_out(largest_region(free), coverage.spacing / coverage.cell_size)
-        if len(places) > most:
-            raise TooManyPlaces(most, len(places))
+        places = covering_places(largest_region(free), coverage.spacing / coverage.cell_size)
+        if len(places) > max_places:
+            raise TooManyPlaces(max_places, len(places))
     else:
         places = coverage.places
-        _check_all(_misplaced(coverage, places, free))
-    _check_all(_miscounted(coverage, len(places)))
-    _check_all(_unreachable(places, coverage.start, free))
+        _raise_any(_misplaced(coverage, places, free))
+    _raise_any(_miscounted(coverage, len(places)))
+    _raise_any(_unreachable(places, coverage.start, free))
     return places
 
 
@@ -170,9 +199,9 @@ def _miscounted(coverage: Coverage, n: int) -> Iterator[tuple[str, str]]:
     if coverage.start >= n:
         yield "start", f"must be a place, 0 to {n - 1}, got {coverage.start}"
     for name in ("second_matrix", "second_coordinates"):
-        given = getattr(coverage, name)
-        if given is not None and len(given) != n:
-            yield name, f"must have a row for each of {n} places, got {len(given)}"
+        rows = getattr(coverage, name)
+        if rows is not None and len(rows) != n:
+            yield name, f"must have a row for each of {n} places, got {len(rows)}"
 
 
 def _unreachable(places: Cells, start: int, free: Mask) -> Iterator[tuple[str, str]]:
@@ -181,12 +210,13 @@ def _unreachable(places: Cells, start: int, free: Mask) -> Iterator[tuple[str, s
         yield f"places/{i}", f"must be reachable from places/{start}, and no path leads there"
 
 
-def _check_all(faults: Iterable[tuple[str, str]]) -> None:
-    if found := tuple(faults):
-        raise InvalidCoverage(*found)
+def _raise_any(faults: Iterable[tuple[str, str]]) -> None:
+    if faults := tuple(faults):
+        raise InvalidCoverage(*faults)
 
 
-def _second(coverage: Coverage, costs: Array) -> Array:
+def _second_objective(coverage: Coverage, costs: Array) -> Array:
+    """Return the costs of the second objective, shape (n, n); `costs` are those by the layer."""
     if coverage.second_matrix is not None:
         return coverage.second_matrix
     if coverage.second_coordinates is not None:

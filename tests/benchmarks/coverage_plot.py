@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from models.data.generators import drawn_map
-from service.coverage.grid import inflated, laid_out, largest_region
+from service.coverage.grid import covering_places, free_cells, largest_region
 from service.coverage.survey import Coverage, Survey, survey
 from service.search.improve import improve
 from tests.benchmarks.provenance import RESULTS
@@ -51,8 +51,8 @@ def draw() -> None:
 
 def _coverage(free: NDArray[np.bool_], risk: Array) -> Coverage:
     """Places all over the map where it is safe."""
-    region = largest_region(inflated(~free, 1.0, RADIUS))
-    places = laid_out(region, SPACING)
+    region = largest_region(free_cells(~free, 1.0, RADIUS))
+    places = covering_places(region, SPACING)
     safe = places[risk[tuple(places.T)] < SAFE]
     return Coverage(blocked=~free, cell_size=1.0, robot_radius=RADIUS, places=safe, cost_layer=risk)
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from service.coverage.grid import inflated, laid_out, largest_region, regions
+from service.coverage.grid import covering_places, free_cells, largest_region, regions
 
 MAPS = arrays(np.bool_, st.tuples(st.integers(1, 9), st.integers(1, 9)), elements=st.booleans())
 
@@ -15,7 +15,7 @@ MAPS = arrays(np.bool_, st.tuples(st.integers(1, 9), st.integers(1, 9)), element
 def test_a_free_cell_is_farther_from_every_obstacle_than_the_radius(
     blocked: np.ndarray, radius: float, cell_size: float
 ) -> None:
-    free = inflated(blocked, cell_size, radius * cell_size)
+    free = free_cells(blocked, cell_size, radius * cell_size)
     obstacles = np.argwhere(blocked)
     for cell, is_free in np.ndenumerate(free):
         near = np.square(obstacles - cell).sum(axis=1) <= radius**2
@@ -24,7 +24,7 @@ def test_a_free_cell_is_farther_from_every_obstacle_than_the_radius(
 
 def test_a_distance_equal_to_the_radius_is_not_farther() -> None:
     # In floating point, 3 cells of 0.1 are more than 0.3.
-    free = inflated(np.array([[True, False, False, False, False]]), 0.1, 0.3)
+    free = free_cells(np.array([[True, False, False, False, False]]), 0.1, 0.3)
     assert free.tolist() == [[False, False, False, False, True]]
 
 
@@ -40,7 +40,7 @@ def test_nowhere_is_the_largest_region_of_nothing() -> None:
 
 @given(MAPS.filter(lambda free: free.any()), st.sampled_from([0.3, 1.0, 1.7, 2.0, 3.5]))
 def test_every_cell_is_near_a_place(free: np.ndarray, spacing: float) -> None:
-    places = laid_out(free, spacing)
+    places = covering_places(free, spacing)
     assert free[tuple(places.T)].all()
     assert len(np.unique(places, axis=0)) == len(places)
     for cell in np.argwhere(free):
@@ -54,10 +54,10 @@ def test_every_cell_is_near_a_place(free: np.ndarray, spacing: float) -> None:
 def test_on_open_ground_places_are_the_middles_of_squares(
     side: int, spacing: float, expected: list[list[int]]
 ) -> None:
-    assert laid_out(np.ones((side, side), np.bool_), spacing).tolist() == expected
+    assert covering_places(np.ones((side, side), np.bool_), spacing).tolist() == expected
 
 
 def test_the_squares_begin_at_the_region() -> None:
     free = np.zeros((9, 9), np.bool_)
     free[4:7, 5:8] = True
-    assert laid_out(free, 3.0).tolist() == [[5, 6]]
+    assert covering_places(free, 3.0).tolist() == [[5, 6]]

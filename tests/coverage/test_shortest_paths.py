@@ -10,7 +10,13 @@ from hypothesis.extra.numpy import arrays
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from service.coverage.shortest_paths import between, flat, make_grid, search, traced
+from service.coverage.shortest_paths import (
+    cell_numbers,
+    find_paths,
+    make_grid,
+    pairwise_paths,
+    trace_path,
+)
 
 SHAPES = st.tuples(st.integers(1, 7), st.integers(1, 7))
 GRIDS = SHAPES.flatmap(
@@ -56,7 +62,7 @@ def test_lengths_are_those_of_scipy(drawn: tuple[np.ndarray, np.ndarray]) -> Non
     free, layer = drawn
     cells = np.argwhere(free)
     grid = make_grid(free, layer)
-    lengths, costs = between(grid, flat(grid, cells), never)
+    lengths, costs = pairwise_paths(grid, cell_numbers(grid, cells), never)
     inside = np.ix_(free.ravel(), free.ravel())
     expected = by_scipy(free, layer, 0.0)[inside]
     np.testing.assert_allclose(lengths, expected)
@@ -76,29 +82,29 @@ def test_a_path_is_made_of_steps_and_is_as_long_and_as_costly_as_it_says(
     free, layer = drawn
     cells = np.argwhere(free)
     grid = make_grid(free, layer)
-    numbers = flat(grid, cells)
-    reached = search(grid, numbers[0], numbers)
+    numbers = cell_numbers(grid, cells)
+    tree = find_paths(grid, numbers[0], numbers)
     table = {(tail, head): rest for tail, head, *rest in steps(free, layer)}
     for number, cell in zip(numbers, cells, strict=True):
-        if np.isfinite(reached.length[number]):
-            path = traced(grid, reached, number)
+        if np.isfinite(tree.length[number]):
+            path = trace_path(grid, tree, number)
             assert (path[0].tolist(), path[-1].tolist()) == (cells[0].tolist(), cell.tolist())
             taken = [table[step] for step in pairwise((path @ [free.shape[1], 1]).tolist())]
             length, cost = np.sum(taken, axis=0) if taken else (0, 0)
-            np.testing.assert_allclose(reached.length[number], length)
-            np.testing.assert_allclose(reached.cost[number], cost)
+            np.testing.assert_allclose(tree.length[number], length)
+            np.testing.assert_allclose(tree.cost[number], cost)
 
 
 def test_no_corner_is_cut() -> None:
     free = np.array([[True, False], [True, True]])
     grid = make_grid(free)
-    lengths, _ = between(grid, flat(grid, np.array([[0, 0], [1, 1]])), never)
+    lengths, _ = pairwise_paths(grid, cell_numbers(grid, np.array([[0, 0], [1, 1]])), never)
     assert lengths[0, 1] == 2
 
 
 def test_between_two_blocked_cells_nobody_slips_through() -> None:
     grid = make_grid(np.eye(2, dtype=np.bool_))
-    lengths, _ = between(grid, flat(grid, np.array([[0, 0], [1, 1]])), never)
+    lengths, _ = pairwise_paths(grid, cell_numbers(grid, np.array([[0, 0], [1, 1]])), never)
     assert np.isinf(lengths[0, 1])
 
 
@@ -106,7 +112,7 @@ def test_lengths_on_an_empty_grid_are_octile_distances() -> None:
     rng = np.random.default_rng(4)
     grid = make_grid(np.ones((300, 200), np.bool_))
     cells = rng.integers((300, 200), size=(30, 2))
-    lengths, _ = between(grid, flat(grid, cells), never)
+    lengths, _ = pairwise_paths(grid, cell_numbers(grid, cells), never)
     steps = np.abs(cells[:, None] - cells)
     expected = steps.max(axis=2) + (np.sqrt(2) - 1) * steps.min(axis=2)
     np.testing.assert_allclose(lengths, expected)
@@ -114,8 +120,10 @@ def test_lengths_on_an_empty_grid_are_octile_distances() -> None:
 
 def test_it_stops_when_told_to() -> None:
     grid = make_grid(np.ones((9, 9), np.bool_))
-    asked = iter([False, True])
-    lengths, _ = between(grid, flat(grid, np.array([[0, 0], [0, 3], [8, 8]])), lambda: next(asked))
+    answers = iter([False, True])
+    lengths, _ = pairwise_paths(
+        grid, cell_numbers(grid, np.array([[0, 0], [0, 3], [8, 8]])), lambda: next(answers)
+    )
     assert (lengths[0, 1], lengths[1, 2]) == (3, 0)
     with pytest.raises(StopIteration):
-        next(asked)
+        next(answers)

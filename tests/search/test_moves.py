@@ -76,8 +76,8 @@ def test_a_move_changes_lengths_as_foretold(seed: int, flip: bool, data: st.Data
     n = 12
     instance = instance_of(n, seed, symmetric=flip)
     scalarization = scalar_of(instance)
-    start, a = data.random_below(st.integers(0, n - 1)), data.random_below(st.integers(1, 3))
-    b = data.random_below(st.integers(0 if flip else 1, n - a - 1))
+    start, a = data.draw(st.integers(0, n - 1)), data.draw(st.integers(1, 3))
+    b = data.draw(st.integers(0 if flip else 1, n - a - 1))
     working = make_working_tour(n)
     before = np.array(lengths(scalarization.costs, working.tour))
     foretold = np.array(length_change(working, scalarization, start, a, b, flip))
