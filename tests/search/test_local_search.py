@@ -1,0 +1,37 @@
+"""Moves gain what is said, and a constructed tour visits all cities."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from service.search.costs import lengths
+from service.search.local_search import improve_at, nearest_neighbour
+from service.search.working_tour import dequeue, enqueue_all, load, make_working_tour
+from tests.helpers.instances import random_matrices, scalarization_of
+
+
+@settings(max_examples=30)
+@given(seed=st.integers(0, 10**6), symmetric=st.booleans(), n=st.integers(8, 40))
+def test_every_improving_move_gains_what_it_says(seed: int, symmetric: bool, n: int) -> None:
+    scalarization = scalarization_of(random_matrices(n, seed, symmetric))
+    working = make_working_tour(n)
+    load(working, working.tour.copy(), *lengths(scalarization.costs, working.tour))
+    enqueue_all(working)
+    while working.ring[1] > 0:
+        before = working.length.sum()
+        if improve_at(working, scalarization, dequeue(working), 1e-9):
+            assert working.length.sum() < before
+            assert lengths(scalarization.costs, working.tour) == pytest.approx(
+                tuple(working.length)
+            )
+    assert np.array_equal(np.sort(working.tour), np.arange(n))
+
+
+@pytest.mark.parametrize("symmetric", [True, False])
+def test_the_nearest_neighbour_tour_visits_all(symmetric: bool) -> None:
+    scalarization = scalarization_of(random_matrices(30, 1, symmetric))
+    tour = np.empty(30, np.int32)
+    nearest_neighbour(scalarization, 5, tour)
+    assert tour[0] == 5
+    assert np.array_equal(np.sort(tour), np.arange(30))

@@ -1,0 +1,22 @@
+"""Compiled code works without a place to cache it in."""
+
+import os
+import subprocess
+import sys
+
+
+def test_compiled_code_works_where_it_cannot_be_cached() -> None:
+    """Of numba's ways to find a place, the only one left does not apply here."""
+    code = (
+        "import numpy as np; from service.pareto import best_subset;"
+        "points = np.stack([np.arange(9.0), 9 - np.arange(9.0)], axis=1);"
+        "print(len(best_subset(points, 3, np.full(2, 10.0))))"
+    )
+    environment = {
+        **os.environ,
+        "NUMBA_CACHE_LOCATOR_CLASSES": "numba.core.caching.ZipCacheLocator",
+    }
+    ran = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True
+    )
+    assert (ran.stdout, ran.stderr) == ("3\n", "")
