@@ -1,4 +1,4 @@
-"""Networks as they are shipped: one ONNX file each, an instance and preferences in, tours out."""
+"""Actors: the networks as released, one ONNX file each, which build a tour for each preference."""
 
 import hashlib
 import json
@@ -15,17 +15,24 @@ from service.instance import Instance, Kind
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 _METADATA = ("name", "config", "commit", "sizes", "angles", "figures", "inputs")
-_FEW = 100  # cities, and preferences, for which a session keeps less than 20 MB
+_FEW = 100  # cities or preferences, up to which a session keeps less than 20 MB
 
 
 @dataclass(frozen=True, kw_only=True)
-class ActorFacts:
-    """Who an actor is: what its file says of itself, and the SHA-256 of that file, in hex.
+class ActorInfo:
+    """The metadata of an actor's ONNX file.
 
-    `sizes` and `angles` are what it was trained on, `figures` what was measured of it, `inputs`
-    the kind of instance that it reads: `coordinates` (a row of four for each city, each plane
-    moved and scaled into the unit square) or `matrices` (2, n, n) (in units of the scale, with
-    zeros on the diagonal).
+    Args:
+        name: As requests name it.
+        digest: SHA-256 of the file, in hex.
+        commit: Of the code that wrote the file.
+        inputs: The kind of instance that it reads: `coordinates`, shape (n, 4), each plane moved
+            and scaled into the unit square; or `matrices`, shape (2, n, n), in units of the
+            scale, with zeros on the diagonal.
+        sizes: Least and greatest number of cities that it was trained on.
+        angles: Least and greatest angle that it was trained on, in degrees.
+        config: Of the training run.
+        figures: Hypervolumes measured after training, by number of cities.
     """
 
     name: str
@@ -38,20 +45,20 @@ class ActorFacts:
     figures: Any
 
     @property
-    def named(self) -> dict[str, str]:
-        """Which it is, as an answer says it."""
+    def identity(self) -> dict[str, str]:
+        """The name and digest, as answers report them."""
         return {"name": self.name, "digest": self.digest}
 
     def serves(self, kind: Kind) -> bool:
-        """Whether it can build tours for instances of this kind: coordinates have distances."""
+        """Return whether it builds tours for instances of a kind: matrices serve both kinds."""
         return self.inputs in ("matrices", kind)
 
 
-class Actor:
-    """An ONNX file that builds a tour for every preference in one inference call.
+class OnnxActor:
+    """An ONNX file in an inference session of so many threads.
 
     Raises:
-        ValueError: the file lacks metadata, or reads something else.
+        ValueError: The file lacks metadata, or reads neither coordinates nor matrices.
     """
 
     def __init__(self, path: Path, threads: int) -> None:
@@ -59,14 +66,14 @@ class Actor:
         self._session = onnxruntime.InferenceSession(
             content, _options(threads), providers=["CPUExecutionProvider"]
         )
-        self._giving_back = onnxruntime.RunOptions()
-        # Else what the largest instance needed is never given back (microsoft/onnxruntime#11627).
+        self._shrinking = onnxruntime.RunOptions()
+        # Else memory that the largest instance needed is never freed (microsoft/onnxruntime#11627).
         shrink = ("memory.enable_memory_arena_shrinkage", "cpu:0")
-        self._giving_back.add_run_config_entry(*shrink)
+        self._shrinking.add_run_config_entry(*shrink)
         metadata = self._session.get_modelmeta().custom_metadata_map
         if missing := [name for name in _METADATA if name not in metadata]:
             raise ValueError(f"the metadata of {path} must have {', '.join(missing)}")
-        self.facts = ActorFacts(
+        self.info = ActorInfo(
             digest=hashlib.sha256(content).hexdigest(),
             inputs=_kind(metadata["inputs"], path),
             **{name: metadata[name] for name in ("name", "commit")},
@@ -74,40 +81,46 @@ class Actor:
         )
 
     def tours(self, instance: Instance, preferences: Array) -> Tours:
-        """One tour, a row of shape (n,), for each preference, a row of shape (k, 2)."""
-        inputs = {**self._read(instance), "preferences": preferences.astype(np.float32)}
-        # To give a little back and to get it again takes 2 % of a call at 40 cities.
+        """Return tours, shape (k, n), one for each preference, shape (k, 2), by one inference.
+
+        Raises:
+            RuntimeError: A tour is not a permutation, which is a fault of the file.
+        """
+        inputs = {**self._inputs(instance), "preferences": preferences.astype(np.float32)}
+        # To free a little memory and to allocate it again takes 2 % of a call at 40 cities.
         few = max(instance.n, len(preferences)) <= _FEW
-        (tours,) = self._session.run(["tours"], inputs, None if few else self._giving_back)
+        (tours,) = self._session.run(["tours"], inputs, None if few else self._shrinking)
         if not (np.sort(tours, axis=1) == np.arange(instance.n)).all():
-            raise RuntimeError(f"{self.facts.name} built a tour that is not a permutation")
+            raise RuntimeError(f"{self.info.name} built a tour that is not a permutation")
         return tours
 
-    def _read(self, instance: Instance) -> dict[str, NDArray[np.float32]]:
-        if self.facts.inputs == "matrices":
+    def _inputs(self, instance: Instance) -> dict[str, NDArray[np.float32]]:
+        if self.info.inputs == "matrices":
             return {"matrices": instance.scaled_matrices.astype(np.float32)}
         return {"cities": instance.scaled_coordinates.astype(np.float32)}
 
 
-def load_actors(directory: Path, threads: int) -> dict[str, Actor]:
-    """The actors in a directory, by name.
+def load_actors(directory: Path, threads: int) -> dict[str, OnnxActor]:
+    """Return the actors of the ONNX files in a directory, by name.
+
+    Each has an inference session of so many threads.
 
     Raises:
-        ValueError: there is none, or two have the same name.
+        ValueError: There is no file, or two actors have the same name.
     """
-    actors = [Actor(path, threads) for path in sorted(directory.glob("*.onnx"))]
-    by_name = {actor.facts.name: actor for actor in actors}
+    actors = [OnnxActor(path, threads) for path in sorted(directory.glob("*.onnx"))]
+    by_name = {actor.info.name: actor for actor in actors}
     if not actors or len(by_name) < len(actors):
-        names = [actor.facts.name for actor in actors]
+        names = [actor.info.name for actor in actors]
         raise ValueError(f"{directory} must hold ONNX files of different names, got {names}")
     return by_name
 
 
-def _kind(given: str, path: Path) -> Kind:
+def _kind(inputs: str, path: Path) -> Kind:
     for kind in get_args(Kind):
-        if given == kind:
+        if inputs == kind:
             return kind
-    raise ValueError(f"inputs of {path} must be coordinates or matrices, got {given!r}")
+    raise ValueError(f"inputs of {path} must be coordinates or matrices, got {inputs!r}")
 
 
 def _options(threads: int) -> onnxruntime.SessionOptions:

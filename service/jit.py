@@ -1,12 +1,12 @@
-"""The one place where functions are handed to numba.
+"""Decorators that compile functions with numba: the one place that configures it.
 
 Kernels are plain typed functions over arrays and named tuples of arrays. They are compiled at
-the first call and kept in numba's cache, so that a later process only loads them.
+the first call and cached on disk, so that a later process only loads them.
 
 numba counts references to every array that a call passes on, atomically, and in a search made
 of small functions that takes four fifths of the time. A function that creates no array needs
 no counts: its caller holds all that it sees. So most are compiled without numba's run time
-(`_nrt`), under which creating an array is an error of compilation.
+(`_nrt`), under which creating an array is a compilation error.
 """
 
 from collections.abc import Callable
@@ -19,10 +19,10 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def _can_be_kept() -> bool:
-    """Whether numba finds a place to keep code in: beside this file, or in the user's cache.
+def _can_be_cached() -> bool:
+    """Return whether numba finds a place for its cache: beside this file, or the user's.
 
-    In a container that can write nowhere there is none, and each start compiles anew.
+    In a read-only container there is none, and each start compiles anew.
     """
     try:
         numba.njit(cache=True)(lambda: None)
@@ -31,22 +31,25 @@ def _can_be_kept() -> bool:
     return True
 
 
-_njit = partial(numba.njit, cache=_can_be_kept(), nogil=True, error_model="numpy")
+_njit = partial(numba.njit, cache=_can_be_cached(), nogil=True, error_model="numpy")
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """As machine code, with numpy's rules of division and without the interpreter's lock."""
+    """Compile a function that creates no array.
+
+    Division follows numpy, and the interpreter's lock is released.
+    """
     kernel: Callable[P, R] = _njit(_nrt=False)(function)
     return kernel
 
 
 def inlined(function: Callable[P, R]) -> Callable[P, R]:
-    """As compiled, and the code goes to wherever it is called: for small parts of hot loops."""
+    """Compile as `compiled` does, and inline the code at every call: for parts of hot loops."""
     kernel: Callable[P, R] = _njit(_nrt=False, forceinline=True)(function)
     return kernel
 
 
 def allocating(function: Callable[P, R]) -> Callable[P, R]:
-    """As compiled, for a function that creates arrays."""
+    """Compile as `compiled` does, for a function that creates arrays."""
     kernel: Callable[P, R] = _njit(_nrt=True)(function)
     return kernel

@@ -39,7 +39,7 @@ def build(settings: Settings) -> FastAPI:
     store, engine = (_embedded if settings.redis_url is None else _shared)(settings, metrics)
     metrics.watch(engine)
     app = create_app(
-        {name: actor.facts for name, actor in actors.items()},
+        {name: actor.info for name, actor in actors.items()},
         store,
         engine,
         settings.limits,

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.actor import Actor, load_actors
+from service.actor import OnnxActor, load_actors
 from service.instance import Instance
 from service.preferences import fan, from_angles
 from service.settings import Settings
@@ -16,25 +16,25 @@ RELEASED = Settings().actors / "pa-one.onnx"
 
 
 @pytest.fixture(scope="module")
-def actor() -> Actor:
-    return Actor(RELEASED, threads=1)
+def actor() -> OnnxActor:
+    return OnnxActor(RELEASED, threads=1)
 
 
 @pytest.mark.parametrize("n", [3, 7, 40, 200])
 @pytest.mark.parametrize("k", [1, 20])
-def test_every_preference_gets_a_tour_of_all_cities(actor: Actor, n: int, k: int) -> None:
+def test_every_preference_gets_a_tour_of_all_cities(actor: OnnxActor, n: int, k: int) -> None:
     instance = Instance(coordinates=np.random.default_rng(n).random((n, 4)))
     tours = actor.tours(instance, from_angles(fan(k)))
     assert (tours.shape, tours.dtype) == ((k, n), np.int64)
     np.testing.assert_array_equal(np.sort(tours, axis=1), np.tile(np.arange(n), (k, 1)))
 
 
-def test_coincident_cities_are_fine(actor: Actor) -> None:
+def test_coincident_cities_are_fine(actor: OnnxActor) -> None:
     tours = actor.tours(Instance(coordinates=np.ones((5, 4))), from_angles(fan(3)))
     assert tours.shape == (3, 5)
 
 
-def test_the_unit_of_the_coordinates_does_not_matter(actor: Actor) -> None:
+def test_the_unit_of_the_coordinates_does_not_matter(actor: OnnxActor) -> None:
     cities = np.random.default_rng(1).integers(0, 1024, (30, 4)).astype(np.float64)
     unit = np.array([2.0**-10, 2.0**-10, 2.0**10, 2.0**10])
     preferences = from_angles(fan(5))
@@ -43,20 +43,20 @@ def test_the_unit_of_the_coordinates_does_not_matter(actor: Actor) -> None:
     np.testing.assert_array_equal(tours, others)
 
 
-def test_the_digest_is_that_of_the_file(actor: Actor) -> None:
-    assert actor.facts.digest == hashlib.sha256(RELEASED.read_bytes()).hexdigest()
+def test_the_digest_is_that_of_the_file(actor: OnnxActor) -> None:
+    assert actor.info.digest == hashlib.sha256(RELEASED.read_bytes()).hexdigest()
 
 
-def test_the_file_says_what_it_is(actor: Actor) -> None:
-    assert actor.facts.name == "pa-one"
-    assert actor.facts.inputs == "coordinates"
-    assert actor.facts.commit
-    assert actor.facts.config
-    assert len(actor.facts.sizes) == len(actor.facts.angles) == 2
+def test_the_file_says_what_it_is(actor: OnnxActor) -> None:
+    assert actor.info.name == "pa-one"
+    assert actor.info.inputs == "coordinates"
+    assert actor.info.commit
+    assert actor.info.config
+    assert len(actor.info.sizes) == len(actor.info.angles) == 2
 
 
 def test_a_tour_that_is_no_permutation_is_a_bug_and_never_an_answer(tmp_path: Path) -> None:
-    broken = Actor(always_city_0(tmp_path / "broken.onnx", METADATA), threads=1)
+    broken = OnnxActor(always_city_0(tmp_path / "broken.onnx", METADATA), threads=1)
     with pytest.raises(RuntimeError, match="broken built a tour that is not a permutation"):
         broken.tours(Instance(coordinates=np.eye(4)), from_angles(fan(2)))
 
@@ -64,7 +64,7 @@ def test_a_tour_that_is_no_permutation_is_a_bug_and_never_an_answer(tmp_path: Pa
 def test_an_actor_of_matrices_reads_scaled_matrices_with_zeros_on_the_diagonal(
     tmp_path: Path,
 ) -> None:
-    actor = Actor(by_row_sums(tmp_path / "sums.onnx"), threads=1)
+    actor = OnnxActor(by_row_sums(tmp_path / "sums.onnx"), threads=1)
     matrices = np.random.default_rng(2).random((2, 9, 9)) * np.array([1e6, 1e-6]).reshape(2, 1, 1)
     preferences = from_angles(fan(7))
     tours = actor.tours(Instance(matrices=matrices), preferences)
@@ -72,7 +72,7 @@ def test_an_actor_of_matrices_reads_scaled_matrices_with_zeros_on_the_diagonal(
 
 
 def test_an_actor_of_matrices_serves_coordinates_by_their_distances(tmp_path: Path) -> None:
-    actor = Actor(by_row_sums(tmp_path / "sums.onnx"), threads=1)
+    actor = OnnxActor(by_row_sums(tmp_path / "sums.onnx"), threads=1)
     instance = Instance(coordinates=np.random.default_rng(3).random((9, 4)) * [5, 5, 700, 700])
     preferences = from_angles(fan(7))
     expected = np.argsort(-preferences @ instance.scaled_matrices.sum(axis=2))
@@ -88,13 +88,13 @@ def expected_by_row_sums(matrices: np.ndarray, preferences: np.ndarray) -> np.nd
 def test_a_file_that_reads_neither_is_refused(tmp_path: Path) -> None:
     path = always_city_0(tmp_path / "odd.onnx", {**METADATA, "inputs": "words"})
     with pytest.raises(ValueError, match="must be coordinates or matrices, got 'words'"):
-        Actor(path, threads=1)
+        OnnxActor(path, threads=1)
 
 
 def test_a_file_without_metadata_is_refused(tmp_path: Path) -> None:
     path = always_city_0(tmp_path / "anonymous.onnx", {"name": "anonymous"})
     with pytest.raises(ValueError, match="must have config, commit, sizes"):
-        Actor(path, threads=1)
+        OnnxActor(path, threads=1)
 
 
 def test_actors_are_loaded_by_name(tmp_path: Path) -> None:

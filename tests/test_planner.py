@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from service.actor import Actor
+from service.actor import OnnxActor
 from service.instance import Instance, symmetries, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.planner import Front, PlanOptions, plan
@@ -31,8 +31,8 @@ class Everything:
 
 
 @pytest.fixture(scope="module")
-def actor() -> Actor:
-    return Actor(Settings().actors / "pa-one.onnx", threads=1)
+def actor() -> OnnxActor:
+    return OnnxActor(Settings().actors / "pa-one.onnx", threads=1)
 
 
 def random_instance(n: int) -> Instance:
@@ -60,7 +60,7 @@ def test_of_every_tour_the_front_keeps_the_nondominated(instance: Instance) -> N
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 6, 7, 8])
-def test_no_front_is_better_than_brute_force(actor: Actor, n: int) -> None:
+def test_no_front_is_better_than_brute_force(actor: OnnxActor, n: int) -> None:
     instance = random_instance(n)
     front = plan(actor, instance, PlanOptions(angles=fan(20), size=100))
     check(front, instance)
@@ -92,12 +92,12 @@ def test_every_tour_is_reported_from_the_start(data: st.DataObject) -> None:
 
 
 @pytest.mark.parametrize("n", [1, 2])
-def test_one_or_two_cities_are_a_front_of_one_tour(actor: Actor, n: int) -> None:
+def test_one_or_two_cities_are_a_front_of_one_tour(actor: OnnxActor, n: int) -> None:
     front = plan(actor, random_instance(n), PlanOptions(angles=fan(3), size=10, start=n - 1))
     assert front.tours.tolist() == [[n - 1, 0][:n]]
 
 
-def test_coincident_cities_are_one_point_at_the_origin(actor: Actor) -> None:
+def test_coincident_cities_are_one_point_at_the_origin(actor: OnnxActor) -> None:
     front = plan(actor, Instance(coordinates=np.ones((4, 4))), PlanOptions(angles=fan(3), size=10))
     assert front.points.tolist() == [[0, 0]]
     assert (front.hypervolume, front.angles.tolist()) == (1, [45])
@@ -128,7 +128,7 @@ def test_the_nearest_tour_is_nearest_in_scaled_objectives() -> None:
     assert [front.nearest(angle) for angle in (0, 45, 90)] == [2, 1, 0]
 
 
-def test_what_the_search_gained_is_what_it_added_to_the_first_tours(actor: Actor) -> None:
+def test_what_the_search_gained_is_what_it_added_to_the_first_tours(actor: OnnxActor) -> None:
     instance = random_instance(30)
     demand = PlanOptions(angles=fan(5), size=10_000)
     first = plan(actor, instance, demand)
@@ -151,14 +151,14 @@ def test_symmetries_change_no_length_and_are_all_different(instance: Instance, c
 
 
 @pytest.mark.parametrize("n", [40, 200])
-def test_with_more_symmetries_a_front_is_no_worse(actor: Actor, n: int) -> None:
+def test_with_more_symmetries_a_front_is_no_worse(actor: OnnxActor, n: int) -> None:
     instance, demand = random_instance(n), PlanOptions(angles=fan(20), size=100)
     once, often = (plan(actor, instance, replace(demand, augment=count)) for count in (1, 8))
     check(often, instance)
     assert often.hypervolume > once.hypervolume
 
 
-def test_a_plan_that_is_stopped_looks_at_no_further_symmetry(actor: Actor) -> None:
+def test_a_plan_that_is_stopped_looks_at_no_further_symmetry(actor: OnnxActor) -> None:
     demand = PlanOptions(angles=fan(20), size=100, augment=8)
     stopped = plan(actor, random_instance(40), demand, stop=lambda: True)
     at_once = plan(actor, random_instance(40), replace(demand, augment=1))

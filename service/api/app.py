@@ -10,7 +10,7 @@ from starlette.middleware import Middleware
 from starlette.middleware.cors import CORSMiddleware
 from starlette.responses import Response
 
-from service.actor import ActorFacts
+from service.actor import ActorInfo
 from service.api.auth import Access
 from service.api.exception_handlers import HANDLED, answer_refusal
 from service.api.metrics import Metrics
@@ -78,7 +78,7 @@ _OPEN: dict[str, Any] = {"security": []}  # an orchestrator has no key
 
 
 def create_app(
-    actors: Mapping[str, ActorFacts],
+    actors: Mapping[str, ActorInfo],
     store: Store,
     engine: Engine,
     limits: Limits,
@@ -148,7 +148,7 @@ def _problem_schema() -> dict[str, Any]:
     return schema
 
 
-def _actor_router(actors: Mapping[str, ActorFacts]) -> APIRouter:
+def _actor_router(actors: Mapping[str, ActorInfo]) -> APIRouter:
     router = APIRouter(tags=["service"])
 
     @router.get("/actors", response_model=ActorsAnswer)

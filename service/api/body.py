@@ -10,7 +10,7 @@ from python_multipart.exceptions import FormParserError
 from python_multipart.multipart import Field, File, FormParser, parse_options_header
 from starlette.requests import Request
 
-from service.actor import ActorFacts
+from service.actor import ActorInfo
 from service.errors import Refusal, WorkerLost
 from service.requests.limits import Limits
 from service.requests.task import Task, Work, read
@@ -145,7 +145,7 @@ class Reader:
     at a time; whoever sends another waits.
     """
 
-    def __init__(self, limits: Limits, actors: Mapping[str, ActorFacts]) -> None:
+    def __init__(self, limits: Limits, actors: Mapping[str, ActorInfo]) -> None:
         self._limits = limits
         self._actors = dict(actors)
         self._one = CapacityLimiter(1)

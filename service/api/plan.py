@@ -11,7 +11,7 @@ from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
-from service.actor import ActorFacts
+from service.actor import ActorInfo
 from service.api.body import Reader, read_body
 from service.api.request_headers import PARAMETERS, idempotency_key, wants_it_later
 from service.api.responses import (
@@ -135,7 +135,7 @@ class FrontRoutes:
 
     def __init__(
         self,
-        actors: Mapping[str, ActorFacts],
+        actors: Mapping[str, ActorInfo],
         engine: Engine,
         answers: Answers,
         limits: Limits,
@@ -196,7 +196,7 @@ class FrontRoutes:
         task = await self._reader.read(work)
         if task.needs_compiled_code:
             await self._engine.check_warm()
-        nothing = nothing_yet(task, self._actors[task.actor].named)
+        nothing = nothing_yet(task, self._actors[task.actor].identity)
         return await self._answers.answer(request, replace(work, task=task), nothing)
 
 

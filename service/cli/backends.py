@@ -114,4 +114,4 @@ class LocalBackend:
         loaded = load_with(
             lambda settings: load_actors(settings.actors, settings.threads), load_settings()
         )
-        return tuple(Actor(**asdict(actor.facts)) for _, actor in sorted(loaded.items()))
+        return tuple(Actor(**asdict(actor.info)) for _, actor in sorted(loaded.items()))

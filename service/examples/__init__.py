@@ -1,5 +1,5 @@
-"""Requests as they are: each `.json` beside this file can be posted as it is.
+"""Example requests: each `.json` file in this folder can be posted as it is.
 
-`index.json` says of each where it is posted, and what its two objectives are. All were written
-by `python -m service.examples`, and are written alike whenever it runs again.
+`index.json` names the path and the two objectives of each. `python -m service.examples` wrote
+them, and writes the same again.
 """

@@ -1,4 +1,4 @@
-"""Writes the examples anew, or into the directory that is named."""
+"""Write the examples into this folder, or into the directory given as argument."""
 
 import json
 import sys
@@ -11,18 +11,18 @@ from service.examples.warehouse import cleaning
 
 
 def write(directory: Path) -> None:
-    """Write every example into a directory."""
+    """Write all example requests into a directory, one JSON file each."""
     requests = {
         "city-deliveries": deliveries(),
         "drone-inspection": inspection(),
         "warehouse-cleaning": cleaning(),
     }
     for name, request in requests.items():
-        (directory / f"{name}.json").write_text(_laid_out(request))
+        (directory / f"{name}.json").write_text(_formatted(request))
 
 
-def _laid_out(request: dict[str, Any]) -> str:
-    """JSON with a line for each member, and for each row of a list of lists."""
+def _formatted(request: dict[str, Any]) -> str:
+    """Return JSON with a line for each member, and for each row of a list of lists."""
     members = [f"  {json.dumps(name)}: {_rows(value)}" for name, value in request.items()]
     return "{\n" + ",\n".join(members) + "\n}\n"
 

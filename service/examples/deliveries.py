@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 STOPS = 60
 SIZE = np.array([9000.0, 6500.0])  # of the city, in metres
-# Where the accidents happen: x and y in metres, reach in metres, how many times the usual risk.
+# x, y and reach in metres, and the risk as a multiple of the usual one.
 BLACK_SPOTS = np.array(
     [
         [4300.0, 3400.0, 700.0, 9.0],  # the ring road's junction
@@ -17,14 +17,14 @@ BLACK_SPOTS = np.array(
         [6100.0, 1500.0, 450.0, 5.0],  # the hill, icy in winter
     ]
 )
-USUAL = 2.0  # accidents in a million kilometres
+USUAL = 2.0  # accidents per million kilometres
 
 
 def deliveries() -> dict[str, Any]:
-    """The request: the depot first, then the stops.
+    """Return the request: the depot first, then the stops.
 
-    Plane 1 is the map in metres. Plane 2 is the map redrawn so that what lies between two stops is
-    the risk of driving from one to the other, in accidents in a thousand million drives.
+    Plane 1 is the map in metres. Plane 2 is the map redrawn so that the distance between two stops
+    is the risk of driving from one to the other, in accidents per thousand million drives.
     """
     rng = np.random.default_rng(8)
     stops = np.concatenate((SIZE[np.newaxis] * [0.08, 0.9], _stops(rng)))
@@ -37,7 +37,7 @@ def deliveries() -> dict[str, Any]:
 
 
 def _stops(rng: np.random.Generator) -> Array:
-    """Stops in seven neighbourhoods and, every fourth, anywhere, shape (STOPS, 2)."""
+    """Return stops, shape (STOPS, 2): in seven neighbourhoods, and every fourth anywhere."""
     neighbourhoods = rng.uniform(0.12, 0.88, (7, 2)) * SIZE
     near = neighbourhoods[rng.integers(0, 7, STOPS)] + rng.normal(0, 600, (STOPS, 2))
     anywhere = rng.uniform(0, 1, (STOPS, 2)) * SIZE
@@ -46,9 +46,9 @@ def _stops(rng: np.random.Generator) -> Array:
 
 
 def _risks(stops: Array) -> Array:
-    """The risk along the straight line from each stop to each other, shape (n, n)."""
-    ways = np.linspace(0, 1, 101)[:, np.newaxis, np.newaxis, np.newaxis]
-    along = (1 - ways) * stops[:, np.newaxis] + ways * stops
+    """Return the risk along the straight line from each stop to each other, shape (n, n)."""
+    share = np.linspace(0, 1, 101)[:, np.newaxis, np.newaxis, np.newaxis]
+    along = (1 - share) * stops[:, np.newaxis] + share * stops
     risk = np.full(along.shape[:-1], USUAL)
     for x, y, reach, times in BLACK_SPOTS:
         squared = ((along - (x, y)) ** 2).sum(axis=-1)
@@ -58,7 +58,7 @@ def _risks(stops: Array) -> Array:
 
 
 def _in_plane(distances: Array) -> Array:
-    """Points whose distances come close to those given: classical multidimensional scaling."""
+    """Return points, shape (n, 2), of about these distances, by multidimensional scaling."""
     centred = distances**2
     centred = centred - centred.mean(axis=0) - centred.mean(axis=1, keepdims=True) + centred.mean()
     values, vectors = np.linalg.eigh(-centred / 2)

@@ -20,9 +20,9 @@ HILLS = np.array(
 
 
 def inspection() -> dict[str, Any]:
-    """The request: the landing pad first, then three insulators of every pylon.
+    """Return the request: the landing pad first, then three insulators of every pylon.
 
-    Plane 1 is the map in metres. Plane 2 has the altitude alone, so that what lies between two
+    Plane 1 is the map in metres. Plane 2 has the altitude alone, so that the distance between two
     places is how far the drone climbs or descends; half of a closed tour's length is the climb.
     """
     feet = _line(np.random.default_rng(3))
@@ -34,13 +34,13 @@ def inspection() -> dict[str, Any]:
 
 
 def _line(rng: np.random.Generator) -> Array:
-    """Where the pylons stand, shape (PYLONS, 2): eastward, with a turn now and then."""
+    """Return the places of the pylons, shape (PYLONS, 2): eastward, with random turns."""
     turns = rng.normal(0.0, 0.5, PYLONS)
     steps = SPAN * np.column_stack((np.cos(turns), np.sin(turns)))
     return steps.cumsum(axis=0)
 
 
 def _terrain(places: Array) -> Array:
-    """The ground's height above the sea at places, shape (n, 2)."""
+    """Return the height of the ground above the sea, shape (n,), at places, shape (n, 2)."""
     squared = ((places[:, np.newaxis] - HILLS[:, :2]) ** 2).sum(axis=-1)
     return 210.0 + (HILLS[:, 3] * np.exp(-squared / (2 * HILLS[:, 2] ** 2))).sum(axis=1)

@@ -9,12 +9,12 @@ Array = NDArray[np.float64]
 CELL = 0.5  # metres
 ROWS, COLUMNS = 40, 64
 BLOCKS = ((5, 21), (25, 41), (45, 59))  # columns of the racks, from and to
-# Where people walk from racking to packing: metres from the left, and how many in a minute.
+# The aisles by which people walk to packing: metres from the left, and people per minute.
 CROSS_AISLES = ((11.25, 8.0), (21.5, 2.0))
 
 
 def cleaning() -> dict[str, Any]:
-    """The request: the map, a place to clean in every square of 3 m, and where people walk."""
+    """Return the request: the map, places 3 m apart, and a cost layer of people."""
     return {
         "cell_size": CELL,
         "robot_radius": 0.6,
@@ -28,7 +28,7 @@ def cleaning() -> dict[str, Any]:
 
 
 def _grid() -> NDArray[np.int64]:
-    """Walls, six rows of racks in three blocks, and the packing station at the top."""
+    """Return the map: walls, six rows of racks in three blocks, the packing station at the top."""
     grid = np.zeros((ROWS, COLUMNS), dtype=np.int64)
     grid[[0, -1]] = 1
     grid[:, [0, -1]] = 1
@@ -40,9 +40,9 @@ def _grid() -> NDArray[np.int64]:
 
 
 def _people() -> Array:
-    """How many people there are about each cell: most in the cross aisles, halfway down."""
+    """Return the number of people near each cell: most in the cross aisles, halfway down."""
     y, x = CELL * np.mgrid[0:ROWS, 0:COLUMNS]
     people = np.full(y.shape, 0.05)
-    for middle, most in CROSS_AISLES:
-        people += most * np.exp(-(((y - 10) / 8) ** 2 + ((x - middle) / 0.8) ** 2) / 2)
+    for middle, people_per_minute in CROSS_AISLES:
+        people += people_per_minute * np.exp(-(((y - 10) / 8) ** 2 + ((x - middle) / 0.8) ** 2) / 2)
     return people

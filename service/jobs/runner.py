@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
 
-from service.actor import ActorFacts, load_actors
+from service.actor import ActorInfo, load_actors
 from service.coverage import shortest_paths
 from service.coverage.survey import Coverage, survey
 from service.jobs.front_document import FrontDocument, Sketch, rendered, sketched
@@ -20,7 +20,7 @@ class NamedActor(Constructor, Protocol):
     """A constructor that says who it is."""
 
     @property
-    def facts(self) -> ActorFacts:
+    def info(self) -> ActorInfo:
         """Who it is."""
 
 
@@ -43,7 +43,7 @@ class TaskRunner:
         actor = self.actors[task.actor]
         if isinstance(task.subject, Coverage):
             return self._cover(task, task.subject, stop, report)
-        named = actor.facts.named
+        named = actor.info.identity
         sketch = _sketching(report, actor=named)
         return rendered(plan(actor, task.subject, task.demand, stop, sketch), actor=named)
 
@@ -58,7 +58,7 @@ class TaskRunner:
         began = time.perf_counter()
         found = survey(coverage, self.limits.cities, stop)
         surveyed = time.perf_counter()
-        more = {"actor": actor.facts.named, "places": found.places.tolist()}
+        more = {"actor": actor.info.identity, "places": found.places.tolist()}
         front = plan(actor, found.instance, task.demand, stop, _sketching(report, **more))
         planned = time.perf_counter()
         # Who stops the work is not kept waiting.
@@ -77,8 +77,8 @@ class TaskRunner:
         )
 
     @property
-    def _facts(self) -> dict[str, ActorFacts]:
-        return {name: actor.facts for name, actor in self.actors.items()}
+    def _facts(self) -> dict[str, ActorInfo]:
+        return {name: actor.info for name, actor in self.actors.items()}
 
 
 def _sketching(report: Callable[[Sketch], None], **more: Any) -> Report:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from service.actor import ActorFacts
+from service.actor import ActorInfo
 from service.coverage.survey import Coverage
 from service.errors import Refusal
 from service.instance import Instance, Kind
@@ -47,7 +47,7 @@ class Work:
     task: Task | None = field(default=None, compare=False, repr=False)
 
 
-def read(work: Work, limits: Limits, actors: Mapping[str, ActorFacts]) -> Task:
+def read(work: Work, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
     """The task in a piece of work.
 
     Raises:
@@ -73,7 +73,7 @@ def read(work: Work, limits: Limits, actors: Mapping[str, ActorFacts]) -> Task:
 DEFAULT_ACTORS: Mapping[Kind, str] = {"coordinates": "pa-one", "matrices": "pa-one-matrix"}
 
 
-def choose_actor(loaded: Mapping[str, ActorFacts], kind: Kind, name: str | None) -> str:
+def choose_actor(loaded: Mapping[str, ActorInfo], kind: Kind, name: str | None) -> str:
     """The name of the actor asked for; without one, of the default for instances of this kind.
 
     Where the default is not loaded, the first by name that serves the kind takes its place.
@@ -90,7 +90,7 @@ def choose_actor(loaded: Mapping[str, ActorFacts], kind: Kind, name: str | None)
     return DEFAULT_ACTORS[kind] if DEFAULT_ACTORS[kind] in able else able[0]
 
 
-def _check_able(name: str, kind: Kind, able: list[str], loaded: Mapping[str, ActorFacts]) -> None:
+def _check_able(name: str, kind: Kind, able: list[str], loaded: Mapping[str, ActorInfo]) -> None:
     if name in able:
         return
     among = f"one of {', '.join(able)}" if able else "one that is loaded, and there is none"

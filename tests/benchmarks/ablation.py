@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from service.actor import Actor
+from service.actor import OnnxActor
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.preferences import fan, from_angles
@@ -47,12 +47,12 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--count", type=int, default=10, help="instances of each size")
     parser.add_argument("--only", nargs="+", metavar="COLUMN", help="columns; default: all")
     options = parser.parse_args(arguments)
-    actor = Actor(ACTORS / f"{options.actor}.onnx", threads=1)
+    actor = OnnxActor(ACTORS / f"{options.actor}.onnx", threads=1)
     builders = _builders(actor)
     warm_up()
     stored = load("ablation")
-    known = stored["rows"] if stored.get("digest") == actor.facts.digest else {}
-    results: dict[str, Any] = {**provenance(1), "digest": actor.facts.digest, "rows": known}
+    known = stored["rows"] if stored.get("digest") == actor.info.digest else {}
+    results: dict[str, Any] = {**provenance(1), "digest": actor.info.digest, "rows": known}
     for n, limits in SECONDS.items():
         instances = [Instance(coordinates=x) for x in paper_instances(n, options.count)]
         for limit in limits:
@@ -64,7 +64,7 @@ def main(arguments: list[str]) -> None:
     _print_table(results["rows"])
 
 
-def _builders(actor: Actor) -> dict[str, Build]:
+def _builders(actor: OnnxActor) -> dict[str, Build]:
     def network(k: int, instance: Instance) -> NDArray[np.integer]:
         return actor.tours(instance, from_angles(fan(k)))
 

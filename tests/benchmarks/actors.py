@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from service.actor import Actor
+from service.actor import OnnxActor
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.preferences import fan, from_angles
@@ -68,13 +68,13 @@ def measure(build: Build, n: int, count: int) -> dict[str, Any]:
 
 
 def _actor_row(name: str, threads: int, count: int) -> dict[str, Any]:
-    actor = Actor(ACTORS / f"{name}.onnx", threads)
+    actor = OnnxActor(ACTORS / f"{name}.onnx", threads)
     preferences = from_angles(fan(PREFERENCES))
     row: dict[str, Any] = {
         str(n): measure(lambda instance: actor.tours(instance, preferences), n, count)
         for n in SIZES
     }
-    return {"digest": actor.facts.digest, **row}
+    return {"digest": actor.info.digest, **row}
 
 
 def _heuristic_row(construct: Callable[..., NDArray[np.int64]], count: int) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from service.actor import Actor, load_actors
+from service.actor import OnnxActor, load_actors
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.planner import PlanOptions, plan
@@ -62,8 +62,8 @@ def methods(actors: Path) -> dict[str, tuple[str, Method]]:
     """By the name of its row, the digest of its network (or nothing) and how tours are built."""
     rows: dict[str, tuple[str, Method]] = {}
     for name, actor in load_actors(actors, threads=1).items():
-        if actor.facts.inputs == "matrices":
-            digest = actor.facts.digest
+        if actor.info.inputs == "matrices":
+            digest = actor.info.digest
             rows[f"{name}, network alone"] = digest, partial(_planned, actor, 0.0)
             rows[f"{name}, {SECONDS} s of search"] = digest, partial(_planned, actor, SECONDS)
     rows[f"search alone, {SECONDS} s"] = "", partial(_planned, _Nothing(), SECONDS)
@@ -84,7 +84,7 @@ def measure(
     _print_table(load(benchmark), list(groups))
 
 
-def _planned(constructor: Actor | _Nothing, seconds: float, instance: Instance) -> Tours:
+def _planned(constructor: OnnxActor | _Nothing, seconds: float, instance: Instance) -> Tours:
     demand = PlanOptions(angles=fan(TOURS), size=TOURS, time_limit=seconds)
     return plan(constructor, instance, demand).tours
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from service.actor import Actor
+from service.actor import OnnxActor
 from service.instance import Instance
 from service.preferences import fan, from_angles
 from tests.benchmarks.instances import check_tours
@@ -32,7 +32,7 @@ def main(arguments: list[str]) -> str | None:
     parser = argparse.ArgumentParser("python -m tests.benchmarks large", description=__doc__)
     parser.add_argument("--cities", type=int, nargs="+", default=SIZES)
     options = parser.parse_args(arguments)
-    digest = Actor(ACTOR, threads=1).facts.digest
+    digest = OnnxActor(ACTOR, threads=1).info.digest
     for n in options.cities:
         resume("large", f"{n} cities", digest, [n], _alone)
     largest = load("large").get("5000 cities")
@@ -43,7 +43,7 @@ def main(arguments: list[str]) -> str | None:
 
 def measured(n: int) -> dict[str, float]:
     """Seconds of the processor, and the most memory that the process has had."""
-    actor = Actor(ACTOR, threads=1)
+    actor = OnnxActor(ACTOR, threads=1)
     instance = Instance(coordinates=np.random.default_rng(n).random((n, 4)))
     began = time.process_time()
     tours = actor.tours(instance, from_angles(fan(TOURS)))

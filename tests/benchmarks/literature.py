@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from service.actor import Actor
+from service.actor import OnnxActor
 from service.instance import Instance
 from service.planner import PlanOptions, plan
 from service.preferences import fan
@@ -43,12 +43,12 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--count", type=int, default=COUNT, help="instances of each size")
     options = parser.parse_args(arguments)
     warm_up()
-    actor = Actor(ACTOR, threads=1)
+    actor = OnnxActor(ACTOR, threads=1)
     for n in options.cities:
         instances = [uniform(n, seed) for seed in range(options.count)]
         for row in options.rows:
             measure = partial(measured, actor, row)
-            resume("literature", f"{n} cities: {row}", actor.facts.digest, instances, measure)
+            resume("literature", f"{n} cities: {row}", actor.info.digest, instances, measure)
 
 
 def uniform(n: int, seed: int) -> Instance:
@@ -56,7 +56,7 @@ def uniform(n: int, seed: int) -> Instance:
     return Instance(coordinates=np.random.default_rng([n, seed]).random((n, 4)))
 
 
-def measured(actor: Actor, row: str, instance: Instance) -> dict[str, float]:
+def measured(actor: OnnxActor, row: str, instance: Instance) -> dict[str, float]:
     """Hypervolume in per cent, and seconds of the processor."""
     corner = np.full(2, float(LITERATURE_CORNERS[instance.n]))
     demand = PlanOptions(angles=fan(TOURS), size=TOURS, reference_point=corner, **ROWS[row])

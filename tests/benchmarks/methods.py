@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from models.drl_moa import load_actors
 from models.networks.pointer_network import build_tours
-from service.actor import Actor
+from service.actor import OnnxActor
 from service.instance import Instance, tour_lengths
 from service.preferences import fan, from_angles
 from tests.benchmarks.instances import check_tours
@@ -63,9 +63,9 @@ def _networks() -> dict[str, Method]:
         rows["DRL-MOA"] = Method(partial(_built, drl_moa(DRL_MOA)), True, digest)
     for row, name in NETWORKS.items():
         if (ACTORS / f"{name}.onnx").exists():
-            actor = Actor(ACTORS / f"{name}.onnx", threads=1)
+            actor = OnnxActor(ACTORS / f"{name}.onnx", threads=1)
             build = partial(actor.tours, preferences=from_angles(fan(TOURS)))
-            rows[row] = Method(partial(_built, build), True, actor.facts.digest)
+            rows[row] = Method(partial(_built, build), True, actor.info.digest)
     return rows
 
 

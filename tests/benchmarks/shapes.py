@@ -56,7 +56,7 @@ def builders(actors: Path, names: list[str]) -> dict[str, tuple[str, Build]]:
     loaded = load_actors(actors, threads=1)
     weights, preferences = spread_weights(TOURS), from_angles(fan(TOURS))
     rows: dict[str, tuple[str, Build]] = {
-        name: (loaded[name].facts.digest, partial(loaded[name].tours, preferences=preferences))
+        name: (loaded[name].info.digest, partial(loaded[name].tours, preferences=preferences))
         for name in names
     }
     rows["Nearest neighbour"] = "", partial(nearest_neighbour, weights=weights)

@@ -20,7 +20,7 @@ import numpy as np
 import uvicorn
 from fastapi import FastAPI
 
-from service.actor import ActorFacts
+from service.actor import ActorInfo
 from service.api.app import Edge, create_app
 from service.instance import Instance, Kind
 from service.jobs.engine import Engine
@@ -37,8 +37,8 @@ from service.settings import Settings
 LIMITS = Limits(body_bytes=100_000, cities=50, cells=900, preferences=20, size=30, seconds=0.2)
 
 
-def facts_of(name: str, inputs: Kind) -> ActorFacts:
-    return ActorFacts(
+def info_of(name: str, inputs: Kind) -> ActorInfo:
+    return ActorInfo(
         name=name,
         digest="0" * 64,
         commit="0000000",
@@ -58,7 +58,7 @@ class Shuffler:
     """
 
     gate: Path | None = None
-    facts: ActorFacts = field(default_factory=lambda: facts_of("pa-one", "coordinates"))
+    info: ActorInfo = field(default_factory=lambda: info_of("pa-one", "coordinates"))
 
     @property
     def started(self) -> bool:
@@ -90,7 +90,7 @@ class Broken(Shuffler):
         raise RuntimeError(f"no tour of {instance.n} cities for {len(preferences)} preferences")
 
 
-ACTORS = (Shuffler(), Shuffler(facts=facts_of("pa-one-matrix", "matrices")))
+ACTORS = (Shuffler(), Shuffler(facts=info_of("pa-one-matrix", "matrices")))
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class ColdPlanner(TaskRunner):
 def planner_of(
     *actors: NamedActor, limits: Limits = LIMITS, warm: Path | None = None
 ) -> MakePlanner:
-    by_name = {actor.facts.name: actor for actor in actors or ACTORS}
+    by_name = {actor.info.name: actor for actor in actors or ACTORS}
     if warm is None:
         return partial(TaskRunner, by_name, limits)
     return partial(ColdPlanner, by_name, limits, warm)
@@ -142,7 +142,7 @@ def engine_app(
     limits: Limits = LIMITS,
     edge: Edge | None = None,
 ) -> FastAPI:
-    facts = {actor.facts.name: actor.facts for actor in actors or ACTORS}
+    facts = {actor.info.name: actor.info for actor in actors or ACTORS}
     return create_app(facts, store, engine, limits, "test", edge)
 
 

@@ -11,12 +11,12 @@ import httpx
 import numpy as np
 import pytest
 
-from service.actor import Actor
+from service.actor import OnnxActor
 from service.instance import Instance, tour_lengths
 from service.jobs.runner import load_planner
 from service.settings import Settings
 from tests.helpers.artifacts import by_row_sums
-from tests.helpers.serving import LIMITS, Shuffler, app_of, facts_of, problem, serving, workers_of
+from tests.helpers.serving import LIMITS, Shuffler, app_of, info_of, problem, serving, workers_of
 
 JSON = {"Content-Type": "application/json"}
 COSTS = np.random.default_rng(6).random((2, 12, 12))
@@ -150,19 +150,19 @@ def test_where_no_actor_reads_matrices_they_are_refused() -> None:
 
 
 def test_where_the_default_is_not_loaded_another_that_reads_matrices_serves() -> None:
-    with serving(app_of(Shuffler(facts=facts_of("own", "matrices")))) as url:
+    with serving(app_of(Shuffler(facts=info_of("own", "matrices")))) as url:
         for instance in ({"matrices": COSTS.tolist()}, {"coordinates": np.eye(4).tolist()}):
             answer = httpx.post(f"{url}/front", json={**instance, "time_limit": 0})
             assert answer.json()["actor"]["name"] == "own"
 
 
 def test_a_network_of_matrices_plans_over_http(tmp_path: Path) -> None:
-    actor = Actor(by_row_sums(tmp_path / "sums.onnx"), threads=1)
+    actor = OnnxActor(by_row_sums(tmp_path / "sums.onnx"), threads=1)
     workers = workers_of(partial(load_planner, tmp_path, 1, LIMITS))
     with serving(app_of(actor, workers=workers)) as url:
         request = {"matrices": COSTS.tolist(), "preferences": [30], "time_limit": 0}
         answer = httpx.post(f"{url}/front", json=request).json()
-    assert answer["actor"] == {"name": "sums", "digest": actor.facts.digest}
+    assert answer["actor"] == {"name": "sums", "digest": actor.info.digest}
     [tour] = actor.tours(Instance(matrices=COSTS), np.array([[np.cos(np.pi / 6), 0.5]]))
     assert answer["front"][0]["tour"] == np.roll(tour, -np.flatnonzero(tour == 0)).tolist()
 
