@@ -90,7 +90,7 @@ class Broken(Shuffler):
         raise RuntimeError(f"no tour of {instance.n} cities for {len(preferences)} preferences")
 
 
-ACTORS = (Shuffler(), Shuffler(facts=info_of("pa-one-matrix", "matrices")))
+ACTORS = (Shuffler(), Shuffler(info=info_of("pa-one-matrix", "matrices")))
 
 
 @dataclass(frozen=True)
@@ -142,8 +142,8 @@ def engine_app(
     limits: Limits = LIMITS,
     edge: Edge | None = None,
 ) -> FastAPI:
-    facts = {actor.info.name: actor.info for actor in actors or ACTORS}
-    return create_app(facts, store, engine, limits, "test", edge)
+    info = {actor.info.name: actor.info for actor in actors or ACTORS}
+    return create_app(info, store, engine, limits, "test", edge)
 
 
 @contextmanager

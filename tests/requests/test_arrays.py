@@ -150,7 +150,7 @@ def test_where_no_actor_reads_matrices_they_are_refused() -> None:
 
 
 def test_where_the_default_is_not_loaded_another_that_reads_matrices_serves() -> None:
-    with serving(app_of(Shuffler(facts=info_of("own", "matrices")))) as url:
+    with serving(app_of(Shuffler(info=info_of("own", "matrices")))) as url:
         for instance in ({"matrices": COSTS.tolist()}, {"coordinates": np.eye(4).tolist()}):
             answer = httpx.post(f"{url}/front", json={**instance, "time_limit": 0})
             assert answer.json()["actor"]["name"] == "own"
