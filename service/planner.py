@@ -63,7 +63,7 @@ class PlanOptions:
 
     @property
     def needs_compiled_code(self) -> bool:
-        """Whether code is needed that is compiled at its first use: search, bound or subset."""
+        """Whether the plan runs compiled code: the search, the bound or the best subset."""
         constructed = len(self.angles) * self.augment
         return self.time_limit > 0 or self.bound or constructed > self.size
 

@@ -35,7 +35,7 @@ class SearchResult:
 
 @dataclass(frozen=True)
 class SearchProgress:
-    """How far a search has come: seconds since it began, hypervolume and number of points.
+    """The progress of a search: seconds since it began, hypervolume and number of points.
 
     `best` copies the subset of so many tours with the largest hypervolume. It may be called until
     the report returns.
