@@ -7,8 +7,8 @@ of the size asked for is reported. Nothing here knows of HTTP, jobs or files.
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Literal, Protocol
+from functools import cached_property, partial
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,12 @@ from service.instance import Instance, symmetries, tour_lengths
 from service.pareto import best_subset, hypervolume, nondominated
 from service.preferences import angles, from_angles
 from service.search.bound import hypervolume_bound
-from service.search.improve import SearchProgress, improve
+from service.search.improve import Progress, SearchResult, Termination, improve
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 BOUND_SECONDS = 5.0  # after these a bound, which is valid all along, is tight enough
 MIN_CONSTRUCTED = 3  # cities: of fewer there is one tour, and no network was trained on them
-Termination = Literal["converged", "time_limit", "cancelled"]
 
 
 class Constructor(Protocol):
@@ -107,17 +106,7 @@ class Front:
         return int(np.abs(self.angles - angle).argmin())
 
 
-@dataclass(frozen=True, eq=False)
-class Interim:
-    """How far the improvement has come. `front` gives the best so many tours found so far."""
-
-    seconds: float
-    hypervolume: float
-    points: int
-    front: Callable[[int], Front]
-
-
-Report = Callable[[Interim], None]
+Report = Callable[[Progress, Callable[[int], Front]], None]
 
 
 def plan(
@@ -125,7 +114,7 @@ def plan(
     instance: Instance,
     options: PlanOptions,
     stop: Callable[[], bool] = lambda: False,
-    report: Report = lambda _: None,
+    report: Report = lambda *_: None,
 ) -> Front:
     """Return the best front found for an instance within the time limit.
 
@@ -134,7 +123,8 @@ def plan(
         instance: The instance.
         options: What front is wanted, and how much may be spent on it.
         stop: Called every millisecond or two; True ends the planning with what was found so far.
-        report: Called about ten times a second with the progress of the search.
+        report: Called about ten times a second with the progress of the search, and with a function
+            that gives the best front so far of at most so many tours.
     """
     clock = _Clock()
     reference_point = _reference_point(instance, options)
@@ -217,26 +207,32 @@ def _improved(
         deadline=time.monotonic() + options.time_limit,
         seed=options.seed,
         stop=stop,
-        report=lambda progress: report(_interim(instance, options, progress)),
+        report=lambda progress, best: report(
+            progress, partial(_best_front, instance, options, progress, best)
+        ),
         reference_point=options.reference_point,
     )
     return found.tours.astype(np.int64), found.points, found.terminated
 
 
-def _interim(instance: Instance, demand: PlanOptions, progress: SearchProgress) -> Interim:
-    def front(size: int) -> Front:
-        best = progress.best(min(size, demand.size))
-        return Front(
-            tours=_starting_at(demand.start, best.tours),
-            points=best.points,
-            found=progress.points,
-            scale=instance.scale,
-            reference_point=_reference_point(instance, demand),
-            terminated=None,
-            timings={},
-        )
-
-    return Interim(progress.seconds, progress.hypervolume, progress.points, front)
+def _best_front(
+    instance: Instance,
+    options: PlanOptions,
+    progress: Progress,
+    best: Callable[[int], SearchResult],
+    size: int,
+) -> Front:
+    """Return the best tours found so far, at most `size` of them."""
+    found = best(min(size, options.size))
+    return Front(
+        tours=_starting_at(options.start, found.tours),
+        points=found.points,
+        found=progress.points,
+        scale=instance.scale,
+        reference_point=_reference_point(instance, options),
+        terminated=None,
+        timings={},
+    )
 
 
 def _gained(instance: Instance, first: Tours, points: Array, reference_point: Array) -> float:

@@ -1,4 +1,4 @@
-"""The service, or a worker of a cluster, put together as the settings say."""
+"""Build and run the service, or a worker of the cluster, as the settings say."""
 
 import gc
 import logging.config
@@ -23,7 +23,7 @@ from service.api.metrics import Metrics
 from service.cluster import check_cluster
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
-from service.jobs.runner import load_planner, warm_up
+from service.jobs.runner import MakeRunner, load_runner, warm_up
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.worker_pool import WorkerPool
@@ -32,11 +32,16 @@ from service.telemetry import logging_config, trace
 
 
 def build(settings: Settings) -> FastAPI:
-    """The application that the settings ask for."""
-    # Loaded here only to know, before anything is served, that they can be and who they are.
+    """Return the application of the service.
+
+    Raises:
+        ValueError: There are no actors, the store cannot be opened, or an extra is not installed.
+    """
+    # The workers load the actors, too: here only their facts are needed.
     actors = load_actors(settings.actors, settings.threads)
     metrics = Metrics()
-    store, engine = (_embedded if settings.redis_url is None else _shared)(settings, metrics)
+    make_engine = _local_engine if settings.redis_url is None else _redis_engine
+    store, engine = make_engine(settings, metrics)
     metrics.watch(engine)
     app = create_app(
         {name: actor.info for name, actor in actors.items()},
@@ -56,14 +61,74 @@ def build(settings: Settings) -> FastAPI:
     return app
 
 
-def _embedded(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
-    """The engine in this process and its children."""
+def serve(app: FastAPI, settings: Settings) -> None:
+    """Serve requests until told to stop."""
+    # Without a handler, uvicorn ends by the signal and the exit status says so.
+    signal.signal(signal.SIGTERM, _exit)
+    # Loaded modules stay; a collection that goes through them blocks the event loop for 40 ms.
+    gc.collect()
+    gc.freeze()
+    uvicorn.run(
+        app,
+        host=settings.host,
+        port=settings.port,
+        # Not uvloop: 1 % more answers, but it does not shut down while Redis is connected.
+        loop="asyncio",
+        server_header=False,
+        log_config=logging_config(),
+        access_log=False,
+        timeout_graceful_shutdown=settings.drain_seconds,
+    )
+
+
+def build_worker(settings: Settings) -> Callable[[], int]:
+    """Return a function that runs a worker of the cluster and returns its exit status.
+
+    Raises:
+        ValueError: PARETOUR_REDIS_URL is not set, or the extra is not installed.
+    """
+    redis_url = _redis_url(settings)
+    from service.cluster.celery_app import make_celery
+    from service.cluster.worker import CeleryWorker, make_record_worker
+
+    _check_actors(settings.actors, settings.threads)
+    logging.config.dictConfig(logging_config())
+    seconds = settings.request_seconds
+    worker = CeleryWorker(
+        celery=make_celery(redis_url, seconds),
+        make_record_worker=partial(make_record_worker, _make_runner(settings), redis_url, seconds),
+        workers=settings.workers,
+        drain_seconds=settings.drain_seconds,
+    )
+
+    def run() -> int:
+        # Before the first fork, so that every process has the compiled search at once.
+        warm_up()
+        return worker.run()
+
+    return run
+
+
+def takes_work(settings: Settings) -> bool:
+    """Return whether this machine's worker takes the jobs that wait.
+
+    Raises:
+        ValueError: PARETOUR_REDIS_URL is not set, or the extra is not installed.
+    """
+    redis_url = _redis_url(settings)
+    from service.cluster import worker_store
+
+    return worker_store.takes_work(redis_url)
+
+
+def _local_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
+    """Return the store in SQLite, and the engine in this process and its children."""
     workers = WorkerPool(
-        partial(load_planner, settings.actors, settings.threads, settings.limits),
+        _make_runner(settings),
         workers=settings.workers,
         queue=settings.queue,
         seconds=settings.request_seconds,
-        planned=metrics.planned,
+        on_front=metrics.planned,
     )
     store = SqliteStore(
         settings.store, entries=settings.store_entries, max_age=settings.store_seconds
@@ -71,40 +136,41 @@ def _embedded(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
     return store, LocalEngine(workers, store)
 
 
-def _shared(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
-    """The engine that many machines are together."""
-    check_cluster()
-    from service.cluster.redis_engine import replica
+def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
+    """Return the store and the engine of a cluster."""
+    redis_url = _redis_url(settings)
+    from service.cluster.redis_engine import connect
 
-    assert settings.redis_url is not None
-    return replica(
-        settings.redis_url,
+    return connect(
+        redis_url,
         entries=settings.store_entries,
         max_age=settings.store_seconds,
         queue=settings.queue,
         seconds=settings.request_seconds,
-        planned=metrics.planned,
+        on_front=metrics.planned,
     )
 
 
-def serve(app: FastAPI, settings: Settings) -> None:
-    """Answer requests until told to stop."""
-    # Without a handler, uvicorn ends by the signal and the exit status says so.
-    signal.signal(signal.SIGTERM, _exit)
-    # What is loaded stays. To look through it for garbage takes 40 ms, in which nobody is answered.
-    gc.collect()
-    gc.freeze()
-    uvicorn.run(
-        app,
-        host=settings.host,
-        port=settings.port,
-        # Not uvloop, where it is there: 1 % more answers, and no end while Redis is connected.
-        loop="asyncio",
-        server_header=False,
-        log_config=logging_config(),
-        access_log=False,
-        timeout_graceful_shutdown=settings.drain_seconds,
-    )
+def _make_runner(settings: Settings) -> MakeRunner:
+    return partial(load_runner, settings.actors, settings.threads, settings.limits)
+
+
+def _redis_url(settings: Settings) -> str:
+    if settings.redis_url is None:
+        raise ValueError("PARETOUR_REDIS_URL must say for which Redis to work")
+    check_cluster()
+    return settings.redis_url
+
+
+def _check_actors(directory: Path, threads: int) -> None:
+    """Load the networks once, in another process: onnxruntime does not survive a fork."""
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, mp_context=context) as pool:
+        pool.submit(_load_actors, directory, threads).result()
+
+
+def _load_actors(directory: Path, threads: int) -> None:
+    load_actors(directory, threads)
 
 
 def _version() -> str:
@@ -116,61 +182,3 @@ def _version() -> str:
 
 def _exit(_signal: int, _frame: FrameType | None) -> NoReturn:
     sys.exit(0)
-
-
-def build_work(settings: Settings) -> Callable[[], int]:
-    """What works until told to end, and says with which status.
-
-    Raises:
-        ValueError: there is no Redis to work for, or what it takes is not installed.
-    """
-    redis_url = _redis_url(settings)
-    from service.cluster.celery_app import queue_at
-    from service.cluster.worker import CeleryWorker, make_hand
-
-    _check_actors(settings.actors, settings.threads)
-    logging.config.dictConfig(logging_config())
-    load = partial(load_planner, settings.actors, settings.threads, settings.limits)
-    crew = CeleryWorker(
-        queue=queue_at(redis_url, settings.request_seconds),
-        make_hand=partial(make_hand, load, redis_url, settings.request_seconds),
-        workers=settings.workers,
-        drain_seconds=settings.drain_seconds,
-    )
-
-    def work() -> int:
-        # Before the first fork, so that a process that takes the place of one lost has it at once.
-        warm_up()
-        return crew.run()
-
-    return work
-
-
-def takes_work(settings: Settings) -> bool:
-    """Whether what works on this machine takes what there is to do.
-
-    Raises:
-        ValueError: there is no Redis to work for, or what it takes is not installed.
-    """
-    redis_url = _redis_url(settings)
-    from service.cluster import worker_store
-
-    return worker_store.takes_work(redis_url)
-
-
-def _redis_url(settings: Settings) -> str:
-    if settings.redis_url is None:
-        raise ValueError("PARETOUR_REDIS_URL must say for which Redis to work")
-    check_cluster()
-    return settings.redis_url
-
-
-def _check_actors(directory: Path, threads: int) -> None:
-    """Load the networks, elsewhere: a process that will fork must not have them."""
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(1, mp_context=context) as elsewhere:
-        elsewhere.submit(_load_actors, directory, threads).result()
-
-
-def _load_actors(directory: Path, threads: int) -> None:
-    load_actors(directory, threads)

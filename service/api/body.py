@@ -13,7 +13,7 @@ from starlette.requests import Request
 from service.actor import ActorInfo
 from service.errors import Refusal, WorkerLost
 from service.requests.limits import Limits
-from service.requests.task import Task, Work, read
+from service.requests.task import Task, TaskSource, parse_task
 
 
 def parts(content_type: str, body: bytes, expected: Collection[str]) -> dict[str, bytes]:
@@ -150,22 +150,27 @@ class Reader:
         self._actors = dict(actors)
         self._one = CapacityLimiter(1)
 
-    async def read(self, work: Work) -> Task:
-        """The task in a piece of work.
+    async def read(self, source: TaskSource) -> Task:
+        """Parse a request into its task.
 
         Raises:
             Refusal: there is none, it is over a limit, or no actor serves it.
             InvalidInstance: it cannot be planned.
             WorkerLost: the process did not survive it, nor did the next.
         """
-        if len(work.body) + len(work.upload or b"") <= _SHORT:
-            return read(work, self._limits, self._actors)
+        if len(source.body) + len(source.upload or b"") <= _SHORT:
+            return parse_task(source, self._limits, self._actors)
         for _ in range(_TRIES):
             # To put it together took a while, and to hand it over will: others come in between.
             await asyncio.sleep(0)
             try:
                 return await to_process.run_sync(
-                    read, work, self._limits, self._actors, cancellable=True, limiter=self._one
+                    parse_task,
+                    source,
+                    self._limits,
+                    self._actors,
+                    cancellable=True,
+                    limiter=self._one,
                 )
             except BrokenWorkerProcess:
                 continue

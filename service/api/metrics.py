@@ -31,7 +31,7 @@ _SHARES = (0.0, 0.0001, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
 class Watched(Protocol):
     """What plans fronts."""
 
-    async def standing(self) -> EngineStats:
+    async def stats(self) -> EngineStats:
         """How it is."""
 
 
@@ -83,7 +83,7 @@ class Metrics:
     async def exposition(self) -> Response:
         """Give everything counted, in the text format of Prometheus."""
         if self._watched is not None:
-            self._workers.standing = await self._watched.standing()
+            self._workers.standing = await self._watched.stats()
         return _Exposition(generate_latest(self._registry))
 
     def answered(self, answered: Answered) -> None:
@@ -99,8 +99,8 @@ class Metrics:
 
     def planned(self, front: FrontDocument) -> None:
         """Count a front: the phases of planning, and the hypervolume that the search gained."""
-        cities = _size_class(front.members["cities"])
-        for phase, milliseconds in front.members["timings_ms"].items():
+        cities = _size_class(front.cities)
+        for phase, milliseconds in front.timings_ms.phases.items():
             self._planning.labels(phase, cities).observe(milliseconds / 1000)
         if front.gained is not None:
             self._gained.labels(cities).observe(front.gained)

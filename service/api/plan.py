@@ -23,14 +23,14 @@ from service.api.responses import (
     problem_bytes,
     problem_responses,
 )
-from service.jobs.engine import Engine, finished
-from service.jobs.front_document import FrontDocument, nothing_yet
+from service.jobs.engine import Engine, final_record
+from service.jobs.front_document import FrontDocument, empty_front
 from service.jobs.record import Record
 from service.jobs.store import Store
 from service.requests.coverage import coverage_schema
 from service.requests.front import request_schema
 from service.requests.limits import Limits
-from service.requests.task import Work, WorkKind
+from service.requests.task import TaskKind, TaskSource
 
 
 def caller_of(request: Request) -> str:
@@ -56,7 +56,7 @@ class Answers:
         if idempotency_key(request) is None:
             await self._engine.check_place()
 
-    async def answer(self, request: Request, work: Work, nothing_yet: FrontDocument) -> Response:
+    async def answer(self, request: Request, source: TaskSource, empty: FrontDocument) -> Response:
         """The front, or where it will be found.
 
         Work without an idempotency key ends when the client goes away. With one the client is
@@ -68,15 +68,15 @@ class Answers:
             caller=caller_of(request),
             request_id=request.scope["request_id"],
             status="queued",
-            front=nothing_yet,
-            work=work,
+            front=empty,
+            source=source,
             key=key,
-            digest=await asyncio.to_thread(_digest, work) if key else "",
+            digest=await asyncio.to_thread(_digest, source) if key else "",
         )
         if wants_it_later(request):
             return _accepted(self._engine.state(await self._begun(record)).record)
         if record.key is not None:
-            return _finished(request, await finished(self._engine, await self._begun(record)))
+            return _finished(request, await final_record(self._engine, await self._begun(record)))
         return _finished(request, await self._now(request, record))
 
     async def _now(self, request: Request, record: Record) -> Record:
@@ -91,9 +91,9 @@ class Answers:
         kept = await self._store.admit(record)
         if kept.id == record.id:
             try:
-                await self._engine.begin(record)
+                await self._engine.submit(record)
             except Exception:
-                await self._store.forget(record)
+                await self._store.delete(record)
                 raise
         return kept
 
@@ -117,15 +117,15 @@ def _finished(request: Request, record: Record) -> Response:
     return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
 
 
-def _digest(work: Work) -> str:
+def _digest(source: TaskSource) -> str:
     digest = hashlib.sha256()
-    for part in (work.kind.encode(), work.body, work.upload or b""):
+    for part in (source.kind.encode(), source.body, source.upload or b""):
         digest.update(b"%d:" % len(part))
         digest.update(part)
     return digest.hexdigest()
 
 
-_UPLOADS: Mapping[WorkKind, str] = {"front": "matrices", "coverage": "map"}
+_UPLOADS: Mapping[TaskKind, str] = {"front": "matrices", "coverage": "map"}
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
 _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
 
@@ -189,15 +189,15 @@ class FrontRoutes:
         """
         return await self._plan(request, "coverage")
 
-    async def _plan(self, request: Request, kind: WorkKind) -> Response:
+    async def _plan(self, request: Request, kind: TaskKind) -> Response:
         await self._answers.check_place(request)
         body = await read_body(request, self._limits.body_bytes, _UPLOADS[kind])
-        work = Work(kind, body.json, body.upload)
-        task = await self._reader.read(work)
+        source = TaskSource(kind, body.json, body.upload)
+        task = await self._reader.read(source)
         if task.needs_compiled_code:
             await self._engine.check_warm()
-        nothing = nothing_yet(task, self._actors[task.actor].identity)
-        return await self._answers.answer(request, replace(work, task=task), nothing)
+        empty = empty_front(task, self._actors[task.actor].identity)
+        return await self._answers.answer(request, replace(source, task=task), empty)
 
 
 def _asked(schema: dict[str, Any]) -> dict[str, Any]:

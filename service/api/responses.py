@@ -11,7 +11,7 @@ from starlette.responses import Response
 
 from service.errors import Refusal
 from service.jobs.record import Status
-from service.planner import Termination
+from service.search.improve import Termination
 
 PROBLEM_JSON = "application/problem+json"
 

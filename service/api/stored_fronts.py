@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import AsyncIterator, Mapping
+from dataclasses import asdict
 from typing import Annotated, Any, NoReturn
 
 from fastapi import APIRouter, Query
@@ -14,10 +15,10 @@ from service.api.plan import caller_of
 from service.api.responses import FrontAnswer, TourAnswer, json_bytes, problem_responses
 from service.errors import Expired, NotFound, Refusal
 from service.jobs.engine import Engine, JobState
-from service.jobs.messages import Snapshot
 from service.jobs.record import Record
 from service.jobs.store import Store
 from service.requests.schemas import TourQuery
+from service.search.improve import Progress
 
 HEARTBEAT = 15.0  # seconds of silence before a comment says that the stream is alive
 
@@ -65,13 +66,8 @@ def _status(record: Record) -> bytes:
     return _event("status", {"id": record.id, "status": record.status})
 
 
-def _progress(snapshot: Snapshot) -> bytes:
-    told = {
-        "seconds": snapshot.seconds,
-        "hypervolume": snapshot.hypervolume,
-        "points": snapshot.points,
-    }
-    return _event("progress", told)
+def _progress(progress: Progress) -> bytes:
+    return _event("progress", asdict(progress))
 
 
 def _event(name: str, data: Mapping[str, object]) -> bytes:
@@ -114,7 +110,7 @@ class StoredFrontRoutes:
         """Forget a front; one that is being planned ends with what was found, and is kept."""
         record = await self._record(request, id)
         if record.finished:
-            await self._store.forget(record)
+            await self._store.delete(record)
             return Response(status_code=204)
         return json_bytes((await self._engine.cancel(record)).json())
 

@@ -7,7 +7,7 @@ import typer
 from service.api.auth import KeyHash, new_key
 from service.cli.configuration import load_settings, load_with
 from service.cli.errors import EXIT_STALLED, UsageError, exit_on_error, exit_with
-from service.server import build, build_work, serve, takes_work
+from service.server import build, build_worker, serve, takes_work
 
 
 def run_serve(host: str | None, port: int | None, workers: int | None) -> None:
@@ -21,7 +21,7 @@ def run_serve(host: str | None, port: int | None, workers: int | None) -> None:
 def run_work(workers: int | None) -> None:
     """Run a worker of a cluster until a signal ends it; exit with its status."""
     with exit_on_error():
-        work = load_with(build_work, load_settings(workers=workers))
+        work = load_with(build_worker, load_settings(workers=workers))
     sys.exit(work())
 
 

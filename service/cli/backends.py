@@ -85,22 +85,23 @@ class LocalBackend:
         """
         from service.cli.configuration import load_settings, load_with
         from service.errors import Refusal
-        from service.jobs.runner import load_planner
-        from service.requests.task import Work
+        from service.jobs.runner import load_runner
+        from service.requests.task import TaskKind, TaskSource
 
-        planner = load_with(
-            lambda settings: load_planner(settings.actors, settings.threads, settings.limits),
+        runner = load_with(
+            lambda settings: load_runner(settings.actors, settings.threads, settings.limits),
             load_settings(),
         )
         upload = None if plan.file is None else plan.file.content
-        work = Work("coverage" if plan.path == "/coverage" else "front", plan.json, upload)
+        kind: TaskKind = "coverage" if plan.path == "/coverage" else "front"
+        source = TaskSource(kind, plan.json, upload)
         if plan.seconds != 0:
             announcement = "loading the search; the first time it is compiled, for half a minute"
             with console.status(announcement):
-                planner.warm_up()
+                runner.warm_up()
         with interrupt_flag() as interrupted, progress_bar(console, plan.seconds) as show:
             try:
-                document = planner.plan(work, interrupted, show)
+                document = runner.run(source, interrupted, lambda progress, _: show(progress))
             except Refusal as error:
                 raise UsageError(str(error)) from None
         status = "cancelled" if interrupted() else "done"

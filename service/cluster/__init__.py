@@ -1,17 +1,13 @@
-"""The engine on many machines: records in Redis, where every replica and worker finds them.
+"""The engine on many machines: records in Redis, which all replicas and workers share.
 
-A replica keeps a record and sends its id through Celery; a worker fetches the work, tells how it
-goes, and ends the record. Messages may get lost, or come twice: what counts is in Redis.
+A replica stores a record and sends its id through Celery. A worker fetches the record, reports its
+progress and stores its result. Messages may be lost or come twice: only Redis counts.
 """
 
 from importlib.util import find_spec
 
 
 def check_cluster() -> None:
-    """Nothing, if what this needs is installed.
-
-    Raises:
-        ValueError: it is not.
-    """
-    if missing := [each for each in ("celery", "redis") if find_spec(each) is None]:
+    """Raise ValueError when celery or redis is not installed."""
+    if missing := [name for name in ("celery", "redis") if find_spec(name) is None]:
         raise ValueError(f"PARETOUR_REDIS_URL needs the extra paretour[cluster]: no {missing[0]}")

@@ -1,32 +1,35 @@
-"""Celery as it is used here: messages that say which record to work on, in a list of Redis."""
+"""The Celery application: its messages are ids of records to plan, in a list of Redis."""
 
 from celery import Celery
 from kombu.exceptions import OperationalError
 
-from service.cluster.records import GONE
+from service.cluster.records import UNAVAILABLE
 from service.errors import StoreUnavailable
 
 QUEUE = "paretour"
 TASK = "paretour.plan"
-_SPARE = 15.0  # seconds from the end of a record's time to that of its process
+_SPARE = 15.0  # seconds from a record's time limit until its process is killed
 _MEMORY = 1_000_000  # kilobytes that a process may have grown to before a fresh one follows
-_ONCE_MORE = {"max_retries": 1, "interval_start": 0}  # as a connection may be of an earlier Redis
+_ONCE_MORE = {
+    "max_retries": 1,
+    "interval_start": 0,
+}  # as the connection may be to a Redis that was restarted
 _LOADING = 300.0  # seconds that a process may take to load, or to compile
 
 
-def queue_at(redis_url: str, seconds: float) -> Celery:
-    """The queue of records, none of which is worked on for more than so many seconds."""
-    queue = Celery("paretour", broker=redis_url, set_as_current=False)
-    queue.conf.update(
+def make_celery(redis_url: str, seconds: float) -> Celery:
+    """Return the application at this Redis, whose tasks take no more than so many seconds."""
+    celery = Celery("paretour", broker=redis_url, set_as_current=False)
+    celery.conf.update(
         task_default_queue=QUEUE,
         task_ignore_result=True,
-        # A message is gone once its record is finished, and comes back with whoever had it.
+        # A message is removed once its record is finished, and comes back if its worker is lost.
         task_acks_late=True,
         task_reject_on_worker_lost=True,
         task_acks_on_failure=True,
         task_acks_on_timeout=False,
         worker_prefetch_multiplier=1,
-        # A process that does not end in time is killed; only then may another have its message.
+        # A process that takes too long is killed; only then is its message sent to another.
         task_time_limit=seconds + _SPARE,
         broker_transport_options={
             "visibility_timeout": int(seconds + 2 * _SPARE),
@@ -43,16 +46,16 @@ def queue_at(redis_url: str, seconds: float) -> Celery:
         worker_max_memory_per_child=_MEMORY,
         worker_proc_alive_timeout=_LOADING,
     )
-    return queue
+    return celery
 
 
-def send(queue: Celery, id: str) -> None:  # noqa: A002
-    """Have a record worked on. The same may be said twice.
+def send_record(celery: Celery, id: str) -> None:  # noqa: A002
+    """Send the id of a record to plan. The same id may be sent twice.
 
     Raises:
         StoreUnavailable: Redis does not answer.
     """
     try:
-        queue.send_task(TASK, args=[id], task_id=id, retry_policy=_ONCE_MORE)
-    except (OperationalError, *GONE) as error:
+        celery.send_task(TASK, args=[id], task_id=id, retry_policy=_ONCE_MORE)
+    except (OperationalError, *UNAVAILABLE) as error:
         raise StoreUnavailable from error

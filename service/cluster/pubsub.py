@@ -1,4 +1,4 @@
-"""Which records have changed, as workers and replicas tell one another."""
+"""Notifications of changed records, over a channel of Redis."""
 
 import asyncio
 from asyncio import Event
@@ -8,28 +8,27 @@ from contextlib import contextmanager
 
 from redis.asyncio import Redis
 
-from service.cluster.records import GONE
+from service.cluster.records import CHANNEL, UNAVAILABLE
 from service.jobs.record import UNFINISHED
 
-CHANNEL = "paretour:told"
 _PAUSE = 0.2  # seconds between two tries to listen
-_SILENT = 5.0  # seconds without news after which it is tried whether any could come
+_SILENT = 5.0  # seconds without a message after which the connection is tested
 
 
 class Subscriptions:
-    """Wakes up who waits for a record, whenever that has changed, or may have.
+    """Sets the events of those who wait for a record, whenever it has changed or may have.
 
-    `ended` is told of each that is finished.
+    `on_finished` is called with the id of each record that is finished.
     """
 
-    def __init__(self, redis: Redis, ended: Callable[[str], None]) -> None:
+    def __init__(self, redis: Redis, on_finished: Callable[[str], None]) -> None:
         self._redis = redis
-        self._ended = ended
+        self._on_finished = on_finished
         self._waiting: dict[str, set[Event]] = defaultdict(set)
 
     @contextmanager
-    def about(self, id: str) -> Iterator[Event]:  # noqa: A002
-        """An event that is set with each change of a record."""
+    def changes(self, id: str) -> Iterator[Event]:  # noqa: A002
+        """Give an event that is set at each change of a record."""
         changed = Event()
         self._waiting[id].add(changed)
         try:
@@ -40,29 +39,29 @@ class Subscriptions:
                 del self._waiting[id]
 
     async def listen(self) -> None:
-        """Listen until cancelled."""
+        """Receive notifications, until the task is cancelled."""
         while True:
             try:
                 await self._listen()
-            except GONE:
+            except UNAVAILABLE:
                 await asyncio.sleep(_PAUSE)
 
     async def _listen(self) -> None:
         async with self._redis.pubsub() as channel:
             await channel.subscribe(CHANNEL)
-            # What was said meanwhile, nobody has heard.
+            # Messages that were sent before the subscription are lost.
             for id_ in list(self._waiting):
                 self._wake(id_)
             while True:
                 message = await channel.get_message(timeout=_SILENT)
                 if message is None:
-                    await channel.ping()  # which fails, once there is nobody to hear from
+                    await channel.ping()  # which raises where the connection is lost
                 elif message["type"] == "message":
-                    self._hear(*message["data"].decode().split(":"))
+                    self._handle(*message["data"].decode().split(":"))
 
-    def _hear(self, id: str, status: str) -> None:  # noqa: A002
+    def _handle(self, id: str, status: str) -> None:  # noqa: A002
         if status not in UNFINISHED:
-            self._ended(id)
+            self._on_finished(id)
         self._wake(id)
 
     def _wake(self, id: str) -> None:  # noqa: A002

@@ -1,8 +1,12 @@
-"""Records as Redis keeps them: fields of hashes, and one script for all that is done with them."""
+"""The form of a record in Redis: the fields of its hashes, and the script that changes them.
+
+Replicas and workers of different releases share one Redis. The names of fields and stop reasons,
+the columns in `jobs.store` and the keys in `records.lua` therefore stay as they are.
+"""
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -10,78 +14,84 @@ from pydantic_core import to_json
 from redis import exceptions
 
 from service.errors import Cancelled, DeadlineExceeded
-from service.jobs.messages import Snapshot
-from service.jobs.record import Record
-from service.jobs.store import WORK, columns, front_columns, record_of
+from service.jobs.front_document import FrontDocument
+from service.jobs.record import Record, StopReason
+from service.jobs.store import SOURCE_COLUMNS, front_columns, record_columns, record_from
+from service.search.improve import Progress
 
 SCRIPT = (Path(__file__).parent / "records.lua").read_text()
-LEASE = 5.0  # seconds after which a worker that was not seen is lost
-# Why work is to stop, as it is written to Redis: replicas and workers of other versions read it.
-STOP_REASONS: Mapping[type[Cancelled | DeadlineExceeded], bytes] = {
-    Cancelled: b"Stopped",
-    DeadlineExceeded: b"Overdue",
-}
-REASONS = {said: why for why, said in STOP_REASONS.items()}
+LEASE = 5.0  # seconds without a sign of life after which a worker is lost
+CHANNEL = "paretour:told"  # where the script publishes "id:status" after each change
 
-# What says that it does not answer, or is full.
-GONE = (exceptions.ConnectionError, exceptions.TimeoutError, exceptions.OutOfMemoryError)
+# Fields beside the columns. The script sets the first two.
+REQUESTED_AT = "kept"  # seconds since 1970
+ATTEMPTS = "attempts"
+GAINED = "gained"
+PROGRESS = "progress"
+
+STOP_REASONS: Mapping[StopReason, bytes] = {Cancelled: b"Stopped", DeadlineExceeded: b"Overdue"}
+REASON_OF = {name: reason for reason, name in STOP_REASONS.items()}
+TAKEN_OVER = b"taken"
+
+# Redis does not answer, or is full.
+UNAVAILABLE = (exceptions.ConnectionError, exceptions.TimeoutError, exceptions.OutOfMemoryError)
 
 Argument = str | bytes | float
-_PROGRESS = ("seconds", "hypervolume", "points")
 _TEXTS = ("id", "caller", "request_id", "status", "key", "digest", "kind")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class StoredRecord:
-    """A record as it stands in Redis, and what Redis knows besides.
-
-    `asked` is when it was asked for, in seconds since 1970.
-    """
+    """A record as it stands in Redis. `requested_at` is in seconds since 1970."""
 
     record: Record
-    asked: float
+    requested_at: float
     attempts: int
-    progress: Snapshot | None
+    progress: Progress | None
 
 
-def arguments(record: Record) -> list[Argument]:
-    """A record for the script: how many arguments are its fields, these, and those of its work."""
-    given = {name: value for name, value in columns(record).items() if value is not None}
-    work = flat({name: given.pop(name) for name in WORK if name in given})
+def record_arguments(record: Record) -> list[Argument]:
+    """Return a record as arguments of the script.
+
+    These are the number of arguments that follow for its hash, these, and those for the hash of
+    its source.
+    """
+    columns = {name: value for name, value in record_columns(record).items() if value is not None}
+    source = {name: columns.pop(name) for name in SOURCE_COLUMNS if name in columns}
     if record.front.gained is not None:
-        given["gained"] = record.front.gained
-    fields = flat(given)
-    return [len(fields), *fields, *work]
+        columns[GAINED] = record.front.gained
+    fields = _names_and_values(columns)
+    return [len(fields), *fields, *_names_and_values(source)]
 
 
-def progress_arguments(snapshot: Snapshot) -> list[Argument]:
-    """The fields that a worker changes while it goes on."""
-    progress = {name: getattr(snapshot, name) for name in _PROGRESS}
-    return flat({**front_columns(snapshot.front), "progress": to_json(progress)})
+def progress_arguments(progress: Progress, front: FrontDocument) -> list[Argument]:
+    """Return the fields that a worker's report changes, as arguments of the script."""
+    return _names_and_values({**front_columns(front), PROGRESS: to_json(asdict(progress))})
 
 
-def flat(fields: Mapping[str, Argument]) -> list[Argument]:
-    """Names and values in turn, as Redis takes them."""
-    return [part for field in fields.items() for part in field]
-
-
-def kept_in(*hashes: Iterable[bytes]) -> StoredRecord:
-    """What is in one hash, or in one and that of its work."""
-    found = {name: value for each in hashes for name, value in _fields(each).items()}
-    record = record_of(found)
-    if "gained" in found:
-        front = replace(record.front, gained=float(found["gained"]))
+def stored_record(*hashes: Iterable[bytes]) -> StoredRecord:
+    """Return the record in a hash, or in one and that of its source, as HGETALL gives them."""
+    fields = {name: value for each in hashes for name, value in _fields(each).items()}
+    record = record_from(fields)
+    if GAINED in fields:
+        front = replace(record.front, gained=float(fields[GAINED]))
         record = replace(record, front=front)
-    progress = found.get("progress")
+    progress = fields.get(PROGRESS)
     return StoredRecord(
         record=record,
-        asked=float(found["kept"]),
-        attempts=int(found.get("attempts", 0)),
-        progress=Snapshot(**json.loads(progress), front=record.front) if progress else None,
+        requested_at=float(fields[REQUESTED_AT]),
+        attempts=int(fields.get(ATTEMPTS, 0)),
+        progress=Progress(**json.loads(progress)) if progress else None,
     )
 
 
-def _fields(flat: Iterable[bytes]) -> dict[str, Any]:
-    parts = iter(flat)
-    found: dict[str, Any] = {name.decode(): value for name, value in zip(parts, parts, strict=True)}
-    return found | {name: found[name].decode() for name in _TEXTS if name in found}
+def _names_and_values(fields: Mapping[str, Argument]) -> list[Argument]:
+    return [part for field in fields.items() for part in field]
+
+
+def _fields(names_and_values: Iterable[bytes]) -> dict[str, Any]:
+    parts = iter(names_and_values)
+    fields: dict[str, Any] = {
+        name.decode(): value for name, value in zip(parts, parts, strict=True)
+    }
+    return fields | {name: fields[name].decode() for name in _TEXTS if name in fields}

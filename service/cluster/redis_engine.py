@@ -1,4 +1,4 @@
-"""The engine of a replica: fronts are planned by whichever worker of the cluster is free."""
+"""The engine of a cluster: jobs are planned by workers on any machine, by way of Redis."""
 
 import asyncio
 import logging
@@ -13,9 +13,15 @@ from redis.asyncio import Redis
 from redis.backoff import NoBackoff
 from redis.retry import Retry
 
-from service.cluster.celery_app import QUEUE, queue_at, send
+from service.cluster.celery_app import QUEUE, make_celery, send_record
 from service.cluster.pubsub import Subscriptions
-from service.cluster.records import LEASE, STOP_REASONS, StoredRecord, arguments, kept_in
+from service.cluster.records import (
+    LEASE,
+    STOP_REASONS,
+    StoredRecord,
+    record_arguments,
+    stored_record,
+)
 from service.cluster.redis_store import RedisStore
 from service.errors import (
     Cancelled,
@@ -26,20 +32,25 @@ from service.errors import (
     ShuttingDown,
     StoreUnavailable,
 )
-from service.jobs.engine import EngineStats, JobState, finished
+from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.front_document import FrontDocument
-from service.jobs.record import Record, as_planned, ended
+from service.jobs.record import Record, StopReason, as_ended
 
-_AGAIN = 2.0  # seconds without news after which a record is looked at all the same
-_LISTENED = 1.0  # seconds for a worker to end what it is told to end
-_SWEEP = 2.0  # seconds between two looks for work that has lost its worker or its message
+_POLL = 2.0  # seconds without a notification after which a record is read all the same
+_GRACE = 1.0  # seconds for a worker to stop by itself
+_SWEEP = 2.0  # seconds between two searches for jobs that lost their worker or message
 
 
 class RedisEngine:
-    """Hands the ids of records to `send`, and follows in Redis what becomes of them.
+    """Sends the ids of records to workers, and follows the records in Redis.
 
-    So many may wait beside those that there are workers for. Nobody waits for more than so many
-    seconds. Of each front `planned` is told in one of all replicas.
+    Args:
+        redis: The connections for notifications.
+        store: The store of all replicas.
+        send: Called with the id of each record to plan, in a thread.
+        queue: How many jobs may wait beside those that there are workers for.
+        seconds: How long a client waits at most.
+        on_front: Called with every front that was planned, in one of all replicas.
     """
 
     def __init__(
@@ -50,132 +61,133 @@ class RedisEngine:
         *,
         queue: int,
         seconds: float,
-        planned: Callable[[FrontDocument], None] = lambda _: None,
+        on_front: Callable[[FrontDocument], None] = lambda _: None,
     ) -> None:
         self._store = store
         self._send = send
         self._queue = queue
         self._seconds = seconds
-        self._planned = planned
-        self._news = Subscriptions(redis, self._ended)
+        self._on_front = on_front
+        self._subscriptions = Subscriptions(redis, self._on_finished)
         self._tasks: set[asyncio.Task[None]] = set()
-        self._standing = EngineStats(waiting=0, working=0, lost=0)
+        self._stats = EngineStats(waiting=0, working=0, lost=0)
         self._closed = False
         self._log = logging.getLogger("paretour")
 
     async def start(self) -> None:
-        """Listen, and look after what is unfinished, whoever began it."""
-        for work in (self._news.listen(), self._sweep()):
-            self._spawn(work)
+        """Listen for changes, and send unfinished jobs again that lost their worker."""
+        self._spawn(self._subscriptions.listen())
+        self._spawn(self._sweep())
 
     async def close(self) -> None:
-        """Take no more work. What is unfinished goes on."""
+        """Take no more jobs. Unfinished ones go on in the workers."""
         self._closed = True
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
-    async def standing(self) -> EngineStats:
-        """How all replicas and workers are together, as last known."""
+    async def stats(self) -> EngineStats:
+        """Return the numbers of the whole cluster, as last known."""
         with suppress(StoreUnavailable):
             waiting, working, lost = await self._store.call("standing")
-            self._standing = EngineStats(waiting=waiting, working=working, lost=lost)
-        return self._standing
+            self._stats = EngineStats(waiting=waiting, working=working, lost=lost)
+        return self._stats
 
     async def check_open(self) -> None:
-        """Nothing, if work is taken."""
+        """Raise ShuttingDown when no more jobs are taken."""
         if self._closed:
             raise ShuttingDown
 
     async def check_place(self) -> None:
-        """Nothing, if there is a place for one more front."""
+        """Raise QueueFull when no place is left for one more job."""
         if not await self._store.call("has_place", self._queue):
             raise QueueFull
 
     async def check_warm(self) -> None:
-        """Nothing: workers take no work before they are warm, and until then it waits."""
+        """Raise nothing: jobs wait in the queue until a worker has the compiled search."""
 
     async def check_ready(self) -> None:
-        """Nothing, if work is taken: Redis answers."""
+        """Raise ShuttingDown, or StoreUnavailable when Redis does not answer."""
         await self.check_open()
         await self._store.call("standing")
 
-    async def run(self, record: Record, left: Future[None]) -> Record:
-        """What becomes of work that somebody waits for, until he has left."""
+    async def run(self, record: Record, disconnected: Future[None]) -> Record:
+        """Run a new job while its client waits; when that disconnects, cancel it."""
         await self._store.admit(record)
         try:
-            await self.begin(record)
+            await self.submit(record)
         except Exception:
-            await self._store.forget(record)
+            await self._store.delete(record)
             raise
-        ending = asyncio.ensure_future(finished(self, record))
+        ending = asyncio.ensure_future(final_record(self, record))
         try:
             await asyncio.wait(
-                (ending, left), timeout=self._seconds, return_when=asyncio.FIRST_COMPLETED
+                (ending, disconnected), timeout=self._seconds, return_when=asyncio.FIRST_COMPLETED
             )
             if not ending.done():
-                await self._stop(record, Cancelled if left.done() else DeadlineExceeded)
+                reason = Cancelled if disconnected.done() else DeadlineExceeded
+                await self._stop(record, reason)
             record = await ending
         finally:
             ending.cancel()
         if record.status == "failed":
-            await self._store.forget(record)
+            await self._store.delete(record)
         return record
 
-    async def begin(self, record: Record) -> None:
-        """Begin the work of a record that is in the store, whoever waits."""
+    async def submit(self, record: Record) -> None:
+        """Begin a job that is in the store, and return at once."""
         await self.check_open()
         if not await self._store.call("has_place", self._queue, record.id):
             raise QueueFull
-        await self._have_done(record.id)
+        await self._send_id(record.id)
 
     def state(self, record: Record) -> JobState:
-        """How a record from the store stands."""
+        """Return the present state of a job, given its record in the store."""
         return JobState(record)
 
     async def watch(self, record: Record) -> AsyncIterator[JobState]:
-        """How it stands now, and after each change, until it is finished."""
-        told = None
-        with self._news.about(record.id) as changed:
+        """Yield the state of a job now and after each change, until it is finished."""
+        last = None
+        with self._subscriptions.changes(record.id) as changed:
             while True:
                 changed.clear()
                 with suppress(StoreUnavailable):
-                    kept = await self._now(record)
-                    record, progress = kept.record, kept.progress
-                    standing = record.status, progress and progress.seconds
-                    if standing != told:
-                        told = standing
+                    stored = await self._stored(record)
+                    record, progress = stored.record, stored.progress
+                    if (record.status, progress) != last:
+                        last = record.status, progress
                         yield JobState(record, progress)
                 if record.finished:
                     return
-                await _within(_AGAIN, changed)
+                await _wait(changed, _POLL)
 
     async def cancel(self, record: Record) -> Record:
-        """End the work of a record at once; what was found so far is kept."""
+        """End a job at once, with what was found so far, and return its final record."""
         await self._stop(record, Cancelled)
-        return await finished(self, record)
+        return await final_record(self, record)
 
-    async def _now(self, record: Record) -> StoredRecord:
-        """How it stands in Redis; once it is forgotten, as if it had been cancelled."""
+    async def _stored(self, record: Record) -> StoredRecord:
+        """Return the record in Redis; if it was deleted there, a cancelled one."""
         try:
-            return await self._store.kept("get", record.caller, record.id)
+            return await self._store.find("get", record.caller, record.id)
         except (NotFound, Expired):
-            gone = replace(record, status="cancelled", work=None)
-            return StoredRecord(record=gone, asked=0, attempts=0, progress=None)
+            deleted = replace(record, status="cancelled", source=None)
+            return StoredRecord(record=deleted, requested_at=0, attempts=0, progress=None)
 
-    async def _stop(self, record: Record, why: type[Cancelled | DeadlineExceeded]) -> None:
-        """Have the worker end it, if it has one that listens, and end it anyway."""
-        await self._store.call("stop", record.id, STOP_REASONS[why])
-        if (await self._now(record)).record.status == "running":
+    async def _stop(self, record: Record, reason: StopReason) -> None:
+        """Ask the worker to end a job, and end it here if that does not in time."""
+        await self._store.call("stop", record.id, STOP_REASONS[reason])
+        if (await self._stored(record)).record.status == "running":
             with suppress(TimeoutError):
-                async with asyncio.timeout(_LISTENED):
-                    await finished(self, record)
-        kept = await self._now(record)
-        if not kept.record.finished:
-            over = ended(kept.record, kept.record.front, why, time() - kept.asked)
-            await self._store.call("finish", record.id, *arguments(over))
+                async with asyncio.timeout(_GRACE):
+                    await final_record(self, record)
+        stored = await self._stored(record)
+        if not stored.record.finished:
+            seconds = time() - stored.requested_at
+            ended = as_ended(stored.record, stored.record.front, reason, seconds)
+            await self._store.call("finish", record.id, *record_arguments(ended))
 
-    async def _have_done(self, id: str) -> None:  # noqa: A002
+    async def _send_id(self, id: str) -> None:  # noqa: A002
         await asyncio.to_thread(self._send, id)
 
     async def _sweep(self) -> None:
@@ -183,46 +195,47 @@ class RedisEngine:
             with suppress(StoreUnavailable):
                 for id_ in await self._store.call("stale", LEASE, QUEUE):
                     self._log.warning("front %s has lost its worker, sent again", id_.decode())
-                    await self._have_done(id_.decode())
+                    await self._send_id(id_.decode())
             await asyncio.sleep(_SWEEP)
 
-    def _ended(self, id: str) -> None:  # noqa: A002
-        self._spawn(self._count(id))
+    def _on_finished(self, id: str) -> None:  # noqa: A002
+        self._spawn(self._claim(id))
 
-    async def _count(self, id: str) -> None:  # noqa: A002
+    async def _claim(self, id: str) -> None:  # noqa: A002
+        """Pass a finished front on, unless another replica has."""
         with suppress(StoreUnavailable):
-            if found := await self._store.call("claim", id):
-                self._planned(as_planned(kept_in(found).record.front))
+            if fields := await self._store.call("claim", id):
+                self._on_front(stored_record(fields).record.front)
 
-    def _spawn(self, work: Coroutine[None, None, None]) -> None:
-        task = asyncio.create_task(work)
+    def _spawn(self, coroutine: Coroutine[None, None, None]) -> None:
+        task = asyncio.create_task(coroutine)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
 
-async def _within(seconds: float, changed: Event) -> None:
+async def _wait(changed: Event, seconds: float) -> None:
     with suppress(TimeoutError):
         async with asyncio.timeout(seconds):
             await changed.wait()
 
 
-_SECONDS = 2.0  # that one answer of Redis may take
+_SECONDS = 2.0  # that one reply of Redis may take
 
 
-def replica(
+def connect(
     redis_url: str,
     *,
     entries: int,
     max_age: float,
     queue: int,
     seconds: float,
-    planned: Callable[[FrontDocument], None] = lambda _: None,
+    on_front: Callable[[FrontDocument], None] = lambda _: None,
 ) -> tuple[RedisStore, RedisEngine]:
-    """What all replicas at this Redis do alike."""
-    # Tried once more, because a connection may be of a Redis that has been replaced.
+    """Return the store and the engine of a replica at this Redis."""
+    # Tried once more, because the connection may be to a Redis that was restarted.
     redis = Redis.from_url(
         redis_url, retry=Retry(NoBackoff(), 1), socket_timeout=_SECONDS, socket_keepalive=True
     )
     store = RedisStore(redis, entries=entries, max_age=max_age)
-    sending = partial(send, queue_at(redis_url, seconds))
-    return store, RedisEngine(redis, store, sending, queue=queue, seconds=seconds, planned=planned)
+    send = partial(send_record, make_celery(redis_url, seconds))
+    return store, RedisEngine(redis, store, send, queue=queue, seconds=seconds, on_front=on_front)

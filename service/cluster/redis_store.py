@@ -1,4 +1,4 @@
-"""The store in Redis, which all replicas share."""
+"""The store in Redis, shared by all replicas."""
 
 from collections.abc import Callable
 from time import time
@@ -6,16 +6,23 @@ from typing import Any
 
 from redis.asyncio import Redis
 
-from service.cluster.records import GONE, SCRIPT, Argument, StoredRecord, arguments, kept_in
+from service.cluster.records import (
+    SCRIPT,
+    UNAVAILABLE,
+    Argument,
+    StoredRecord,
+    record_arguments,
+    stored_record,
+)
 from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
 from service.jobs.record import Record
 
 
 class RedisStore:
-    """At most `entries` finished records, none older than `max_age` seconds.
+    """Keeps at most `entries` finished records, none older than `max_age` seconds.
 
-    Of what has made way it remembers the last `tombstones` ids. A record that it gives comes
-    without its work, which only `unfinished` adds.
+    Of those that were dropped it remembers the last `tombstones` ids. Only `unfinished` returns
+    records with their sources.
     """
 
     def __init__(
@@ -33,63 +40,69 @@ class RedisStore:
         self._clock = clock
 
     async def put(self, record: Record) -> None:
-        """Keep a record, in place of an earlier one with its id."""
-        await self.call("put", record.id, *arguments(record))
-        await self._make_way()
+        """Store a record, in place of an earlier one with its id."""
+        await self.call("put", record.id, *record_arguments(record))
+        await self._evict()
 
     async def admit(self, record: Record) -> Record:
-        """Keep a new record, or give the one that the caller has already under its key."""
-        await self._make_way()
-        about = (record.id, record.caller, record.key or "", record.digest)
-        match await self.call("admit", *about, *arguments(record)):
+        """Store a new record and return it, or return the one that has its idempotency key."""
+        await self._evict()
+        identity = (record.id, record.caller, record.key or "", record.digest)
+        match await self.call("admit", *identity, *record_arguments(record)):
             case b"new":
                 return record
             case b"mismatch":
                 raise IdempotencyMismatch
             case earlier:
-                return kept_in(earlier).record
+                return stored_record(earlier).record
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
-        """The caller's record with this id."""
-        return (await self.kept("get", caller, id)).record
+        """Return the caller's record with this id."""
+        return (await self.find("get", caller, id)).record
 
     async def latest(self, caller: str) -> Record:
-        """The caller's record that was finished last."""
-        return (await self.kept("latest", caller)).record
+        """Return the caller's record that was finished last."""
+        return (await self.find("latest", caller)).record
 
-    async def forget(self, record: Record) -> None:
-        """Keep the record no longer, and nothing in its place."""
+    async def delete(self, record: Record) -> None:
+        """Delete a record, and leave no trace of it."""
         await self.call("forget", record.id)
 
     async def unfinished(self) -> list[Record]:
-        """All records that still need work, the oldest first."""
-        return [kept_in(*hashes).record for hashes in await self.call("unfinished")]
+        """Return all unfinished records with their sources, the oldest first."""
+        return [stored_record(*hashes).record for hashes in await self.call("unfinished")]
 
     async def close(self) -> None:
-        """Let go of the connections."""
+        """Close the connections."""
         await self._redis.aclose()
 
-    async def call(self, verb: str, *about: Argument) -> Any:
-        """What the script answers.
+    async def call(self, verb: str, *arguments: Argument) -> Any:
+        """Run a verb of the script and return its reply.
 
         Raises:
-            StoreUnavailable: Redis does not.
+            StoreUnavailable: Redis does not answer.
         """
         try:
-            return await self._script(args=[verb, self._clock(), *about])
-        except GONE as error:
+            return await self._script(args=[verb, self._clock(), *arguments])
+        except UNAVAILABLE as error:
             raise StoreUnavailable from error
 
-    async def kept(self, verb: str, *about: str) -> StoredRecord:
-        """What is kept, as `get` or `latest` finds it."""
-        await self._make_way()
-        match await self.call(verb, *about):
+    async def find(self, verb: str, *arguments: str) -> StoredRecord:
+        """Return the record that the verb `get` or `latest` finds.
+
+        Raises:
+            NotFound: There never was one, or it was deleted.
+            Expired: It was dropped.
+            StoreUnavailable: Redis does not answer.
+        """
+        await self._evict()
+        match await self.call(verb, *arguments):
             case b"unknown":
                 raise NotFound
             case b"expired":
                 raise Expired
             case found:
-                return kept_in(found)
+                return stored_record(found)
 
-    async def _make_way(self) -> None:
+    async def _evict(self) -> None:
         await self.call("make_way", *self._bounds)

@@ -1,4 +1,8 @@
-"""A worker of the cluster: Celery processes, each planning one record at a time."""
+"""A worker of the cluster: Celery with a pool of processes, each planning one record at a time.
+
+In each process a `RecordWorker` plans. A thread beside it checks whether the record is wanted still
+and, if planning does not stop in time, kills the process, which Celery replaces.
+"""
 
 import ctypes
 import logging
@@ -22,160 +26,165 @@ from service.cluster.records import StoredRecord
 from service.cluster.worker_store import TakenOver, WorkerStore
 from service.errors import Cancelled, DeadlineExceeded, WorkerLost
 from service.jobs.front_document import FrontDocument
-from service.jobs.messages import Snapshot
-from service.jobs.record import Record, ended, failed
+from service.jobs.record import Record, StopReason, as_ended, as_failed
+from service.jobs.runner import MakeRunner, Reporter, Runner
 from service.jobs.submission import MOST_ATTEMPTS
 from service.jobs.worker_pool import GRACE
-from service.jobs.worker_process import MakePlanner, Planner, Reporter
+from service.search.improve import Progress
 
-_EVERY = 0.05  # seconds between two looks at whether the work is still wanted
-_PRESENT = 1.0  # seconds between two signs of life
+_CHECK_EVERY = 0.05  # seconds between two checks whether a record is still wanted
+_HEARTBEAT_EVERY = 1.0  # seconds between two signs of life
 
-Draining = Callable[[], bool]
-
-
-class Drained(Exception):
-    """The worker ends, and leaves its work to another."""
+IsDraining = Callable[[], bool]
 
 
-Reason = type[Cancelled | DeadlineExceeded | TakenOver | Drained]
+class Draining(Exception):
+    """The worker shuts down and leaves its record to another."""
 
 
 class RecordWorker:
-    """Plans what records ask for, each within so many seconds."""
+    """Plans the fronts of records in this process, each within so many seconds."""
 
     def __init__(
-        self, planner: Planner, ledger: WorkerStore, seconds: float, draining: Draining
+        self, runner: Runner, store: WorkerStore, seconds: float, is_draining: IsDraining
     ) -> None:
-        self._planner = planner
-        self._ledger = ledger
+        self._runner = runner
+        self._store = store
         self._seconds = seconds
-        self._draining = draining
+        self._is_draining = is_draining
 
-    def attend(self) -> None:
-        """Get ready, and say from then on that there is a worker."""
-        self._planner.warm_up()
-        Thread(target=self._be_present, name="present", daemon=True).start()
+    def start(self) -> None:
+        """Warm up, and send heartbeats from then on."""
+        self._runner.warm_up()
+        Thread(target=self._send_heartbeats, name="heartbeat", daemon=True).start()
 
-    def work(self, id: str, known_lost: bool) -> None:  # noqa: A002
-        """Do the work of a record, if that is still to do.
+    def plan(self, id: str, known_lost: bool) -> None:  # noqa: A002
+        """Plan the front of a record, unless it is finished or another worker does.
 
         Raises:
-            Drained: another worker has to.
+            Draining: The worker shuts down; the record is queued again.
         """
-        kept = self._ledger.begin(id, known_lost)
-        if kept is None:
+        stored = self._store.begin(id, known_lost)
+        if stored is None:
             return
-        if kept.attempts > MOST_ATTEMPTS:
-            self._ledger.finish(failed(kept.record, WorkerLost(), kept.record.front))
+        if stored.attempts > MOST_ATTEMPTS:
+            self._store.finish(as_failed(stored.record, WorkerLost(), stored.record.front))
             return
-        watch = _Watch(kept, self._ledger, time.monotonic() + self._seconds, self._draining)
-        found = self._found(kept, watch)
-        watch.end()
-        if watch.why is Drained:
-            self._ledger.hand_back(id)
-            raise Drained
-        if watch.why is not TakenOver:
-            self._ledger.finish(found)
+        deadline = time.monotonic() + self._seconds
+        supervisor = _Supervisor(stored, self._store, deadline, self._is_draining)
+        result = self._result(stored, supervisor)
+        supervisor.end()
+        if supervisor.reason is Draining:
+            self._store.hand_back(id)
+            raise Draining
+        if supervisor.reason is not TakenOver:
+            self._store.finish(result)
 
-    def _found(self, kept: StoredRecord, watch: "_Watch") -> Record:
-        work = kept.record.work
-        assert work is not None
+    def _result(self, stored: StoredRecord, supervisor: "_Supervisor") -> Record:
+        source = stored.record.source
+        assert source is not None
         try:
-            front = self._planner.plan(work, watch.stop.is_set, Reporter(watch.tell))
+            reporter = Reporter(supervisor.report)
+            front = self._runner.run(source, supervisor.stop.is_set, reporter)
         except Exception as error:
-            if watch.why is None:
-                return failed(kept.record, error, watch.front)
-            return watch.ended(watch.front)
-        return watch.ended(front)
+            if supervisor.reason is None:
+                return as_failed(stored.record, error, supervisor.front)
+            return supervisor.ended(supervisor.front)
+        return supervisor.ended(front)
 
-    def _be_present(self) -> None:
+    def _send_heartbeats(self) -> None:
         while True:
-            self._ledger.present()
-            time.sleep(_PRESENT)
+            self._store.send_heartbeat()
+            time.sleep(_HEARTBEAT_EVERY)
 
 
-class _Watch:
-    """Looks, while work goes on, whether it is still wanted, and ends what does not listen."""
+class _Supervisor:
+    """Checks in a thread whether a record is still wanted, and ends its planning if it is not."""
 
     def __init__(
-        self, kept: StoredRecord, ledger: WorkerStore, deadline: float, draining: Draining
+        self, stored: StoredRecord, store: WorkerStore, deadline: float, is_draining: IsDraining
     ) -> None:
         self.stop = Event()
-        self.why: Reason | None = None
-        self.front = kept.record.front
-        self._kept = kept
-        self._ledger = ledger
+        self.reason: StopReason | type[TakenOver | Draining] | None = None
+        self.front = stored.record.front
+        self._stored = stored
+        self._store = store
         self._deadline = deadline
-        self._draining = draining
+        self._is_draining = is_draining
         self._over = Event()
-        self._thread = Thread(target=self._look, name="watch", daemon=True)
+        self._thread = Thread(target=self._check_often, name="supervisor", daemon=True)
         self._thread.start()
 
-    def tell(self, snapshot: Snapshot) -> None:
-        """Take note of how far the work has come."""
-        self.front = snapshot.front
-        self._ledger.tell(self._kept.record.id, snapshot)
+    def report(self, progress: Progress, front: FrontDocument) -> None:
+        """Store the progress and the best front so far."""
+        self.front = front
+        self._store.report(self._stored.record.id, progress, front)
 
     def ended(self, front: FrontDocument) -> Record:
-        """The record, which ends now."""
-        why = self.why if self.why in (Cancelled, DeadlineExceeded) else None
-        return ended(self._kept.record, front, why, time.time() - self._kept.asked)
+        """Return the record, ended now with this front."""
+        reason = self.reason if self.reason in (Cancelled, DeadlineExceeded) else None
+        seconds = time.time() - self._stored.requested_at
+        return as_ended(self._stored.record, front, reason, seconds)
 
     def end(self) -> None:
-        """The work is over."""
+        """Check no longer: planning is over."""
         self._over.set()
         self._thread.join()
 
-    def _look(self) -> None:
-        while not self._over.wait(_EVERY):
-            self.why = self._reason()
-            if self.why is not None:
+    def _check_often(self) -> None:
+        while not self._over.wait(_CHECK_EVERY):
+            self.reason = self._current_reason()
+            if self.reason is not None:
                 self.stop.set()
                 if not self._over.wait(GRACE):
-                    self._insist()
+                    self._end_process()
 
-    def _reason(self) -> Reason | None:
+    def _current_reason(self) -> StopReason | type[TakenOver | Draining] | None:
         if time.monotonic() > self._deadline:
             return DeadlineExceeded
-        return Drained if self._draining() else self._ledger.reason(self._kept.record.id)
+        return Draining if self._is_draining() else self._store.stop_reason(self._stored.record.id)
 
-    def _insist(self) -> None:
-        if self.why is Drained:
-            self._ledger.hand_back(self._kept.record.id)
-        elif self.why is not TakenOver:
-            self._ledger.finish(self.ended(self.front))
+    def _end_process(self) -> None:
+        """Store what is known of the record and kill this process, which has not stopped."""
+        if self.reason is Draining:
+            self._store.hand_back(self._stored.record.id)
+        elif self.reason is not TakenOver:
+            self._store.finish(self.ended(self.front))
         os.kill(os.getpid(), signal.SIGKILL)
 
 
-def make_hand(
-    make_planner: MakePlanner, redis_url: str, seconds: float, draining: Draining
+def make_record_worker(
+    make_runner: MakeRunner, redis_url: str, seconds: float, is_draining: IsDraining
 ) -> RecordWorker:
-    """A hand of this process, with a name that no other has."""
-    worker = f"{gethostname()}:{os.getpid()}:{uuid.uuid4().hex}"
-    return RecordWorker(make_planner(), WorkerStore(redis_url, worker), seconds, draining)
+    """Return the worker of this process, with a unique name."""
+    name = f"{gethostname()}:{os.getpid()}:{uuid.uuid4().hex}"
+    return RecordWorker(make_runner(), WorkerStore(redis_url, name), seconds, is_draining)
 
 
-MakeHand = Callable[[Draining], RecordWorker]
+MakeRecordWorker = Callable[[IsDraining], RecordWorker]
 
 
 @dataclass(frozen=True, kw_only=True)
 class CeleryWorker:
-    """So many processes. Told to end, they finish within so many seconds or hand back."""
+    """A Celery worker with so many processes.
 
-    queue: Celery
-    make_hand: MakeHand
+    When it is told to shut down, its processes have `drain_seconds` to finish their records, and
+    then hand them back.
+    """
+
+    celery: Celery
+    make_record_worker: MakeRecordWorker
     workers: int
     drain_seconds: float
 
     def run(self) -> int:
-        """Work until told to end; the exit status."""
-        bench = _Bench(self.make_hand, self.drain_seconds)
-        self.queue.task(bench.plan, name=TASK)
-        worker_process_init.connect(bench.begin)
-        worker_shutting_down.connect(bench.end)
-        setup_logging.connect(_leave)
-        worker = self.queue.Worker(
+        """Plan records until told to shut down, and return the exit status."""
+        pool = _ProcessPool(self.make_record_worker, self.drain_seconds)
+        self.celery.task(pool.plan, name=TASK)
+        worker_process_init.connect(pool.init_process)
+        worker_shutting_down.connect(pool.shut_down)
+        setup_logging.connect(_keep_logging)
+        worker = self.celery.Worker(
             hostname=f"paretour@{gethostname()}-{os.getpid()}",
             pool="prefork",
             concurrency=self.workers,
@@ -188,36 +197,36 @@ class CeleryWorker:
         return int(worker.exitcode or 0)
 
 
-class _Bench:
-    """Where each process of the pool finds its hand, and all of them when to come to an end."""
+class _ProcessPool:
+    """Celery's callbacks: those in each forked process, and the one in their parent."""
 
-    def __init__(self, make_hand: MakeHand, drain_seconds: float) -> None:
-        self._make_hand = make_hand
+    def __init__(self, make_record_worker: MakeRecordWorker, drain_seconds: float) -> None:
+        self._make_record_worker = make_record_worker
         self._drain_seconds = drain_seconds
-        self._hand: RecordWorker | None = None
-        # Memory of all processes, without a lock that one of them could die with.
+        self._record_worker: RecordWorker | None = None
+        # Shared memory without a lock, which a process could die with.
         self._draining = RawValue(ctypes.c_bool, False)
 
-    def begin(self, **_: Any) -> None:
-        """In a process that was forked, which neither onnxruntime nor a connection survives."""
+    def init_process(self, **_: Any) -> None:
+        """Make the worker of a process after its fork, which no session or connection survives."""
         try:
-            self._hand = self._make_hand(lambda: self._draining.value)
-            self._hand.attend()
+            self._record_worker = self._make_record_worker(lambda: self._draining.value)
+            self._record_worker.start()
         except Exception:
             logging.getLogger("paretour").exception("a worker could not begin")
             raise SystemExit(1) from None
 
     def plan(self, id: str) -> None:  # noqa: A002
-        """Work on a record; a message that comes again is of a process that was lost."""
-        assert self._hand is not None
-        again = bool(current_task.request.delivery_info.get("redelivered"))
+        """Plan a record. If its message was delivered before, that worker was lost."""
+        assert self._record_worker is not None
+        redelivered = bool(current_task.request.delivery_info.get("redelivered"))
         try:
-            self._hand.work(id, known_lost=again)
-        except Drained:
+            self._record_worker.plan(id, known_lost=redelivered)
+        except Draining:
             raise Reject(requeue=True) from None
 
-    def end(self, **_: Any) -> None:
-        """In the process that was told to end."""
+    def shut_down(self, **_: Any) -> None:
+        """Begin to drain after `drain_seconds`, in the parent of the processes."""
         timer = Timer(self._drain_seconds, self._drain)
         timer.daemon = True
         timer.start()
@@ -226,5 +235,5 @@ class _Bench:
         self._draining.value = True
 
 
-def _leave(**_: Any) -> None:
-    """Logging stays as it is: whoever runs a crew has said how it is done."""
+def _keep_logging(**_: Any) -> None:
+    """Keep Celery from configuring logging, which the caller has done."""

@@ -1,4 +1,4 @@
-"""Redis as a worker reads and writes it, and whether this machine's worker takes work."""
+"""A worker's access to the records in Redis, and the check whether this machine takes work."""
 
 from contextlib import suppress
 from socket import gethostname
@@ -12,31 +12,32 @@ from redis.retry import Retry
 
 from service.cluster.celery_app import QUEUE
 from service.cluster.records import (
-    GONE,
     LEASE,
-    REASONS,
+    REASON_OF,
     SCRIPT,
+    TAKEN_OVER,
+    UNAVAILABLE,
     Argument,
     StoredRecord,
-    arguments,
-    kept_in,
     progress_arguments,
+    record_arguments,
+    stored_record,
 )
-from service.errors import Cancelled, DeadlineExceeded
-from service.jobs.messages import Snapshot
-from service.jobs.record import Record
+from service.jobs.front_document import FrontDocument
+from service.jobs.record import Record, StopReason
+from service.search.improve import Progress
 
-_SECONDS = 2.0  # that one answer of Redis may take
-_PATIENCE = 60.0  # seconds that Redis may be away without anything being lost
+_SECONDS = 2.0  # that one reply of Redis may take
+_PATIENCE = 60.0  # seconds for which a call is tried again while Redis is away
 _PAUSE = 0.1  # seconds between two tries
 
 
 class TakenOver(Exception):
-    """Another worker has the record now."""
+    """Another worker runs the record now."""
 
 
-def script_at(url: str) -> Script:
-    """What is done with records at this Redis, which is asked once."""
+def connect_script(url: str) -> Script:
+    """Return the script of records at this Redis. A call is not tried again."""
     redis = Redis.from_url(
         url, retry=Retry(NoBackoff(), 0), socket_timeout=_SECONDS, socket_keepalive=True
     )
@@ -44,74 +45,79 @@ def script_at(url: str) -> Script:
 
 
 class WorkerStore:
-    """One worker's side of the records. `worker` is its name, which no other has."""
+    """The records as one worker process sees them. `worker` is its name, which must be unique."""
 
     def __init__(self, url: str, worker: str) -> None:
         self._worker = worker
-        self._script = script_at(url)
+        self._script = connect_script(url)
 
-    def present(self) -> None:
-        """Say that this worker is there; nothing, if Redis does not answer."""
-        self._try("present", self._worker)
+    def send_heartbeat(self) -> None:
+        """Register this worker as alive, if Redis answers."""
+        self._call_once("present", self._worker)
 
     def begin(self, id: str, known_lost: bool) -> StoredRecord | None:  # noqa: A002
-        """The record to work on; none where there is nothing to do, or another worker is at it.
+        """Take a record for this worker and return it.
 
-        It may be known that whoever was at it is lost.
+        Returns None where the record is finished, or another worker runs it, unless that is known
+        to be lost.
         """
         known = "lost" if known_lost else ""
-        hashes = self._do("begin", id, self._worker, LEASE, known)
-        return kept_in(*hashes) if hashes else None
+        hashes = self._call_until_answered("begin", id, self._worker, LEASE, known)
+        return stored_record(*hashes) if hashes else None
 
-    def reason(self, id: str) -> type[Cancelled | DeadlineExceeded | TakenOver] | None:  # noqa: A002
-        """Why the work on a record is to stop, if it is; and this worker is still at it."""
-        said = self._try("seen", id, self._worker)
-        return TakenOver if said == b"taken" else REASONS.get(said)
+    def stop_reason(self, id: str) -> StopReason | type[TakenOver] | None:  # noqa: A002
+        """Renew the lease of a record, and return why it is to be stopped, if it is."""
+        reason = self._call_once("seen", id, self._worker)
+        return TakenOver if reason == TAKEN_OVER else REASON_OF.get(reason)
 
-    def tell(self, id: str, snapshot: Snapshot) -> None:  # noqa: A002
-        """Keep how far the work has come; nothing, if Redis does not answer."""
-        self._try("progress", id, self._worker, *progress_arguments(snapshot))
+    def report(self, id: str, progress: Progress, front: FrontDocument) -> None:  # noqa: A002
+        """Store the progress of a record and its best front so far, if Redis answers."""
+        self._call_once("progress", id, self._worker, *progress_arguments(progress, front))
 
     def finish(self, record: Record) -> None:
-        """Keep what became of a record, unless something has already."""
-        self._do("finish", record.id, *arguments(record))
+        """Store a finished record, unless it was finished before."""
+        self._call_until_answered("finish", record.id, *record_arguments(record))
 
     def hand_back(self, id: str) -> None:  # noqa: A002
-        """Leave a record to another worker."""
-        self._do("hand_back", id, self._worker)
+        """Queue a record again, for another worker."""
+        self._call_until_answered("hand_back", id, self._worker)
 
-    def _do(self, verb: str, *about: Argument) -> Any:
+    def _call_until_answered(self, verb: str, *arguments: Argument) -> Any:
         deadline = monotonic() + _PATIENCE
         while True:
             try:
-                return self._call(verb, *about)
-            except GONE:
+                return self._call(verb, *arguments)
+            except UNAVAILABLE:
                 if monotonic() > deadline:
                     raise
                 sleep(_PAUSE)
 
-    def _try(self, verb: str, *about: Argument) -> Any:
-        with suppress(*GONE):
-            return self._call(verb, *about)
+    def _call_once(self, verb: str, *arguments: Argument) -> Any:
+        with suppress(*UNAVAILABLE):
+            return self._call(verb, *arguments)
 
-    def _call(self, verb: str, *about: Argument) -> Any:
-        return self._script(args=[verb, time(), *about])
+    def _call(self, verb: str, *arguments: Argument) -> Any:
+        return self._script(args=[verb, time(), *arguments])
 
 
-_LOST_AFTER = LEASE + 1  # until a process that was lost counts as one no more
-_LOOK_EVERY = 0.25  # seconds between two looks
+_LOST_AFTER = LEASE + 1  # seconds until a lost process is no longer counted
+_CHECK_EVERY = 0.25  # seconds between two checks
 
 
 def takes_work(redis_url: str) -> bool:
-    """Whether it does, or would: where Redis does not answer, that is no fault of the worker."""
-    look = script_at(redis_url)
+    """Return whether this machine's workers take waiting messages.
+
+    They do where none waits, or where a process was idle and is not any more within a few seconds.
+    Where Redis does not answer it is True, as the worker is not at fault.
+    """
+    script = connect_script(redis_url)
     deadline = monotonic() + _LOST_AFTER
     try:
-        here, waiting, idle = look(args=["idle", time(), gethostname(), QUEUE])
-        while here and waiting and idle and monotonic() < deadline:
-            sleep(_LOOK_EVERY)
-            here, waiting, still = look(args=["idle", time(), gethostname(), QUEUE])
+        workers, waiting, idle = script(args=["idle", time(), gethostname(), QUEUE])
+        while workers and waiting and idle and monotonic() < deadline:
+            sleep(_CHECK_EVERY)
+            workers, waiting, still = script(args=["idle", time(), gethostname(), QUEUE])
             idle = set(idle).intersection(still)
-    except GONE:
+    except UNAVAILABLE:
         return True
-    return bool(here) and not (waiting and idle)
+    return bool(workers) and not (waiting and idle)

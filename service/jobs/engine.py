@@ -1,25 +1,25 @@
-"""What has fronts planned, in this process's workers or on many machines: one interface to both."""
+"""The interface of engines, which run jobs: in this process's workers, or on many machines."""
 
 from asyncio import Future
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from typing import Protocol
 
-from service.jobs.messages import Snapshot
 from service.jobs.record import Record
+from service.search.improve import Progress
 
 
 @dataclass(frozen=True, eq=False)
 class JobState:
-    """How a record stands as of now, and how far a search that goes on has come."""
+    """A record with its status and front as of now, and the progress of its search, if it runs."""
 
     record: Record
-    progress: Snapshot | None = None
+    progress: Progress | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class EngineStats:
-    """How many fronts wait, how many are being planned, and how many workers were replaced."""
+    """Numbers of tasks waiting and running, and of workers lost and replaced."""
 
     waiting: int
     working: int
@@ -27,74 +27,57 @@ class EngineStats:
 
 
 class Engine(Protocol):
-    """Does the work of records, and keeps what comes of it in their store."""
+    """Runs jobs and stores their records."""
 
     async def start(self) -> None:
-        """Begin, with what was left unfinished."""
+        """Start the workers or listeners, and resume unfinished jobs."""
 
     async def close(self) -> None:
-        """Take no more work, and leave unfinished what is."""
+        """Take no more jobs. Unfinished ones stay in the store."""
 
-    async def standing(self) -> EngineStats:
-        """How it is, for whoever watches."""
+    async def stats(self) -> EngineStats:
+        """Return the numbers for the metrics."""
 
     async def check_open(self) -> None:
-        """Nothing, if work is taken.
-
-        Raises:
-            ShuttingDown: no more work is taken.
-        """
+        """Raise ShuttingDown when no more jobs are taken."""
 
     async def check_place(self) -> None:
-        """Nothing, if there is a place for one more front.
-
-        Raises:
-            QueueFull: there is none.
-        """
+        """Raise QueueFull when no place is left for one more job."""
 
     async def check_warm(self) -> None:
-        """Nothing, if work may need compiled code.
-
-        Raises:
-            WarmingUp: it is not there yet.
-        """
+        """Raise WarmingUp until the search is compiled."""
 
     async def check_ready(self) -> None:
-        """Nothing, if work of every kind is taken.
+        """Raise ShuttingDown or WarmingUp when some task would be refused at the moment."""
+
+    async def run(self, record: Record, disconnected: Future[None]) -> Record:
+        """Run a new job while its client waits; when that disconnects, cancel it.
 
         Raises:
-            ShuttingDown: no more work is taken.
-            WarmingUp: not yet, or not at the moment.
+            QueueFull: No place is left.
+            ShuttingDown: No more jobs are taken.
         """
 
-    async def run(self, record: Record, left: Future[None]) -> Record:
-        """What becomes of work that somebody waits for, until he has left.
+    async def submit(self, record: Record) -> None:
+        """Begin a job that is in the store, and return at once.
 
         Raises:
-            QueueFull: the queue is full.
-            ShuttingDown: no more work is taken.
-        """
-
-    async def begin(self, record: Record) -> None:
-        """Begin the work of a record that is in the store, whoever waits.
-
-        Raises:
-            QueueFull: the queue is full.
-            ShuttingDown: no more work is taken.
+            QueueFull: No place is left.
+            ShuttingDown: No more jobs are taken.
         """
 
     def state(self, record: Record) -> JobState:
-        """How a record from the store stands."""
+        """Return the present state of a job, given its record in the store."""
 
     def watch(self, record: Record) -> AsyncIterator[JobState]:
-        """How it stands now, and after each change, until it is finished."""
+        """Yield the state of a job now and after each change, until it is finished."""
 
     async def cancel(self, record: Record) -> Record:
-        """End the work of a record at once; what was found so far is kept."""
+        """End a job at once, with what was found so far, and return its final record."""
 
 
-async def finished(engine: Engine, record: Record) -> Record:
-    """What becomes of a record in the end."""
+async def final_record(engine: Engine, record: Record) -> Record:
+    """Wait until a job is finished and return its record."""
     async for state in engine.watch(record):
         record = state.record
     return record

@@ -1,117 +1,181 @@
-"""A front in the form in which it travels and is kept: JSON, written once, where it was found."""
+"""A front as JSON: the one form in which it travels between processes, is stored and answered.
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any
+To add a member to the answer, add a field to `FrontDocument` and fill it in `encode_front` and
+`empty_front`. Stores, engines and routes pass all members on by themselves. A field that is not in
+the documents stored by earlier releases needs a default.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
 
 import numpy as np
 from pydantic_core import to_json
 
+from service.coverage.survey import CoveragePath
 from service.instance import Instance
-from service.planner import Front, Interim
+from service.planner import Front
 from service.requests.task import Task
+from service.search.improve import Termination
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
+class Timings:
+    """Milliseconds of each phase of planning, and from the request to its end, once it has ended.
+
+    Their JSON form is one object: the time in the queue, the phases, the total.
+    """
+
+    phases: Mapping[str, float]
+    total: float | None = None
+
+    @classmethod
+    def from_json(cls, members: Mapping[str, float]) -> Self:
+        """Return the timings of a parsed JSON object."""
+        phases = {name: ms for name, ms in members.items() if name not in ("queue", "total")}
+        return cls(phases, members.get("total"))
+
+    def as_json(self) -> dict[str, float]:
+        """Return the members of the JSON object."""
+        if self.total is None:
+            return dict(self.phases)
+        queue = self.total - sum(self.phases.values())
+        return {"queue": queue, **self.phases, "total": self.total}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FrontDocument:
     """A front of m tours as JSON.
 
-    `members` are all the members of the answer but the tours. `tours` is the inside of the array
-    of these. Where each tour ends in it, and its direction in degrees, are numbers of 8 bytes, in
-    the form in which they travel and are kept. `gained` is for whoever watches the service.
+    All fields but the last four are members of the answer, in this order. A member whose default
+    is None is left out while it is None.
+
+    Attributes:
+        reference_point: One number for each objective; None while the places are not known.
+        scale: The same.
+        actor: Name and digest of the network.
+        places: Row and column of each place of a coverage task.
+        tours: The JSON of all tours, with commas between, without brackets.
+        ends: Where each tour ends in `tours`, as m native integers of 8 bytes.
+        angles: The direction of each tour in degrees, as m native floats of 8 bytes.
+        gained: The hypervolume that the search added, for the metrics.
     """
 
-    members: dict[str, Any]
-    tours: bytes
-    ends: bytes
-    angles: bytes
+    cities: int
+    points: int
+    hypervolume: float
+    hypervolume_bound: float | None
+    reference_point: list[float] | None
+    scale: list[float] | None
+    timings_ms: Timings
+    terminated: Termination | None
+    actor: Mapping[str, str]
+    places: list[list[int]] | None = None
+    tours: bytes = b""
+    ends: bytes = b""
+    angles: bytes = b""
     gained: float | None = None
 
+    @classmethod
+    def from_members(cls, members: Mapping[str, Any], **encoded: Any) -> Self:
+        """Return the document of parsed members, with the other fields as given.
+
+        Members that this release does not know are dropped.
+        """
+        known = {name: members[name] for name in _MEMBERS if name in members}
+        timings = Timings.from_json(known.pop("timings_ms"))
+        return cls(**known, timings_ms=timings, **encoded)
+
+    def members(self) -> dict[str, Any]:
+        """Return the members of the answer but the tours, ready for JSON."""
+        values = {name: getattr(self, name) for name in _MEMBERS}
+        given = {k: v for k, v in values.items() if v is not None or k not in _OPTIONAL}
+        return {**given, "timings_ms": self.timings_ms.as_json()}
+
+    def json(self, **more: Any) -> bytes:
+        """Return the answer as JSON, beginning with these other members."""
+        members = to_json({**more, **self.members()})
+        return b"".join((members[:-1], b',"front":[', self.tours, b"]}"))
+
     def nearest(self, angle: float) -> bytes:
-        """The tour whose direction is nearest to the angle in degrees, as a JSON object."""
+        """Return the tour whose direction is nearest to the angle in degrees, as JSON."""
         index = int(np.abs(np.frombuffer(self.angles) - angle).argmin())
         ends = np.frombuffer(self.ends, np.int64)
         begin = int(ends[index - 1]) + 1 if index else 0
         return self.tours[begin : int(ends[index])]
 
-    def json(self, **more: Any) -> bytes:
-        """The answer, which begins with these other members."""
-        members = to_json({**more, **self.members})
-        return b"".join((members[:-1], b',"front":[', self.tours, b"]}"))
+    def ended(self, seconds: float, *, late: bool) -> Self:
+        """Return the front as it ended, so many seconds after the request.
+
+        Args:
+            seconds: From the request to the end.
+            late: Whether planning was ended because it took too long.
+        """
+        terminated = self.terminated
+        if terminated in (None, "cancelled"):
+            terminated = "time_limit" if late else "cancelled"
+        timings = replace(self.timings_ms, total=1000 * seconds)
+        return replace(self, timings_ms=timings, terminated=terminated)
 
 
-def rendered(
-    front: Front, each: Iterable[Mapping[str, Any]] | None = None, **more: Any
+_ENCODED = ("tours", "ends", "angles", "gained")
+_MEMBER_FIELDS = [field for field in fields(FrontDocument) if field.name not in _ENCODED]
+_MEMBERS = tuple(field.name for field in _MEMBER_FIELDS)
+_OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
+
+
+def encode_front(
+    front: Front,
+    actor: Mapping[str, str],
+    places: list[list[int]] | None = None,
+    paths: Iterable[CoveragePath] | None = None,
 ) -> FrontDocument:
-    """A front as JSON, with other members, of each tour and of the whole."""
-    members = {
-        "cities": front.n,
-        "points": front.found,
-        "hypervolume": front.hypervolume,
-        "hypervolume_bound": front.bound,
-        "reference_point": front.reference_point.tolist(),
-        "scale": front.scale.tolist(),
-        "timings_ms": front.timings,
-        "terminated": front.terminated,
-        **more,
-    }
+    """Write a front as JSON, with the path of each tour where paths are given."""
     rows = zip(front.angles.tolist(), front.points.tolist(), front.tours.tolist(), strict=True)
-    each = each or ({} for _ in front.points)
-    tours = [
-        to_json({"angle": a, "lengths": f, "tour": tour, **others})
-        for (a, f, tour), others in zip(rows, each, strict=True)
-    ]
-    ends = np.cumsum([len(tour) + 1 for tour in tours], dtype=np.int64) - 1
-    angles = front.angles.tobytes()
-    return FrontDocument(members, b",".join(tours), ends.tobytes(), angles, front.gained)
-
-
-def empty(**more: Any) -> FrontDocument:
-    """A front of which nothing has been found, with other members."""
-    members = {
-        "points": 0,
-        "hypervolume": 0.0,
-        "hypervolume_bound": None,
-        "timings_ms": {},
-        "terminated": None,
-        **more,
-    }
-    return FrontDocument(members, b"", b"", b"")
-
-
-@dataclass(frozen=True, eq=False)
-class Sketch:
-    """How far a search has come. `front` writes the best so many tours found so far."""
-
-    seconds: float
-    hypervolume: float
-    points: int
-    front: Callable[[int], FrontDocument]
-
-
-def sketched(interim: Interim, **more: Any) -> Sketch:
-    """What a search reports, of which the front is written, with other members, if it is asked."""
-    return Sketch(
-        interim.seconds,
-        interim.hypervolume,
-        interim.points,
-        lambda size: rendered(interim.front(size), **more),
+    tours = [{"angle": a, "lengths": lengths, "tour": tour} for a, lengths, tour in rows]
+    if paths is not None:
+        for tour, path in zip(tours, paths, strict=True):
+            tour["path"] = {"cells": path.cells.tolist(), "metres": path.metres}
+    encoded = [to_json(tour) for tour in tours]
+    ends = np.cumsum([len(tour) + 1 for tour in encoded], dtype=np.int64) - 1
+    return FrontDocument(
+        cities=front.n,
+        points=front.found,
+        hypervolume=front.hypervolume,
+        hypervolume_bound=front.bound,
+        reference_point=front.reference_point.tolist(),
+        scale=front.scale.tolist(),
+        timings_ms=Timings(front.timings),
+        terminated=front.terminated,
+        actor=actor,
+        places=places,
+        tours=b",".join(encoded),
+        ends=ends.tobytes(),
+        angles=front.angles.tobytes(),
+        gained=front.gained,
     )
 
 
-def nothing_yet(task: Task, actor: Mapping[str, str]) -> FrontDocument:
-    """The front before anything is found."""
+def empty_front(task: Task, actor: Mapping[str, str]) -> FrontDocument:
+    """Return the document of a task of which nothing has been found yet."""
     subject, reference_point = task.subject, task.demand.reference_point
     if isinstance(subject, Instance):
+        cities, scale, places = subject.n, subject.scale.tolist(), None
         if reference_point is None:
             reference_point = subject.n * subject.scale
-        known = {"cities": subject.n, "scale": subject.scale.tolist()}
     else:
-        # What the places cost, and with a spacing which they are, is for a worker to find.
+        # A worker finds out what the places cost, and with a spacing where they are.
         places = [] if subject.places is None else subject.places.tolist()
-        known = {"cities": len(places), "scale": None, "places": places}
-    return empty(
-        **known,
+        cities, scale = len(places), None
+    return FrontDocument(
+        cities=cities,
+        points=0,
+        hypervolume=0.0,
+        hypervolume_bound=None,
         reference_point=None if reference_point is None else reference_point.tolist(),
+        scale=scale,
+        timings_ms=Timings({}),
+        terminated=None,
         actor=actor,
+        places=places,
     )

@@ -1,4 +1,4 @@
-"""Work that outlives the request that asked for it, on the workers of this process."""
+"""The engine of a single machine: jobs run in the worker processes of this service."""
 
 import asyncio
 from asyncio import Future
@@ -6,56 +6,55 @@ from collections.abc import AsyncIterator, Coroutine
 from dataclasses import replace
 
 from service.errors import Cancelled, Expired, NotFound, QueueFull, ShuttingDown, WarmingUp
-from service.jobs.engine import EngineStats, JobState, finished
-from service.jobs.record import Record, Status, cancelled, done, failed
+from service.jobs.engine import EngineStats, JobState, final_record
+from service.jobs.record import Record, Status, as_cancelled, as_failed, as_finished
 from service.jobs.store import Store
 from service.jobs.submission import Submission
 from service.jobs.worker_pool import WorkerPool
 
-_PAUSE = 0.5  # seconds between two tries to take up the work of an earlier process
+_PAUSE = 0.5  # seconds between two tries to resume the job of an earlier process
 
 
 class _Job:
-    """A record that is worked on, and whoever waits for it to change."""
+    """A record with its submission, and an event for those who watch it."""
 
     def __init__(self, record: Record, workers: WorkerPool) -> None:
-        assert record.work is not None
+        assert record.source is not None
         self._record = record
         self._changed = asyncio.Event()
         self.ended = False
-        self.order: Submission = workers.order(record.work, self._tell, patient=True)
+        self.submission: Submission = workers.submit(record.source, self._notify, patient=True)
 
     @property
     def state(self) -> JobState:
-        """How it stands."""
+        """The present state."""
         if self._record.finished:
             return JobState(self._record)
-        snapshot = self.order.snapshot
-        status: Status = "running" if self.order.attempts else "queued"
-        front = snapshot.front if snapshot else self._record.front
-        return JobState(replace(self._record, status=status, front=front), snapshot)
+        status: Status = "running" if self.submission.attempts else "queued"
+        front = self.submission.best_front or self._record.front
+        return JobState(replace(self._record, status=status, front=front), self.submission.progress)
 
     @property
     def changed(self) -> asyncio.Event:
-        """What is set once it stands differently from now."""
+        """An event that is set at the next change."""
         return self._changed
 
     def end(self, record: Record) -> None:
-        """This is what became of it."""
+        """Take the final record."""
         self._record = record
         self.ended = True
-        self._tell()
+        self._notify()
 
-    def _tell(self) -> None:
-        told, self._changed = self._changed, asyncio.Event()
-        told.set()
+    def _notify(self) -> None:
+        changed, self._changed = self._changed, asyncio.Event()
+        changed.set()
 
 
 class LocalEngine:
-    """Does the work of records, and keeps what comes of it in the store.
+    """Runs jobs in a pool of worker processes.
 
-    What is unfinished when the service ends stays in the store, and is begun again by the next
-    service that has that store.
+    Jobs that are unfinished when the service ends stay in the store; the next service with that
+    store resumes them.
     """
 
     def __init__(self, workers: WorkerPool, store: Store) -> None:
@@ -65,87 +64,87 @@ class LocalEngine:
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def start(self) -> None:
-        """Start the workers, and take up what an earlier process has left unfinished."""
+        """Start the workers, and resume the jobs that an earlier process left unfinished."""
         await self._workers.start()
         if unfinished := await self._store.unfinished():
             self._spawn(self._resume(unfinished))
 
     async def close(self) -> None:
-        """Close the workers, and leave the work where it is."""
+        """Close the workers. Unfinished jobs stay in the store."""
         await self._workers.close()
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
-    async def standing(self) -> EngineStats:
-        """How it is, for whoever watches."""
+    async def stats(self) -> EngineStats:
+        """Return the numbers for the metrics."""
         workers = self._workers
         return EngineStats(waiting=workers.waiting, working=workers.working, lost=workers.lost)
 
     async def check_open(self) -> None:
-        """Nothing, if work is taken."""
+        """Raise ShuttingDown when no more jobs are taken."""
         self._workers.check_open()
 
     async def check_place(self) -> None:
-        """Nothing, if there is a place for one more front."""
+        """Raise QueueFull when no place is left for one more job."""
         self._workers.check_place()
 
     async def check_warm(self) -> None:
-        """Nothing, if work may need compiled code."""
+        """Raise WarmingUp until the search is compiled."""
         self._workers.check_warm()
 
     async def check_ready(self) -> None:
-        """Nothing, if work of every kind is taken."""
+        """Raise ShuttingDown or WarmingUp when some task would be refused at the moment."""
         self._workers.check_ready()
 
-    async def run(self, record: Record, left: Future[None]) -> Record:
-        """What becomes of work that somebody waits for, until he has left."""
-        assert record.work is not None
-        order = self._workers.order(record.work)
+    async def run(self, record: Record, disconnected: Future[None]) -> Record:
+        """Run a new job while its client waits; when that disconnects, cancel it."""
+        assert record.source is not None
+        submission = self._workers.submit(record.source)
         try:
-            await order.ended_or(left)
+            await submission.wait(disconnected)
         finally:
-            self._workers.stop(order)
-        record = replace(record, status="done", front=await order.front(), work=None)
+            self._workers.stop(submission)
+        record = replace(record, status="done", front=await submission.front(), source=None)
         await self._store.put(record)
         return record
 
-    async def begin(self, record: Record) -> None:
-        """Begin the work of a record that is in the store, whoever waits."""
+    async def submit(self, record: Record) -> None:
+        """Begin a job that is in the store, and return at once."""
         job = self._jobs[record.id] = _Job(record, self._workers)
-        self._spawn(self._see_through(record, job))
+        self._spawn(self._store_result(record, job))
 
     def state(self, record: Record) -> JobState:
-        """How a record from the store stands."""
+        """Return the present state of a job, given its record in the store."""
         job = self._jobs.get(record.id)
         return job.state if job else JobState(record)
 
     async def watch(self, record: Record) -> AsyncIterator[JobState]:
-        """How it stands now, and after each change, until it is finished."""
+        """Yield the state of a job now and after each change, until it is finished."""
         job = self._jobs.get(record.id)
         while job is not None and not job.ended:
             changed = job.changed
             yield job.state
             await changed.wait()
-        yield job.state if job else JobState(await self._latest(record))
+        yield job.state if job else JobState(await self._stored(record))
 
     async def cancel(self, record: Record) -> Record:
-        """End the work of a record at once; what was found so far is kept."""
+        """End a job at once, with what was found so far, and return its final record."""
         if job := self._jobs.get(record.id):
-            self._workers.stop(job.order)
-        return await finished(self, record)
+            self._workers.stop(job.submission)
+        return await final_record(self, record)
 
-    async def _latest(self, record: Record) -> Record:
-        """As it is in the store; once it is forgotten, as if it had been cancelled."""
+    async def _stored(self, record: Record) -> Record:
+        """Return the record in the store; if it was deleted there, a cancelled one."""
         if record.finished:
             return record
         try:
             return await self._store.get(record.caller, record.id)
         except (NotFound, Expired):
-            return cancelled(record)
+            return as_cancelled(record)
 
-    def _spawn(self, work: Coroutine[None, None, None]) -> None:
-        task = asyncio.create_task(work)
+    def _spawn(self, coroutine: Coroutine[None, None, None]) -> None:
+        task = asyncio.create_task(coroutine)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
@@ -154,14 +153,14 @@ class LocalEngine:
             while True:
                 try:
                     self._workers.check_warm()
-                    await self.begin(record)
+                    await self.submit(record)
                     break
                 except (QueueFull, WarmingUp):
                     await asyncio.sleep(_PAUSE)
 
-    async def _see_through(self, record: Record, job: _Job) -> None:
+    async def _store_result(self, record: Record, job: _Job) -> None:
         try:
-            ended = await self._ended(record, job.order)
+            ended = await self._result(record, job.submission)
             await self._store.put(ended)
             job.end(ended)
         except ShuttingDown:
@@ -169,12 +168,12 @@ class LocalEngine:
         finally:
             del self._jobs[record.id]
 
-    async def _ended(self, record: Record, order: Submission) -> Record:
+    async def _result(self, record: Record, submission: Submission) -> Record:
         try:
-            return done(record, await order.front(), order.stopped)
+            return as_finished(record, await submission.front(), submission.stop_reason)
         except Cancelled:
-            return cancelled(record)
+            return as_cancelled(record)
         except ShuttingDown:
             raise
         except Exception as error:
-            return failed(record, error, order.snapshot.front if order.snapshot else record.front)
+            return as_failed(record, error, submission.best_front or record.front)

@@ -1,4 +1,4 @@
-"""What the service and its worker processes say to one another, over a socket each."""
+"""Messages between the service and its worker processes: pickled, over one socket each."""
 
 import pickle
 import struct
@@ -8,37 +8,28 @@ from socket import socket
 from typing import Any
 
 from service.jobs.front_document import FrontDocument
-from service.requests.task import Task, Work
+from service.requests.task import Task, TaskSource
+from service.search.improve import Progress
 
 _LENGTH = struct.Struct("!Q")
 
 
-@dataclass(frozen=True, eq=False)
-class Snapshot:
-    """How far work has come, and the best front so far."""
-
-    seconds: float
-    hypervolume: float
-    points: int
-    front: FrontDocument
-
-
 @dataclass(frozen=True)
 class WarmUp:
-    """To a worker: compile the search, or load it."""
+    """To a worker: compile the search, or load it from the cache."""
 
 
 @dataclass(frozen=True)
 class Do:
-    """To a worker that is idle: do this."""
+    """To an idle worker: run this task."""
 
     number: int
-    work: Work | Task
+    task: TaskSource | Task
 
 
 @dataclass(frozen=True)
 class Stop:
-    """To a worker: come to an end with this, if it is still at it."""
+    """To a worker: end the task of this number, if it is still running."""
 
     number: int
 
@@ -50,20 +41,21 @@ class Started:
 
 @dataclass(frozen=True)
 class Warm:
-    """From a worker: the search is there as well."""
+    """From a worker: the search is compiled."""
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """From a worker: the work goes on, and this was found so far."""
+    """From a worker: the progress of a task that goes on, and its best front so far."""
 
     number: int
-    snapshot: Snapshot
+    progress: Progress
+    front: FrontDocument
 
 
 @dataclass(frozen=True, eq=False)
 class Done:
-    """From a worker: the work is done."""
+    """From a worker: the task is done."""
 
     number: int
     front: FrontDocument
@@ -71,45 +63,45 @@ class Done:
 
 @dataclass(frozen=True, eq=False)
 class Failed:
-    """From a worker: the work was not possible. The error's own traceback is a note to it."""
+    """From a worker: the task raised this error, which has its traceback as a note."""
 
     number: int
     error: Exception
 
 
-def packed(message: object) -> bytes:
-    """A message as bytes, its length first."""
+def encode(message: object) -> bytes:
+    """Return a message as bytes, its length first."""
     content = pickle.dumps(message, pickle.HIGHEST_PROTOCOL)
     return _LENGTH.pack(len(content)) + content
 
 
-async def received(stream: StreamReader) -> Any:
-    """The next message.
+async def receive(stream: StreamReader) -> Any:
+    """Return the next message.
 
     Raises:
-        EOFError: whoever sent is gone.
-        OSError: likewise.
+        EOFError: The sender is gone.
+        OSError: Likewise.
     """
     (length,) = _LENGTH.unpack(await stream.readexactly(_LENGTH.size))
     return pickle.loads(await stream.readexactly(length))
 
 
-def received_now(connection: socket) -> Any:
-    """The next message, for which the caller waits. Nothing that comes after it is read.
+def receive_blocking(connection: socket) -> Any:
+    """Wait for the next message and return it. No byte beyond it is read.
 
     Raises:
-        EOFError: whoever sent is gone.
-        OSError: likewise.
+        EOFError: The sender is gone.
+        OSError: Likewise.
     """
-    (length,) = _LENGTH.unpack(_exactly(connection, _LENGTH.size))
-    return pickle.loads(_exactly(connection, length))
+    (length,) = _LENGTH.unpack(_receive_exactly(connection, _LENGTH.size))
+    return pickle.loads(_receive_exactly(connection, length))
 
 
-def _exactly(connection: socket, size: int) -> bytearray:
+def _receive_exactly(connection: socket, size: int) -> bytearray:
     content = bytearray()
     while len(content) < size:
-        more = connection.recv(size - len(content))
-        if not more:
+        chunk = connection.recv(size - len(content))
+        if not chunk:
             raise EOFError
-        content += more
+        content += chunk
     return content

@@ -1,4 +1,4 @@
-"""A front under an id, from the moment it is asked for, and how it ends."""
+"""The record of a job: the front of one request under its id, from queued to finished."""
 
 import logging
 from dataclasses import dataclass, replace
@@ -6,18 +6,27 @@ from typing import Any, Literal
 
 from service.errors import Cancelled, DeadlineExceeded, Refusal
 from service.jobs.front_document import FrontDocument
-from service.requests.task import Work
+from service.requests.task import TaskSource
 
 Status = Literal["queued", "running", "done", "cancelled", "failed"]
 UNFINISHED: tuple[Status, ...] = ("queued", "running")
+StopReason = type[Cancelled | DeadlineExceeded]
+
+_LOG = logging.getLogger("paretour")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Record:
-    """Whose front it is, how it stands, and what was found so far.
+    """A job as it is stored and answered.
 
-    The work is kept for as long as it is not finished. Where the caller gave an idempotency key,
-    the digest tells one body from another. A failed one has a problem document.
+    Attributes:
+        caller: The name of the API key, which alone may see the record.
+        request_id: Of the request that submitted the job; it is named in the problem document.
+        front: The best front found so far.
+        source: What the task is parsed from; None once the job is finished.
+        key: The Idempotency-Key, if the request had one.
+        digest: SHA-256 of the body, which tells a repeat from a key used twice.
+        problem: The problem document of a job that failed.
     """
 
     id: str
@@ -25,77 +34,53 @@ class Record:
     request_id: str
     status: Status
     front: FrontDocument
-    work: Work | None = None
+    source: TaskSource | None = None
     key: str | None = None
     digest: str = ""
     problem: dict[str, Any] | None = None
 
     @property
     def finished(self) -> bool:
-        """Whether nothing about it will change."""
+        """Whether the job is done, cancelled or failed, and will not change again."""
         return self.status not in UNFINISHED
 
     def json(self) -> bytes:
-        """A FrontAnswer."""
+        """Return the JSON of a FrontAnswer."""
         more = {"problem": self.problem} if self.problem else {}
         return self.front.json(id=self.id, status=self.status, **more)
 
 
-def as_ended(front: FrontDocument, seconds: float, late: bool) -> FrontDocument:
-    """A front that took so long from when it was asked for, and may have been ended for that."""
-    total = 1000 * seconds
-    phases = front.members["timings_ms"]
-    timings = {"queue": total - sum(phases.values()), **phases, "total": total}
-    members = {**front.members, "timings_ms": timings}
-    if front.members["terminated"] in (None, "cancelled"):
-        members["terminated"] = "time_limit" if late else "cancelled"
-    return replace(front, members=members)
-
-
-def as_planned(front: FrontDocument) -> FrontDocument:
-    """A front that has ended, with the times of planning alone."""
-    timings = {**front.members["timings_ms"]}
-    del timings["queue"], timings["total"]
-    return replace(front, members={**front.members, "timings_ms": timings})
-
-
-_LOG = logging.getLogger("paretour")
-
-
-def done(
-    record: Record, front: FrontDocument, stopped: type[Cancelled | DeadlineExceeded] | None
+def as_ended(
+    record: Record, front: FrontDocument, reason: StopReason | None, seconds: float
 ) -> Record:
-    """It ended with a front, perhaps because it was stopped."""
-    status: Status = "cancelled" if stopped is Cancelled else "done"
-    return replace(record, status=status, front=front, work=None)
+    """Return the record of a job that ended with this front, which may have no tour.
 
-
-def cancelled(record: Record) -> Record:
-    """It was stopped before there was a front."""
-    members = {**record.front.members, "terminated": "cancelled"}
-    return done(record, replace(record.front, members=members), Cancelled)
-
-
-def ended(
-    record: Record,
-    front: FrontDocument,
-    why: type[Cancelled | DeadlineExceeded] | None,
-    seconds: float,
-) -> Record:
-    """It ended so long after it was asked for, with a front if any tour is in that."""
+    Args:
+        record: The record of the job.
+        front: The best front found.
+        reason: The reason for which the job was stopped; None where it ended by itself.
+        seconds: From the request to the end.
+    """
+    late = reason is DeadlineExceeded
     if front.tours:
-        return done(record, as_ended(front, seconds, late=why is DeadlineExceeded), why)
-    return (
-        failed(record, DeadlineExceeded(), front) if why is DeadlineExceeded else cancelled(record)
-    )
+        return as_finished(record, front.ended(seconds, late=late), reason)
+    return as_failed(record, DeadlineExceeded(), front) if late else as_cancelled(record)
 
 
-def failed(record: Record, error: Exception, front: FrontDocument) -> Record:
-    """It ended with an error, and with the best front so far."""
+def as_finished(record: Record, front: FrontDocument, reason: StopReason | None) -> Record:
+    """Return the record with its final front: cancelled for that reason, else done."""
+    status: Status = "cancelled" if reason is Cancelled else "done"
+    return replace(record, status=status, front=front, source=None)
+
+
+def as_cancelled(record: Record) -> Record:
+    """Return the record of a job that was cancelled with the front that it has."""
+    return as_finished(record, replace(record.front, terminated="cancelled"), Cancelled)
+
+
+def as_failed(record: Record, error: Exception, front: FrontDocument) -> Record:
+    """Log the error, and return the record with its problem document and the best front so far."""
     _LOG.warning("front %s failed", record.id, exc_info=error)
-    problem = _refusal_of(error).document(record.request_id)
-    return replace(record, status="failed", front=front, problem=problem, work=None)
-
-
-def _refusal_of(error: Exception) -> Refusal:
-    return error if isinstance(error, Refusal) else Refusal("internal-error")
+    refusal = error if isinstance(error, Refusal) else Refusal("internal-error")
+    problem = refusal.document(record.request_id)
+    return replace(record, status="failed", front=front, problem=problem, source=None)

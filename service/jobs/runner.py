@@ -1,96 +1,142 @@
-"""What a worker process does with a task: a front as JSON."""
+"""Run a task in a worker process: from its source to the JSON of its front."""
 
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 from service.actor import ActorInfo, load_actors
 from service.coverage import shortest_paths
 from service.coverage.survey import Coverage, survey
-from service.jobs.front_document import FrontDocument, Sketch, rendered, sketched
-from service.planner import Constructor, Report, plan
+from service.instance import Instance
+from service.jobs.front_document import FrontDocument, encode_front
+from service.planner import Constructor, Front, plan
 from service.requests.limits import Limits
-from service.requests.task import Task, Work, read
+from service.requests.task import Task, TaskSource, parse_task
 from service.search import improve
+from service.search.improve import Progress
+
+REPORT_TOURS = 100  # at most in a reported front
+REPORT_SECONDS = 0.25  # at least between two reports
+REPORT_SHARE = 0.05  # of the time may be spent on reports
+
+Report = Callable[[Progress, Callable[[int], FrontDocument]], None]
+
+
+class Runner(Protocol):
+    """Runs tasks, one at a time."""
+
+    def warm_up(self) -> None:
+        """Compile the search, or load it from the cache."""
+
+    def run(
+        self, task: TaskSource | Task, stop: Callable[[], bool], report: Report
+    ) -> FrontDocument:
+        """Return the front of a task, parsed or not.
+
+        Args:
+            task: The task, or its source.
+            stop: Called often; planning ends soon after it returns True.
+            report: Called now and then with the progress, and with a function that writes the best
+                so many tours found so far, which may be called until it returns.
+        """
+
+
+MakeRunner = Callable[[], Runner]
 
 
 class NamedActor(Constructor, Protocol):
-    """A constructor that says who it is."""
+    """A constructor of tours with a name and a digest."""
 
     @property
     def info(self) -> ActorInfo:
-        """Who it is."""
+        """The information in its file."""
 
 
 @dataclass(frozen=True)
 class TaskRunner:
-    """Plans what is asked for within the limits, with the actors that it has."""
+    """Plans fronts within limits, with the actors that are loaded."""
 
     actors: Mapping[str, NamedActor]
     limits: Limits
 
     def warm_up(self) -> None:
-        """Compile the search, or load it."""
+        """Compile the search, or load it from the cache."""
         warm_up()
 
-    def plan(
-        self, work: Work | Task, stop: Callable[[], bool], report: Callable[[Sketch], None]
+    def run(
+        self, task: TaskSource | Task, stop: Callable[[], bool], report: Report
     ) -> FrontDocument:
-        """The front that is asked for, by work that has not been read yet, or by what it says."""
-        task = work if isinstance(work, Task) else read(work, self.limits, self._facts)
-        actor = self.actors[task.actor]
+        """Return the front of a task, parsed or not."""
+        if isinstance(task, TaskSource):
+            infos = {name: actor.info for name, actor in self.actors.items()}
+            task = parse_task(task, self.limits, infos)
         if isinstance(task.subject, Coverage):
             return self._cover(task, task.subject, stop, report)
-        named = actor.info.identity
-        sketch = _sketching(report, actor=named)
-        return rendered(plan(actor, task.subject, task.demand, stop, sketch), actor=named)
+        front = self._plan(task, task.subject, stop, report)
+        return encode_front(front, self._identity(task))
 
     def _cover(
+        self, task: Task, coverage: Coverage, stop: Callable[[], bool], report: Report
+    ) -> FrontDocument:
+        began = time.perf_counter()
+        surveyed = survey(coverage, self.limits.cities, stop)
+        survey_seconds = time.perf_counter() - began
+        places = surveyed.places.tolist()
+        front = self._plan(task, surveyed.instance, stop, report, places)
+        began = time.perf_counter()
+        # Tracing paths takes a while, for which a stopped task does not wait.
+        paths = list(surveyed.paths(front.tours)) if task.paths and not stop() else None
+        timings = {
+            "survey": 1000 * survey_seconds,
+            **front.timings,
+            "paths": 1000 * (time.perf_counter() - began),
+        }
+        return encode_front(replace(front, timings=timings), self._identity(task), places, paths)
+
+    def _plan(
         self,
         task: Task,
-        coverage: Coverage,
+        instance: Instance,
         stop: Callable[[], bool],
-        report: Callable[[Sketch], None],
-    ) -> FrontDocument:
-        actor = self.actors[task.actor]
-        began = time.perf_counter()
-        found = survey(coverage, self.limits.cities, stop)
-        surveyed = time.perf_counter()
-        more = {"actor": actor.info.identity, "places": found.places.tolist()}
-        front = plan(actor, found.instance, task.demand, stop, _sketching(report, **more))
-        planned = time.perf_counter()
-        # Who stops the work is not kept waiting.
-        paths = list(found.paths(front.tours)) if task.paths and not stop() else None
-        timings = {
-            "survey": 1000 * (surveyed - began),
-            **front.timings,
-            "paths": 1000 * (time.perf_counter() - planned),
-        }
-        return rendered(
-            replace(front, timings=timings),
-            [{"path": {"cells": path.cells.tolist(), "metres": path.metres}} for path in paths]
-            if paths
-            else None,
-            **more,
-        )
+        report: Report,
+        places: list[list[int]] | None = None,
+    ) -> Front:
+        identity = self._identity(task)
 
-    @property
-    def _facts(self) -> dict[str, ActorInfo]:
-        return {name: actor.info for name, actor in self.actors.items()}
+        def report_encoded(progress: Progress, best: Callable[[int], Front]) -> None:
+            report(progress, lambda size: encode_front(best(size), identity, places))
+
+        return plan(self.actors[task.actor], instance, task.demand, stop, report_encoded)
+
+    def _identity(self, task: Task) -> dict[str, str]:
+        return self.actors[task.actor].info.identity
 
 
-def _sketching(report: Callable[[Sketch], None], **more: Any) -> Report:
-    return lambda interim: report(sketched(interim, **more))
+class Reporter:
+    """Sends progress with the best front now and then, the more rarely the longer it takes."""
+
+    def __init__(self, send: Callable[[Progress, FrontDocument], None]) -> None:
+        self._send = send
+        self._next = time.monotonic() + REPORT_SECONDS
+
+    def __call__(self, progress: Progress, best: Callable[[int], FrontDocument]) -> None:
+        """Send a report, if one is due."""
+        began = time.monotonic()
+        if began < self._next:
+            return
+        self._send(progress, best(REPORT_TOURS))
+        ended = time.monotonic()
+        self._next = ended + max(REPORT_SECONDS, (ended - began) / REPORT_SHARE)
 
 
 def warm_up() -> None:
-    """Compile all that is compiled, or load it, where this process has not."""
+    """Compile everything that is compiled, or load it from the cache, unless it is there."""
     improve.warm_up()
     shortest_paths.warm_up()
 
 
-def load_planner(directory: Path, threads: int, limits: Limits) -> TaskRunner:
-    """A planner with the actors of a directory."""
+def load_runner(directory: Path, threads: int, limits: Limits) -> TaskRunner:
+    """Return a runner with the actors of a directory."""
     return TaskRunner(load_actors(directory, threads), limits)

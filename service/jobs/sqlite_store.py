@@ -1,4 +1,4 @@
-"""The store in a file, so that it outlives the process, or in memory: SQLite either way."""
+"""The store in SQLite: in a file, which outlives the process, or in memory."""
 
 import asyncio
 import sqlite3
@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from service.errors import Expired, IdempotencyMismatch, NotFound
 from service.jobs.record import Record
-from service.jobs.store import COLUMNS, columns, record_of
+from service.jobs.store import COLUMNS, record_columns, record_from
 
 T = TypeVar("T")
 IN_MEMORY = ":memory:"
@@ -30,7 +30,7 @@ CREATE INDEX IF NOT EXISTS finished ON front (number, kept) WHERE NOT {_UNFINISH
 CREATE TABLE IF NOT EXISTS gone (number INTEGER PRIMARY KEY, id, caller);
 CREATE INDEX IF NOT EXISTS gone_by_id ON gone (id);
 """
-_MADE_WAY = f"""
+_EVICTABLE = f"""
 SELECT id, caller FROM front WHERE NOT {_UNFINISHED} AND (kept < ? OR number <= (
     SELECT number FROM front WHERE NOT {_UNFINISHED} ORDER BY number DESC LIMIT 1 OFFSET ?
 ))
@@ -38,12 +38,13 @@ SELECT id, caller FROM front WHERE NOT {_UNFINISHED} AND (kept < ? OR number <= 
 
 
 class SqliteStore:
-    """At most `entries` finished records, none older than `max_age` seconds.
+    """Keeps at most `entries` finished records, none older than `max_age` seconds.
 
-    Of what has made way it remembers the last `tombstones` ids. The file belongs to one process.
+    Of those that were dropped it remembers the last `tombstones` ids. The file belongs to one
+    process at a time.
 
     Raises:
-        ValueError: the file cannot be opened, or another process has it.
+        ValueError: The file cannot be opened, or another process has it.
     """
 
     def __init__(
@@ -59,101 +60,103 @@ class SqliteStore:
         self._max_age = max_age
         self._tombstones = tombstones
         self._clock = clock
-        # All that touches the file happens in one thread, in the order in which it was asked for.
+        # All calls that touch the file are made in this thread, in their order.
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="store")
         try:
-            self._database = _opened(path)
+            self._database = _open(path)
         except (OSError, sqlite3.Error) as error:
             raise ValueError(
                 f"the store must be a file of its own, {path} is not: {error}"
             ) from error
 
     async def put(self, record: Record) -> None:
-        """Keep a record, in place of an earlier one with its id."""
-        await self._do(self._put, record)
+        """Store a record, in place of an earlier one with its id."""
+        await self._in_thread(self._put, record)
 
     async def admit(self, record: Record) -> Record:
-        """Keep a new record, or give the one that the caller has already under its key."""
-        return await self._do(self._admit, record)
+        """Store a new record and return it, or return the one that has its idempotency key."""
+        return await self._in_thread(self._admit, record)
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
-        """The caller's record with this id."""
-        return await self._do(self._one, "caller = ? AND id = ?", caller, id)
+        """Return the caller's record with this id."""
+        return await self._in_thread(self._newest, "caller = ? AND id = ?", caller, id)
 
     async def latest(self, caller: str) -> Record:
-        """The caller's record that was finished last."""
-        return await self._do(self._one, f"caller = ? AND NOT {_UNFINISHED}", caller)
+        """Return the caller's record that was finished last."""
+        return await self._in_thread(self._newest, f"caller = ? AND NOT {_UNFINISHED}", caller)
 
-    async def forget(self, record: Record) -> None:
-        """Keep the record no longer, and nothing in its place."""
-        await self._do(self._delete, record.id)
+    async def delete(self, record: Record) -> None:
+        """Delete a record, and leave no trace of it."""
+        await self._in_thread(self._delete, record.id)
 
     async def unfinished(self) -> list[Record]:
-        """All records that still need work, the oldest first."""
-        return await self._do(self._all, _UNFINISHED)
+        """Return all unfinished records with their sources, the oldest first."""
+        return await self._in_thread(self._select, _UNFINISHED)
 
     async def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         loop = asyncio.get_running_loop()
         await loop.run_in_executor(self._thread, self._database.close)
         self._thread.shutdown()
 
-    async def _do(self, act: Callable[..., T], *arguments: object) -> T:
+    async def _in_thread(self, act: Callable[..., T], *arguments: object) -> T:
         loop = asyncio.get_running_loop()
-        return await loop.run_in_executor(self._thread, partial(self._at_once, act, *arguments))
+        return await loop.run_in_executor(
+            self._thread, partial(self._in_transaction, act, *arguments)
+        )
 
-    def _at_once(self, act: Callable[..., T], *arguments: object) -> T:
+    def _in_transaction(self, act: Callable[..., T], *arguments: object) -> T:
         with self._database:
             return act(*arguments)
 
     def _put(self, record: Record) -> None:
         self._delete(record.id)
-        values = columns(record).values()
+        values = record_columns(record).values()
         places = ", ".join("?" * (len(values) + 1))
         insert = f"INSERT INTO front (kept, {_COLUMNS}) VALUES ({places})"
         self._database.execute(insert, (self._clock(), *values))
-        self._make_way()
+        self._evict()
 
     def _admit(self, record: Record) -> Record:
-        self._make_way()
+        self._evict()
         if record.key is not None:
-            for kept in self._all("caller = ? AND key = ?", record.caller, record.key):
-                if kept.digest != record.digest:
+            for earlier in self._select("caller = ? AND key = ?", record.caller, record.key):
+                if earlier.digest != record.digest:
                     raise IdempotencyMismatch
-                if kept.status != "failed":
-                    return kept
-                self._put(replace(kept, key=None))
+                if earlier.status != "failed":
+                    return earlier
+                self._put(replace(earlier, key=None))
         self._put(record)
         return record
 
-    def _one(self, where: str, caller: str, *values: str) -> Record:
-        self._make_way()
-        for record in self._all(f"{where} ORDER BY number DESC LIMIT 1", caller, *values):
+    def _newest(self, where: str, caller: str, *values: str) -> Record:
+        self._evict()
+        for record in self._select(f"{where} ORDER BY number DESC LIMIT 1", caller, *values):
             return record
         gone = "SELECT 1 FROM gone WHERE caller = ?" + (" AND id = ?" if values else "")
         known = self._database.execute(gone, (caller, *values)).fetchone()
         raise Expired if known else NotFound
 
-    def _all(self, where: str, *values: str) -> list[Record]:
+    def _select(self, where: str, *values: str) -> list[Record]:
         rows = self._database.execute(f"SELECT {_COLUMNS} FROM front WHERE {where}", values)
-        return [record_of(dict(zip(COLUMNS, row, strict=True))) for row in rows]
+        return [record_from(dict(zip(COLUMNS, row, strict=True))) for row in rows]
 
     def _delete(self, id: str) -> None:  # noqa: A002
         self._database.execute("DELETE FROM front WHERE id = ?", (id,))
 
-    def _make_way(self) -> None:
+    def _evict(self) -> None:
         oldest = self._clock() - self._max_age
-        made_way = self._database.execute(_MADE_WAY, (oldest, self._entries)).fetchall()
-        if not made_way:
+        evicted = self._database.execute(_EVICTABLE, (oldest, self._entries)).fetchall()
+        if not evicted:
             return
-        for id_, caller in made_way:
+        for id_, caller in evicted:
             self._database.execute("INSERT INTO gone (id, caller) VALUES (?, ?)", (id_, caller))
             self._delete(id_)
-        few = "DELETE FROM gone WHERE number <= (SELECT max(number) FROM gone) - ?"
-        self._database.execute(few, (self._tombstones,))
+        forget = "DELETE FROM gone WHERE number <= (SELECT max(number) FROM gone) - ?"
+        self._database.execute(forget, (self._tombstones,))
 
 
-def _opened(path: str) -> sqlite3.Connection:
+def _open(path: str) -> sqlite3.Connection:
     if path != IN_MEMORY:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
     database = sqlite3.connect(path, check_same_thread=False, timeout=1)

@@ -1,4 +1,7 @@
-"""The interface of stores, and the columns in which they keep a record."""
+"""The interface of stores, and the stored form of a record, which all of them share.
+
+The names of the columns are read by other releases and stay as they are.
+"""
 
 import json
 import zlib
@@ -9,63 +12,63 @@ from pydantic_core import to_json
 
 from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record
-from service.requests.task import Work
+from service.requests.task import TaskSource
 
 
 class Store(Protocol):
-    """Keeps records. What is not finished never makes way."""
+    """Keeps records. Unfinished ones are never dropped."""
 
     async def put(self, record: Record) -> None:
-        """Keep a record, in place of an earlier one with its id."""
+        """Store a record, in place of an earlier one with its id."""
 
     async def admit(self, record: Record) -> Record:
-        """Keep a new record, or give the one that the caller has already under its key.
+        """Store a new record and return it, or return the one that has its idempotency key.
 
-        One that failed gives up its key, so that a repeat is a new try.
+        A failed record gives up its key, so that a repeat is a new try.
 
         Raises:
-            IdempotencyMismatch: that one is of another body.
+            IdempotencyMismatch: The caller used the key for another body.
         """
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
-        """The caller's record with this id.
+        """Return the caller's record with this id.
 
         Raises:
-            NotFound: there was none.
-            Expired: it has made way.
+            NotFound: The caller never had one, or it was deleted.
+            Expired: It was dropped.
         """
 
     async def latest(self, caller: str) -> Record:
-        """The caller's record that was finished last.
+        """Return the caller's record that was finished last.
 
         Raises:
-            NotFound: there never was one.
-            Expired: it has made way.
+            NotFound: The caller never had one.
+            Expired: It was dropped.
         """
 
-    async def forget(self, record: Record) -> None:
-        """Keep the record no longer, and nothing in its place."""
+    async def delete(self, record: Record) -> None:
+        """Delete a record, and leave no trace of it."""
 
     async def unfinished(self) -> list[Record]:
-        """All records that still need work, the oldest first."""
+        """Return all unfinished records with their sources, the oldest first."""
 
     async def close(self) -> None:
-        """Let go of what the store is kept in."""
+        """Close the file or the connections."""
 
 
-FRONT = ("members", "tours", "ends", "angles")
-WORK = ("kind", "body", "upload")
+FRONT_COLUMNS = ("members", "tours", "ends", "angles")
+SOURCE_COLUMNS = ("kind", "body", "upload")
 COLUMNS = (
     *("id", "caller", "request_id", "status", "key", "digest", "problem"),
-    *FRONT,
-    *WORK,
+    *FRONT_COLUMNS,
+    *SOURCE_COLUMNS,
 )
 _LEVEL = 1  # of compression: digits shrink to half of their size, quickly
 
 
-def columns(record: Record) -> dict[str, Any]:
-    """The columns in their order; what there is not is None."""
-    work = record.work
+def record_columns(record: Record) -> dict[str, Any]:
+    """Return a record as columns, in their order; those without a value are None."""
+    source = record.source
     return {
         "id": record.id,
         "caller": record.caller,
@@ -75,24 +78,24 @@ def columns(record: Record) -> dict[str, Any]:
         "digest": record.digest,
         "problem": to_json(record.problem),
         **front_columns(record.front),
-        "kind": work and work.kind,
-        "body": work and work.body,
-        "upload": work and work.upload,
+        "kind": source and source.kind,
+        "body": source and source.body,
+        "upload": source and source.upload,
     }
 
 
 def front_columns(front: FrontDocument) -> dict[str, bytes]:
-    """The columns of a record's front."""
+    """Return a front as columns."""
     return {
-        "members": to_json(front.members),
+        "members": to_json(front.members()),
         "tours": zlib.compress(front.tours, _LEVEL),
         "ends": front.ends,
         "angles": front.angles,
     }
 
 
-def record_of(columns: Mapping[str, Any]) -> Record:
-    """The record in these columns, of which those that are None may be missing."""
+def record_from(columns: Mapping[str, Any]) -> Record:
+    """Return the record in these columns, of which those that are None may be missing."""
     kind = columns.get("kind")
     return Record(
         id=columns["id"],
@@ -102,11 +105,11 @@ def record_of(columns: Mapping[str, Any]) -> Record:
         key=columns.get("key"),
         digest=columns["digest"],
         problem=json.loads(columns["problem"]),
-        front=FrontDocument(
+        front=FrontDocument.from_members(
             json.loads(columns["members"]),
-            zlib.decompress(columns["tours"]),
-            columns["ends"],
-            columns["angles"],
+            tours=zlib.decompress(columns["tours"]),
+            ends=columns["ends"],
+            angles=columns["angles"],
         ),
-        work=Work(kind, columns["body"], columns.get("upload")) if kind else None,
+        source=TaskSource(kind, columns["body"], columns.get("upload")) if kind else None,
     )

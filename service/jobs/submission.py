@@ -1,4 +1,4 @@
-"""Work that was handed in, and what has come of it."""
+"""A task submitted to the worker pool, and its future front."""
 
 import asyncio
 from asyncio import Future, TimerHandle
@@ -7,80 +7,88 @@ from time import perf_counter
 
 from service.errors import Cancelled, DeadlineExceeded
 from service.jobs.front_document import FrontDocument
-from service.jobs.messages import Snapshot
-from service.jobs.record import as_ended
-from service.requests.task import Work
+from service.jobs.record import StopReason
+from service.requests.task import TaskSource
+from service.search.improve import Progress
 
 MOST_ATTEMPTS = 2
 
 
 class Submission:
-    """Work, who is told when it is begun and when it has come further, and in the end its front.
+    """A task that waits for a worker, is being run, or has ended.
 
-    A patient one has its time limit from when it is begun, another from when it is handed in.
+    Args:
+        number: Tells it from the pool's other submissions, also in messages.
+        source: What the task is parsed from.
+        on_change: Called when a worker begins, and with each progress.
+        patient: Whether its time limit counts from the start of planning, not from submission.
     """
 
-    def __init__(self, number: int, work: Work, tell: Callable[[], None], patient: bool) -> None:
+    def __init__(
+        self, number: int, source: TaskSource, on_change: Callable[[], None], patient: bool
+    ) -> None:
         self.number = number
-        self.work = work
+        self.source = source
         self.patient = patient
         self.attempts = 0
-        self.stopped: type[Cancelled | DeadlineExceeded] | None = None
-        self.snapshot: Snapshot | None = None
+        self.stop_reason: StopReason | None = None
+        self.progress: Progress | None = None
+        self.best_front: FrontDocument | None = None
         self.timer: TimerHandle | None = None
-        self._tell = tell
+        self._on_change = on_change
         self._future: Future[FrontDocument] = asyncio.get_running_loop().create_future()
-        self._handed_in = perf_counter()
+        self._submitted = perf_counter()
 
     @property
     def ended(self) -> bool:
-        """Whether it has a front, or never will."""
+        """Whether it has a front, or has failed."""
         return self._future.done()
 
     async def front(self) -> FrontDocument:
-        """The front, once there is one. Who no longer waits does not end the work.
+        """Wait for the front and return it. Planning goes on if the waiting task is cancelled.
 
         Raises:
-            WorkerLost: workers died over it.
-            Cancelled: it was stopped.
-            DeadlineExceeded: it took too long.
+            WorkerLost: Two workers died over it.
+            Cancelled: It was cancelled before a tour was found.
+            DeadlineExceeded: It took too long, and no tour was found.
         """
         return await asyncio.shield(self._future)
 
-    async def ended_or(self, left: Future[None]) -> None:
-        """Wait until it has ended, or whoever waits for it has left."""
-        await asyncio.wait((self._future, left), return_when=asyncio.FIRST_COMPLETED)
+    async def wait(self, disconnected: Future[None]) -> None:
+        """Wait until it has ended or the client has disconnected."""
+        await asyncio.wait((self._future, disconnected), return_when=asyncio.FIRST_COMPLETED)
 
     def begin(self) -> None:
-        """Take note that a worker is at it, for the first time or once more."""
+        """Count an attempt: a worker begins."""
         self.attempts += 1
-        self._tell()
+        self._on_change()
 
-    def hear(self, snapshot: Snapshot) -> None:
-        """Take note of how far the work has come."""
-        self.snapshot = snapshot
-        self._tell()
+    def report(self, progress: Progress, front: FrontDocument) -> None:
+        """Take the worker's report."""
+        self.progress = progress
+        self.best_front = front
+        self._on_change()
 
-    def done(self, front: FrontDocument) -> None:
+    def finish(self, front: FrontDocument) -> None:
         """End with a front."""
-        self._end()
-        seconds = perf_counter() - self._handed_in
-        self._future.set_result(as_ended(front, seconds, late=self.stopped is DeadlineExceeded))
+        self._cancel_timer()
+        seconds = perf_counter() - self._submitted
+        self._future.set_result(front.ended(seconds, late=self.stop_reason is DeadlineExceeded))
 
-    def failed(self, error: Exception) -> None:
-        """End without a front."""
-        self._end()
+    def fail(self, error: Exception) -> None:
+        """End with an error."""
+        self._cancel_timer()
         self._future.set_exception(error)
-        # Nobody may be waiting any more, which asyncio would take for an oversight.
+        # Read once, so that asyncio does not warn where nobody waits any more.
         self._future.exception()
 
     def cut_short(self) -> None:
-        """End with what was found so far, if anything was."""
-        if self.snapshot is None:
-            self.failed((self.stopped or Cancelled)())
+        """End with the best front so far; where there is none, with the reason of the stop."""
+        if self.best_front is None:
+            self.fail((self.stop_reason or Cancelled)())
         else:
-            self.done(self.snapshot.front)
+            self.finish(self.best_front)
 
-    def _end(self) -> None:
+    def _cancel_timer(self) -> None:
         if self.timer is not None:
             self.timer.cancel()

@@ -1,13 +1,13 @@
-"""Worker processes behind a bounded queue. The event loop gives out work and never computes.
+"""A pool of worker processes with a queue: replaces those that die, and stops what takes too long.
 
-A process that is lost takes nothing along: its work is done again by another, once, and a fresh
-process takes its place.
+The first process compiles the search, and the others load what it has compiled. Until then all of
+them run tasks that need the network alone.
 """
 
 import asyncio
 import logging
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import count
 
@@ -21,51 +21,56 @@ from service.errors import (
 )
 from service.jobs.front_document import FrontDocument
 from service.jobs.messages import Do, Done, Failed, Found, Started, Stop, Warm, WarmUp
+from service.jobs.record import StopReason
+from service.jobs.runner import MakeRunner
 from service.jobs.submission import MOST_ATTEMPTS, Submission
-from service.jobs.worker_process import MakePlanner, Process
-from service.requests.task import Work
+from service.jobs.worker_process import WorkerProcess
+from service.requests.task import TaskSource
 
-GRACE = 0.15  # seconds for work to come to an end before its process is ended
+GRACE = 0.15  # seconds for a task to stop by itself before its process is killed
 _PAUSE = 1.0  # seconds before a process that could not even start is replaced
 
 
 @dataclass(eq=False)
 class _Worker:
-    """One worker process and what it is at."""
+    """A worker process, its stage, and the submission that it runs."""
 
-    process: Process
+    process: WorkerProcess
     started: bool = False
     warming: bool = False
     warm: bool = False
-    order: Submission | None = None
+    submission: Submission | None = None
 
 
 class WorkerPool:
-    """So many processes, and so many orders that may wait for one.
+    """So many worker processes, and a queue of so many submissions beside those that they run.
 
-    The first process compiles the search, and the others load what it has compiled; meanwhile
-    all answer what the network alone can answer. No order is worked on for more than `seconds`.
-    `planned` is told of every front.
+    Args:
+        make_runner: Called in each process; it must be picklable.
+        workers: How many processes there are.
+        queue: How many submissions may wait while all of these are busy.
+        seconds: The time limit of a submission.
+        on_front: Called with every front as the worker wrote it.
     """
 
     def __init__(
         self,
-        make_planner: MakePlanner,
+        make_runner: MakeRunner,
         *,
         workers: int,
         queue: int,
         seconds: float = 90.0,
-        planned: Callable[[FrontDocument], None] = lambda _: None,
+        on_front: Callable[[FrontDocument], None] = lambda _: None,
     ) -> None:
-        self._make_planner = make_planner
+        self._make_runner = make_runner
         self._count = workers
         self._places = workers + queue
         self._seconds = seconds
-        self._planned = planned
-        self._hands: list[_Worker] = []
-        self._waiting: deque[Submission] = deque()
+        self._on_front = on_front
+        self._workers: list[_Worker] = []
+        self._queue: deque[Submission] = deque()
         self._numbers = count()
-        self._tenders: list[asyncio.Task[None]] = []
+        self._keepers: list[asyncio.Task[None]] = []
         self._was_warm = False
         self._closed = False
         self._lost = 0
@@ -73,185 +78,181 @@ class WorkerPool:
 
     @property
     def waiting(self) -> int:
-        """How many orders wait."""
-        return len(self._waiting)
+        """The number of submissions in the queue."""
+        return len(self._queue)
 
     @property
     def working(self) -> int:
-        """How many orders are being worked on."""
-        return sum(hand.order is not None for hand in self._hands)
+        """The number of submissions that are being run."""
+        return len(self.running)
 
     @property
     def lost(self) -> int:
-        """How many processes were lost and replaced."""
+        """The number of processes that were lost and replaced."""
         return self._lost
 
     @property
     def pids(self) -> list[int | None]:
-        """The numbers of the processes."""
-        return [hand.process.pid for hand in self._hands]
+        """The ids of the processes."""
+        return [worker.process.pid for worker in self._workers]
+
+    @property
+    def running(self) -> Mapping[Submission, int | None]:
+        """The submissions that are being run, and the id of the process of each."""
+        return {each.submission: each.process.pid for each in self._workers if each.submission}
 
     async def start(self) -> None:
-        """Start the processes, without waiting until they are ready."""
-        self._tenders = [asyncio.create_task(self._tend()) for _ in range(self._count)]
+        """Start the processes, and return before they are ready."""
+        self._keepers = [asyncio.create_task(self._keep_worker()) for _ in range(self._count)]
 
     async def close(self) -> None:
-        """Take no more work, drop what is unfinished, and end the processes."""
+        """Take no more submissions, fail those that are unfinished, and kill the processes."""
         self._closed = True
-        for order in [*self._waiting, *(hand.order for hand in self._hands if hand.order)]:
-            order.failed(ShuttingDown())
-        self._waiting.clear()
-        for tender in self._tenders:
-            tender.cancel()
-        await asyncio.gather(*self._tenders, return_exceptions=True)
+        for submission in [*self._queue, *self.running]:
+            submission.fail(ShuttingDown())
+        self._queue.clear()
+        for keeper in self._keepers:
+            keeper.cancel()
+        await asyncio.gather(*self._keepers, return_exceptions=True)
 
     def check_open(self) -> None:
-        """Nothing, if work is taken.
-
-        Raises:
-            ShuttingDown: no more work is taken.
-        """
+        """Raise ShuttingDown when the pool is closed."""
         if self._closed:
             raise ShuttingDown
 
     def check_place(self) -> None:
-        """Nothing, if there is a place for one more order.
-
-        Raises:
-            QueueFull: there is none.
-        """
+        """Raise QueueFull when the queue is full."""
         if self.waiting + self.working >= self._places:
             raise QueueFull
 
     def check_warm(self) -> None:
-        """Nothing, if orders may need compiled code: a replacement will soon have it, too.
-
-        Raises:
-            WarmingUp: it is not there yet.
-        """
+        """Raise WarmingUp until one process has compiled the search: others will soon load it."""
         if not self._was_warm:
             raise WarmingUp
 
     def check_ready(self) -> None:
-        """Nothing, if there is a process that takes work of every kind.
-
-        Raises:
-            ShuttingDown: no more work is taken.
-            WarmingUp: there is no such process yet, or not at the moment.
-        """
+        """Raise ShuttingDown when closed, WarmingUp while no process has the compiled search."""
         self.check_open()
-        if not any(hand.warm for hand in self._hands):
+        if not any(worker.warm for worker in self._workers):
             raise WarmingUp
 
-    def order(
-        self, work: Work, tell: Callable[[], None] = lambda: None, patient: bool = False
+    def submit(
+        self,
+        source: TaskSource,
+        on_change: Callable[[], None] = lambda: None,
+        patient: bool = False,
     ) -> Submission:
-        """Hand in work.
+        """Queue a task. The arguments are those of Submission.
 
         Raises:
-            QueueFull: the queue is full.
-            ShuttingDown: no more work is taken.
+            QueueFull: The queue is full.
+            ShuttingDown: The pool is closed.
         """
         self.check_open()
         self.check_place()
-        order = Submission(next(self._numbers), work, tell, patient)
+        submission = Submission(next(self._numbers), source, on_change, patient)
         if not patient:
-            self._limit(order)
-        self._waiting.append(order)
-        self._give_out()
-        return order
+            self._start_timer(submission)
+        self._queue.append(submission)
+        self._assign()
+        return submission
 
-    def stop(self, order: Submission, why: type[Cancelled | DeadlineExceeded] = Cancelled) -> None:
-        """End an order at once, with the front found so far, if there is one."""
-        if order.ended or order.stopped:
+    def stop(self, submission: Submission, reason: StopReason = Cancelled) -> None:
+        """End a submission with the best front so far; return at once."""
+        if submission.ended or submission.stop_reason:
             return
-        order.stopped = why
-        for hand in self._hands:
-            if hand.order is order:
-                hand.process.send(Stop(order.number))
-                asyncio.get_running_loop().call_later(GRACE, self._insist, hand, order)
+        submission.stop_reason = reason
+        for worker in self._workers:
+            if worker.submission is submission:
+                worker.process.send(Stop(submission.number))
+                loop = asyncio.get_running_loop()
+                loop.call_later(GRACE, self._kill_if_still_running, worker, submission)
                 return
-        self._waiting.remove(order)
-        order.cut_short()
+        self._queue.remove(submission)
+        submission.cut_short()
 
-    def _insist(self, hand: _Worker, order: Submission) -> None:
-        if hand.order is order:
-            hand.process.kill()
+    def _kill_if_still_running(self, worker: _Worker, submission: Submission) -> None:
+        if worker.submission is submission:
+            worker.process.kill()
 
-    def _limit(self, order: Submission) -> None:
-        if order.timer is None:
+    def _start_timer(self, submission: Submission) -> None:
+        if submission.timer is None:
             loop = asyncio.get_running_loop()
-            order.timer = loop.call_later(self._seconds, self.stop, order, DeadlineExceeded)
+            submission.timer = loop.call_later(
+                self._seconds, self.stop, submission, DeadlineExceeded
+            )
 
-    async def _tend(self) -> None:
-        """Keep one process at work."""
+    async def _keep_worker(self) -> None:
+        """Keep one process running: when it dies, start another."""
         while True:
-            hand = _Worker(await Process.start(self._make_planner))
-            self._hands.append(hand)
+            worker = _Worker(await WorkerProcess.start(self._make_runner))
+            self._workers.append(worker)
             try:
-                async for message in hand.process.messages():
-                    self._hear(hand, message)
+                async for message in worker.process.messages():
+                    self._handle(worker, message)
                 self._lost += 1
-                self._log.warning("worker %s was lost and is replaced", hand.process.pid)
+                self._log.warning("worker %s was lost and is replaced", worker.process.pid)
             finally:
-                hand.process.kill()
-                self._hands.remove(hand)
-                self._take_back(hand)
-                await hand.process.gone()
-            if not hand.started:
+                worker.process.kill()
+                self._workers.remove(worker)
+                self._requeue_from(worker)
+                await worker.process.join()
+            if not worker.started:
                 await asyncio.sleep(_PAUSE)
 
-    def _take_back(self, hand: _Worker) -> None:
-        """See to what a process that is gone has left."""
-        order = hand.order
-        if order is not None and not order.ended:
-            if order.stopped:
-                order.cut_short()
-            elif order.attempts >= MOST_ATTEMPTS:
-                order.failed(WorkerLost())
+    def _requeue_from(self, worker: _Worker) -> None:
+        """Queue the submission of a lost worker once more, or end it."""
+        submission = worker.submission
+        if submission is not None and not submission.ended:
+            if submission.stop_reason:
+                submission.cut_short()
+            elif submission.attempts >= MOST_ATTEMPTS:
+                submission.fail(WorkerLost())
             else:
-                self._waiting.appendleft(order)
+                self._queue.appendleft(submission)
         self._warm_up()
-        self._give_out()
+        self._assign()
 
-    def _hear(self, hand: _Worker, message: object) -> None:
-        order = hand.order
+    def _handle(self, worker: _Worker, message: object) -> None:
+        submission = worker.submission
         match message:
             case Started():
-                hand.started = True
+                worker.started = True
             case Warm():
-                hand.warm = self._was_warm = True
-            case Found(snapshot=snapshot) if order is not None:
-                order.hear(snapshot)
+                worker.warm = self._was_warm = True
+            case Found() if submission is not None:
+                submission.report(message.progress, message.front)
                 return
-            case Done(front=front) if order is not None:
-                order.done(front)
-                self._planned(front)
-                hand.order = None
-            case Failed() if order is not None and order.stopped:
-                order.cut_short()
-                hand.order = None
-            case Failed(error=error) if order is not None:
-                order.failed(error)
-                hand.order = None
+            case Done(front=front) if submission is not None:
+                submission.finish(front)
+                self._on_front(front)
+                worker.submission = None
+            case Failed() if submission is not None and submission.stop_reason:
+                submission.cut_short()
+                worker.submission = None
+            case Failed(error=error) if submission is not None:
+                submission.fail(error)
+                worker.submission = None
         self._warm_up()
-        self._give_out()
+        self._assign()
 
     def _warm_up(self) -> None:
-        """Let one process compile, and once one has, the others load."""
-        for hand in self._hands:
-            alone = not any(other.warming for other in self._hands)
-            if hand.started and not hand.warming and (self._was_warm or alone):
-                hand.warming = True
-                hand.process.send(WarmUp())
+        """Let one process compile the search, and once it has, the others load it."""
+        for worker in self._workers:
+            first = not any(other.warming for other in self._workers)
+            if worker.started and not worker.warming and (self._was_warm or first):
+                worker.warming = True
+                worker.process.send(WarmUp())
 
-    def _give_out(self) -> None:
-        for hand in self._hands:
-            # Before the first is warm, nothing that needs compiled code is let in.
-            able = hand.warm if self._was_warm else hand.started
-            if able and hand.order is None and self._waiting:
-                order = self._waiting.popleft()
-                hand.order = order
-                order.begin()
-                self._limit(order)
-                hand.process.send(Do(order.number, order.work.task or order.work))
+    def _assign(self) -> None:
+        """Send queued submissions to idle processes."""
+        for worker in self._workers:
+            # Before the first is warm, no task that needs compiled code is admitted.
+            able = worker.warm if self._was_warm else worker.started
+            if able and worker.submission is None and self._queue:
+                submission = self._queue.popleft()
+                worker.submission = submission
+                submission.begin()
+                self._start_timer(submission)
+                source = submission.source
+                worker.process.send(Do(submission.number, source.task or source))

@@ -1,128 +1,115 @@
-"""A worker process: its inside, and its handle in the event loop."""
+"""Worker processes: the loop inside one, and its handle in the service's event loop."""
 
 import asyncio
 import multiprocessing
 import os
 import pickle
 import signal
-import time
 import traceback
 from asyncio import StreamReader, StreamWriter
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from contextlib import suppress
 from multiprocessing.context import SpawnProcess
 from select import POLLIN, poll
 from socket import socket, socketpair
 from threading import Lock, Thread
-from typing import Any, Protocol
+from typing import Any
 
-from service.jobs.front_document import FrontDocument, Sketch
 from service.jobs.messages import (
     Do,
     Done,
     Failed,
     Found,
-    Snapshot,
     Started,
     Stop,
     Warm,
     WarmUp,
-    packed,
-    received,
-    received_now,
+    encode,
+    receive,
+    receive_blocking,
 )
-from service.requests.task import Task, Work
+from service.jobs.runner import MakeRunner, Reporter, Runner
+from service.requests.task import Task, TaskSource
 
 NICENESS = 5  # of a worker: the event loop comes first, and needs little
-MOST_TOURS = 100  # of a snapshot
-EVERY = 0.25  # seconds between two snapshots
-MOST_SHARE = 0.05  # of the time goes into snapshots
+
+# A fork would copy the threads' locks but not the threads, and onnxruntime does not survive it.
+_CONTEXT = multiprocessing.get_context("spawn")
+_BUFFER = 2**20  # bytes
 
 
-class Planner(Protocol):
-    """What a worker process plans with."""
-
-    def warm_up(self) -> None:
-        """Compile what can be compiled, or load it."""
-
-    def plan(
-        self, work: Work | Task, stop: Callable[[], bool], report: Callable[[Sketch], None]
-    ) -> FrontDocument:
-        """The front that is asked for."""
-
-
-def run_worker(connection: socket, make_planner: Callable[[], Planner]) -> None:
-    """Work as long as the service is there."""
-    # An interrupt from a terminal goes to everyone; the service tells its workers when to end.
+def run_worker(connection: socket, make_runner: MakeRunner) -> None:
+    """Run tasks until the service closes the connection."""
+    # An interrupt from a terminal goes to all processes; the service tells its workers to end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.nice(NICENESS)
-    worker = _Worker(connection, make_planner())
-    Thread(target=_end_with_the_service, args=[connection], name="guard", daemon=True).start()
+    loop = _WorkerLoop(connection, make_runner())
+    Thread(target=_exit_with_service, args=[connection], name="guard", daemon=True).start()
     with suppress(EOFError, OSError):
-        worker.work()
+        loop.run()
 
 
-def _end_with_the_service(connection: socket) -> None:
-    """End at once when the service is gone, whatever is being done."""
+def _exit_with_service(connection: socket) -> None:
+    """Exit at once when the service is gone, even in the middle of a task."""
     hung_up = poll()
     hung_up.register(connection, 0)
     hung_up.poll()
     os._exit(0)
 
 
-class _Worker:
-    """Works in one thread and warms up in another."""
+class _WorkerLoop:
+    """Runs tasks in one thread and warms up in another."""
 
-    def __init__(self, connection: socket, planner: Planner) -> None:
+    def __init__(self, connection: socket, runner: Runner) -> None:
         self._connection = connection
-        self._planner = planner
+        self._runner = runner
         self._sending = Lock()
         self._stopped: int | None = None
-        self._waiting = poll()
-        self._waiting.register(connection, POLLIN)
+        self._readable = poll()
+        self._readable.register(connection, POLLIN)
 
-    def work(self) -> None:
-        """Do what is given, one after another."""
+    def run(self) -> None:
+        """Handle messages, one after another."""
         self._send(Started())
         while True:
-            self._hear(received_now(self._connection))
+            self._handle(receive_blocking(self._connection))
 
-    def _hear(self, message: object) -> None:
+    def _handle(self, message: object) -> None:
         match message:
             case Do():
-                self._send(self._done(message.number, message.work))
+                self._send(self._result(message.number, message.task))
             case Stop():
                 self._stopped = message.number
             case WarmUp():
                 Thread(target=self._warm_up, name="warm-up", daemon=True).start()
 
-    def _done(self, number: int, work: Work | Task) -> Done | Failed:
-        report = Reporter(lambda snapshot: self._send(Found(number, snapshot)))
+    def _result(self, number: int, task: TaskSource | Task) -> Done | Failed:
+        report = Reporter(lambda progress, front: self._send(Found(number, progress, front)))
         try:
-            return Done(number, self._planner.plan(work, lambda: self._is_over(number), report))
+            return Done(number, self._runner.run(task, lambda: self._is_stopped(number), report))
         except Exception as error:
-            return Failed(number, _portable(error))
+            return Failed(number, _picklable(error))
 
-    def _is_over(self, number: int) -> bool:
-        """Whether what is being done is to end: who does it asks again and again."""
-        # While there is work, the service gives no more of it: nothing is begun in here.
-        while self._stopped != number and self._waiting.poll(0):
-            self._hear(received_now(self._connection))
+    def _is_stopped(self, number: int) -> bool:
+        """Read what has been received, and return whether the running task is to stop."""
+        # A busy worker is sent no other task, so that none is begun in here.
+        while self._stopped != number and self._readable.poll(0):
+            self._handle(receive_blocking(self._connection))
         return self._stopped == number
 
     def _warm_up(self) -> None:
-        self._planner.warm_up()
+        self._runner.warm_up()
         with suppress(OSError):
             self._send(Warm())
 
     def _send(self, message: object) -> None:
-        content = packed(message)
+        content = encode(message)
         with self._sending:
             self._connection.sendall(content)
 
 
-def _portable(error: Exception) -> Exception:
-    """The error, or one that says the same, fit to travel with its traceback in a note."""
+def _picklable(error: Exception) -> Exception:
+    """Return the error, or one with its text, with the traceback as a note."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:
@@ -131,33 +118,11 @@ def _portable(error: Exception) -> Exception:
     return error
 
 
-class Reporter:
-    """Takes a snapshot now and then, the more rarely the longer one takes."""
+class WorkerProcess:
+    """The handle of a worker process: the process and the socket to it.
 
-    def __init__(self, send: Callable[[Snapshot], None]) -> None:
-        self._send = send
-        self._next = time.monotonic() + EVERY
-
-    def __call__(self, sketch: Sketch) -> None:
-        """Take one, if it is time."""
-        began = time.monotonic()
-        if began < self._next:
-            return
-        front = sketch.front(MOST_TOURS)
-        self._send(Snapshot(sketch.seconds, sketch.hypervolume, sketch.points, front))
-        ended = time.monotonic()
-        self._next = ended + max(EVERY, (ended - began) / MOST_SHARE)
-
-
-MakePlanner = Callable[[], Planner]
-
-# A fork would copy the threads' locks but not the threads, and onnxruntime does not survive it.
-_CONTEXT = multiprocessing.get_context("spawn")
-_BUFFER = 2**20  # bytes
-
-
-class Process:
-    """A process that works, and the socket to it. When either end is gone, so is the other."""
+    When the service is gone, the process ends; when the process is gone, `messages` ends.
+    """
 
     def __init__(self, process: SpawnProcess, reader: StreamReader, writer: StreamWriter) -> None:
         self._process = process
@@ -165,38 +130,38 @@ class Process:
         self._writer = writer
 
     @classmethod
-    async def start(cls, make_planner: MakePlanner) -> "Process":
-        """A process that loads what it needs, and will say when it has."""
+    async def start(cls, make_runner: MakeRunner) -> "WorkerProcess":
+        """Start a process, which sends Started once its networks are loaded."""
         ours, theirs = socketpair()
         with theirs:
             process = _CONTEXT.Process(
-                target=run_worker, args=(theirs, make_planner), name="planner", daemon=True
+                target=run_worker, args=(theirs, make_runner), name="planner", daemon=True
             )
             process.start()
         return cls(process, *await asyncio.open_connection(sock=ours, limit=_BUFFER))
 
     @property
     def pid(self) -> int | None:
-        """Its number, for logs."""
+        """The id of the process."""
         return self._process.pid
 
     def send(self, message: object) -> None:
-        """Tell it something; when it is gone, nothing happens."""
-        self._writer.write(packed(message))
+        """Send a message; one to a process that is gone is lost."""
+        self._writer.write(encode(message))
 
     async def messages(self) -> AsyncIterator[Any]:
-        """What it says, until it is gone."""
+        """Yield the messages of the process, until it is gone."""
         try:
             while True:
-                yield await received(self._reader)
+                yield await receive(self._reader)
         except (EOFError, OSError):
             return
 
     def kill(self) -> None:
-        """End it at once."""
+        """Kill the process."""
         self._process.kill()
 
-    async def gone(self) -> None:
-        """Wait until it has ended, and let go of everything."""
+    async def join(self) -> None:
+        """Wait until the process has ended, and close the socket."""
         self._writer.close()
         await asyncio.to_thread(self._process.join)

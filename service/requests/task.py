@@ -13,7 +13,7 @@ from service.requests.coverage import parse_coverage_request
 from service.requests.front import parse_front_request
 from service.requests.limits import Limits
 
-WorkKind = Literal["front", "coverage"]
+TaskKind = Literal["front", "coverage"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -35,34 +35,38 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Work:
-    """A front to plan: a kind of request, its body, JSON that was checked, and what came beside.
+class TaskSource:
+    """The bytes of a request, from which its task is parsed, and the task once it is.
 
-    Where it has been read, it brings the task along, so that no worker reads it again.
+    Attributes:
+        kind: The kind of request.
+        body: JSON.
+        upload: The content of the file that came beside the body, if one did.
+        task: The parsed task, so that a worker need not parse it again.
     """
 
-    kind: WorkKind
+    kind: TaskKind
     body: bytes
     upload: bytes | None = None
     task: Task | None = field(default=None, compare=False, repr=False)
 
 
-def read(work: Work, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
-    """The task in a piece of work.
+def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
+    """Parse and check a request.
 
     Raises:
-        Refusal: there is none, it is over a limit, or no actor serves it.
-        InvalidInstance: it cannot be planned.
+        Refusal: It is malformed, over a limit, or no actor serves it.
+        InvalidInstance: It cannot be planned.
     """
-    if work.kind == "coverage":
-        covering = parse_coverage_request(work.body, limits, work.upload)
+    if source.kind == "coverage":
+        covering = parse_coverage_request(source.body, limits, source.upload)
         return Task(
             subject=covering.coverage(),
             demand=covering.demand(),
             actor=choose_actor(actors, covering.kind, covering.named_actor),
             paths=covering.paths,
         )
-    asked = parse_front_request(work.body, limits, work.upload)
+    asked = parse_front_request(source.body, limits, source.upload)
     return Task(
         subject=asked.instance(),
         demand=asked.demand(),

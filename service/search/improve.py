@@ -34,17 +34,15 @@ class SearchResult:
 
 
 @dataclass(frozen=True)
-class SearchProgress:
-    """The progress of a search: seconds since it began, hypervolume and number of points.
-
-    `best` copies the subset of so many tours with the largest hypervolume. It may be called until
-    the report returns.
-    """
+class Progress:
+    """The state of a search that goes on: seconds, hypervolume and nondominated points so far."""
 
     seconds: float
     hypervolume: float
     points: int
-    best: Callable[[int], SearchResult]
+
+
+Report = Callable[[Progress, Callable[[int], SearchResult]], None]
 
 
 def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a default
@@ -55,7 +53,7 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
     iterations: int | None = None,
     seed: int = 0,
     stop: Callable[[], bool] | None = None,
-    report: Callable[[SearchProgress], None] | None = None,
+    report: Report | None = None,
     reference_point: Array | None = None,
 ) -> SearchResult:
     """Return the front that a search finds; it dominates or equals each of the given tours.
@@ -70,7 +68,8 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
             same seed and the same iterations give the same front.
         seed: Of all random choices.
         stop: Called every millisecond or two; True ends the search at once.
-        report: Called about ten times a second with the progress of the search.
+        report: Called about ten times a second with the progress, and with a function that copies
+            the best so many tours found so far, which may be called until the report returns.
         reference_point: Shape (2,), of the hypervolume, in the instance's units; by default n
             times the scale. The search works where this hypervolume grows fastest.
     """
@@ -94,7 +93,7 @@ def _run(
     deadline: float | None,
     iterations: int | None,
     stop: Callable[[], bool] | None,
-    report: Callable[[SearchProgress], None] | None,
+    report: Report | None,
 ) -> Termination:
     """Run a search until it converges, or its deadline, its iterations or `stop` end it."""
     began = reported = time.monotonic()
@@ -110,11 +109,8 @@ def _run(
             return "time_limit"
         if report is not None and now - reported >= REPORT_EVERY:
             reported = now
-            report(
-                SearchProgress(
-                    now - began, search.hypervolume, search.size, partial(_best_found, search)
-                )
-            )
+            progress = Progress(now - began, search.hypervolume, search.size)
+            report(progress, partial(_best_found, search))
     return "converged"
 
 

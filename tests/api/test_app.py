@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from service.instance import Instance, tour_lengths
-from service.jobs.front_document import rendered
+from service.jobs.front_document import encode_front
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.planner import Front
 from service.server import build
@@ -26,8 +26,8 @@ from tests.helpers.serving import (
     Broken,
     Shuffler,
     app_of,
-    planner_of,
     problem,
+    runner_of,
     serving,
     workers_of,
 )
@@ -333,7 +333,7 @@ def test_time_makes_the_front_better_and_no_front_passes_the_bound(client: httpx
 
 
 def test_before_the_search_is_compiled_only_the_network_answers(tmp_path: Path) -> None:
-    workers = workers_of(planner_of(warm=tmp_path / "warm"))
+    workers = workers_of(runner_of(warm=tmp_path / "warm"))
     app = app_of(workers=workers)
     with serving(app, warm=False) as address, httpx.Client(base_url=address) as client:
         request = {"coordinates": CITIES, "time_limit": 0}
@@ -354,7 +354,7 @@ def test_before_the_search_is_compiled_only_the_network_answers(tmp_path: Path) 
 
 def test_a_client_that_goes_away_frees_its_worker() -> None:
     limits = replace(LIMITS, seconds=600.0, cities=300)
-    workers = workers_of(planner_of(limits=limits), queue=0, seconds=700)
+    workers = workers_of(runner_of(limits=limits), queue=0, seconds=700)
     with serving(app_of(workers=workers, limits=limits)) as address:
         cities = np.random.default_rng(0).random((300, 4)).tolist()
         with pytest.raises(httpx.ReadTimeout):
@@ -369,7 +369,7 @@ def test_a_client_that_goes_away_frees_its_worker() -> None:
 
 def test_a_request_that_takes_too_long_is_answered_with_what_was_found() -> None:
     limits = replace(LIMITS, seconds=600.0, cities=300)
-    workers = workers_of(planner_of(limits=limits), seconds=1)
+    workers = workers_of(runner_of(limits=limits), seconds=1)
     with serving(app_of(workers=workers, limits=limits)) as address:
         cities = np.random.default_rng(0).random((300, 4)).tolist()
         request = {"coordinates": cities, "time_limit": 600}
@@ -380,7 +380,7 @@ def test_a_request_that_takes_too_long_is_answered_with_what_was_found() -> None
 
 def test_a_request_that_takes_too_long_for_any_front_is_504(tmp_path: Path) -> None:
     actor = Shuffler(tmp_path / "gate")
-    workers = workers_of(planner_of(actor), seconds=0.5)
+    workers = workers_of(runner_of(actor), seconds=0.5)
     with serving(app_of(workers=workers)) as address:
         answer = httpx.post(f"{address}/front", json={"coordinates": CITIES}, timeout=60)
         problem(answer, 504, "overdue")
@@ -466,7 +466,7 @@ def test_the_callers_own_request_id_is_kept_where_it_is_plain(
 
 def test_a_full_queue_is_503_and_health_answers_all_the_while(tmp_path: Path) -> None:
     actor = Shuffler(tmp_path / "gate")
-    workers = workers_of(planner_of(actor), queue=1)
+    workers = workers_of(runner_of(actor), queue=1)
     with serving(app_of(workers=workers)) as url, ThreadPoolExecutor() as clients:
 
         def post() -> httpx.Response:
@@ -537,7 +537,7 @@ def test_a_hundred_tours_of_a_thousand_cities_serialise_in_50_ms() -> None:
 
 def _seconds(front: Front) -> float:
     began = time.perf_counter()
-    rendered(front).json(id="id")
+    encode_front(front, {}).json(id="id")
     return time.perf_counter() - began
 
 

@@ -16,15 +16,14 @@ import pytest
 import redis
 
 from service.api.app import Edge
-from service.cluster.celery_app import queue_at
-from service.cluster.redis_engine import replica
-from service.cluster.worker import CeleryWorker, make_hand
-from service.jobs.runner import NamedActor, warm_up
+from service.cluster.celery_app import make_celery
+from service.cluster.redis_engine import connect
+from service.cluster.worker import CeleryWorker, make_record_worker
+from service.jobs.runner import MakeRunner, NamedActor, warm_up
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.worker_pool import WorkerPool
-from service.jobs.worker_process import MakePlanner
 from tests.helpers.redis_server import Redis
-from tests.helpers.serving import LIMITS, app_of, engine_app, planner_of, serving, workers_of
+from tests.helpers.serving import LIMITS, app_of, engine_app, runner_of, serving, workers_of
 
 PATIENT = replace(LIMITS, seconds=600.0, cities=300)
 SECONDS = 600.0
@@ -66,8 +65,8 @@ class Embedded:
         edge: Edge | None = None,
     ) -> Iterator[Served]:
         """A service with its workers. What it keeps in a folder outlives it."""
-        make_planner = planner_of(*actors, limits=PATIENT)
-        workers = workers_of(make_planner, self.workers, queue, SECONDS)
+        make_runner = runner_of(*actors, limits=PATIENT)
+        workers = workers_of(make_runner, self.workers, queue, SECONDS)
         path = IN_MEMORY if folder is None else str(folder / "fronts.sqlite")
         store = SqliteStore(path, entries=100, max_age=SECONDS)
         app = app_of(*actors, limits=PATIENT, store=store, workers=workers, edge=edge)
@@ -104,7 +103,7 @@ class Clustered:
             (folder / "begun").touch()
         while not connection.zcard("paretour:workers"):
             time.sleep(0.02)
-        store, engine = replica(url, entries=100, max_age=SECONDS, queue=queue, seconds=seconds)
+        store, engine = connect(url, entries=100, max_age=SECONDS, queue=queue, seconds=seconds)
         app = engine_app(store, engine, *actors, limits=PATIENT, edge=edge)
         with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:
             searching = partial(_searching_there, connection)
@@ -117,7 +116,7 @@ class Clustered:
         url = f"{self.server.url.removesuffix('/0')}/{database}"
         if database == known:
             self.crews.enter_context(
-                crew(url, planner_of(*actors, limits=PATIENT), SECONDS, self.workers)
+                crew(url, runner_of(*actors, limits=PATIENT), SECONDS, self.workers)
             )
         return url
 
@@ -127,8 +126,7 @@ def _first(workers: WorkerPool, _: str) -> int | None:
 
 
 def _searching_here(workers: WorkerPool) -> Mapping[Hashable, int]:
-    at_work = [(hand.order, hand.process.pid) for hand in workers._hands]
-    return {order: pid for order, pid in at_work if pid and order and order.snapshot}
+    return {each: pid for each, pid in workers.running.items() if pid and each.progress}
 
 
 def _searching_there(connection: "redis.Redis[bytes]") -> Mapping[Hashable, int]:
@@ -144,12 +142,10 @@ def planning(connection: "redis.Redis[bytes]", id: str) -> int | None:  # noqa: 
 
 
 @contextmanager
-def crew(
-    url: str, make_planner: MakePlanner, seconds: float, workers: int
-) -> Iterator[BaseProcess]:
+def crew(url: str, make_runner: MakeRunner, seconds: float, workers: int) -> Iterator[BaseProcess]:
     """A worker with so many processes that plan."""
     context = multiprocessing.get_context("spawn")
-    worker = context.Process(target=_work, args=(url, make_planner, seconds, workers))
+    worker = context.Process(target=_work, args=(url, make_runner, seconds, workers))
     worker.start()
     try:
         yield worker
@@ -158,11 +154,11 @@ def crew(
         worker.join()
 
 
-def _work(url: str, make_planner: MakePlanner, seconds: float, workers: int) -> None:
+def _work(url: str, make_runner: MakeRunner, seconds: float, workers: int) -> None:
     warm_up()
     CeleryWorker(
-        queue=queue_at(url, seconds),
-        make_hand=partial(make_hand, make_planner, url, seconds),
+        celery=make_celery(url, seconds),
+        make_record_worker=partial(make_record_worker, make_runner, url, seconds),
         workers=workers,
         drain_seconds=5,
     ).run()

@@ -11,10 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from service.jobs.front_document import FrontDocument, Sketch, rendered
+from service.jobs.front_document import FrontDocument, encode_front
+from service.jobs.runner import Report
 from service.jobs.worker_pool import WorkerPool
 from service.planner import Front
-from service.requests.task import Work
+from service.requests.task import TaskSource
+from service.search.improve import Progress
 
 
 @dataclass(frozen=True)
@@ -31,10 +33,8 @@ class Puppet:
         while self.warm is not None and not self.warm.exists():
             time.sleep(0.01)
 
-    def plan(
-        self, work: Work, stop: Callable[[], bool], report: Callable[[Sketch], None]
-    ) -> FrontDocument:
-        match work.body:
+    def run(self, source: TaskSource, stop: Callable[[], bool], report: Report) -> FrontDocument:
+        match source.body:
             case b"fail":
                 raise KeyError("city")
             case b"die":
@@ -42,16 +42,16 @@ class Puppet:
             case b"wait":
                 while not stop():
                     time.sleep(0.001)
-                return rendered(front("cancelled"))
+                return document("cancelled")
             case b"hang":
                 time.sleep(600)
             case b"report and hang":
                 began = time.monotonic()
                 while True:
                     seconds = time.monotonic() - began
-                    report(Sketch(seconds, 0.5, 7, lambda _: rendered(front(None))))
+                    report(Progress(seconds, 0.5, 7), lambda _: document(None))
                     time.sleep(0.01)
-        return rendered(front("converged"))
+        return document("converged")
 
     def _die_while_it_lives(self) -> None:
         if left := self.lives.read_bytes():
@@ -59,8 +59,8 @@ class Puppet:
             os.kill(os.getpid(), signal.SIGKILL)
 
 
-def front(terminated: str | None) -> Front:
-    return Front(
+def document(terminated: str | None) -> FrontDocument:
+    front = Front(
         tours=np.arange(3)[np.newaxis],
         points=np.ones((1, 2)),
         found=1,
@@ -69,10 +69,11 @@ def front(terminated: str | None) -> Front:
         terminated=terminated,
         timings={"construction": 1.0},
     )
+    return encode_front(front, {"name": "pa-one", "digest": "0" * 64})
 
 
-def work(body: bytes = b"") -> Work:
-    return Work("front", body)
+def source(body: bytes = b"") -> TaskSource:
+    return TaskSource("front", body)
 
 
 def _same(puppet: Puppet) -> Puppet:
@@ -84,8 +85,8 @@ async def working(
     puppet: Puppet | None = None, workers: int = 1, queue: int = 0, seconds: float = 60.0
 ) -> AsyncIterator[WorkerPool]:
     """Workers at work."""
-    make_planner = partial(_same, puppet or Puppet())
-    crew = WorkerPool(make_planner, workers=workers, queue=queue, seconds=seconds)
+    make_runner = partial(_same, puppet or Puppet())
+    crew = WorkerPool(make_runner, workers=workers, queue=queue, seconds=seconds)
     await crew.start()
     try:
         yield crew

@@ -25,11 +25,10 @@ from service.api.app import Edge, create_app
 from service.instance import Instance, Kind
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
-from service.jobs.runner import NamedActor, TaskRunner
+from service.jobs.runner import MakeRunner, NamedActor, TaskRunner
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
 from service.jobs.worker_pool import WorkerPool
-from service.jobs.worker_process import MakePlanner
 from service.requests.limits import Limits
 from service.server import build
 from service.settings import Settings
@@ -94,8 +93,8 @@ ACTORS = (Shuffler(), Shuffler(info=info_of("pa-one-matrix", "matrices")))
 
 
 @dataclass(frozen=True)
-class ColdPlanner(TaskRunner):
-    """A planner that is warm once there is a file."""
+class ColdRunner(TaskRunner):
+    """A runner that is warm once there is a file."""
 
     warm: Path = Path("/nowhere")
 
@@ -104,23 +103,21 @@ class ColdPlanner(TaskRunner):
             time.sleep(0.005)
 
 
-def planner_of(
-    *actors: NamedActor, limits: Limits = LIMITS, warm: Path | None = None
-) -> MakePlanner:
+def runner_of(*actors: NamedActor, limits: Limits = LIMITS, warm: Path | None = None) -> MakeRunner:
     by_name = {actor.info.name: actor for actor in actors or ACTORS}
     if warm is None:
         return partial(TaskRunner, by_name, limits)
-    return partial(ColdPlanner, by_name, limits, warm)
+    return partial(ColdRunner, by_name, limits, warm)
 
 
 def workers_of(
-    make_planner: MakePlanner | None = None,
+    make_runner: MakeRunner | None = None,
     workers: int = 1,
     queue: int = 8,
     seconds: float = 60.0,
 ) -> WorkerPool:
-    make_planner = make_planner or planner_of()
-    return WorkerPool(make_planner, workers=workers, queue=queue, seconds=seconds)
+    make_runner = make_runner or runner_of()
+    return WorkerPool(make_runner, workers=workers, queue=queue, seconds=seconds)
 
 
 def app_of(
@@ -131,7 +128,7 @@ def app_of(
     edge: Edge | None = None,
 ) -> FastAPI:
     store = store or SqliteStore(IN_MEMORY, entries=100, max_age=60)
-    workers = workers or workers_of(planner_of(*actors, limits=limits))
+    workers = workers or workers_of(runner_of(*actors, limits=limits))
     return engine_app(store, LocalEngine(workers, store), *actors, limits=limits, edge=edge)
 
 

@@ -5,16 +5,26 @@ from collections.abc import Callable
 
 import pytest
 
-from service.jobs.front_document import empty
+from service.jobs.front_document import FrontDocument, Timings
 from service.jobs.local_engine import LocalEngine
 from service.jobs.record import Record
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.submission import Submission
 from service.jobs.worker_pool import WorkerPool
-from service.requests.task import Work
+from service.requests.task import TaskSource
 from tests.helpers.serving import Shuffler
 
-FRONT = empty(cities=3)
+FRONT = FrontDocument(
+    cities=3,
+    points=0,
+    hypervolume=0.0,
+    hypervolume_bound=None,
+    reference_point=None,
+    scale=None,
+    timings_ms=Timings({}),
+    terminated=None,
+    actor={},
+)
 
 
 class OrdersOnly(WorkerPool):
@@ -23,10 +33,13 @@ class OrdersOnly(WorkerPool):
     def __init__(self) -> None:
         super().__init__(Shuffler, workers=1, queue=1)  # type: ignore[arg-type]
 
-    def order(
-        self, work: Work, tell: Callable[[], None] = lambda: None, patient: bool = False
+    def submit(
+        self,
+        source: TaskSource,
+        on_change: Callable[[], None] = lambda: None,
+        patient: bool = False,
     ) -> Submission:
-        self.given = Submission(0, work, tell, patient)
+        self.given = Submission(0, source, on_change, patient)
         return self.given
 
 
@@ -34,7 +47,7 @@ class Immediate(SqliteStore):
     """A store whose answer waits for no other thread."""
 
     async def put(self, record: Record) -> None:
-        self._at_once(self._put, record)
+        self._in_transaction(self._put, record)
 
 
 async def followed(steps: int) -> list[str]:
@@ -48,11 +61,11 @@ async def followed(steps: int) -> list[str]:
         request_id="",
         status="queued",
         front=FRONT,
-        work=Work("front", b""),
+        source=TaskSource("front", b""),
     )
-    await jobs.begin(record)
+    await jobs.submit(record)
     await asyncio.sleep(0)  # so that the job waits for its front
-    workers.given.done(FRONT)
+    workers.given.finish(FRONT)
     for _ in range(steps):
         await asyncio.sleep(0)
     following = asyncio.ensure_future(_statuses(jobs, record))

@@ -13,12 +13,11 @@ from redis.asyncio import Redis
 
 from service.cluster.redis_store import RedisStore
 from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
-from service.jobs.front_document import rendered
 from service.jobs.record import Record
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
-from service.requests.task import Work
-from tests.helpers.puppet import front
+from service.requests.task import TaskSource
+from tests.helpers.puppet import document
 from tests.helpers.redis_server import redis_server
 
 Run = Callable[..., None]
@@ -35,12 +34,12 @@ class Clock:
 
 
 def record(id_: str, caller: str = "us", **more: Any) -> Record:
-    given = {"status": "done", "request_id": "r", "front": rendered(front("converged"))}
+    given = {"status": "done", "request_id": "r", "front": document("converged")}
     return Record(id=id_, caller=caller, **{**given, **more})
 
 
 def job(id_: str, **more: Any) -> Record:
-    return record(id_, **{"status": "queued", "work": Work("front", b"{}", b"\0"), **more})
+    return record(id_, **{"status": "queued", "source": TaskSource("front", b"{}", b"\0"), **more})
 
 
 @asynccontextmanager
@@ -158,7 +157,7 @@ def test_only_so_many_of_the_gone_are_remembered(run: Run) -> None:
 def test_what_is_forgotten_leaves_nothing(run: Run) -> None:
     async def test(store: Store) -> None:
         await store.put(record("a"))
-        await store.forget(record("a"))
+        await store.delete(record("a"))
         with pytest.raises(NotFound):
             await store.get("us", "a")
 
@@ -176,9 +175,9 @@ def test_unfinished_work_never_makes_way_and_its_front_counts_as_new_when_it_is_
         for id_ in "bcd":
             await store.put(record(id_))
         [unfinished] = await store.unfinished()
-        assert (unfinished.id, unfinished.work) == ("a", Work("front", b"{}", b"\0"))
+        assert (unfinished.id, unfinished.source) == ("a", TaskSource("front", b"{}", b"\0"))
         assert (await store.latest("us")).id == "d"
-        await store.put(replace(unfinished, status="done", work=None))
+        await store.put(replace(unfinished, status="done", source=None))
         assert (await store.latest("us")).id == "a"
         assert await store.unfinished() == []
 
@@ -194,9 +193,9 @@ def test_a_key_gives_the_record_that_it_was_first_used_for(run: Run) -> None:
             await store.admit(job("c", key="k", digest="2"))
         other = job("d", caller="them", key="k", digest="2")
         assert await store.admit(other) is other
-        await store.put(replace(first, status="done", work=None))
+        await store.put(replace(first, status="done", source=None))
         assert (await store.admit(job("e", key="k", digest="1"))).status == "done"
-        await store.forget(first)
+        await store.delete(first)
         assert (await store.admit(job("f", key="k", digest="2"))).id == "f"
         await store.put(job("f", key="k", digest="2", status="failed"))
         assert (await store.admit(job("g", key="k", digest="2"))).id == "g"

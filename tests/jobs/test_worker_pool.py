@@ -20,8 +20,9 @@ from service.errors import (
     WarmingUp,
     WorkerLost,
 )
+from service.jobs.front_document import FrontDocument
 from service.jobs.worker_pool import WorkerPool
-from tests.helpers.puppet import Puppet, work, working
+from tests.helpers.puppet import Puppet, source, working
 
 ROOT = Path(__file__).parents[2]
 
@@ -41,13 +42,13 @@ async def until(holds: Callable[[], bool]) -> None:
         await asyncio.sleep(0.005)
 
 
-async def front(workers: WorkerPool, body: bytes = b"") -> dict[str, Any]:
-    return (await workers.order(work(body)).front()).members
+async def front(workers: WorkerPool, body: bytes = b"") -> FrontDocument:
+    return await workers.submit(source(body)).front()
 
 
 def test_work_becomes_a_front_with_the_time_that_it_waited() -> None:
     async def test(workers: WorkerPool) -> None:
-        timings = (await front(workers))["timings_ms"]
+        timings = (await front(workers)).timings_ms.as_json()
         assert timings["construction"] == 1
         assert timings["total"] == pytest.approx(timings["queue"] + 1)
 
@@ -59,45 +60,45 @@ def test_what_fails_fails_for_whoever_asked_with_the_traceback_of_the_worker() -
         with pytest.raises(KeyError, match="city") as failed:
             await front(workers, b"fail")
         assert 'raise KeyError("city")' in failed.value.__notes__[0]
-        assert (await front(workers))["terminated"] == "converged"
+        assert (await front(workers)).terminated == "converged"
 
     run(test)
 
 
 def test_work_keeps_its_place_when_nobody_waits_for_it_any_more() -> None:
     async def test(workers: WorkerPool) -> None:
-        order = workers.order(work(b"wait"))
+        submission = workers.submit(source(b"wait"))
         await until(lambda: workers.working == 1)
         with pytest.raises(TimeoutError):
-            await asyncio.wait_for(order.front(), timeout=0.05)
+            await asyncio.wait_for(submission.front(), timeout=0.05)
         with pytest.raises(QueueFull):
-            workers.order(work())
-        workers.stop(order)
-        assert (await order.front()).members["terminated"] == "cancelled"
+            workers.submit(source())
+        workers.stop(submission)
+        assert (await submission.front()).terminated == "cancelled"
 
     run(test)
 
 
 def test_work_that_is_stopped_while_it_waits_gives_up_its_place() -> None:
     async def test(workers: WorkerPool) -> None:
-        workers.order(work(b"wait"))
-        waiting = workers.order(work())
+        workers.submit(source(b"wait"))
+        waiting = workers.submit(source())
         workers.stop(waiting)
         with pytest.raises(Cancelled):
             await waiting.front()
-        workers.order(work())
+        workers.submit(source())
 
     run(test, queue=1)
 
 
 def test_work_that_does_not_listen_is_ended_and_its_process_replaced() -> None:
     async def test(workers: WorkerPool) -> None:
-        order = workers.order(work(b"hang"))
+        submission = workers.submit(source(b"hang"))
         await until(lambda: workers.working == 1)
-        workers.stop(order)
+        workers.stop(submission)
         with pytest.raises(Cancelled):
-            await order.front()
-        assert (await front(workers))["terminated"] == "converged"
+            await submission.front()
+        assert (await front(workers)).terminated == "converged"
         assert workers.lost == 1
 
     run(test)
@@ -106,11 +107,11 @@ def test_work_that_does_not_listen_is_ended_and_its_process_replaced() -> None:
 @pytest.mark.parametrize("patient", [True, False])
 def test_work_that_takes_too_long_ends_with_the_best_front_so_far(patient: bool) -> None:
     async def test(workers: WorkerPool) -> None:
-        await workers.order(work(), patient=True).front()
+        await workers.submit(source(), patient=True).front()
         told: list[None] = []
-        order = workers.order(work(b"report and hang"), lambda: told.append(None), patient)
-        found = (await order.front()).members
-        assert (found["terminated"], found["points"]) == ("time_limit", 1)
+        submission = workers.submit(source(b"report and hang"), lambda: told.append(None), patient)
+        found = await submission.front()
+        assert (found.terminated, found.points) == ("time_limit", 1)
         # That it was begun, and what was found.
         assert len(told) > 1
 
@@ -130,7 +131,7 @@ def test_work_whose_process_is_killed_is_done_by_another(tmp_path: Path) -> None
     lives.write_bytes(b"1")
 
     async def test(workers: WorkerPool) -> None:
-        assert (await front(workers, b"die"))["terminated"] == "converged"
+        assert (await front(workers, b"die")).terminated == "converged"
         assert workers.lost == 1
 
     run(test, Puppet(lives=lives))
@@ -141,10 +142,10 @@ def test_work_that_kills_two_processes_is_given_up_and_others_are_done(tmp_path:
     lives.write_bytes(b"123")
 
     async def test(workers: WorkerPool) -> None:
-        deadly, other = workers.order(work(b"die")), workers.order(work())
+        deadly, other = workers.submit(source(b"die")), workers.submit(source())
         with pytest.raises(WorkerLost):
             await deadly.front()
-        assert (await other.front()).members["terminated"] == "converged"
+        assert (await other.front()).terminated == "converged"
         assert lives.read_bytes() == b"3"
 
     run(test, Puppet(lives=lives), queue=1)
@@ -157,7 +158,7 @@ def test_a_process_killed_while_idle_is_replaced() -> None:
         assert killed is not None
         os.kill(killed, signal.SIGKILL)
         await until(lambda: workers.lost == 1)
-        assert (await front(workers))["terminated"] == "converged"
+        assert (await front(workers)).terminated == "converged"
         assert killed not in workers.pids
 
     run(test)
@@ -165,13 +166,13 @@ def test_a_process_killed_while_idle_is_replaced() -> None:
 
 def test_compiled_code_may_not_be_used_before_it_is_warm(tmp_path: Path) -> None:
     async def test(workers: WorkerPool) -> None:
-        assert (await front(workers))["terminated"] == "converged"
+        assert (await front(workers)).terminated == "converged"
         for check in (workers.check_warm, workers.check_ready):
             with pytest.raises(WarmingUp):
                 check()
         (tmp_path / "warm").touch()
         await until(lambda: is_warm(workers))
-        assert (await front(workers))["terminated"] == "converged"
+        assert (await front(workers)).terminated == "converged"
         workers.check_ready()
 
     run(test, Puppet(warm=tmp_path / "warm"), workers=2)
@@ -186,27 +187,27 @@ def is_warm(workers: WorkerPool) -> bool:
 
 def test_after_the_close_no_work_is_taken_and_none_is_waited_for_in_vain() -> None:
     async def test(workers: WorkerPool) -> None:
-        orders = [workers.order(work(b"hang")) for _ in range(2)]
+        submissions = [workers.submit(source(b"hang")) for _ in range(2)]
         await until(lambda: workers.working == 1)
         await workers.close()
-        for order in orders:
+        for submission in submissions:
             with pytest.raises(ShuttingDown):
-                await order.front()
+                await submission.front()
         with pytest.raises(ShuttingDown):
             workers.check_open()
         with pytest.raises(ShuttingDown):
-            workers.order(work())
+            workers.submit(source())
 
     run(test, queue=1)
 
 
 ORPHANS = """
 import asyncio
-from tests.puppet import work, working
+from tests.helpers.puppet import source, working
 
 async def main():
     async with working(workers=2) as workers:
-        orders = [workers.order(work(b"hang")) for _ in range(2)]
+        submissions = [workers.submit(source(b"hang")) for _ in range(2)]
         while workers.working < 2:
             await asyncio.sleep(0.01)
         print(*workers.pids, flush=True)

@@ -10,7 +10,7 @@ from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
 from service.settings import Settings
 from tests.helpers.browsing import CHROMIUM, WITHOUT, chromium, done, opened
-from tests.helpers.serving import app_of, planner_of, serving, workers_of
+from tests.helpers.serving import app_of, runner_of, serving, workers_of
 
 LIMITS = Settings().limits
 
@@ -27,7 +27,7 @@ def test_the_page_says_that_the_service_warms_up_and_goes_on_by_itself(
     browser: Browser, tmp_path: Path
 ) -> None:
     warm = tmp_path / "warm"
-    workers = workers_of(planner_of(limits=LIMITS, warm=warm))
+    workers = workers_of(runner_of(limits=LIMITS, warm=warm))
     app = app_of(workers=workers, limits=LIMITS)
     with serving(app, warm=False) as address, opened(browser, address) as page:
         status = page.locator("#status")

@@ -13,7 +13,7 @@ import pytest
 
 from service.actor import OnnxActor
 from service.instance import Instance, tour_lengths
-from service.jobs.runner import load_planner
+from service.jobs.runner import load_runner
 from service.settings import Settings
 from tests.helpers.artifacts import by_row_sums
 from tests.helpers.serving import LIMITS, Shuffler, app_of, info_of, problem, serving, workers_of
@@ -158,7 +158,7 @@ def test_where_the_default_is_not_loaded_another_that_reads_matrices_serves() ->
 
 def test_a_network_of_matrices_plans_over_http(tmp_path: Path) -> None:
     actor = OnnxActor(by_row_sums(tmp_path / "sums.onnx"), threads=1)
-    workers = workers_of(partial(load_planner, tmp_path, 1, LIMITS))
+    workers = workers_of(partial(load_runner, tmp_path, 1, LIMITS))
     with serving(app_of(actor, workers=workers)) as url:
         request = {"matrices": COSTS.tolist(), "preferences": [30], "time_limit": 0}
         answer = httpx.post(f"{url}/front", json=request).json()

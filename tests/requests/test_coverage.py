@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.helpers.serving import LIMITS, Shuffler, app_of, planner_of, problem, serving, workers_of
+from tests.helpers.serving import LIMITS, Shuffler, app_of, problem, runner_of, serving, workers_of
 
 JSON = {"Content-Type": "application/json"}
 GRID = [
@@ -234,7 +234,7 @@ def test_without_an_actor_of_matrices_there_is_no_coverage() -> None:
 
 def test_before_the_search_is_compiled_there_is_no_coverage(tmp_path: Path) -> None:
     warm = tmp_path / "warm"
-    app = app_of(workers=workers_of(planner_of(warm=warm)))
+    app = app_of(workers=workers_of(runner_of(warm=warm)))
     with serving(app, warm=False) as url:
         answer = httpx.post(f"{url}/coverage", json=changed(time_limit=0))
         problem(answer, 503, "warming-up")

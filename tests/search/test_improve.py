@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance, all_tours, tour_lengths
 from service.pareto import hypervolume, nondominated
-from service.search.improve import SearchProgress, SearchResult, improve
+from service.search.improve import Progress, SearchResult, improve
 from tests.helpers.instances import KINDS, no_tours, random_tours, small_integers, uniform
 
 
@@ -125,8 +125,13 @@ def test_a_stopped_search_keeps_what_it_found() -> None:
 
 
 def test_progress_is_reported_and_only_ever_upwards() -> None:
-    reported: list[SearchProgress] = []
-    improve(uniform(100), no_tours(100), deadline=time.monotonic() + 0.5, report=reported.append)
+    reported: list[Progress] = []
+    improve(
+        uniform(100),
+        no_tours(100),
+        deadline=time.monotonic() + 0.5,
+        report=lambda progress, _: reported.append(progress),
+    )
     assert len(reported) >= 2
     shares = [progress.hypervolume for progress in reported]
     assert shares == sorted(shares)
