@@ -22,9 +22,7 @@ from service.cluster.redis_engine import RedisEngine
 from service.cluster.redis_store import RedisStore
 from service.cluster.worker_store import takes_work
 from tests.helpers.engines import PATIENT, Served, engine_of, planning
-from tests.helpers.redis_server import LASTING, Redis, redis_server
-from tests.helpers.serving import Running, Shuffler, engine_app, problem, running, serving, working
-from tests.jobs.test_local_engine import (
+from tests.helpers.jobs import (
     CITIES,
     LATER,
     LONG,
@@ -36,6 +34,8 @@ from tests.jobs.test_local_engine import (
     later,
     until_found,
 )
+from tests.helpers.redis_server import LASTING, Redis, redis_server
+from tests.helpers.serving import Running, Shuffler, engine_app, problem, running, serving, working
 
 SOME_SECONDS = {"coordinates": CITIES, "time_limit": 1.5}
 
@@ -287,7 +287,7 @@ def test_without_the_extra_redis_is_refused_at_the_start(
 def test_without_the_extra_the_service_is_what_it_was() -> None:
     code = (
         "import sys; sys.modules['celery'] = sys.modules['redis'] = None; "
-        "from service.serve import build; from service.settings import Settings; build(Settings())"
+        "from service.server import build; from service.settings import Settings; build(Settings())"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
 

@@ -59,7 +59,7 @@ class Puppet:
             os.kill(os.getpid(), signal.SIGKILL)
 
 
-def document(terminated: str | None) -> FrontDocument:
+def document(terminated: str | None, gained: float | None = None) -> FrontDocument:
     front = Front(
         tours=np.arange(3)[np.newaxis],
         points=np.ones((1, 2)),
@@ -68,6 +68,7 @@ def document(terminated: str | None) -> FrontDocument:
         reference_point=np.array([3.0, 3.0]),
         terminated=terminated,
         timings={"construction": 1.0},
+        gained=gained,
     )
     return encode_front(front, {"name": "pa-one", "digest": "0" * 64})
 

@@ -11,8 +11,8 @@ import httpx
 import pytest
 
 from tests.helpers.engines import Served, engine_of
+from tests.helpers.jobs import CITIES, check, ended, later
 from tests.helpers.serving import problem
-from tests.jobs.test_local_engine import CITIES, check, ended, later
 
 REQUEST = {"coordinates": CITIES[:60], "time_limit": 0.4}
 CALLERS = 3

@@ -1,24 +1,17 @@
 """Fronts kept for later, and how they make way."""
 
 import asyncio
-from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager
+from collections.abc import Awaitable, Callable
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import pytest
-from redis.asyncio import Redis
 
-from service.cluster.redis_store import RedisStore
-from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
-from service.jobs.record import Record
-from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
+from service.errors import Expired, IdempotencyMismatch, NotFound
 from service.jobs.store import Store
 from service.requests.task import TaskSource
-from tests.helpers.puppet import document
-from tests.helpers.redis_server import redis_server
+from tests.helpers.stores import job, record, redis_store, sqlite_store
 
 Run = Callable[..., None]
 
@@ -31,31 +24,6 @@ class Clock:
 
     def __call__(self) -> float:
         return self.now
-
-
-def record(id_: str, caller: str = "us", **more: Any) -> Record:
-    given = {"status": "done", "request_id": "r", "front": document("converged")}
-    return Record(id=id_, caller=caller, **{**given, **more})
-
-
-def job(id_: str, **more: Any) -> Record:
-    return record(id_, **{"status": "queued", "source": TaskSource("front", b"{}", b"\0"), **more})
-
-
-@asynccontextmanager
-async def sqlite_store(**options: Any) -> AsyncIterator[Store]:
-    store = SqliteStore(IN_MEMORY, **options)
-    yield store
-    await store.close()
-
-
-@asynccontextmanager
-async def redis_store(url: str, **options: Any) -> AsyncIterator[Store]:
-    redis = Redis.from_url(url)
-    await redis.flushall()
-    store = RedisStore(redis, **options)
-    yield store
-    await store.close()
 
 
 @pytest.fixture(params=["sqlite", "redis"])
@@ -202,37 +170,3 @@ def test_a_key_gives_the_record_that_it_was_first_used_for(run: Run) -> None:
         assert (await store.get("us", "f")).status == "failed"
 
     run(test)
-
-
-def test_what_is_in_a_file_is_there_after_a_restart(tmp_path: Path) -> None:
-    path = str(tmp_path / "folder" / "fronts.sqlite")
-
-    async def test() -> None:
-        store = SqliteStore(path, entries=2, max_age=60)
-        await store.put(record("a"))
-        await store.put(job("b"))
-        with pytest.raises(ValueError, match="must be a file of its own"):
-            SqliteStore(path, entries=2, max_age=60)
-        await store.close()
-        again = SqliteStore(path, entries=2, max_age=60)
-        assert (await again.get("us", "a")).json() == record("a").json()
-        assert [each.id for each in await again.unfinished()] == ["b"]
-        await again.close()
-
-    asyncio.run(test())
-
-
-def test_a_store_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=f"store must be a file of its own, {tmp_path} is not"):
-        SqliteStore(str(tmp_path), entries=1, max_age=1)
-
-
-def test_a_store_that_does_not_answer_is_unavailable(tmp_path: Path) -> None:
-    async def test() -> None:
-        with redis_server(tmp_path) as redis:
-            async with redis_store(redis.url, entries=1, max_age=1) as store:
-                redis.end()
-                with pytest.raises(StoreUnavailable):
-                    await store.get("us", "a")
-
-    asyncio.run(test())

@@ -3,8 +3,6 @@
 import asyncio
 import os
 import signal
-import subprocess
-import sys
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from pathlib import Path
@@ -23,8 +21,6 @@ from service.errors import (
 from service.jobs.front_document import FrontDocument
 from service.jobs.worker_pool import WorkerPool
 from tests.helpers.puppet import Puppet, source, working
-
-ROOT = Path(__file__).parents[2]
 
 
 def run(test: Callable[[WorkerPool], Awaitable[None]], *args: Any, **options: Any) -> None:
@@ -199,39 +195,3 @@ def test_after_the_close_no_work_is_taken_and_none_is_waited_for_in_vain() -> No
             workers.submit(source())
 
     run(test, queue=1)
-
-
-ORPHANS = """
-import asyncio
-from tests.helpers.puppet import source, working
-
-async def main():
-    async with working(workers=2) as workers:
-        submissions = [workers.submit(source(b"hang")) for _ in range(2)]
-        while workers.working < 2:
-            await asyncio.sleep(0.01)
-        print(*workers.pids, flush=True)
-        await asyncio.sleep(600)
-
-if __name__ == "__main__":
-    asyncio.run(main())
-"""
-
-
-def test_no_worker_outlives_a_service_that_is_killed(tmp_path: Path) -> None:
-    script = tmp_path / "orphans.py"
-    script.write_text(ORPHANS)
-    command = [sys.executable, script]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE) as service:
-        assert service.stdout is not None
-        pids = [int(pid) for pid in service.stdout.readline().split()]
-        assert len(pids) == 2
-        service.kill()
-        # Which ends when the last process that could write to it has ended.
-        assert service.stdout.read() == b""
-    assert not any(Path(f"/proc/{pid}").exists() and not zombie(pid) for pid in pids)
-
-
-def zombie(pid: int) -> bool:
-    return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"

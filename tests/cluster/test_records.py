@@ -1,0 +1,53 @@
+"""Names that travel over Redis: replicas and workers of other releases read them."""
+
+from service.cluster.celery_app import QUEUE, TASK
+from service.cluster.records import (
+    CHANNEL,
+    SCRIPT,
+    STOP_REASONS,
+    TAKEN_OVER,
+    progress_arguments,
+    record_arguments,
+)
+from service.errors import Cancelled, DeadlineExceeded
+from service.jobs.record import UNFINISHED
+from service.search.improve import Progress
+from tests.helpers.puppet import document
+from tests.helpers.released_records import REDIS_HASHES
+from tests.helpers.stores import job, record
+
+
+def test_stop_reasons_keep_their_names() -> None:
+    assert {Cancelled: b"Stopped", DeadlineExceeded: b"Overdue"} == STOP_REASONS
+    assert TAKEN_OVER == b"taken"
+
+
+def test_statuses_queue_and_channel_keep_their_names() -> None:
+    assert UNFINISHED == ("queued", "running")
+    assert (QUEUE, TASK, CHANNEL) == ("paretour", "paretour.plan", "paretour:told")
+
+
+def test_fields_of_a_record_keep_their_names() -> None:
+    count, *arguments = record_arguments(job("a", key="k", digest="d"))
+    assert arguments[:count:2] == [
+        *("id", "caller", "request_id", "status", "key", "digest", "problem"),
+        *("members", "tours", "ends", "angles"),
+    ]
+    assert arguments[count::2] == ["kind", "body", "upload"]
+    assert set(arguments[:count:2]) <= {name.decode() for name in REDIS_HASHES[_DONE]}
+    count, *arguments = record_arguments(record("a", front=document("converged", gained=0.5)))
+    assert arguments[count - 2 :] == ["gained", 0.5]
+
+
+def test_fields_of_a_report_keep_their_names() -> None:
+    arguments = progress_arguments(Progress(0.5, 0.25, 3), document(None))
+    assert arguments[::2] == ["members", "tours", "ends", "angles", "progress"]
+    assert arguments[-1] == b'{"seconds":0.5,"hypervolume":0.25,"points":3}'
+
+
+def test_the_script_sets_the_fields_that_are_read() -> None:
+    for name in ("kept", "attempts", "stop", "seen", "sent", "worker", "claimed", "number"):
+        assert f"'{name}'" in SCRIPT
+
+
+_DONE = b"paretour:front:done"
