@@ -69,11 +69,18 @@ class PlanOptions:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Front:
-    """Nondominated tours, shape (m, n), and their points, shape (m, 2), by ascending first length.
+    """Nondominated tours and their points, by ascending first length.
 
-    Of `found` nondominated tours these are the ones that were kept. No front of the instance has
-    a hypervolume above `bound`, where that was asked for. A search added `gained` to the
-    hypervolume of the tours that it set out from. Times are in milliseconds, by phase.
+    Attributes:
+        tours: One tour a row, shape (m, n).
+        points: Their lengths, shape (m, 2).
+        found: The number of nondominated tours found, of which m were kept.
+        scale: Of the instance, shape (2,).
+        reference_point: Of the hypervolumes, shape (2,).
+        terminated: How the search ended; None while it goes on.
+        timings: Milliseconds by phase.
+        bound: A hypervolume that no front of the instance exceeds, where it was asked for.
+        gained: The hypervolume that the search added to that of the tours it was given.
     """
 
     tours: NDArray[np.integer]
@@ -81,7 +88,7 @@ class Front:
     found: int
     scale: Array
     reference_point: Array
-    terminated: Termination | None  # none while the search goes on
+    terminated: Termination | None
     timings: dict[str, float]
     bound: float | None = None
     gained: float | None = None
@@ -93,7 +100,7 @@ class Front:
 
     @cached_property
     def hypervolume(self) -> float:
-        """Of the tours kept, in respect of the reference point."""
+        """The hypervolume of the tours kept, with respect to the reference point."""
         return hypervolume(self.points, self.reference_point)
 
     @cached_property
@@ -102,7 +109,7 @@ class Front:
         return angles(self.points / self.scale)
 
     def nearest(self, angle: float) -> int:
-        """The index of the tour whose direction is nearest to the angle in degrees."""
+        """Return the index of the tour whose direction is nearest to the angle in degrees."""
         return int(np.abs(self.angles - angle).argmin())
 
 

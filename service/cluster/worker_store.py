@@ -105,10 +105,10 @@ _CHECK_EVERY = 0.25  # seconds between two checks
 
 
 def takes_work(redis_url: str) -> bool:
-    """Return whether this machine's workers take waiting messages.
+    """Return whether this machine has a worker, and no process of it stays idle while jobs wait.
 
-    They do where none waits, or where a process was idle and is not any more within a few seconds.
-    Where Redis does not answer it is True, as the worker is not at fault.
+    It takes up to LEASE + 1 seconds to tell. Where Redis does not answer, the worker is not at
+    fault, and the answer is True.
     """
     script = connect_script(redis_url)
     deadline = monotonic() + _LOST_AFTER

@@ -5,23 +5,19 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import AbstractContextManager, ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
-from functools import partial
 
 import httpx
 import pytest
 import redis
-from redis.asyncio import Redis as AsyncRedis
 
 from service.__main__ import main
 from service.cluster.celery_app import QUEUE
-from service.cluster.redis_engine import RedisEngine
-from service.cluster.redis_store import RedisStore
 from service.cluster.worker_store import takes_work
-from tests.helpers.engines import PATIENT, Served, engine_of, planning
+from tests.helpers.cluster_state import ClusterState
 from tests.helpers.jobs import (
     CITIES,
     LATER,
@@ -35,7 +31,7 @@ from tests.helpers.jobs import (
     until_found,
 )
 from tests.helpers.redis_server import LASTING, Redis, redis_server
-from tests.helpers.serving import Running, Shuffler, engine_app, problem, running, serving, working
+from tests.helpers.serving import Running, problem, running, working
 
 SOME_SECONDS = {"coordinates": CITIES, "time_limit": 1.5}
 
@@ -50,6 +46,7 @@ class Machines:
 
     def __post_init__(self) -> None:
         self.connection = redis.Redis.from_url(self.redis.url)
+        self.state = ClusterState(self.redis.url)
         self._settings = {
             "PARETOUR_REDIS_URL": self.redis.url,
             "PARETOUR_WORKERS": "1",
@@ -57,13 +54,10 @@ class Machines:
         }
 
     def start_worker(self) -> None:
-        before = self._present()
+        before = self.state.workers()
         self.workers.append(self.stack.enter_context(working(self._settings)))
-        while self._present() <= before:
+        while self.state.workers() <= before:
             time.sleep(0.05)
-
-    def _present(self) -> set[bytes]:
-        return set(self.connection.zrange("paretour:workers", 0, -1))
 
     @contextmanager
     def replica(self) -> Iterator[tuple[Running, httpx.Client]]:
@@ -115,7 +109,7 @@ def test_when_a_worker_is_lost_its_job_ends_with_a_front(
 ) -> None:
     path = later(client, SOME_SECONDS)
     until_found(client, path)
-    planner = planning(machines.connection, id_of(path))
+    planner = machines.state.planning(id_of(path))
     assert planner is not None
     machines.workers[-1].kill()
     if with_its_processes:
@@ -127,7 +121,7 @@ def test_when_a_worker_is_lost_its_job_ends_with_a_front(
 def test_a_worker_that_is_told_to_end_hands_its_job_back(
     machines: Machines, client: httpx.Client
 ) -> None:
-    lost = int(machines.connection.get("paretour:lost") or 0)
+    lost = machines.state.lost()
     path = later(client, {**LONG, "time_limit": 4})
     until_found(client, path)
     machines.workers[-1].terminate()
@@ -135,7 +129,7 @@ def test_a_worker_that_is_told_to_end_hands_its_job_back(
     assert client.get(path).json()["status"] == "queued"
     machines.start_worker()
     done(client, path)
-    assert int(machines.connection.get("paretour:lost") or 0) == lost
+    assert machines.state.lost() == lost
 
 
 def test_a_worker_that_takes_no_work_is_found(machines: Machines, client: httpx.Client) -> None:
@@ -174,7 +168,7 @@ def test_when_redis_is_full_no_more_is_taken_until_there_is_room(
         assert takes_work(machines.redis.url)
     finally:
         machines.connection.config_set("maxmemory", 0)
-    assert machines.connection.zcard("paretour:unfinished") == 0
+    assert machines.state.unfinished() == {}
     assert client.post("/front", json=SHORT).json()["status"] == "done"
 
 
@@ -218,58 +212,6 @@ def unavailable(client: httpx.Client, path: str) -> None:
         assert answer.headers["retry-after"]
     assert client.get("/health/live").status_code == 200
     assert client.get("/metrics").status_code == 200
-
-
-Serve = Callable[..., AbstractContextManager[Served]]
-
-
-@pytest.fixture(scope="module")
-def actor(tmp_path_factory: pytest.TempPathFactory) -> Shuffler:
-    actor = Shuffler(tmp_path_factory.mktemp("gated") / "gate")
-    actor.open()
-    return actor
-
-
-@pytest.fixture(scope="module")
-def serve(request: pytest.FixtureRequest, actor: Shuffler) -> Iterator[Serve]:
-    """Serves with a replica in this process, all with the same worker."""
-    with engine_of("cluster", request) as cluster:
-        yield partial(cluster.serve, actor)
-
-
-def test_who_waits_too_long_is_given_the_best_front_so_far(serve: Serve) -> None:
-    with serve(seconds=1.0) as served:
-        answer = served.client.post("/front", json=LONG).json()
-        assert (answer["status"], answer["terminated"]) == ("done", "time_limit")
-        check(answer)
-
-
-def test_work_that_found_nothing_in_time_is_504_and_its_worker_is_free_again(
-    serve: Serve, actor: Shuffler
-) -> None:
-    actor.close()
-    with serve(seconds=1.0) as served:
-        problem(served.client.post("/front", json=LONG), 504, "overdue")
-        actor.open()
-        assert ended(served.client, later(served.client))["status"] == "done"
-
-
-def test_a_client_that_goes_away_frees_its_worker(serve: Serve) -> None:
-    with serve() as served:
-        with pytest.raises(httpx.ReadTimeout):
-            served.client.post("/front", json=LONG, timeout=1)
-        assert ended(served.client, later(served.client))["status"] == "done"
-
-
-def test_a_job_whose_message_was_lost_is_done_all_the_same(serve: Serve) -> None:
-    with serve() as served:
-        connection = AsyncRedis.from_url(served.redis_url)
-        store = RedisStore(connection, entries=9, max_age=60)
-        forgetful = RedisEngine(connection, store, lambda _: None, queue=8, seconds=600)
-        app = engine_app(store, forgetful, limits=PATIENT)
-        with serving(app) as url, httpx.Client(base_url=url) as client:
-            path = later(client)
-        assert ended(served.client, path)["status"] == "done"
 
 
 @pytest.mark.parametrize("command", ["serve", "work"])

@@ -22,6 +22,7 @@ from service.cluster.worker import CeleryWorker, make_record_worker
 from service.jobs.runner import MakeRunner, NamedActor, warm_up
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.worker_pool import WorkerPool
+from tests.helpers.cluster_state import ClusterState
 from tests.helpers.redis_server import Redis
 from tests.helpers.serving import LIMITS, app_of, engine_app, runner_of, serving, workers_of
 
@@ -71,8 +72,8 @@ class Embedded:
         store = SqliteStore(path, entries=100, max_age=SECONDS)
         app = app_of(*actors, limits=PATIENT, store=store, workers=workers, edge=edge)
         with serving(app) as url, httpx.Client(base_url=url, timeout=60) as client:
-            planning = partial(_first, workers)
-            yield Served(client, planning, partial(_searching_here, workers))
+            planning = partial(_first_pid, workers)
+            yield Served(client, planning, partial(_searching, workers))
 
 
 @dataclass
@@ -80,7 +81,7 @@ class Clustered:
     """The engine of many machines, of which each is a process here, at a Redis database each."""
 
     server: Redis
-    crews: ExitStack
+    celery_workers: ExitStack
     workers: int = 1
     _databases: dict[str, int] = field(default_factory=dict)
 
@@ -101,13 +102,13 @@ class Clustered:
             connection.flushdb()
         if folder is not None:
             (folder / "begun").touch()
-        while not connection.zcard("paretour:workers"):
+        state = ClusterState(url)
+        while not state.workers():
             time.sleep(0.02)
         store, engine = connect(url, entries=100, max_age=SECONDS, queue=queue, seconds=seconds)
         app = engine_app(store, engine, *actors, limits=PATIENT, edge=edge)
         with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:
-            searching = partial(_searching_there, connection)
-            yield Served(client, partial(planning, connection), searching, url)
+            yield Served(client, state.planning, state.searching, url)
         connection.close()
 
     def _url(self, actors: tuple[NamedActor, ...]) -> str:
@@ -115,35 +116,25 @@ class Clustered:
         database = self._databases.setdefault(repr(actors), known)
         url = f"{self.server.url.removesuffix('/0')}/{database}"
         if database == known:
-            self.crews.enter_context(
-                crew(url, runner_of(*actors, limits=PATIENT), SECONDS, self.workers)
+            self.celery_workers.enter_context(
+                celery_worker(url, runner_of(*actors, limits=PATIENT), SECONDS, self.workers)
             )
         return url
 
 
-def _first(workers: WorkerPool, _: str) -> int | None:
+def _first_pid(workers: WorkerPool, _: str) -> int | None:
     return workers.pids[0] if workers.working else None
 
 
-def _searching_here(workers: WorkerPool) -> Mapping[Hashable, int]:
+def _searching(workers: WorkerPool) -> Mapping[Hashable, int]:
     return {each: pid for each, pid in workers.running.items() if pid and each.progress}
 
 
-def _searching_there(connection: "redis.Redis[bytes]") -> Mapping[Hashable, int]:
-    ids = [id_.decode() for id_ in connection.zrange("paretour:unfinished", 0, -1)]
-    found = [id_ for id_ in ids if connection.hexists(f"paretour:front:{id_}", "progress")]
-    return {id_: pid for id_ in found if (pid := planning(connection, id_))}
-
-
-def planning(connection: "redis.Redis[bytes]", id: str) -> int | None:  # noqa: A002
-    """The process that plans a front, as Redis knows it."""
-    status, worker = connection.hmget(f"paretour:front:{id}", "status", "worker")
-    return int(worker.split(b":")[1]) if status == b"running" else None
-
-
 @contextmanager
-def crew(url: str, make_runner: MakeRunner, seconds: float, workers: int) -> Iterator[BaseProcess]:
-    """A worker with so many processes that plan."""
+def celery_worker(
+    url: str, make_runner: MakeRunner, seconds: float, workers: int
+) -> Iterator[BaseProcess]:
+    """A worker of the cluster, with so many processes."""
     context = multiprocessing.get_context("spawn")
     worker = context.Process(target=_work, args=(url, make_runner, seconds, workers))
     worker.start()
@@ -172,5 +163,5 @@ def engine_of(
     if kind == "embedded":
         yield Embedded(workers)
         return
-    with ExitStack() as crews:
-        yield Clustered(request.getfixturevalue("redis"), crews, workers)
+    with ExitStack() as celery_workers:
+        yield Clustered(request.getfixturevalue("redis"), celery_workers, workers)

@@ -1,4 +1,4 @@
-"""Fronts that are asked for now and found later, over HTTP."""
+"""Jobs of either engine over HTTP: submitted, watched, cancelled, repeated, resumed."""
 
 import json
 import time

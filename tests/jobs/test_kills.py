@@ -1,4 +1,4 @@
-"""Workers that are killed under load, of either engine: nothing that was asked for is lost."""
+"""Worker processes of either engine that are killed under load: no job is lost."""
 
 import os
 import signal

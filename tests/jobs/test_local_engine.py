@@ -1,14 +1,14 @@
-"""Whoever follows a job hears of its end, however the two happen to fall together."""
+"""Watching a job of the local engine: its end is seen, whenever it comes."""
 
 import asyncio
 from collections.abc import Callable
 
 import pytest
 
+from service.errors import NotFound
 from service.jobs.front_document import FrontDocument, Timings
 from service.jobs.local_engine import LocalEngine
 from service.jobs.record import Record
-from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.submission import Submission
 from service.jobs.worker_pool import WorkerPool
 from service.requests.task import TaskSource
@@ -27,7 +27,7 @@ FRONT = FrontDocument(
 )
 
 
-class OrdersOnly(WorkerPool):
+class NoProcesses(WorkerPool):
     """Workers without processes: the test does the work."""
 
     def __init__(self) -> None:
@@ -43,18 +43,26 @@ class OrdersOnly(WorkerPool):
         return self.given
 
 
-class Immediate(SqliteStore):
-    """A store whose answer waits for no other thread."""
+class Immediate:
+    """A store of one record, whose answer waits for no other thread."""
+
+    def __init__(self) -> None:
+        self._records: list[Record] = []
 
     async def put(self, record: Record) -> None:
-        self._in_transaction(self._put, record)
+        self._records = [record]
+
+    async def get(self, caller: str, id: str) -> Record:  # noqa: A002
+        for record in self._records:
+            if (record.caller, record.id) == (caller, id):
+                return record
+        raise NotFound
 
 
 async def followed(steps: int) -> list[str]:
     """The statuses that are told to who begins to follow so many steps of the loop into the end."""
-    store = Immediate(IN_MEMORY, entries=10, max_age=60)
-    workers = OrdersOnly()
-    jobs = LocalEngine(workers, store)
+    workers = NoProcesses()
+    jobs = LocalEngine(workers, Immediate())
     record = Record(
         id="0" * 32,
         caller="me",
@@ -70,9 +78,7 @@ async def followed(steps: int) -> list[str]:
         await asyncio.sleep(0)
     following = asyncio.ensure_future(_statuses(jobs, record))
     async with asyncio.timeout(1):
-        statuses = await following
-    await store.close()
-    return statuses
+        return await following
 
 
 async def _statuses(jobs: LocalEngine, record: Record) -> list[str]:

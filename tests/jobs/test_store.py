@@ -1,4 +1,4 @@
-"""Fronts kept for later, and how they make way."""
+"""Stores of either kind: what is stored, found, dropped and deleted."""
 
 import asyncio
 from collections.abc import Awaitable, Callable
