@@ -14,6 +14,7 @@ from service.errors import InvalidInstance
 
 Array = NDArray[np.float64]
 Kind = Literal["coordinates", "matrices"]
+OBJECTIVES = 2  # lengths of a tour
 
 OBJECTIVES = 2  # lengths of a tour
 PLANE = 2  # coordinates of a city in the plane of an objective

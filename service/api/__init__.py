@@ -1,1 +1,1 @@
-"""The HTTP interface: what requests may say, and what is answered."""
+"""The HTTP side of the service: routes, middleware, authentication, metrics and OpenAPI."""

@@ -1,4 +1,4 @@
-"""The application: every path, its middleware and its exception handlers, put together."""
+"""The FastAPI application: every route, middleware and exception handler, put together."""
 
 from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import asynccontextmanager
@@ -21,16 +21,10 @@ from service.api.middleware import (
     SecurityHeadersMiddleware,
     log_request,
 )
-from service.api.openapi import illustrate
-from service.api.plan import Answers, FrontRoutes
-from service.api.responses import (
-    ActorsAnswer,
-    HealthAnswer,
-    Problem,
-    json_response,
-    problem_responses,
-)
-from service.api.static import page_routes
+from service.api.openapi import complete
+from service.api.plan import PlanRoutes
+from service.api.responses import ActorsAnswer, HealthAnswer, json_response, problem_responses
+from service.api.static import static_routes
 from service.api.stored_fronts import StoredFrontRoutes
 from service.jobs.engine import Engine
 from service.jobs.store import Store
@@ -39,7 +33,14 @@ from service.requests.limits import Limits
 
 @dataclass(frozen=True, kw_only=True)
 class Edge:
-    """Everybody may call, as one, and no page of another origin, unless it is said otherwise."""
+    """The settings of the application's edge: who may call, from which pages, and how fast.
+
+    Args:
+        access: API keys and rates; by default everybody may call, as one caller.
+        metrics: The metrics that requests are counted in.
+        origins: Other origins whose pages may call (CORS); by default none.
+        body_seconds: The time that a body may take to arrive.
+    """
 
     access: Access = field(default_factory=Access)
     metrics: Metrics = field(default_factory=Metrics)
@@ -48,12 +49,12 @@ class Edge:
 
     @property
     def guard(self) -> dict[str, Any]:
-        """What a router that is not open to all is included with."""
+        """The arguments with which a guarded router is included."""
         return {"dependencies": self.access.dependencies, "responses": problem_responses(401, 429)}
 
     @property
     def middleware(self) -> list[Middleware]:
-        """What each request passes through, outermost first."""
+        """The middleware that each request passes, outermost first."""
         observers = (self.metrics.answered, log_request)
         cors = [Middleware(CORSMiddleware, **self._cors)] if self.origins else []
         return [
@@ -74,9 +75,6 @@ class Edge:
         }
 
 
-_OPEN: dict[str, Any] = {"security": []}  # an orchestrator has no key
-
-
 def create_app(
     actors: Mapping[str, ActorInfo],
     store: Store,
@@ -85,7 +83,7 @@ def create_app(
     version: str,
     edge: Edge | None = None,
 ) -> FastAPI:
-    """The application. It starts the engine and closes it when it shuts down."""
+    """Return the application, which starts the engine and closes engine and store at its end."""
     edge = edge or Edge()
 
     @asynccontextmanager
@@ -95,57 +93,34 @@ def create_app(
         await engine.close()
         await store.close()
 
-    app = _Documented(
+    app = _DocumentedApp(
         title="Paretour",
         summary="Pareto fronts of tours under two objectives",
         version=version,
         lifespan=lifespan,
         middleware=edge.middleware,
-        routes=page_routes(),
+        routes=static_routes(),
         exception_handlers=dict.fromkeys(HANDLED, answer_refusal),
         redirect_slashes=False,
         docs_url=None,
         redoc_url=None,
     )
-    fronts = FrontRoutes(actors, engine, Answers(engine, store), limits)
-    app.include_router(fronts.router(), **edge.guard)
+    app.include_router(PlanRoutes(actors, store, engine, limits).router(), **edge.guard)
     app.include_router(StoredFrontRoutes(store, engine).router(), **edge.guard)
     app.include_router(_actor_router(actors), **edge.guard)
     app.include_router(edge.metrics.router(), **edge.guard)
-    app.include_router(_HealthRoutes(engine).router())
+    app.include_router(_health_router(engine))
     return app
 
 
-class _Documented(FastAPI):
-    """An application whose OpenAPI document knows the problem document, and has examples."""
+class _DocumentedApp(FastAPI):
+    """A FastAPI application whose OpenAPI document is complete."""
 
     def openapi(self) -> dict[str, Any]:
+        """Return the OpenAPI document, made once."""
         if self.openapi_schema is None:
-            document = super().openapi()
-            document["components"]["schemas"]["Problem"] = _problem_schema()
-            document["components"]["securitySchemes"] = {
-                "key": {"type": "http", "scheme": "bearer"}
-            }
-            document["security"] = [{}, {"key": []}]  # which of them is for the settings to say
-            _forget_default_refusals(document)
-            illustrate(document)
+            complete(super().openapi())
         return super().openapi()
-
-
-def _forget_default_refusals(document: dict[str, Any]) -> None:
-    """Leave out what FastAPI says of every path with parameters: nothing is refused so here."""
-    for name in ("HTTPValidationError", "ValidationError"):
-        document["components"]["schemas"].pop(name, None)
-    for methods in document["paths"].values():
-        for operation in methods.values():
-            if "HTTPValidationError" in str(operation["responses"].get("422")):
-                del operation["responses"]["422"]
-
-
-def _problem_schema() -> dict[str, Any]:
-    schema = Problem.model_json_schema()
-    schema["properties"]["errors"] = {"type": "array", "items": schema.pop("$defs")["FaultItem"]}
-    return schema
 
 
 def _actor_router(actors: Mapping[str, ActorInfo]) -> APIRouter:
@@ -154,35 +129,30 @@ def _actor_router(actors: Mapping[str, ActorInfo]) -> APIRouter:
     @router.get("/actors", response_model=ActorsAnswer)
     async def actors_there_are() -> Response:
         """List the networks to choose from."""
-        facts = [asdict(each) for _, each in sorted(actors.items())]
-        return json_response({"actors": facts})
+        return json_response({"actors": [asdict(actors[name]) for name in sorted(actors)]})
 
     return router
 
 
-class _HealthRoutes:
-    """How the service is. These are open to all."""
+def _health_router(engine: Engine) -> APIRouter:
+    """Return the routes for orchestrators, which are open to all: an orchestrator has no key."""
+    router = APIRouter(tags=["service"])
+    public: dict[str, Any] = {"security": []}
 
-    def __init__(self, engine: Engine) -> None:
-        self._engine = engine
-
-    def router(self) -> APIRouter:
-        """The paths, with what the OpenAPI document says of them."""
-        router = APIRouter(tags=["service"])
-        router.get("/health/live", response_model=HealthAnswer, openapi_extra=_OPEN)(self.live)
-        router.get(
-            "/health/ready",
-            response_model=HealthAnswer,
-            responses=problem_responses(503),
-            openapi_extra=_OPEN,
-        )(self.ready)
-        return router
-
-    async def live(self) -> Response:
+    @router.get("/health/live", response_model=HealthAnswer, openapi_extra=public)
+    async def live() -> Response:
         """Say whether the process answers."""
         return json_response({"status": "live"})
 
-    async def ready(self) -> Response:
+    @router.get(
+        "/health/ready",
+        response_model=HealthAnswer,
+        responses=problem_responses(503),
+        openapi_extra=public,
+    )
+    async def ready() -> Response:
         """Say whether the process takes work of every kind."""
-        await self._engine.check_ready()
+        await engine.check_ready()
         return json_response({"status": "ready"})
+
+    return router

@@ -1,4 +1,4 @@
-"""Who may call, and how often: API keys, and a rate for each.
+"""Authentication by API keys, and a rate limit for each caller.
 
 A key is 256 random bits. The settings hold its SHA-256 alone, which needs no salt: nobody guesses
 256 bits. Without keys everybody may call, as one caller.
@@ -49,25 +49,25 @@ class KeyHash:
 
     @classmethod
     def read(cls, text: str) -> Self:
-        """The hash written as CALLER:DIGEST."""
+        """Return the hash written as CALLER:DIGEST."""
         caller, _, digest = text.partition(":")
         return cls(caller=caller, digest=digest)
 
 
 def new_key() -> tuple[str, str]:
-    """A key, to be given to its caller and kept nowhere, and its hash, for the settings."""
+    """Return a new key, which its caller alone keeps, and its hash for the settings."""
     key = secrets.token_urlsafe(32)
     return key, _digest(key)
 
 
 class Rates:
-    """So many requests of each caller in so much time, as `limits` writes it: 100/second.
+    """A limit on the requests of each caller, in the notation of the package `limits`: 9/second.
 
-    They are counted in memory, or in Redis for all replicas together. Where Redis does not answer,
-    nobody is held up: a rate is a protection, and must not be an outage.
+    Requests are counted in memory, or in Redis for all replicas together. Where Redis does not
+    answer, every request passes: a rate is a protection, and must not be an outage.
 
     Raises:
-        ValueError: what Redis needs is not installed.
+        ValueError: The extra for Redis is not installed.
     """
 
     def __init__(self, rate: str, redis_url: str | None = None) -> None:
@@ -75,10 +75,10 @@ class Rates:
         self._limiter = MovingWindowRateLimiter(_storage(redis_url))
 
     async def check(self, caller: str) -> None:
-        """Nothing, if the caller may go on; the request is counted.
+        """Count a request of a caller, and raise a refusal where there were too many.
 
         Raises:
-            Refusal: there were too many.
+            Refusal: The caller is over its rate.
         """
         try:
             if await self._limiter.hit(self._rate, caller):
@@ -98,8 +98,13 @@ class Rates:
         )
 
 
+def caller_of(request: Request) -> str:
+    """Return the name of the caller; all callers without a key are one."""
+    return str(request.scope["caller"])
+
+
 class Access:
-    """Names the caller of each path that is not open to all, or refuses it."""
+    """Authenticates the callers of guarded routes, and holds each to its rate."""
 
     def __init__(self, keys: Iterable[KeyHash] = (), rates: Rates | None = None) -> None:
         self._keys = tuple(keys)
@@ -107,14 +112,14 @@ class Access:
 
     @property
     def dependencies(self) -> list[Dependency]:
-        """What a guarded router depends on, if there are keys. Then the document asks for one."""
-        return [Depends(self.admit), Security(_BEARER)] if self._keys else []
+        """The dependencies of a guarded router; with keys, its OpenAPI document asks for one."""
+        return [Depends(self.authenticate), Security(_BEARER)] if self._keys else []
 
-    async def admit(self, request: Request) -> None:
-        """Name the caller in the request's scope.
+    async def authenticate(self, request: Request) -> None:
+        """Write the caller into the request's scope.
 
         Raises:
-            Refusal: nobody was given this key, or its requests are too many.
+            Refusal: The key is nobody's, or its caller is over the rate.
         """
         request.scope["caller"] = caller = self._caller(request)
         if self._rates is not None:

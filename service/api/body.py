@@ -1,8 +1,7 @@
-"""Request bodies: received within their limits, split into parts, and parsed into a task."""
+"""Request bodies: receive one within its limits, split it into parts, and parse it into a task."""
 
 import asyncio
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from math import inf
 
 from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
@@ -13,99 +12,44 @@ from starlette.requests import Request
 from service.actor import ActorInfo
 from service.errors import Refusal, WorkerLost
 from service.requests.limits import Limits
-from service.requests.task import Task, TaskSource, parse_task
+from service.requests.task import Task, TaskKind, TaskSource, parse_task
+
+_MULTIPART = "multipart/form-data"
+_UPLOADS: Mapping[TaskKind, str] = {"front": "matrices", "coverage": "map"}
+_LONG_TO_JOIN = 2**20  # bytes
+_SHORT_TO_PARSE = 2**17  # bytes: a few milliseconds, where many megabytes take seconds
+_ATTEMPTS = 2
 
 
-def parts(content_type: str, body: bytes, expected: Collection[str]) -> dict[str, bytes]:
-    """The content of each part by its name: all of those expected, once each, and no other.
+async def receive_source(request: Request, kind: TaskKind, most_bytes: int) -> TaskSource:
+    """Receive the body of a request for a front.
 
-    Raises:
-        Refusal: it is not of parts, or of others.
-    """
-    reader = _Reader(expected)
-    _, options = parse_options_header(content_type)
-    try:
-        parser = FormParser(
-            "multipart/form-data",
-            reader.take_field,
-            reader.take_file,
-            reader.end,
-            options.get(b"boundary"),
-            config={"MAX_MEMORY_FILE_SIZE": inf},
-        )
-        parser.write(body)
-        parser.finalize()
-    except FormParserError as error:
-        raise _malformed(str(error)) from None
-    if not reader.ended:
-        raise _malformed("it ends before its last boundary")
-    if missing := [name for name in expected if name not in reader.found]:
-        raise _unexpected(f"the part {missing[0]} is required")
-    return reader.found
-
-
-class _Reader:
-    """Takes the parts as they come."""
-
-    def __init__(self, expected: Collection[str]) -> None:
-        self.found: dict[str, bytes] = {}
-        self.ended = False
-        self._expected = expected
-
-    def take_field(self, part: Field) -> None:
-        self._take(part.field_name, part.value)
-
-    def take_file(self, part: File) -> None:
-        part.file_object.seek(0)
-        self._take(part.field_name, part.file_object.read())
-
-    def end(self) -> None:
-        self.ended = True
-
-    def _take(self, raw: bytes | None, content: bytes | None) -> None:
-        name = (raw or b"").decode(errors="replace")
-        if name not in self._expected or name in self.found:
-            among = " and ".join(self._expected)
-            raise _unexpected(f"the parts must be {among}, once each, got {name[:80]!r}")
-        self.found[name] = content or b""
-
-
-def _malformed(reason: str) -> Refusal:
-    return Refusal("malformed-multipart", reason=reason)
-
-
-def _unexpected(sentence: str) -> Refusal:
-    return Refusal("invalid-parts", reason=sentence)
-
-
-_PARTED = "multipart/form-data"
-_LONG = 2**20  # bytes
-
-
-@dataclass(frozen=True)
-class Body:
-    """JSON, and the file that came beside it, if one did."""
-
-    json: bytes
-    upload: bytes | None = None
-
-
-async def read_body(request: Request, most_bytes: int, upload: str) -> Body:
-    """The request's body: JSON; or the part `request`, which is JSON, and the part `upload`.
+    The body is JSON; or multipart/form-data with the part `request`, which is JSON, and the file
+    `matrices` or `map`.
 
     Raises:
-        Refusal: it is too long, or of another type.
+        Refusal: The body is too long, of another type, or of other parts.
     """
-    kind = _checked_type(request)
-    body = await _whole_body(request, most_bytes)
-    if not kind.lower().startswith(_PARTED):
-        return Body(body)
-    # Beside the event loop, because of many megabytes this takes a while.
-    found = await asyncio.to_thread(parts, kind, body, ("request", upload))
-    return Body(found["request"], found[upload])
+    content_type = _checked_content_type(request)
+    body = await _receive(request, most_bytes)
+    if not content_type.lower().startswith(_MULTIPART):
+        return TaskSource(kind, body)
+    upload = _UPLOADS[kind]
+    # In a thread, beside the event loop: many megabytes take a while.
+    parts = await asyncio.to_thread(split_parts, content_type, body, ("request", upload))
+    return TaskSource(kind, parts["request"], parts[upload])
 
 
-async def _whole_body(request: Request, most_bytes: int) -> bytes:
+def _checked_content_type(request: Request) -> str:
+    content_type = request.headers.get("content-type", "")
+    if content_type.partition(";")[0].strip().lower() not in ("application/json", _MULTIPART):
+        raise Refusal("not-json", came=content_type or "none")
+    if (coding := request.headers.get("content-encoding", "identity").lower()) != "identity":
+        raise Refusal("not-plain", came=coding)
+    return content_type
+
+
+async def _receive(request: Request, most_bytes: int) -> bytes:
     declared = request.headers.get("content-length", "")
     if declared.isdecimal() and int(declared) > most_bytes:
         raise _too_long(most_bytes, int(declared))
@@ -116,17 +60,10 @@ async def _whole_body(request: Request, most_bytes: int) -> bytes:
         length += len(chunk)
         if length > most_bytes:
             raise _too_long(most_bytes)
-    # Of many megabytes it takes a while; then join lets go of the interpreter, and others go on.
-    return b"".join(chunks) if length < _LONG else await asyncio.to_thread(b"".join, chunks)
-
-
-def _checked_type(request: Request) -> str:
-    given = request.headers.get("content-type", "")
-    if given.partition(";")[0].strip().lower() not in ("application/json", _PARTED):
-        raise Refusal("not-json", came=given or "none")
-    if (coding := request.headers.get("content-encoding", "identity").lower()) != "identity":
-        raise Refusal("not-plain", came=coding)
-    return given
+    # In a thread where it takes a while: join lets go of the interpreter.
+    if length < _LONG_TO_JOIN:
+        return b"".join(chunks)
+    return await asyncio.to_thread(b"".join, chunks)
 
 
 def _too_long(limit: int, actual: int | None = None) -> Refusal:
@@ -134,34 +71,88 @@ def _too_long(limit: int, actual: int | None = None) -> Refusal:
     return Refusal("body-too-long", came=came, limit=limit, actual=actual)
 
 
-_SHORT = 2**17  # bytes that are read within a few milliseconds; many megabytes take seconds
-_TRIES = 2
+def split_parts(content_type: str, body: bytes, expected: Collection[str]) -> dict[str, bytes]:
+    """Return the content of each part of a multipart/form-data body by the part's name.
+
+    Raises:
+        Refusal: The body is malformed, or its parts are not those expected, once each.
+    """
+    parts = _Parts(expected)
+    _, options = parse_options_header(content_type)
+    try:
+        parser = FormParser(
+            _MULTIPART,
+            parts.add_field,
+            parts.add_file,
+            parts.end,
+            options.get(b"boundary"),
+            config={"MAX_MEMORY_FILE_SIZE": inf},
+        )
+        parser.write(body)
+        parser.finalize()
+    except FormParserError as error:
+        raise Refusal("malformed-multipart", reason=str(error)) from None
+    if not parts.ended:
+        raise Refusal("malformed-multipart", reason="it ends before its last boundary")
+    if missing := [name for name in expected if name not in parts.contents]:
+        raise Refusal("invalid-parts", reason=f"the part {missing[0]} is required")
+    return parts.contents
 
 
-class Reader:
-    """Reads within these limits, for these actors.
+class _Parts:
+    """The parts of a body as the parser finds them."""
 
-    The process is started for the first long body, and again where it was lost. It reads one body
-    at a time; whoever sends another waits.
+    def __init__(self, expected: Collection[str]) -> None:
+        self.contents: dict[str, bytes] = {}
+        self.ended = False
+        self._expected = expected
+
+    def add_field(self, part: Field) -> None:
+        """Add a part without a file name."""
+        self._add(part.field_name, part.value)
+
+    def add_file(self, part: File) -> None:
+        """Add a part with a file name."""
+        part.file_object.seek(0)
+        self._add(part.field_name, part.file_object.read())
+
+    def end(self) -> None:
+        """Take note of the last boundary."""
+        self.ended = True
+
+    def _add(self, name_bytes: bytes | None, content: bytes | None) -> None:
+        name = (name_bytes or b"").decode(errors="replace")
+        if name not in self._expected or name in self.contents:
+            among = " and ".join(self._expected)
+            reason = f"the parts must be {among}, once each, got {name[:80]!r}"
+            raise Refusal("invalid-parts", reason=reason)
+        self.contents[name] = content or b""
+
+
+class TaskParser:
+    """Parses bodies under these limits, for these actors: long ones in a process of their own.
+
+    The process is started for the first long body, and again where it was lost. It parses one body
+    at a time; others wait for it.
     """
 
     def __init__(self, limits: Limits, actors: Mapping[str, ActorInfo]) -> None:
         self._limits = limits
         self._actors = dict(actors)
-        self._one = CapacityLimiter(1)
+        self._one_process = CapacityLimiter(1)
 
-    async def read(self, source: TaskSource) -> Task:
-        """Parse a request into its task.
+    async def parse(self, source: TaskSource) -> Task:
+        """Return the task in a body.
 
         Raises:
-            Refusal: there is none, it is over a limit, or no actor serves it.
-            InvalidInstance: it cannot be planned.
-            WorkerLost: the process did not survive it, nor did the next.
+            Refusal: The body is malformed or over a limit, or no actor serves it.
+            InvalidInstance: The cities or the map cannot be planned.
+            WorkerLost: The process died over the body, and so did the next.
         """
-        if len(source.body) + len(source.upload or b"") <= _SHORT:
+        if len(source.body) + len(source.upload or b"") <= _SHORT_TO_PARSE:
             return parse_task(source, self._limits, self._actors)
-        for _ in range(_TRIES):
-            # To put it together took a while, and to hand it over will: others come in between.
+        for _ in range(_ATTEMPTS):
+            # To join the body took a while, and to send it will: let other requests in between.
             await asyncio.sleep(0)
             try:
                 return await to_process.run_sync(
@@ -170,7 +161,7 @@ class Reader:
                     self._limits,
                     self._actors,
                     cancellable=True,
-                    limiter=self._one,
+                    limiter=self._one_process,
                 )
             except BrokenWorkerProcess:
                 continue

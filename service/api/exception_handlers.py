@@ -1,4 +1,4 @@
-"""Exception handlers: every exception as the problem document that it is answered with."""
+"""Exception handlers: turn refusals and errors of the framework into problem documents."""
 
 from http import HTTPStatus
 
@@ -9,33 +9,33 @@ from starlette.responses import Response
 
 from service.api.responses import problem_response
 from service.errors import Refusal
-from service.requests.validation import refused_by, shortened
+from service.requests.validation import refusal_of, shorten
 
 HANDLED = (Refusal, HTTPException, RequestValidationError)
 
 
 async def answer_refusal(request: Request, error: Exception) -> Response:
-    """Answer an exception of one of the kinds HANDLED."""
-    refusal = _as_refusal(request, error)
+    """Return the response to an exception of one of the kinds HANDLED."""
+    refusal = _refusal(request, error)
     response = problem_response(refusal, request.scope["request_id"])
     if isinstance(error, HTTPException):
         response.headers.update(error.headers or {})
         if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
-            response.headers["Allow"] = _allowed(request, error)
+            response.headers["Allow"] = _allowed_methods(request, error)
     return response
 
 
-def _as_refusal(request: Request, error: Exception) -> Refusal:
-    path = shortened(request.url.path)
+def _refusal(request: Request, error: Exception) -> Refusal:
+    path = shorten(request.url.path)
     match error:
         case Refusal():
             return error
         case RequestValidationError():
-            return refused_by(error.errors(), parameters=True)
+            return refusal_of(error.errors(), parameters=True)
         case HTTPException(status_code=404):
             return Refusal("no-such-path", path=path)
         case HTTPException(status_code=405):
-            allowed, came = _allowed(request, error), shortened(request.method)
+            allowed, came = _allowed_methods(request, error), shorten(request.method)
             return Refusal("method-not-allowed", path=path, allowed=allowed, came=came)
         case HTTPException():
             refusal = Refusal("refused", detail=error.detail)
@@ -45,8 +45,8 @@ def _as_refusal(request: Request, error: Exception) -> Refusal:
             return Refusal("internal-error")
 
 
-def _allowed(request: Request, error: HTTPException) -> str:
-    """All methods of this path; the framework names those of the first route to it alone."""
+def _allowed_methods(request: Request, error: HTTPException) -> str:
+    """Return all methods of the path; the framework names only those of its first route."""
     documented = request.app.openapi()["paths"]
     methods = documented.get(getattr(request.scope.get("route"), "path", None))
     if methods is None:

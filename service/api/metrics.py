@@ -1,4 +1,4 @@
-"""What the service counts of itself, for Prometheus."""
+"""Metrics for Prometheus: requests, planning, and the workers of the engine."""
 
 from collections.abc import Iterator
 from typing import Protocol
@@ -18,25 +18,25 @@ from prometheus_client.metrics_core import CounterMetricFamily, GaugeMetricFamil
 from prometheus_client.registry import Collector
 from starlette.responses import Response
 
-from service.api.middleware import Answered
+from service.api.middleware import AnsweredRequest
 from service.jobs.engine import EngineStats
 from service.jobs.front_document import FrontDocument
 
 _METHODS = ("GET", "HEAD", "POST", "DELETE", "OPTIONS")
-_SIZES = (20, 50, 100, 200, 500, 1000)
+_SIZES = (20, 50, 100, 200, 500, 1000)  # the most cities of each class
 _SECONDS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 _SHARES = (0.0, 0.0001, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
 
 
-class Watched(Protocol):
-    """What plans fronts."""
+class StatsSource(Protocol):
+    """An engine whose workers are counted."""
 
     async def stats(self) -> EngineStats:
-        """How it is."""
+        """Return how many fronts wait and are planned, and how many workers were lost."""
 
 
 class Metrics:
-    """Counters and clocks, in a registry of their own."""
+    """Counters and histograms of one service, in a registry of their own."""
 
     def __init__(self) -> None:
         self._registry = registry = CollectorRegistry()
@@ -63,9 +63,6 @@ class Metrics:
             registry=registry,
             buckets=_SECONDS,
         )
-        self._watched: Watched | None = None
-        self._workers = _WorkersCollector()
-        registry.register(self._workers)
         self._gained = Histogram(
             "paretour_hypervolume_gained",
             "share of the reference box that the search added to what it was given",
@@ -73,32 +70,35 @@ class Metrics:
             registry=registry,
             buckets=_SHARES,
         )
+        self._engine: StatsSource | None = None
+        self._workers = _WorkerCollector()
+        registry.register(self._workers)
 
     def router(self) -> APIRouter:
-        """The path where Prometheus asks."""
+        """Return the route that Prometheus scrapes."""
         router = APIRouter(tags=["service"])
         router.get("/metrics", response_class=_Exposition)(self.exposition)
         return router
 
     async def exposition(self) -> Response:
         """Give everything counted, in the text format of Prometheus."""
-        if self._watched is not None:
-            self._workers.standing = await self._watched.stats()
+        if self._engine is not None:
+            self._workers.stats = await self._engine.stats()
         return _Exposition(generate_latest(self._registry))
 
-    def answered(self, answered: Answered) -> None:
-        """Count a request."""
-        # Whatever a client makes up must not become a label: each label costs memory for good.
+    def answered(self, answered: AnsweredRequest) -> None:
+        """Count a request that was answered."""
+        # A method that a client made up must not become a label: each costs memory for good.
         method = answered.method if answered.method in _METHODS else "other"
         self._requests.labels(method, answered.path, answered.status).inc()
         self._request_seconds.labels(method, answered.path).observe(answered.seconds)
 
-    def watch(self, watched: Watched) -> None:
-        """Ask how the workers are whenever Prometheus asks."""
-        self._watched = watched
+    def watch(self, engine: StatsSource) -> None:
+        """Report the workers of an engine as they are at each scrape."""
+        self._engine = engine
 
     def planned(self, front: FrontDocument) -> None:
-        """Count a front: the phases of planning, and the hypervolume that the search gained."""
+        """Count a planned front: its phases, and the hypervolume that the search gained."""
         cities = _size_class(front.cities)
         for phase, milliseconds in front.timings_ms.phases.items():
             self._planning.labels(phase, cities).observe(milliseconds / 1000)
@@ -106,12 +106,15 @@ class Metrics:
             self._gained.labels(cities).observe(front.gained)
 
 
-class _WorkersCollector(Collector):
+class _WorkerCollector(Collector):
+    """The workers of the engine at the last scrape."""
+
     def __init__(self) -> None:
-        self.standing: EngineStats | None = None
+        self.stats: EngineStats | None = None
 
     def collect(self) -> Iterator[Metric]:
-        if (workers := self.standing) is None:
+        """Yield the gauges and the counter of the workers."""
+        if (workers := self.stats) is None:
             return
         yield GaugeMetricFamily(
             "paretour_queue_depth", "fronts that wait for a worker", workers.waiting

@@ -16,12 +16,12 @@ from service.api.responses import problem_response
 from service.errors import Refusal, ShuttingDown
 
 # Everything comes from the service itself; maps of robots are drawn into images (data:).
-_POLICY = (
+_CONTENT_POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
-_HEADERS = {
-    "Content-Security-Policy": _POLICY,
+_SECURITY_HEADERS = {
+    "Content-Security-Policy": _CONTENT_POLICY,
     "Cross-Origin-Opener-Policy": "same-origin",
     "Referrer-Policy": "no-referrer",
     "X-Content-Type-Options": "nosniff",
@@ -30,17 +30,17 @@ _HEADERS = {
 
 
 class SecurityHeadersMiddleware:
-    """Tells browsers to load nothing but what the service serves, and to embed none of it."""
+    """Tells browsers to load only files of the service, and to embed the page nowhere."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer one request."""
+        """Pass on one request."""
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                MutableHeaders(scope=message).update(_HEADERS)
+                MutableHeaders(scope=message).update(_SECURITY_HEADERS)
             await send(message)
 
         await self._app(scope, receive, send_with_headers)
@@ -51,10 +51,10 @@ _SAFE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 
 
 class RequestIdMiddleware:
-    """Gives each request an identity and turns a bug into a problem document that carries it.
+    """Gives each request an id, and answers an unhandled exception with a problem document.
 
-    Until it has shown a key, its caller is anonymous.
-    The caller's own X-Request-ID is kept where it is short and plain enough to log.
+    The caller's own X-Request-ID is taken where it is short and plain enough to log. Until the
+    caller is authenticated, it is anonymous.
     """
 
     def __init__(self, app: ASGIApp) -> None:
@@ -62,12 +62,12 @@ class RequestIdMiddleware:
         self._log = logging.getLogger("paretour")
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer one request."""
+        """Pass on one request."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        given = Headers(scope=scope).get("x-request-id", "")
-        request_id = given if _SAFE_ID.fullmatch(given) else uuid.uuid4().hex
+        own_id = Headers(scope=scope).get("x-request-id", "")
+        request_id = own_id if _SAFE_ID.fullmatch(own_id) else uuid.uuid4().hex
         scope["request_id"] = request_id
         scope["caller"] = ANONYMOUS
         started = False
@@ -95,12 +95,17 @@ class RequestIdMiddleware:
 
 
 UNMATCHED = "unmatched"
-_GONE = 499  # in the log and the metrics alone: the client went away before its body had ended
+# In the log and the metrics alone, as nginx has it: the client went away before its body had ended.
+_CLIENT_CLOSED_REQUEST = 499
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answered:
-    """A request and its answer. The path is the template that it matched."""
+class AnsweredRequest:
+    """A request and its answer, for the log and the metrics.
+
+    `path` is the template that the request matched, as /front/{id}. `seconds` last to the end of
+    the answer.
+    """
 
     request_id: str
     caller: str
@@ -110,36 +115,36 @@ class Answered:
     seconds: float
 
 
-Observer = Callable[[Answered], None]
+Observer = Callable[[AnsweredRequest], None]
 
 
 class RequestLogMiddleware:
-    """Tells the observers of every request, once its answer has ended."""
+    """Reports every request to observers, such as the log and the metrics, once it is answered."""
 
     def __init__(self, app: ASGIApp, observers: Iterable[Observer]) -> None:
         self._app = app
         self._observers = tuple(observers)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer one request."""
+        """Pass on one request."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
         began = time.perf_counter()
-        status = 500  # what an answer that never began becomes
+        status = 500  # unless an answer begins
 
-        async def send_seen(message: Message) -> None:
+        async def send_and_note_status(message: Message) -> None:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
             await send(message)
 
         try:
-            await self._app(scope, receive, send_seen)
+            await self._app(scope, receive, send_and_note_status)
         except ClientDisconnect:
-            status = _GONE  # and there is nobody left to answer
+            status = _CLIENT_CLOSED_REQUEST  # there is nobody left to answer
         finally:
-            answered = Answered(
+            answered = AnsweredRequest(
                 request_id=scope["request_id"],
                 caller=scope["caller"],
                 method=scope["method"],
@@ -151,20 +156,20 @@ class RequestLogMiddleware:
                 observer(answered)
 
 
-def log_request(answered: Answered) -> None:
-    """One line for each request."""
+def log_request(answered: AnsweredRequest) -> None:
+    """Write one line to the log for a request."""
     logging.getLogger("paretour.requests").info("request", extra=vars(answered))
 
 
 class BodyTimeoutMiddleware:
-    """Refuses a body of which the last byte comes too late."""
+    """Refuses a body whose last byte comes too late, measured from the start of the request."""
 
     def __init__(self, app: ASGIApp, seconds: float) -> None:
         self._app = app
         self._seconds = seconds
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer one request."""
+        """Pass on one request."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
@@ -173,17 +178,17 @@ class BodyTimeoutMiddleware:
 
         async def receive_in_time() -> Message:
             nonlocal whole
-            if whole:  # what comes now is that the client has gone away, whenever it does
+            if whole:  # the one message left is that the client goes away, which has no deadline
                 return await receive()
             try:
                 async with asyncio.timeout_at(deadline):
                     message = await receive()
             except TimeoutError:
-                raise self._late() from None
+                raise self._too_slow() from None
             whole = not message.get("more_body", False)
             return message
 
         await self._app(scope, receive_in_time, send)
 
-    def _late(self) -> Refusal:
+    def _too_slow(self) -> Refusal:
         return Refusal("body-too-slow", limit=self._seconds, headers={"Connection": "close"})

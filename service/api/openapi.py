@@ -1,8 +1,9 @@
-"""Summaries and examples in the OpenAPI document: of each path a request, its answer, all refusals.
+"""The OpenAPI document: FastAPI's, with problem documents, security, summaries and examples.
 
-A path's summary is the first line of its docstring. Examples are kept in `reference/examples.json`:
-requests and answers by operation, as "POST /front"; of each refusal what fills in its sentence, and
-where one operation needs another example than the rest, by "code of POST /front".
+An operation's summary is the first line of its docstring. Examples are in
+`service/reference/examples.json`: requests and answers by operation, as "POST /front"; and for each
+code of a refusal the values that fill in its sentence, under the code, or under "code of POST
+/front" where one operation needs another example than the rest.
 """
 
 import json
@@ -10,46 +11,82 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from service.api.responses import PROBLEM_JSON
+from service.api.responses import PROBLEM_JSON, Problem
 from service.errors import PROBLEMS, Refusal
 
 _EXAMPLES = Path(__file__).parents[1] / "reference" / "examples.json"
 _REQUEST_ID = "2348e4bd4d8a4a028a885757e2b342af"
 
 
-def illustrate(document: dict[str, Any]) -> None:
-    """Put summaries and examples into an OpenAPI document."""
-    kept = json.loads(_EXAMPLES.read_text())
-    for name, operation in _operations(document):
-        summary, _, operation["description"] = operation["description"].partition("\n\n")
-        operation["summary"] = summary.removesuffix(".")
-        if name in kept["requests"]:
-            content = operation["requestBody"]["content"]["application/json"]
-            content["examples"] = {each: {"value": v} for each, v in kept["requests"][name].items()}
-        for status, response in operation["responses"].items():
-            content = response.get("content", {})
-            if status == "200" and name in kept["answers"]:
-                for each in content.values():
-                    each["example"] = kept["answers"][name]
-            if PROBLEM_JSON in content:
-                content[PROBLEM_JSON]["examples"] = _refusals(kept["refusals"], name, int(status))
+def complete(document: dict[str, Any]) -> None:
+    """Add to FastAPI's document all that it does not know of the service."""
+    components = document["components"]
+    components["schemas"]["Problem"] = _problem_schema()
+    components["securitySchemes"] = {"key": {"type": "http", "scheme": "bearer"}}
+    document["security"] = [{}, {"key": []}]  # a key is needed where the settings hold any
+    _remove_default_refusals(document)
+    _add_examples(document)
+
+
+def example_refusal(code: str, operation: str = "") -> Refusal:
+    """Return the example of a refusal, in general or by an operation, as "POST /front"."""
+    return _example_refusal(_examples()["refusals"], code, operation)
+
+
+def _examples() -> dict[str, Any]:
+    examples: dict[str, Any] = json.loads(_EXAMPLES.read_text())
+    return examples
+
+
+def _example_refusal(refusals: dict[str, Any], code: str, operation: str) -> Refusal:
+    return Refusal(code, **refusals.get(f"{code} of {operation}", refusals.get(code, {})))
+
+
+def _problem_schema() -> dict[str, Any]:
+    schema = Problem.model_json_schema()
+    schema["properties"]["errors"] = {"type": "array", "items": schema.pop("$defs")["FaultItem"]}
+    return schema
+
+
+def _remove_default_refusals(document: dict[str, Any]) -> None:
+    """Remove FastAPI's own refusals of wrong parameters: nothing is refused so here."""
+    for name in ("HTTPValidationError", "ValidationError"):
+        document["components"]["schemas"].pop(name, None)
+    for _, operation in _operations(document):
+        if "HTTPValidationError" in str(operation["responses"].get("422")):
+            del operation["responses"]["422"]
 
 
 def _operations(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the name of each operation, as "POST /front", and its entry."""
     for path, methods in document["paths"].items():
         for method, operation in methods.items():
             yield f"{method.upper()} {path}", operation
 
 
-def _refusals(examples: dict[str, Any], name: str, status: int) -> dict[str, Any]:
+def _add_examples(document: dict[str, Any]) -> None:
+    examples = _examples()
+    for name, operation in _operations(document):
+        summary, _, operation["description"] = operation["description"].partition("\n\n")
+        operation["summary"] = summary.removesuffix(".")
+        if requests := examples["requests"].get(name):
+            content = operation["requestBody"]["content"]["application/json"]
+            content["examples"] = {title: {"value": value} for title, value in requests.items()}
+        for status, response in operation["responses"].items():
+            content = response.get("content", {})
+            if status == "200" and name in examples["answers"]:
+                for media in content.values():
+                    media["example"] = examples["answers"][name]
+            if PROBLEM_JSON in content:
+                refusals = _refusals(examples["refusals"], name, int(status))
+                content[PROBLEM_JSON]["examples"] = refusals
+
+
+def _refusals(examples: dict[str, Any], operation: str, status: int) -> dict[str, Any]:
+    """Return an example of each refusal of an operation with a status, by code."""
     found = {
-        code: Refusal(code, **_filled(examples, code, name)).document(_REQUEST_ID)
+        code: _example_refusal(examples, code, operation).document(_REQUEST_ID)
         for code, problem in PROBLEMS.items()
-        if problem.status == status and problem.concerns(name)
+        if problem.status == status and problem.concerns(operation)
     }
     return {code: {"summary": each["detail"], "value": each} for code, each in found.items()}
-
-
-def _filled(examples: dict[str, Any], code: str, name: str) -> dict[str, Any]:
-    filled: dict[str, Any] = examples.get(f"{code} of {name}", examples.get(code, {}))
-    return filled

@@ -1,4 +1,4 @@
-"""The paths that plan fronts: `POST /front` and `POST /coverage`."""
+"""The routes that plan fronts: `POST /front` and `POST /coverage`."""
 
 import asyncio
 import hashlib
@@ -12,8 +12,9 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from service.actor import ActorInfo
-from service.api.body import Reader, read_body
-from service.api.request_headers import PARAMETERS, idempotency_key, wants_it_later
+from service.api.auth import caller_of
+from service.api.body import TaskParser, receive_source
+from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async
 from service.api.responses import (
     AcceptedAnswer,
     CoverageAnswer,
@@ -24,146 +25,56 @@ from service.api.responses import (
     problem_responses,
 )
 from service.jobs.engine import Engine, final_record
-from service.jobs.front_document import FrontDocument, empty_front
+from service.jobs.front_document import empty_front
 from service.jobs.record import Record
 from service.jobs.store import Store
 from service.requests.coverage import coverage_schema
-from service.requests.front import request_schema
+from service.requests.front import front_schema
 from service.requests.limits import Limits
 from service.requests.task import TaskKind, TaskSource
 
-
-def caller_of(request: Request) -> str:
-    """Who asks; all that shows no key is one caller."""
-    return str(request.scope["caller"])
-
-
-class Answers:
-    """Hands work to the engine, and fronts to those who asked."""
-
-    def __init__(self, engine: Engine, store: Store) -> None:
-        self._engine = engine
-        self._store = store
-
-    async def check_place(self, request: Request) -> None:
-        """Nothing, if more work is taken. A repeat may need no place.
-
-        Raises:
-            QueueFull: the queue is full.
-            ShuttingDown: no more work is taken.
-        """
-        await self._engine.check_open()
-        if idempotency_key(request) is None:
-            await self._engine.check_place()
-
-    async def answer(self, request: Request, source: TaskSource, empty: FrontDocument) -> Response:
-        """The front, or where it will be found.
-
-        Work without an idempotency key ends when the client goes away. With one the client is
-        expected to come back, so that the work goes on.
-        """
-        key = idempotency_key(request)
-        record = Record(
-            id=uuid.uuid4().hex,
-            caller=caller_of(request),
-            request_id=request.scope["request_id"],
-            status="queued",
-            front=empty,
-            source=source,
-            key=key,
-            digest=await asyncio.to_thread(_digest, source) if key else "",
-        )
-        if wants_it_later(request):
-            return _accepted(self._engine.state(await self._begun(record)).record)
-        if record.key is not None:
-            return _finished(request, await final_record(self._engine, await self._begun(record)))
-        return _finished(request, await self._now(request, record))
-
-    async def _now(self, request: Request, record: Record) -> Record:
-        leaving = asyncio.ensure_future(_left(request))
-        try:
-            return await self._engine.run(record, leaving)
-        finally:
-            leaving.cancel()
-
-    async def _begun(self, record: Record) -> Record:
-        """The record, or the earlier one of which it is a repeat."""
-        kept = await self._store.admit(record)
-        if kept.id == record.id:
-            try:
-                await self._engine.submit(record)
-            except Exception:
-                await self._store.delete(record)
-                raise
-        return kept
-
-
-async def _left(request: Request) -> None:
-    while (await request.receive())["type"] != "http.disconnect":
-        pass
-
-
-def _accepted(record: Record) -> Response:
-    answer = json_response({"id": record.id, "status": record.status}, 202)
-    answer.headers["Location"] = f"/front/{record.id}"
-    answer.headers["Preference-Applied"] = "respond-async"
-    return answer
-
-
-def _finished(request: Request, record: Record) -> Response:
-    if record.problem is None:
-        return json_bytes(record.json())
-    # Which may be the problem of a request that this one repeats.
-    return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
-
-
-def _digest(source: TaskSource) -> str:
-    digest = hashlib.sha256()
-    for part in (source.kind.encode(), source.body, source.upload or b""):
-        digest.update(b"%d:" % len(part))
-        digest.update(part)
-    return digest.hexdigest()
-
-
-_UPLOADS: Mapping[TaskKind, str] = {"front": "matrices", "coverage": "map"}
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
 _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
 
 
-class FrontRoutes:
-    """Checks what is asked for, and has it planned."""
+class PlanRoutes:
+    """Parses a request for a front, has the engine plan it, and answers at once or when it is done.
+
+    A request without an idempotency key ends when its client goes away. With one the client is
+    expected to come back, so the planning goes on.
+    """
 
     def __init__(
         self,
         actors: Mapping[str, ActorInfo],
+        store: Store,
         engine: Engine,
-        answers: Answers,
         limits: Limits,
     ) -> None:
         self._actors = actors
+        self._store = store
         self._engine = engine
-        self._answers = answers
         self._limits = limits
-        self._reader = Reader(limits, actors)
+        self._parser = TaskParser(limits, actors)
 
     def router(self) -> APIRouter:
-        """The paths, with what the OpenAPI document says of them."""
+        """Return the routes with their entries in the OpenAPI document."""
         router = APIRouter(tags=["fronts"])
-        said: dict[int | str, dict[str, Any]] = {
+        responses: dict[int | str, dict[str, Any]] = {
             202: {"model": AcceptedAnswer, "description": "Accepted", "content": _ACCEPTED},
             **problem_responses(400, 408, 413, 415, 422, 503, 504),
         }
         router.post(
             "/front",
             response_model=FrontAnswer,
-            responses=said,
-            openapi_extra=_asked(request_schema(self._limits, self._actors)),
+            responses=responses,
+            openapi_extra=_openapi_request(front_schema(self._limits, self._actors)),
         )(self.plan_front)
         router.post(
             "/coverage",
             response_model=CoverageAnswer,
-            responses=said,
-            openapi_extra=_asked(coverage_schema(self._limits, self._actors)),
+            responses=responses,
+            openapi_extra=_openapi_request(coverage_schema(self._limits, self._actors)),
         )(self.plan_coverage)
         return router
 
@@ -190,17 +101,90 @@ class FrontRoutes:
         return await self._plan(request, "coverage")
 
     async def _plan(self, request: Request, kind: TaskKind) -> Response:
-        await self._answers.check_place(request)
-        body = await read_body(request, self._limits.body_bytes, _UPLOADS[kind])
-        source = TaskSource(kind, body.json, body.upload)
-        task = await self._reader.read(source)
-        if task.needs_compiled_code:
+        await self._check_place(request)
+        source = await receive_source(request, kind, self._limits.body_bytes)
+        source = replace(source, task=await self._parser.parse(source))
+        record = await self._new_record(request, source)
+        if prefers_async(request):
+            first = await self._begin(record)
+            return _accepted_response(self._engine.state(first).record)
+        if record.key is not None:
+            first = await self._begin(record)
+            return _finished_response(request, await final_record(self._engine, first))
+        return _finished_response(request, await self._run(request, record))
+
+    async def _check_place(self, request: Request) -> None:
+        """Raise a refusal, before the body is received, where the engine takes no more work."""
+        await self._engine.check_open()
+        # A repeat may need no place.
+        if idempotency_key(request) is None:
+            await self._engine.check_place()
+
+    async def _new_record(self, request: Request, source: TaskSource) -> Record:
+        assert source.task is not None
+        if source.task.needs_compiled_code:
             await self._engine.check_warm()
-        empty = empty_front(task, self._actors[task.actor].identity)
-        return await self._answers.answer(request, replace(source, task=task), empty)
+        key = idempotency_key(request)
+        return Record(
+            id=uuid.uuid4().hex,
+            caller=caller_of(request),
+            request_id=request.scope["request_id"],
+            status="queued",
+            front=empty_front(source.task, self._actors[source.task.actor].identity),
+            source=source,
+            key=key,
+            digest=await asyncio.to_thread(_digest, source) if key else "",
+        )
+
+    async def _begin(self, record: Record) -> Record:
+        """Begin to plan, and return the record, or the earlier one that it is a repeat of."""
+        first = await self._store.admit(record)
+        if first.id == record.id:
+            try:
+                await self._engine.submit(record)
+            except Exception:
+                await self._store.delete(record)
+                raise
+        return first
+
+    async def _run(self, request: Request, record: Record) -> Record:
+        disconnect = asyncio.ensure_future(_disconnect(request))
+        try:
+            return await self._engine.run(record, disconnect)
+        finally:
+            disconnect.cancel()
 
 
-def _asked(schema: dict[str, Any]) -> dict[str, Any]:
+async def _disconnect(request: Request) -> None:
+    """Wait until the client goes away."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
+
+
+def _accepted_response(record: Record) -> Response:
+    response = json_response({"id": record.id, "status": record.status}, 202)
+    response.headers["Location"] = f"/front/{record.id}"
+    response.headers["Preference-Applied"] = "respond-async"
+    return response
+
+
+def _finished_response(request: Request, record: Record) -> Response:
+    if record.problem is None:
+        return json_bytes(record.json())
+    # The problem may be that of an earlier request, of which this one is a repeat.
+    return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
+
+
+def _digest(source: TaskSource) -> str:
+    """Return the SHA-256 of a body, by which one idempotency key is held to one body."""
+    digest = hashlib.sha256()
+    for part in (source.kind.encode(), source.body, source.upload or b""):
+        digest.update(b"%d:" % len(part))
+        digest.update(part)
+    return digest.hexdigest()
+
+
+def _openapi_request(schema: dict[str, Any]) -> dict[str, Any]:
     content = {"application/json": {"schema": schema}}
     return {
         "parameters": list(PARAMETERS),

@@ -1,4 +1,4 @@
-"""What the headers of a request ask for, beside its body: an answer later, and one for repeats."""
+"""The request headers that change how a front is planned: `Prefer` and `Idempotency-Key`."""
 
 import re
 from typing import Any
@@ -31,17 +31,17 @@ PARAMETERS: tuple[dict[str, Any], ...] = (
 )
 
 
-def wants_it_later(request: Request) -> bool:
-    """Whether the answer shall say no more than where the front will be."""
+def prefers_async(request: Request) -> bool:
+    """Return whether the caller wants 202 at once and the front later (RFC 7240)."""
     preferences = ",".join(request.headers.getlist("prefer")).lower().split(",")
     return "respond-async" in (each.partition(";")[0].strip() for each in preferences)
 
 
 def idempotency_key(request: Request) -> str | None:
-    """What repeats of the request have in common, if the caller says.
+    """Return the key that repeats of the request share, None where there is none.
 
     Raises:
-        Refusal: it is too long, empty, or not of printable ASCII.
+        Refusal: The key is too long, empty, or not of printable ASCII.
     """
     key = request.headers.get("idempotency-key")
     if key is not None and re.fullmatch(_KEY, key) is None:

@@ -1,4 +1,8 @@
-"""Answers: their schemas, and how they become HTTP responses."""
+"""Answers and problem documents: their schemas for OpenAPI, and how they become responses.
+
+The schemas document answers, and do not make them: a front is written as JSON once, by the worker
+that found it.
+"""
 
 from collections.abc import Mapping
 from http import HTTPStatus
@@ -10,10 +14,12 @@ from pydantic_core import to_json
 from starlette.responses import Response
 
 from service.errors import Refusal
+from service.instance import OBJECTIVES
 from service.jobs.record import Status
 from service.search.improve import Termination
 
 PROBLEM_JSON = "application/problem+json"
+Lengths = Annotated[list[float], Field(min_length=OBJECTIVES, max_length=OBJECTIVES)]
 
 
 class FaultItem(BaseModel):
@@ -42,7 +48,7 @@ class TourItem(BaseModel):
     """A tour and where it stands."""
 
     angle: float = Field(description="direction of the scaled lengths, in degrees")
-    lengths: Annotated[list[float], Field(min_length=2, max_length=2)]
+    lengths: Lengths
     tour: list[int]
 
 
@@ -72,10 +78,10 @@ class FrontAnswer(BaseModel):
     hypervolume_bound: float | None = Field(
         description="what no front of this instance exceeds, where `bound` asked for it"
     )
-    reference_point: Annotated[list[float], Field(min_length=2, max_length=2)] | None = Field(
+    reference_point: Lengths | None = Field(
         description="null while the places on a map are looked for, as is the scale"
     )
-    scale: Annotated[list[float], Field(min_length=2, max_length=2)] | None
+    scale: Lengths | None
     actor: ActorName
     timings_ms: dict[str, float]
     terminated: Termination | None = Field(description="null while the planning goes on")
@@ -132,31 +138,31 @@ class HealthAnswer(BaseModel):
 
 
 def json_response(answer: Any, status: int = 200) -> Response:
-    """Return an answer that is known to be well-formed and is not checked again."""
+    """Return an answer as a response; it is not checked against its schema."""
     return json_bytes(to_json(answer), status)
 
 
 def json_bytes(answer: bytes, status: int = 200) -> Response:
-    """Return an answer that was written as JSON before."""
+    """Return an answer that is JSON already as a response."""
     return Response(answer, status, media_type="application/json")
 
 
 def problem_response(refusal: Refusal, request_id: str) -> Response:
-    """Return the problem document of a refusal; a 503 asks to come again in a second."""
+    """Return the problem document of a refusal as a response."""
     return problem_bytes(refusal.document(request_id), refusal.headers)
 
 
 def problem_bytes(
     document: Mapping[str, Any], headers: Mapping[str, str] | None = None
 ) -> Response:
-    """Return a problem document as a response; a 503 asks to come again in a second."""
+    """Return a problem document as a response; a 503 asks the client to retry in a second."""
     status: int = document["status"]
-    later = {"Retry-After": "1"} if status == HTTPStatus.SERVICE_UNAVAILABLE else {}
-    return Response(to_json(document), status, {**later, **(headers or {})}, PROBLEM_JSON)
+    retry = {"Retry-After": "1"} if status == HTTPStatus.SERVICE_UNAVAILABLE else {}
+    return Response(to_json(document), status, {**retry, **(headers or {})}, PROBLEM_JSON)
 
 
 def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Return what the OpenAPI document says of a path's refusals."""
+    """Return the entries of an operation's refusals in the OpenAPI document."""
     schema = {"$ref": "#/components/schemas/Problem"}
     return {
         status: {

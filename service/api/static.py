@@ -1,4 +1,4 @@
-"""What people open in a browser: the page and the HTTP reference, as files."""
+"""Static files: the page at `/`, the HTTP reference at `/docs`, and the examples."""
 
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -8,28 +8,29 @@ from starlette.responses import FileResponse, Response
 from starlette.routing import BaseRoute, Route
 from starlette.staticfiles import StaticFiles
 
-_HERE = Path(__file__).parents[1]
-_PAGE = _HERE / "page"
-_DOCS = _HERE / "reference"
-_FRESH = {"Cache-Control": "no-cache"}  # asked for anew each time, answered by 304 where unchanged
+_SERVICE = Path(__file__).parents[1]
+_PAGE = _SERVICE / "page"
+_REFERENCE = _SERVICE / "reference"
+_EXAMPLES = _SERVICE / "examples"
+_REVALIDATE = {"Cache-Control": "no-cache"}  # a browser asks each time, and gets 304 if unchanged
 
 _Endpoint = Callable[[Request], Awaitable[Response]]
 
 
-def page_routes() -> list[BaseRoute]:
-    """The page at `/`, the HTTP reference at `/docs`, and what they load."""
+def static_routes() -> list[BaseRoute]:
+    """Return the routes of the page, the HTTP reference, and the files that they load."""
     return [
         Route("/", _index(_PAGE)),
-        Route("/docs", _index(_DOCS)),
+        Route("/docs", _index(_REFERENCE)),
         Route("/page/{path:path}", _files(_PAGE)),
-        Route("/docs/{path:path}", _files(_DOCS)),
-        Route("/examples/{path}.json", _files(_HERE / "examples", ".json")),
+        Route("/docs/{path:path}", _files(_REFERENCE)),
+        Route("/examples/{path}.json", _files(_EXAMPLES, ".json")),
     ]
 
 
 def _index(folder: Path) -> _Endpoint:
     async def answer(_: Request) -> Response:
-        return FileResponse(folder / "index.html", headers=_FRESH)
+        return FileResponse(folder / "index.html", headers=_REVALIDATE)
 
     return answer
 
@@ -39,7 +40,7 @@ def _files(folder: Path, suffix: str = "") -> _Endpoint:
 
     async def answer(request: Request) -> Response:
         response = await files.get_response(request.path_params["path"] + suffix, request.scope)
-        response.headers.update(_FRESH)
+        response.headers.update(_REVALIDATE)
         return response
 
     return answer

@@ -1,9 +1,9 @@
-"""The paths that read, follow, cancel and forget fronts that are kept."""
+"""The routes that read, follow, cancel and forget fronts: `/front/{id}`, its events, `/tour`."""
 
 import asyncio
 from collections.abc import AsyncIterator, Mapping
 from dataclasses import asdict
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
@@ -11,7 +11,7 @@ from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
-from service.api.plan import caller_of
+from service.api.auth import caller_of
 from service.api.responses import FrontAnswer, TourAnswer, json_bytes, problem_responses
 from service.errors import Expired, NotFound, Refusal
 from service.jobs.engine import Engine, JobState
@@ -23,66 +23,15 @@ from service.search.improve import Progress
 HEARTBEAT = 15.0  # seconds of silence before a comment says that the stream is alive
 
 
-def event_stream(watch: AsyncIterator[JobState]) -> StreamingResponse:
-    """An answer that goes on until the job is finished."""
-    headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
-    return StreamingResponse(_events(watch), media_type="text/event-stream", headers=headers)
-
-
-async def _events(watch: AsyncIterator[JobState]) -> AsyncIterator[bytes]:
-    status, progress = None, None
-    async for state in _with_heartbeats(watch):
-        if state is None:
-            yield KEEPALIVE_COMMENT
-            continue
-        # Before the status that ends the stream, whatever is left to say.
-        if state.progress is not None and state.progress is not progress:
-            progress = state.progress
-            yield _progress(progress)
-        if state.record.status != status:
-            status = state.record.status
-            yield _status(state.record)
-
-
-async def _with_heartbeats(watch: AsyncIterator[JobState]) -> AsyncIterator[JobState | None]:
-    """The states, and none for each while without."""
-    coming = asyncio.ensure_future(anext(watch, None))
-    try:
-        while True:
-            done, _ = await asyncio.wait([coming], timeout=HEARTBEAT)
-            if not done:
-                yield None
-                continue
-            state = coming.result()
-            if state is None:
-                return
-            coming = asyncio.ensure_future(anext(watch, None))
-            yield state
-    finally:
-        coming.cancel()
-
-
-def _status(record: Record) -> bytes:
-    return _event("status", {"id": record.id, "status": record.status})
-
-
-def _progress(progress: Progress) -> bytes:
-    return _event("progress", asdict(progress))
-
-
-def _event(name: str, data: Mapping[str, object]) -> bytes:
-    return format_sse_event(event=name, data_str=to_json(data).decode())
-
-
 class StoredFrontRoutes:
-    """Each caller is told of its own fronts alone."""
+    """Answers each caller about its own fronts alone."""
 
     def __init__(self, store: Store, engine: Engine) -> None:
         self._store = store
         self._engine = engine
 
     def router(self) -> APIRouter:
-        """The paths, with what the OpenAPI document says of them."""
+        """Return the routes with their entries in the OpenAPI document."""
         router = APIRouter(tags=["fronts"])
         missing = problem_responses(404, 410, 503)
         stream: dict[str, Any] = {"description": "The events", "content": {"text/event-stream": {}}}
@@ -126,22 +75,63 @@ class StoredFrontRoutes:
         tour = record.front.nearest(query.angle)
         return json_bytes(b'{"front":' + to_json(record.id) + b"," + tour[1:])
 
-    async def _record(self, request: Request, front: str | None) -> Record:
+    async def _record(self, request: Request, id: str | None) -> Record:  # noqa: A002
+        """Return the caller's record with an id, as of now; without an id its latest."""
         caller, store = caller_of(request), self._store
         try:
-            kept = store.latest(caller) if front is None else store.get(caller, front)
-            return self._engine.state(await kept).record
+            record = await (store.latest(caller) if id is None else store.get(caller, id))
         except NotFound:
-            _refuse_unknown(front)
+            if id is None:
+                raise Refusal("no-front") from None
+            raise Refusal("unknown-front", front=repr(id[:80])) from None
         except Expired:
-            raise Refusal("front-expired", front=_named(front)) from None
+            name = "the latest" if id is None else repr(id[:80])
+            raise Refusal("front-expired", front=name) from None
+        return self._engine.state(record).record
 
 
-def _refuse_unknown(front: str | None) -> NoReturn:
-    if front is None:
-        raise Refusal("no-front")
-    raise Refusal("unknown-front", front=_named(front))
+def event_stream(states: AsyncIterator[JobState]) -> StreamingResponse:
+    """Return the states of a job as server-sent events, until it is finished."""
+    headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
+    return StreamingResponse(_events(states), media_type="text/event-stream", headers=headers)
 
 
-def _named(front: str | None) -> str:
-    return "the latest" if front is None else repr(front[:80])
+async def _events(states: AsyncIterator[JobState]) -> AsyncIterator[bytes]:
+    status, progress = None, None
+    async for state in _with_heartbeats(states):
+        if state is None:
+            yield KEEPALIVE_COMMENT
+            continue
+        # Progress first: the status may be the one that ends the stream.
+        if state.progress is not None and state.progress is not progress:
+            progress = state.progress
+            yield _progress_event(progress)
+        if state.record.status != status:
+            status = state.record.status
+            yield _event("status", {"id": state.record.id, "status": status})
+
+
+async def _with_heartbeats(states: AsyncIterator[JobState]) -> AsyncIterator[JobState | None]:
+    """Yield the states, and None for each while without one."""
+    coming = asyncio.ensure_future(anext(states, None))
+    try:
+        while True:
+            done, _ = await asyncio.wait([coming], timeout=HEARTBEAT)
+            if not done:
+                yield None
+                continue
+            state = coming.result()
+            if state is None:
+                return
+            coming = asyncio.ensure_future(anext(states, None))
+            yield state
+    finally:
+        coming.cancel()
+
+
+def _progress_event(progress: Progress) -> bytes:
+    return _event("progress", asdict(progress))
+
+
+def _event(name: str, data: Mapping[str, object]) -> bytes:
+    return format_sse_event(event=name, data_str=to_json(data).decode())

@@ -158,7 +158,7 @@ def encode_front(
 
 def empty_front(task: Task, actor: Mapping[str, str]) -> FrontDocument:
     """Return the document of a task of which nothing has been found yet."""
-    subject, reference_point = task.subject, task.demand.reference_point
+    subject, reference_point = task.subject, task.options.reference_point
     if isinstance(subject, Instance):
         cities, scale, places = subject.n, subject.scale.tolist(), None
         if reference_point is None:

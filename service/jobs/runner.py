@@ -108,7 +108,7 @@ class TaskRunner:
         def report_encoded(progress: Progress, best: Callable[[int], Front]) -> None:
             report(progress, lambda size: encode_front(best(size), identity, places))
 
-        return plan(self.actors[task.actor], instance, task.demand, stop, report_encoded)
+        return plan(self.actors[task.actor], instance, task.options, stop, report_encoded)
 
     def _identity(self, task: Task) -> dict[str, str]:
         return self.actors[task.actor].info.identity

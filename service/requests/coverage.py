@@ -1,4 +1,4 @@
-"""Coverage requests: what they may say under given limits, and what one says."""
+"""Requests of `POST /coverage`: their fields, their JSON schema and their parser."""
 
 from collections.abc import Iterable
 from typing import Annotated, Any
@@ -10,48 +10,52 @@ from pydantic_core.core_schema import with_info_after_validator_function
 
 from service.coverage.survey import Coverage
 from service.instance import Kind
-from service.requests.arrays import Array, check_costs, read_grid, rectangular, square
-from service.requests.front import parsed, plan_schema
-from service.requests.limits import Limits, within
-from service.requests.schemas import LARGEST, PlanRequest, Positive, Rows, Whole
-from service.requests.validation import invalid, too_many_cells, too_many_cities
+from service.requests.arrays import Array, check_costs, read_png, rectangular_array, square_array
+from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
+from service.requests.schemas import (
+    LARGEST,
+    ArrayRows,
+    NonNegativeInteger,
+    Number,
+    PlanRequest,
+    PositiveNumber,
+)
+from service.requests.validation import invalid, parse_json, too_many_cells, too_many_cities
 
 
 def _as_layer(rows: list[list[float]], info: ValidationInfo) -> Array:
-    return rectangular(rows, str(info.field_name))
+    return rectangular_array(rows, str(info.field_name))
 
 
-def _as_square(rows: list[list[float]], info: ValidationInfo) -> Array:
-    return square(rows, str(info.field_name))
+def _as_matrix(rows: list[list[float]], info: ValidationInfo) -> Array:
+    return square_array(rows, str(info.field_name))
 
 
 Layer = Annotated[
     NDArray[np.float64],
-    GetPydanticSchema(lambda _, h: with_info_after_validator_function(_as_layer, h(Rows))),
+    GetPydanticSchema(lambda _, h: with_info_after_validator_function(_as_layer, h(ArrayRows))),
 ]
-Square = Annotated[
+Matrix = Annotated[
     NDArray[np.float64],
-    GetPydanticSchema(lambda _, h: with_info_after_validator_function(_as_square, h(Rows))),
+    GetPydanticSchema(lambda _, h: with_info_after_validator_function(_as_matrix, h(ArrayRows))),
 ]
-Cell = Annotated[list[Whole], Field(min_length=2, max_length=2, fail_fast=True)]
-Finite = Annotated[float, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
-Point = Annotated[list[Finite], Field(min_length=2, max_length=2, fail_fast=True)]
+Cell = Annotated[list[NonNegativeInteger], Field(min_length=2, max_length=2, fail_fast=True)]
+PlanePoint = Annotated[list[Number], Field(min_length=2, max_length=2, fail_fast=True)]
 
 
-def _none() -> Array:
+def _empty_array() -> Array:
     return np.empty((0, 0))
 
 
 class CoverageRequest(PlanRequest):
-    """Places on a map that are to be visited, and what is asked of the front.
+    """Places on a map, a second objective between them, and the options of their front."""
 
-    What is empty can only be a default: none is given.
-    """
-
+    # An empty default means that the field was not given: no caller can give an empty array.
     grid: Layer = Field(
-        default_factory=_none, description="the map, row by row: 0 where it is free, 1 an obstacle"
+        default_factory=_empty_array,
+        description="the map, row by row: 0 where it is free, 1 an obstacle",
     )
-    cell_size: Positive = Field(description="side of a cell, in metres")
+    cell_size: PositiveNumber = Field(description="side of a cell, in metres")
     robot_radius: float = Field(
         default=0.0,
         ge=0,
@@ -62,31 +66,31 @@ class CoverageRequest(PlanRequest):
     places: Annotated[list[Cell], Field(min_length=1, fail_fast=True)] = Field(
         default_factory=list, description="row and column of each place to visit"
     )
-    spacing: Positive = Field(
+    spacing: PositiveNumber = Field(
         default=0.0,
         description="instead of places, in metres: one is laid in each square of this side over"
         " the largest free region",
     )
-    second_matrix: Square = Field(
-        default_factory=_none,
+    second_matrix: Matrix = Field(
+        default_factory=_empty_array,
         description="the second objective: its costs from each place (row) to each (column)",
     )
     cost_layer: Layer = Field(
-        default_factory=_none,
+        default_factory=_empty_array,
         description="or: on each cell of the grid, what a metre costs; added up along the paths",
     )
-    second_coordinates: Annotated[list[Point], Field(min_length=1, fail_fast=True)] = Field(
+    second_coordinates: Annotated[list[PlanePoint], Field(min_length=1, fail_fast=True)] = Field(
         default_factory=list, description="or: x and y of each place in a plane; its distances"
     )
     paths: bool = Field(default=False, description="whether each tour comes with its path")
 
     @property
     def kind(self) -> Kind:
-        """What an actor has to read."""
+        """The kind of instance that an actor has to read."""
         return "matrices"
 
     def coverage(self) -> Coverage:
-        """What is to be covered."""
+        """Return the map and its places as a coverage task."""
         points = self.second_coordinates
         return Coverage(
             blocked=self.grid > 0,
@@ -102,8 +106,8 @@ class CoverageRequest(PlanRequest):
 
 
 def coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
-    """The JSON schema of a request where these limits hold and these actors are loaded."""
-    schema = plan_schema(CoverageRequest, limits, actors)
+    """Return the JSON schema of a request under these limits, with these actors to choose from."""
+    schema = limited_schema(CoverageRequest, limits, actors)
     fields = schema["properties"]
     fields["grid"]["items"]["items"] = {"enum": [0, 1]}
     del fields["spacing"]["default"]
@@ -122,25 +126,27 @@ def coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
 
 
 def parse_coverage_request(
-    body: bytes, limits: Limits, image: bytes | None = None
+    body: bytes, limits: Limits, png: bytes | None = None
 ) -> CoverageRequest:
-    """The request in a body, with the map of a PNG file where one came with it.
+    """Return the request in a JSON body, with the map of a PNG file where one came with it.
 
     Raises:
-        Refusal: it is not JSON, not a coverage request, over a limit, or about no map.
+        Refusal: The body is not JSON, misses the schema, is over a limit or has no map.
     """
-    request = parsed(CoverageRequest, body)
-    if image is not None:
+    request = parse_json(CoverageRequest, body)
+    if png is not None:
         if "grid" in request.model_fields_set:
             raise invalid("grid", "must come once, got it as the part map as well")
-        request = request.model_copy(update={"grid": read_grid(image, limits.cells)})
+        request = request.model_copy(update={"grid": read_png(png, limits.cells)})
     _check_grid(request.grid, limits.cells)
     if len(request.places) > limits.cities:
         raise too_many_cities("places", limits.cities, len(request.places))
     if request.initial_tours and not request.places:
         raise invalid("initial_tours", "must be of places, and none are given")
     check_costs(request.second_matrix, "second_matrix", LARGEST)
-    return within(limits, request, len(request.places) or limits.cities)
+    # With a spacing, the number of places is not known before the survey.
+    check_limits(request, len(request.places) or limits.cities, limits)
+    return lower_defaults(request, limits)
 
 
 def _check_grid(grid: Array, most: int) -> None:

@@ -1,20 +1,78 @@
-"""Front requests: what they may say under given limits, and what one says."""
+"""Requests of `POST /front`: their fields, their JSON schema and their parser."""
 
 from collections.abc import Iterable
-from typing import Any
+from dataclasses import replace
+from typing import Annotated, Any
 
-from pydantic import ValidationError
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, GetPydanticSchema
+from pydantic_core.core_schema import no_info_after_validator_function
 
 from service.errors import Refusal
-from service.requests.arrays import check_costs, loaded
-from service.requests.limits import Limits, Request, defaults_within, within
-from service.requests.schemas import LARGEST, FrontRequest, PlanRequest
-from service.requests.validation import invalid, refused_by, too_many_cities
+from service.instance import MAX_SYMMETRIES, OBJECTIVES, Instance, Kind
+from service.planner import PlanOptions
+from service.requests.arrays import check_costs, read_npy, stack_matrices
+from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
+from service.requests.schemas import LARGEST, ArrayRows, AsInteger, Number, PlanRequest
+from service.requests.validation import invalid, parse_json, too_many_cities
+
+_COLUMNS = 2 * OBJECTIVES  # x and y in the plane of each objective
+City = Annotated[list[Number], Field(min_length=_COLUMNS, max_length=_COLUMNS, fail_fast=True)]
+_MatrixRows = Annotated[
+    list[ArrayRows], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
+]
+Matrices = Annotated[
+    NDArray[np.float64],
+    GetPydanticSchema(
+        lambda _, handler: no_info_after_validator_function(stack_matrices, handler(_MatrixRows))
+    ),
+]
 
 
-def request_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
-    """The JSON schema of a front request where these limits hold and these actors are loaded."""
-    schema = plan_schema(FrontRequest, limits, actors)
+class FrontRequest(PlanRequest):
+    """Cities under two objectives, by coordinates or matrices, and the options of their front."""
+
+    # An empty default means that the field was not given: no caller can give an empty array.
+    coordinates: Annotated[list[City], Field(min_length=1, fail_fast=True)] = Field(
+        default_factory=list,
+        description="a row for each city: x and y in plane 1, x and y in plane 2",
+    )
+    matrices: Matrices = Field(
+        default_factory=lambda: np.empty((OBJECTIVES, 0, 0)),
+        description="instead of coordinates, for each objective the costs from each city (row) to"
+        " each (column); the diagonal is disregarded",
+    )
+    augment: Annotated[int, Field(ge=1, le=MAX_SYMMETRIES), AsInteger] = Field(
+        default=1,
+        description="how many times the network is called: each time it sees the coordinates under"
+        " another symmetry of the square, and aims between the angles of the other calls",
+    )
+
+    @property
+    def kind(self) -> Kind:
+        """The kind of instance that an actor has to read."""
+        return "coordinates" if self.coordinates else "matrices"
+
+    @property
+    def n(self) -> int:
+        """The number of cities."""
+        return len(self.coordinates) or self.matrices.shape[1]
+
+    def instance(self) -> Instance:
+        """Return the cities as an instance."""
+        if self.kind == "matrices":
+            return Instance(matrices=self.matrices)
+        return Instance(coordinates=np.array(self.coordinates, dtype=np.float64))
+
+    def options(self) -> PlanOptions:
+        """Return the options for the planner."""
+        return replace(super().options(), augment=self.augment)
+
+
+def front_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
+    """Return the JSON schema of a request under these limits, with these actors to choose from."""
+    schema = limited_schema(FrontRequest, limits, actors)
     fields = schema["properties"]
     schema["oneOf"] = [{"required": ["coordinates"]}, {"required": ["matrices"]}]
     schema["dependentSchemas"] = {"matrices": {"properties": {"augment": {"const": 1}}}}
@@ -24,58 +82,26 @@ def request_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
     return schema
 
 
-def plan_schema(model: type[PlanRequest], limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
-    """The JSON schema of a request where these limits hold and these actors are loaded."""
-    schema = model.model_json_schema()
-    fields = schema["properties"]
-    count, angles = fields["preferences"]["oneOf"]
-    count["maximum"] = angles["maxItems"] = limits.preferences
-    fields["size"]["maximum"] = limits.size
-    for name, default in defaults_within(limits).items():
-        fields[name]["default"] = default
-    fields["start"]["maximum"] = limits.cities - 1
-    del fields["actor"]["default"]
-    fields["actor"]["enum"] = sorted(actors)
-    fields["time_limit"]["maximum"] = limits.seconds
-    fields["initial_tours"]["maxItems"] = limits.size
-    return schema
-
-
-def parse_front_request(body: bytes, limits: Limits, matrices: bytes | None = None) -> FrontRequest:
-    """The request in a body, with the matrices of a .npy file where one came with it.
+def parse_front_request(body: bytes, limits: Limits, npy: bytes | None = None) -> FrontRequest:
+    """Return the request in a JSON body, with the matrices of a .npy file where one came with it.
 
     Raises:
-        Refusal: it is not JSON, not a front request, over a limit, or asks for what there is not.
+        Refusal: The body is not JSON, misses the schema or is over a limit.
     """
-    request = parsed(FrontRequest, body)
-    if matrices is not None:
+    request = parse_json(FrontRequest, body)
+    if npy is not None:
         if "matrices" in request.model_fields_set:
             raise invalid("matrices", "must come once, got them as a part as well")
-        request = request.model_copy(update={"matrices": loaded(matrices, limits.cities)})
-    _check_instance(request, limits)
-    return within(limits, request, request.n)
+        request = request.model_copy(update={"matrices": read_npy(npy, limits.cities)})
+    _check_cities(request, limits)
+    check_limits(request, request.n, limits)
+    return lower_defaults(request, limits)
 
 
-def parsed(model: type[Request], body: bytes) -> Request:
-    """What a body says.
-
-    Raises:
-        Refusal: it is not JSON, or says something else.
-    """
-    try:
-        return model.model_validate_json(body)
-    except ValidationError as error:
-        errors = error.errors(include_url=False)
-        if errors[0]["type"] == "json_invalid":
-            reason = errors[0]["ctx"]["error"]
-            raise Refusal("malformed-json", reason=reason) from None
-        raise refused_by(errors) from None
-
-
-def _check_instance(request: FrontRequest, limits: Limits) -> None:
-    given = {"coordinates", "matrices"} & request.model_fields_set
-    if len(given) != 1:
-        came = "both" if given else "neither"
+def _check_cities(request: FrontRequest, limits: Limits) -> None:
+    sources = {"coordinates", "matrices"} & request.model_fields_set
+    if len(sources) != 1:
+        came = "both" if sources else "neither"
         sentence = f"either coordinates or matrices are required, got {came}"
         raise Refusal("invalid-request", detail=sentence, pointer="/coordinates")
     if request.kind == "matrices" and request.augment > 1:
@@ -83,7 +109,6 @@ def _check_instance(request: FrontRequest, limits: Limits) -> None:
         raise invalid("augment", f"{demand}, got {request.augment}")
     if request.n > limits.cities:
         raise too_many_cities(request.kind, limits.cities, request.n)
-    if request.kind == "coordinates":
-        return
-    for m, matrix in enumerate(request.matrices):
-        check_costs(matrix, f"matrices/{m}", LARGEST)
+    if request.kind == "matrices":
+        for m, matrix in enumerate(request.matrices):
+            check_costs(matrix, f"matrices/{m}", LARGEST)

@@ -1,18 +1,28 @@
-"""The most that a request may bring or ask for, and the refusals of more."""
+"""The limits of a service: on what a request may bring or ask for, as checks and as JSON schema."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from service.errors import Refusal
-from service.requests.schemas import FrontRequest, PlanRequest
+from service.requests.schemas import PlanRequest
 from service.requests.validation import invalid
 
-Request = TypeVar("Request", bound=PlanRequest)
+AnyPlanRequest = TypeVar("AnyPlanRequest", bound=PlanRequest)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """The most that a request may bring or ask for."""
+    """The most that a request may bring or ask for.
+
+    Args:
+        body_bytes: Bytes of a body.
+        cities: Cities of an instance, or places on a map.
+        cells: Cells of a map.
+        preferences: Preferences of a front.
+        size: Tours to return, or to bring as initial tours.
+        seconds: The time limit of a search.
+    """
 
     body_bytes: int
     cities: int
@@ -22,48 +32,69 @@ class Limits:
     seconds: float
 
 
-def within(limits: Limits, request: Request, n: int) -> Request:
-    """The request, about n cities, with defaults within the limits.
+def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
+    """Raise a refusal where the fields of a request about n cities go beyond these or the limits.
 
     Raises:
-        Refusal: it is over a limit.
+        Refusal: Over a limit, or a start or an initial tour that does not fit n cities.
     """
-    _check_limits(request, n, limits)
-    defaults = defaults_within(limits).items()
-    asked = request.model_fields_set
-    lowered = {k: v for k, v in defaults if k not in asked and v < getattr(request, k)}
-    return request.model_copy(update=lowered) if lowered else request
-
-
-def defaults_within(limits: Limits) -> dict[str, float]:
-    """The defaults that a limit may lower: who asks for nothing is never over a limit."""
-    most = {
-        "preferences": limits.preferences,
-        "size": limits.size,
-        "time_limit": limits.seconds,
-    }
-    fields = FrontRequest.model_fields
-    return {name: min(fields[name].default, limit) for name, limit in most.items()}
-
-
-def _check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
     if request.start >= n:
         raise invalid("start", f"must be a city, 0 to {n - 1}, got {request.start}")
-    if "preferences" in request.model_fields_set:
-        looked = request.preferences
-        k = looked if isinstance(looked, int) else len(looked)
-        _check_most("preferences", limits.preferences, k)
-    if "size" in request.model_fields_set:
-        _check_most("size", limits.size, request.size)
-    if "time_limit" in request.model_fields_set:
-        _check_most("time_limit", limits.seconds, request.time_limit)
-    _check_most("initial_tours", limits.size, len(request.initial_tours))
+    asked = {
+        "preferences": (limits.preferences, request.preference_count),
+        "size": (limits.size, request.size),
+        "time_limit": (limits.seconds, request.time_limit),
+    }
+    for name, (limit, actual) in asked.items():
+        if name in request.model_fields_set:
+            _check_limit(name, limit, actual)
+    _check_limit("initial_tours", limits.size, len(request.initial_tours))
     for index, tour in enumerate(request.initial_tours):
         if sorted(tour) != list(range(n)):
             demand = f"must visit each city, 0 to {n - 1}, once"
             raise invalid(f"initial_tours/{index}", demand)
 
 
-def _check_most(name: str, limit: float, actual: float) -> None:
+def lower_defaults(request: AnyPlanRequest, limits: Limits) -> AnyPlanRequest:
+    """Return the request with the limit in place of every default that is over it."""
+    lowered = {
+        name: default
+        for name, default in defaults(limits).items()
+        if name not in request.model_fields_set and default < getattr(request, name)
+    }
+    return request.model_copy(update=lowered) if lowered else request
+
+
+def defaults(limits: Limits) -> dict[str, float]:
+    """Return the defaults under these limits: a request that is silent is never over a limit."""
+    most = {
+        "preferences": limits.preferences,
+        "size": limits.size,
+        "time_limit": limits.seconds,
+    }
+    fields = PlanRequest.model_fields
+    return {name: min(fields[name].default, limit) for name, limit in most.items()}
+
+
+def limited_schema(
+    model: type[PlanRequest], limits: Limits, actors: Iterable[str]
+) -> dict[str, Any]:
+    """Return the JSON schema of a request under these limits, with these actors to choose from."""
+    schema = model.model_json_schema()
+    fields = schema["properties"]
+    count, angles = fields["preferences"]["oneOf"]
+    count["maximum"] = angles["maxItems"] = limits.preferences
+    fields["size"]["maximum"] = limits.size
+    for name, default in defaults(limits).items():
+        fields[name]["default"] = default
+    fields["start"]["maximum"] = limits.cities - 1
+    del fields["actor"]["default"]
+    fields["actor"]["enum"] = sorted(actors)
+    fields["time_limit"]["maximum"] = limits.seconds
+    fields["initial_tours"]["maxItems"] = limits.size
+    return schema
+
+
+def _check_limit(name: str, limit: float, actual: float) -> None:
     if actual > limit:
         raise Refusal("over-limit", name=name, pointer=f"/{name}", limit=limit, actual=actual)

@@ -1,4 +1,4 @@
-"""Parse a request body into a Task: what is to be planned, how, and by which actor."""
+"""Parse a request body into a Task: the instance or map, the options and the chosen actor."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -18,31 +18,35 @@ TaskKind = Literal["front", "coverage"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Task:
-    """Cities, or places on a map, what is asked of their front, and the actor that begins it.
+    """A front to plan, checked and ready for the planner.
 
-    Over a map, each tour may come with its path.
+    Args:
+        subject: The cities, or a map whose places become cities.
+        options: The options for the planner.
+        actor: The name of the actor that builds the first tours.
+        paths: Whether each tour comes with its path over the map.
     """
 
     subject: Instance | Coverage
-    demand: PlanOptions
+    options: PlanOptions
     actor: str
     paths: bool = False
 
     @property
     def needs_compiled_code(self) -> bool:
-        """Whether more than the network is asked for."""
-        return isinstance(self.subject, Coverage) or self.demand.needs_compiled_code
+        """Whether planning needs more than the network."""
+        return isinstance(self.subject, Coverage) or self.options.needs_compiled_code
 
 
 @dataclass(frozen=True)
 class TaskSource:
-    """The bytes of a request, from which its task is parsed, and the task once it is.
+    """A front to plan, as it came: the form in which it is stored and sent to other machines.
 
-    Attributes:
-        kind: The kind of request.
-        body: JSON.
-        upload: The content of the file that came beside the body, if one did.
-        task: The parsed task, so that a worker need not parse it again.
+    Args:
+        kind: The kind of request, named after its path.
+        body: The request as JSON.
+        upload: The .npy file of matrices, or the PNG file of a map, where one came with it.
+        task: The parsed task, where this process has it, so that no worker parses it again.
     """
 
     kind: TaskKind
@@ -52,53 +56,53 @@ class TaskSource:
 
 
 def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
-    """Parse and check a request.
+    """Return the task in a body.
 
     Raises:
-        Refusal: It is malformed, over a limit, or no actor serves it.
-        InvalidInstance: It cannot be planned.
+        Refusal: The body is malformed or over a limit, or no actor serves it.
+        InvalidInstance: The cities or the map cannot be planned.
     """
     if source.kind == "coverage":
-        covering = parse_coverage_request(source.body, limits, source.upload)
+        coverage_request = parse_coverage_request(source.body, limits, source.upload)
         return Task(
-            subject=covering.coverage(),
-            demand=covering.demand(),
-            actor=choose_actor(actors, covering.kind, covering.named_actor),
-            paths=covering.paths,
+            subject=coverage_request.coverage(),
+            options=coverage_request.options(),
+            actor=choose_actor(actors, coverage_request.kind, coverage_request.requested_actor),
+            paths=coverage_request.paths,
         )
-    asked = parse_front_request(source.body, limits, source.upload)
+    request = parse_front_request(source.body, limits, source.upload)
     return Task(
-        subject=asked.instance(),
-        demand=asked.demand(),
-        actor=choose_actor(actors, asked.kind, asked.named_actor),
+        subject=request.instance(),
+        options=request.options(),
+        actor=choose_actor(actors, request.kind, request.requested_actor),
     )
 
 
 DEFAULT_ACTORS: Mapping[Kind, str] = {"coordinates": "pa-one", "matrices": "pa-one-matrix"}
 
 
-def choose_actor(loaded: Mapping[str, ActorInfo], kind: Kind, name: str | None) -> str:
-    """The name of the actor asked for; without one, of the default for instances of this kind.
+def choose_actor(actors: Mapping[str, ActorInfo], kind: Kind, name: str | None) -> str:
+    """Return the name of the actor for instances of a kind: the one requested, or the default.
 
     Where the default is not loaded, the first by name that serves the kind takes its place.
 
     Raises:
-        Refusal: it is not loaded, or no actor that serves the kind is.
+        Refusal: The requested actor is not loaded or does not serve the kind, or none does.
     """
-    able = sorted(each for each, facts in loaded.items() if facts.serves(kind))
+    able = sorted(each for each, info in actors.items() if info.serves(kind))
     if name is not None:
-        _check_able(name, kind, able, loaded)
+        _check_able(name, kind, able, actors)
         return name
     if not able:
         raise Refusal("no-actor", kind=kind)
     return DEFAULT_ACTORS[kind] if DEFAULT_ACTORS[kind] in able else able[0]
 
 
-def _check_able(name: str, kind: Kind, able: list[str], loaded: Mapping[str, ActorInfo]) -> None:
+def _check_able(name: str, kind: Kind, able: list[str], actors: Mapping[str, ActorInfo]) -> None:
     if name in able:
         return
     among = f"one of {', '.join(able)}" if able else "one that is loaded, and there is none"
-    if name not in loaded:
+    if name not in actors:
         raise Refusal("unknown-actor", among=among, came=repr(name[:80]), pointer="/actor")
-    inputs = loaded[name].inputs
+    inputs = actors[name].inputs
     raise Refusal("unfit-actor", kind=kind, among=among, name=name, inputs=inputs, pointer="/actor")

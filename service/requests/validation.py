@@ -1,28 +1,68 @@
-"""What pydantic finds wrong with a request, in the words of this service."""
+"""Validate JSON against a pydantic model, and word each error as a refusal of this service."""
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
+from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails, to_json
 
 from service.errors import MOST_FAULTS, Fault, Refusal
 
+Model = TypeVar("Model", bound=BaseModel)
 
-def refused_by(errors: Sequence[ErrorDetails], parameters: bool = False) -> Refusal:
-    """What pydantic found wrong with a body, or with query parameters, as one refusal."""
+
+def parse_json(model: type[Model], body: bytes) -> Model:
+    """Return a JSON body as a model.
+
+    Raises:
+        Refusal: The body is not JSON, or does not fit the model.
+    """
+    try:
+        return model.model_validate_json(body)
+    except ValidationError as error:
+        errors = error.errors(include_url=False)
+        if errors[0]["type"] == "json_invalid":
+            reason = errors[0]["ctx"]["error"]
+            raise Refusal("malformed-json", reason=reason) from None
+        raise refusal_of(errors) from None
+
+
+def refusal_of(errors: Sequence[ErrorDetails], parameters: bool = False) -> Refusal:
+    """Return pydantic's errors in a body, or in query parameters, as one refusal."""
     faults = [_fault(error, parameters) for error in errors[:MOST_FAULTS]]
     more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
     return Refusal("invalid-request", detail=faults[0].detail + more, errors=faults)
+
+
+def invalid(part: str, demand: str) -> Refusal:
+    """Return the refusal of a part of a request, as matrices/0/2, that misses a demand."""
+    return Refusal("invalid-request", detail=f"{part} {demand}", pointer=f"/{part}")
+
+
+def too_many_cities(part: str, limit: int, actual: int) -> Refusal:
+    """Return the refusal of more rows, each a city, than are allowed."""
+    detail = f"{part} must have at most {limit} rows, got {actual}"
+    return Refusal("too-many-cities", detail=detail, pointer=f"/{part}", limit=limit, actual=actual)
+
+
+def too_many_cells(limit: int, actual: int, came: object) -> Refusal:
+    """Return the refusal of a map of more cells than are allowed; `came` is shown for `actual`."""
+    return Refusal("too-many-cells", came=came, pointer="/grid", limit=limit, actual=actual)
+
+
+def shorten(text: str) -> str:
+    """Return at most 80 characters of what came, to be shown in a sentence."""
+    return text if len(text) <= 80 else f"{text[:79]}…"
 
 
 def _fault(error: ErrorDetails, parameters: bool) -> Fault:
     # FastAPI puts "query" first; brackets mark a branch of a union, which the caller never wrote.
     parts = [str(part) for part in error["loc"] if not str(part).startswith("[")]
     if parameters:
-        name = shortened(".".join(parts[1:]))
+        name = shorten(".".join(parts[1:]))
         return Fault(detail=f"{name} {_demand(error)}", parameter=name)
-    pointer = shortened("".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts))
+    pointer = shorten("".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts))
     return Fault(detail=f"{pointer.lstrip('/') or 'the body'} {_demand(error)}", pointer=pointer)
 
 
@@ -38,14 +78,14 @@ def _demand(error: ErrorDetails) -> str:
         case "too_long":
             return f"must have {bounds['max_length']} items or fewer, got {len(error['input'])}"
         case "greater_than_equal":
-            return f"must be at least {bounds['ge']:.16g}, got {_shown(error['input'])}"
+            return f"must be at least {bounds['ge']:.16g}, got {_show(error['input'])}"
         case "less_than_equal":
-            return f"must be at most {bounds['le']:.16g}, got {_shown(error['input'])}"
+            return f"must be at most {bounds['le']:.16g}, got {_show(error['input'])}"
     demand = re.sub(r"^Input should be", "must be", error["msg"])
-    return f"{demand}, got {_shown(error['input'])}"
+    return f"{demand}, got {_show(error['input'])}"
 
 
-def _shown(value: object) -> str:
+def _show(value: object) -> str:
     match value:
         case list():
             return f"a list of {len(value)}"
@@ -54,25 +94,4 @@ def _shown(value: object) -> str:
         case int() if abs(value) >= 10**40:
             return "an integer of more than 40 digits"
         case _:
-            return shortened(to_json(value, inf_nan_mode="constants").decode())
-
-
-def shortened(text: str) -> str:
-    """What came, as far as a sentence has room for it."""
-    return text if len(text) <= 80 else f"{text[:79]}…"
-
-
-def invalid(part: str, demand: str) -> Refusal:
-    """Return the refusal of a part of a request, as matrices/0/2, that misses a demand."""
-    return Refusal("invalid-request", detail=f"{part} {demand}", pointer=f"/{part}")
-
-
-def too_many_cities(part: str, limit: int, actual: int) -> Refusal:
-    """Return the refusal of more rows, each a city, than are allowed."""
-    detail = f"{part} must have at most {limit} rows, got {actual}"
-    return Refusal("too-many-cities", detail=detail, pointer=f"/{part}", limit=limit, actual=actual)
-
-
-def too_many_cells(limit: int, actual: int, came: object) -> Refusal:
-    """Return the refusal of a map of more cells than are allowed."""
-    return Refusal("too-many-cells", came=came, pointer="/grid", limit=limit, actual=actual)
+            return shorten(to_json(value, inf_nan_mode="constants").decode())
