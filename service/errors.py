@@ -2,23 +2,23 @@
 
     Exception
     ├── Refusal                   a request that is not served, answered as a problem document
-    │   ├── InvalidInstance       what was given cannot be planned (also a ValueError)
-    │   │   └── InvalidCoverage   what was given cannot be covered
-    │   │       └── TooManyPlaces
+    │   ├── InvalidInstance       the cities cannot be planned (also a ValueError)
+    │   │   └── InvalidCoverage   the map, or its places, cannot be covered
+    │   │       └── TooManyPlaces a spacing lays out too many places
     │   ├── QueueFull             no place is left for another task
     │   ├── ShuttingDown          no more tasks are taken
     │   ├── WarmingUp             the search is still being compiled
     │   ├── WorkerLost            two workers died over a task
-    │   ├── Cancelled             a task was cancelled before there was a front
-    │   ├── DeadlineExceeded      a task took too long, and there was no front
+    │   ├── Cancelled             a task was cancelled before it had a front
+    │   ├── DeadlineExceeded      a task took too long before it had a front
     │   ├── IdempotencyMismatch   a key was used for another body
     │   └── StoreUnavailable      the store does not answer
     └── LookupError
-        ├── NotFound              the store never had a front under this id
+        ├── NotFound              the store has no front with this id
         └── Expired               the store had one, and dropped it
 
-`PROBLEMS` is the one table of codes. The exception handlers, the HTTP reference and the guide are
-made from it. A code is stable, its sentence is not.
+`PROBLEMS` is the one table of codes; exception handlers, the HTTP reference and the guide are made
+from it. A code is stable, its sentence is not.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -26,26 +26,23 @@ from dataclasses import asdict, dataclass
 from http import HTTPStatus
 from typing import Any, NamedTuple
 
-MOST_FAULTS = 20  # that one document lists
+MOST_FAULTS = 20  # that one problem document lists
 
 _ALL = ("*",)
-_NONE = ()  # the caller asks for nothing that there is, or the service is at fault
+_NONE = ()  # no operation is at fault, but the path, the method or the service
 _PLANS = ("POST /front", "POST /coverage")
 _TOUR = ("GET /tour",)
 
 
 class Problem(NamedTuple):
-    """The status and sentence of a code, and the operations that refuse so, as "POST /front".
-
-    The sentence has fields in braces, which a refusal fills in.
-    """
+    """The status of a code, its sentence with fields to fill in, and the operations that use it."""
 
     status: int
     sentence: str
     operations: tuple[str, ...] = _ALL
 
     def concerns(self, operation: str) -> bool:
-        """Whether an operation may refuse so."""
+        """Return whether an operation, as "POST /front", may answer with this code."""
         return self.operations == _ALL or operation in self.operations
 
 
@@ -116,16 +113,16 @@ class Fault:
 
 
 class Refusal(Exception):
-    """A request that is not served: all that its problem document says.
+    """A request that is not served, with all members of its problem document.
 
     Args:
         code: One of PROBLEMS.
         pointer: The one field at fault, as a JSON pointer into the body.
-        errors: The fields at fault, where more is to be said of them.
+        errors: The fields at fault, where there are several or they have sentences of their own.
         limit: The most that is allowed.
-        actual: What came, where it is known.
-        headers: HTTP headers that the answer needs.
-        filled: What fills in the sentence of the code.
+        actual: The number that came, where it is known.
+        headers: Further headers of the response.
+        fields: Values for the fields of the sentence.
     """
 
     code: str
@@ -139,11 +136,11 @@ class Refusal(Exception):
         limit: float | None = None,
         actual: float | None = None,
         headers: Mapping[str, str] | None = None,
-        **filled: object,
+        **fields: object,
     ) -> None:
         self.code = code
         self.status = PROBLEMS[code].status
-        self.detail = PROBLEMS[code].sentence.format(limit=limit, actual=actual, **filled)
+        self.detail = PROBLEMS[code].sentence.format(limit=limit, actual=actual, **fields)
         self.errors = tuple(errors) if pointer is None else (Fault(self.detail, pointer),)
         self.limit = limit
         self.actual = actual
@@ -151,34 +148,34 @@ class Refusal(Exception):
         super().__init__(self.detail)
 
     def __reduce__(self) -> tuple[Callable[..., "Refusal"], tuple[Any, ...]]:
-        """How it travels from one process to another."""
+        """Pickle all members: subclasses take other arguments than the base class."""
         return _unpickled, (type(self), self.__dict__)
 
     def document(self, request_id: str) -> dict[str, Any]:
-        """Return the problem document (RFC 9457), without the members that it does not have."""
+        """Return the problem document (RFC 9457) without the members that are None."""
         members = {
             "type": "about:blank",
             "title": HTTPStatus(self.status).phrase,
             "status": self.status,
             "code": self.code,
             "detail": self.detail,
-            "errors": [_given(asdict(fault)) for fault in self.errors] or None,
+            "errors": [_without_none(asdict(fault)) for fault in self.errors] or None,
             "limit": self.limit,
             "actual": self.actual,
             "request_id": request_id,
         }
-        return _given(members)
+        return _without_none(members)
 
 
 class InvalidInstance(Refusal, ValueError):
-    """What was given is no instance."""
+    """The cities, or the costs between them, cannot be planned."""
 
     def __init__(self, reason: str) -> None:
         super().__init__("invalid-instance", reason=reason)
 
 
 class InvalidCoverage(InvalidInstance):
-    """What was given is no coverage task. Each fault is a part of it, as places/3, and a demand."""
+    """The map, or its places, cannot be covered; a fault is a part, as places/3, and a demand."""
 
     code = "invalid-request"
 
@@ -193,7 +190,7 @@ class InvalidCoverage(InvalidInstance):
         Refusal.__init__(self, code, detail=detail, errors=shown, limit=limit, actual=actual)
 
     def __str__(self) -> str:
-        """All faults, as one sentence."""
+        """Return all faults as one sentence."""
         return "; ".join(f"{part} {demand}" for part, demand in self.faults)
 
 
@@ -208,7 +205,7 @@ class TooManyPlaces(InvalidCoverage):
 
 
 class _Plain(Refusal):
-    """A refusal whose sentence has nothing to fill in."""
+    """A refusal whose sentence has no fields."""
 
     def __init__(self) -> None:
         super().__init__(type(self).code)
@@ -233,19 +230,19 @@ class WarmingUp(_Plain):
 
 
 class WorkerLost(_Plain):
-    """Two workers died over the task, which may be why."""
+    """Two workers died over the task, which may be the cause."""
 
     code = "worker-lost"
 
 
 class Cancelled(_Plain):
-    """The task was cancelled before there was a front."""
+    """The task was cancelled before it had a front."""
 
     code = "stopped"
 
 
 class DeadlineExceeded(_Plain):
-    """The task took longer than any may, and there was no front yet."""
+    """The task took longer than any may, and had no front yet."""
 
     code = "overdue"
 
@@ -263,11 +260,11 @@ class StoreUnavailable(_Plain):
 
 
 class NotFound(LookupError):
-    """The caller never had anything under this id, or so long ago that it is forgotten."""
+    """The caller has no front with this id, and had none that the store remembers."""
 
 
 class Expired(LookupError):
-    """The store has dropped what the caller had under this id: too old, or the store was full."""
+    """The caller's front with this id was dropped: too old, or the store was full."""
 
 
 def _unpickled(kind: type[Refusal], members: dict[str, Any]) -> Refusal:
@@ -277,5 +274,5 @@ def _unpickled(kind: type[Refusal], members: dict[str, Any]) -> Refusal:
     return refusal
 
 
-def _given(members: Mapping[str, Any]) -> dict[str, Any]:
+def _without_none(members: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in members.items() if value is not None}

@@ -1,4 +1,8 @@
-"""What an operator can set, by environment variables. Nothing else in the service reads them."""
+"""The settings of the service and of its workers, from environment variables.
+
+No other module reads a variable. Each setting is described where it is defined; `paretour serve
+--help` and the guide print the descriptions.
+"""
 
 import os
 from pathlib import Path
@@ -16,30 +20,32 @@ def _cores() -> int:
     return min(len(os.sched_getaffinity(0)), 4)
 
 
-def _words(given: object) -> object:
-    return [word.strip() for word in given.split(",") if word] if isinstance(given, str) else given
+def _split(value: object) -> object:
+    return [word.strip() for word in value.split(",") if word] if isinstance(value, str) else value
 
 
-def _key_hash(given: object) -> object:
-    return KeyHash.read(given) if isinstance(given, str) else given
+def _key_hash(value: object) -> object:
+    return KeyHash.read(value) if isinstance(value, str) else value
 
 
-def _rate(given: str) -> str:
-    parse(given)
-    return given
+def _checked_rate(value: str) -> str:
+    parse(value)
+    return value
 
 
-Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_words)]
+Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)]
 KeyHashes = Annotated[
-    tuple[Annotated[KeyHash, BeforeValidator(_key_hash)], ...], NoDecode, BeforeValidator(_words)
+    tuple[Annotated[KeyHash, BeforeValidator(_key_hash)], ...], NoDecode, BeforeValidator(_split)
 ]
+Rate = Annotated[str, AfterValidator(_checked_rate)]
 
 
 class Settings(BaseSettings):
-    """Every setting; the variable is PARETOUR_ and the field's name in capitals, or its alias."""
+    """All settings; a variable is PARETOUR_ and the field's name in capitals, or its alias."""
 
     model_config = SettingsConfigDict(env_prefix="PARETOUR_", frozen=True)
 
+    # The address, and the processes that plan.
     host: str = Field("127.0.0.1", description="address to listen on")
     port: int = Field(8000, ge=0, le=65535, description="port to listen on; 0 takes a free one")
     actors: Path = Field(
@@ -50,36 +56,43 @@ class Settings(BaseSettings):
     )
     threads: int = Field(1, ge=1, description="threads of one inference call")
     queue: int = Field(16, ge=0, description="requests that may wait for a worker")
+
+    # Limits of a request.
     max_body_bytes: int = Field(2**24, ge=1, description="the longest request body")
     max_cities: int = Field(1000, ge=1, description="the most cities of an instance")
     max_cells: int = Field(2**20, ge=1, description="the most cells of a map")
     max_preferences: int = Field(200, ge=1, description="the most preferences of a request")
     max_size: int = Field(1000, ge=1, description="the most tours that a request may ask for")
     max_time_limit: float = Field(60.0, ge=0, description="the most seconds of improvement")
+
+    # Deadlines.
     request_seconds: float = Field(
         90.0, gt=0, description="when a request is ended with the best front so far"
     )
     drain_seconds: int = Field(20, ge=0, description="time to finish what is under way at SIGTERM")
+    body_seconds: float = Field(30.0, gt=0, description="how long a body may take to arrive")
+
+    # The store of fronts and jobs.
     store: str = Field(
         ":memory:", description="file of fronts and jobs, which then outlive the service"
     )
     store_entries: int = Field(256, ge=1, description="fronts kept for later questions")
     store_seconds: float = Field(3600.0, gt=0, description="how long a front is kept")
-
-    body_seconds: float = Field(30.0, gt=0, description="how long a body may take to arrive")
-    api_keys: KeyHashes = Field(
-        (), description="who may call, as CALLER:HASH with commas between; none lets everybody in"
-    )
-    rate: Annotated[str, AfterValidator(_rate)] = Field(
-        "1000/minute", description="requests that each caller with a key may make"
-    )
     redis_url: str | None = Field(
         None,
         description="Redis of all replicas: rates, fronts and jobs, which `paretour work` plans",
     )
+
+    # Access.
+    api_keys: KeyHashes = Field(
+        (), description="who may call, as CALLER:HASH with commas between; none lets everybody in"
+    )
+    rate: Rate = Field("1000/minute", description="requests that each caller with a key may make")
     origins: Words = Field(
         (), description="origins whose pages may call (CORS), with commas between; or *"
     )
+
+    # Observation.
     traces: str | None = Field(
         None,
         validation_alias="OTEL_EXPORTER_OTLP_ENDPOINT",
@@ -88,7 +101,7 @@ class Settings(BaseSettings):
 
     @property
     def limits(self) -> Limits:
-        """What a request may ask for."""
+        """The limits of a request."""
         return Limits(
             body_bytes=self.max_body_bytes,
             cities=self.max_cities,

@@ -4,11 +4,15 @@ from typing import Any
 
 from fastapi import FastAPI
 
-_TALKATIVE = ("uvicorn.access", "celery.worker.strategy", "celery.app.trace")
+_VERBOSE = (  # loggers whose lines repeat what the service logs itself
+    "uvicorn.access",
+    "celery.worker.strategy",
+    "celery.app.trace",
+)
 
 
 def logging_config(level: str = "INFO") -> dict[str, Any]:
-    """For `logging.config.dictConfig`: everything goes to standard error, an object a line."""
+    """Return a configuration of `logging`: JSON to standard error, one object a line."""
     formatter = {
         "()": "pythonjsonlogger.json.JsonFormatter",
         "format": "%(asctime)s %(levelname)s %(name)s %(message)s",
@@ -21,20 +25,19 @@ def logging_config(level: str = "INFO") -> dict[str, Any]:
         "formatters": {"json": formatter},
         "handlers": {"stderr": {"class": "logging.StreamHandler", "formatter": "json"}},
         "root": {"level": level, "handlers": ["stderr"]},
-        # A line for each request is written by the service, which knows more of it.
-        "loggers": {name: {"level": "WARNING"} for name in _TALKATIVE},
+        "loggers": {name: {"level": "WARNING"} for name in _VERBOSE},
     }
 
 
 def trace(app: FastAPI) -> None:
-    """Send a span for each request to where OTEL_EXPORTER_OTLP_ENDPOINT points.
+    """Send a span for each request to the collector at OTEL_EXPORTER_OTLP_ENDPOINT.
 
-    The exporter reads that variable, and all others that OpenTelemetry has, by itself.
+    OpenTelemetry reads that variable, and all its others, by itself.
 
     Raises:
-        ValueError: what this needs is not installed.
+        ValueError: The extra for traces is not installed.
     """
-    # Imported here, because whoever wants no traces need not install them.
+    # Imported here, because OpenTelemetry is an extra.
     try:
         from opentelemetry.exporter.otlp.proto.http.trace_exporter import OTLPSpanExporter
         from opentelemetry.instrumentation.fastapi import FastAPIInstrumentor
@@ -45,7 +48,7 @@ def trace(app: FastAPI) -> None:
         sentence = "OTEL_EXPORTER_OTLP_ENDPOINT needs the extra paretour[tracing]"
         raise ValueError(f"{sentence}: {error}") from None
 
-    named = Resource({SERVICE_NAME: "paretour"}).merge(OTELResourceDetector().detect())
-    provider = TracerProvider(resource=named)
+    resource = Resource({SERVICE_NAME: "paretour"}).merge(OTELResourceDetector().detect())
+    provider = TracerProvider(resource=resource)
     provider.add_span_processor(BatchSpanProcessor(OTLPSpanExporter()))
     FastAPIInstrumentor.instrument_app(app, tracer_provider=provider)
