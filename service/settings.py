@@ -1,7 +1,6 @@
 """The settings of the service and of its workers, from environment variables.
 
-No other module reads a variable. Each setting is described where it is defined; `paretour serve
---help` and the guide print the descriptions.
+Nothing else in the service reads the environment. The documentation lists every description.
 """
 
 import os

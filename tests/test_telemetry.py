@@ -1,9 +1,18 @@
-"""What the command writes to its log: an object a line."""
+"""The log of the command, one object a line, and traces as a collector receives them."""
 
 import json
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 import httpx
+import pytest
+from fastapi import FastAPI
+from opentelemetry.proto.collector.trace.v1.trace_service_pb2 import ExportTraceServiceRequest
 
+from service.telemetry import trace
 from tests.helpers.serving import running
 
 
@@ -19,3 +28,50 @@ def test_every_line_of_the_log_is_an_object_and_each_request_has_one() -> None:
     assert line["caller"] == "anonymous"
     assert 0 < line["seconds"] < 10
     assert b"secret" not in service.log
+
+
+@contextmanager
+def collector() -> Iterator[tuple[str, list[ExportTraceServiceRequest]]]:
+    """The address of a collector, and what it has been sent."""
+    received: list[ExportTraceServiceRequest] = []
+
+    class Collect(BaseHTTPRequestHandler):
+        def do_POST(self) -> None:
+            body = self.rfile.read(int(self.headers["Content-Length"]))
+            received.append(ExportTraceServiceRequest.FromString(body))
+            self.send_response(200)
+            self.end_headers()
+
+        def log_message(self, *_: object) -> None:
+            """Not to standard error."""
+
+    with ThreadingHTTPServer(("127.0.0.1", 0), Collect) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        try:
+            yield f"http://127.0.0.1:{server.server_port}", received
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+def test_each_request_is_a_span_at_the_collector() -> None:
+    with collector() as (endpoint, received):
+        with running({"OTEL_EXPORTER_OTLP_ENDPOINT": endpoint}) as service:
+            httpx.get(f"{service.url}/front/none")
+        resources = [each for request in received for each in request.resource_spans]
+    named = {
+        (each.key, each.value.string_value)
+        for resource in resources
+        for each in resource.resource.attributes
+    }
+    assert ("service.name", "paretour") in named
+    spans = [span for each in resources for scope in each.scope_spans for span in scope.spans]
+    assert "GET /front/{id}" in {span.name for span in spans}
+
+
+def test_traces_without_their_extra_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    # What Python itself takes for a package that is not there.
+    monkeypatch.setitem(sys.modules, "opentelemetry.sdk", None)
+    with pytest.raises(ValueError, match=r"needs the extra paretour\[tracing\]: .*opentelemetry"):
+        trace(FastAPI())

@@ -11,11 +11,10 @@ import pytest
 
 from service.api.app import Edge
 from service.api.auth import Access, KeyHash, Rates, new_key
-from tests.api.test_app import CITIES
 from tests.helpers.redis_server import redis_server
 from tests.helpers.serving import app_of, problem, running, serving
 
-FRONT = {"coordinates": CITIES, "time_limit": 0}
+FRONT = {"coordinates": [[0, 0, 1, 3], [2, 5, 0, 0], [4, 1, 2, 2]], "time_limit": 0}
 OPEN = {"/health/live", "/health/ready"}
 DISPATCH, DISPATCH_HASH = new_key()
 DISPATCH_NEXT, DISPATCH_NEXT_HASH = new_key()
@@ -127,25 +126,6 @@ def test_a_hash_is_read_as_it_is_written() -> None:
     assert KeyHash.read(f"lab:{LAB_HASH}") == HASHES[2]
 
 
-def test_a_page_of_another_origin_may_call_where_it_is_allowed() -> None:
-    asked = {"Origin": "https://fleet.example", "Access-Control-Request-Method": "POST"}
-    with serving(app_of(edge=Edge(origins=["https://fleet.example"]))) as url:
-        preflight = httpx.options(f"{url}/front", headers=asked)
-        answer = httpx.get(f"{url}/actors", headers=asked)
-        other = httpx.get(f"{url}/actors", headers={"Origin": "https://other.example"})
-    assert preflight.status_code == 200
-    for allowed in (preflight, answer):
-        assert allowed.headers["access-control-allow-origin"] == "https://fleet.example"
-    assert "access-control-allow-origin" not in other.headers
-
-
-def test_no_page_of_another_origin_may_call_unless_it_is_allowed(url: str) -> None:
-    origin = {"Origin": "https://fleet.example"}
-    answer = httpx.get(f"{url}/actors", headers={**origin, **bearing(LAB)})
-    assert answer.status_code == 200
-    assert "access-control-allow-origin" not in answer.headers
-
-
 def test_the_command_makes_a_key_that_its_entry_lets_in() -> None:
     made = subprocess.run(
         [sys.executable, "-m", "service", "key", "dispatch"],
@@ -183,17 +163,3 @@ def test_replicas_count_together_in_redis_and_go_on_without_it(tmp_path: Path) -
             assert 3500 < int(counted[3].headers["retry-after"]) <= 3600
             redis.end()
             assert httpx.get(f"{one}/actors", headers=bearing(LAB)).status_code == 200
-
-
-def test_a_front_is_there_for_its_caller_alone(url: str) -> None:
-    planned = httpx.post(f"{url}/front", json=FRONT, headers=bearing(DISPATCH)).json()["id"]
-    asked = [("GET", f"/front/{planned}"), ("GET", f"/front/{planned}/events")]
-    asked += [("GET", f"/tour?angle=30&front={planned}"), ("DELETE", f"/front/{planned}")]
-    for method, path in asked:
-        answer = httpx.request(method, url + path, headers=bearing(LAB))
-        problem(answer, 404, "unknown-front")
-    latest = httpx.get(f"{url}/tour?angle=30", headers=bearing(LAB))
-    assert latest.json().get("front") != planned
-    for method, path in asked:
-        answer = httpx.request(method, url + path, headers=bearing(DISPATCH_NEXT))
-        assert answer.status_code in (200, 204)

@@ -1,5 +1,6 @@
-"""Long bodies over real HTTP: read beside the event loop, with the answers that short ones get."""
+"""Bodies over real HTTP: types, lengths and parts; long ones parsed in a process of their own."""
 
+import io
 import json
 import os
 import signal
@@ -13,10 +14,94 @@ import httpx
 import numpy as np
 import pytest
 
-from tests.helpers.serving import Running, problem, running
+from tests.helpers.serving import LIMITS, Running, app_of, problem, running, serving
+
+JSON = {"Content-Type": "application/json"}
+CITIES = np.random.default_rng(5).random((12, 4)).tolist()
 
 # Some tenths of a second of work for whoever reads it.
 WRONG = json.dumps({f"member {i}": i for i in range(100_000)}).encode()
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[httpx.Client]:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=30) as client:
+        yield client
+
+
+@pytest.mark.parametrize("kind", [None, "text/plain", "application/x-www-form-urlencoded", ""])
+def test_a_body_of_another_type_is_415(client: httpx.Client, kind: str | None) -> None:
+    headers = {} if kind is None else {"Content-Type": kind}
+    answer = client.post("/front", content=json.dumps({"coordinates": CITIES}), headers=headers)
+    assert "must be application/json" in problem(answer, 415, "not-json")["detail"]
+
+
+def test_a_compressed_body_is_415(client: httpx.Client) -> None:
+    answer = client.post("/front", content=b"{}", headers={**JSON, "Content-Encoding": "gzip"})
+    assert "got gzip" in problem(answer, 415, "not-plain")["detail"]
+
+
+def test_the_type_may_name_its_charset(client: httpx.Client) -> None:
+    headers = {"Content-Type": "Application/JSON; charset=utf-8"}
+    body = json.dumps({"coordinates": CITIES})
+    assert client.post("/front", content=body, headers=headers).status_code == 200
+
+
+def test_a_body_that_says_it_is_too_long_is_413(client: httpx.Client) -> None:
+    body = b" " * (LIMITS.body_bytes + 1)
+    document = problem(client.post("/front", content=body, headers=JSON), 413, "body-too-long")
+    assert (document["limit"], document["actual"]) == (LIMITS.body_bytes, LIMITS.body_bytes + 1)
+
+
+def test_a_body_that_turns_out_too_long_is_413(client: httpx.Client) -> None:
+    chunks = (b" " * 1000 for _ in range(LIMITS.body_bytes // 1000 + 1))
+    document = problem(client.post("/front", content=chunks, headers=JSON), 413, "body-too-long")
+    assert document["limit"] == LIMITS.body_bytes
+
+
+def test_a_body_that_is_not_json_is_400(client: httpx.Client) -> None:
+    answer = client.post("/front", content=b"{", headers=JSON)
+    assert "EOF" in problem(answer, 400, "malformed-json")["detail"]
+
+
+def test_matrices_may_come_as_a_part_of_their_own(client: httpx.Client) -> None:
+    costs = np.random.default_rng(6).random((2, 12, 12))
+    stream = io.BytesIO()
+    np.save(stream, costs)
+    request = {"time_limit": 0, "preferences": 5, "start": 2}
+    parts = {"request": (None, json.dumps(request)), "matrices": ("costs.npy", stream.getvalue())}
+    found = client.post("/front", files=parts)
+    assert found.status_code == 200, found.text
+    expected = client.post("/front", json={"matrices": costs.tolist(), **request})
+    assert found.json()["front"] == expected.json()["front"]
+
+
+MULTIPART = "multipart/form-data; boundary=x"
+PART = 'Content-Disposition: form-data; name="{}"'
+
+
+def multipart(*names: str, end: str = "--x--\r\n") -> str:
+    return "".join(f"--x\r\n{PART.format(name)}\r\n\r\n{{}}\r\n" for name in names) + end
+
+
+@pytest.mark.parametrize(
+    ("kind", "body", "status", "sentence"),
+    [
+        (MULTIPART, multipart("request"), 422, "the part matrices is required"),
+        (MULTIPART, multipart("matrices"), 422, "the part request is required"),
+        (MULTIPART, multipart("request", "map"), 422, "must be request and matrices, once each"),
+        (MULTIPART, multipart("request", "request"), 422, "once each, got 'request'"),
+        (MULTIPART, multipart("request", "matrices", end=""), 400, "before its last boundary"),
+        (MULTIPART, "{}", 400, "the body must be multipart/form-data"),
+        ("multipart/form-data", multipart("request"), 400, "the body must be multipart/form-data"),
+    ],
+)
+def test_parts_that_are_not_as_they_should_be_are_named(
+    client: httpx.Client, kind: str, body: str, status: int, sentence: str
+) -> None:
+    answer = client.post("/front", content=body, headers={"Content-Type": kind})
+    code = "malformed-multipart" if status == 400 else "invalid-parts"
+    assert sentence in problem(answer, status, code)["detail"]
 
 
 @pytest.fixture(scope="module")
@@ -26,8 +111,7 @@ def service() -> Iterator[Running]:
 
 
 def post(url: str, body: bytes) -> httpx.Response:
-    headers = {"Content-Type": "application/json"}
-    return httpx.post(f"{url}/front", content=body, headers=headers, timeout=60)
+    return httpx.post(f"{url}/front", content=body, headers=JSON, timeout=60)
 
 
 def matrices(n: int) -> dict[str, Any]:

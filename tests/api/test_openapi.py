@@ -1,16 +1,23 @@
 """The HTTP reference: examples that are true, of every path and every refusal."""
 
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
 
+from service.api.openapi import example_refusal
 from service.api.responses import PROBLEM_JSON, Problem
 from service.errors import PROBLEMS
-from tests.helpers.serving import app_of, serving
+from tests.helpers.serving import LIMITS, app_of, serving
 
-# Of these no operation says that it answers so: what is asked for is none, or the service is wrong.
+ROOT = Path(__file__).parents[2]
+
+# Codes of no operation: the path, the method or the service is at fault.
 OF_NO_OPERATION = {"no-such-path", "method-not-allowed", "refused", "internal-error"}
 
 
@@ -53,6 +60,35 @@ def test_every_request_shown_is_answered_as_shown(address: str, operations: dict
             assert answer.status_code == 200, answer.text
             shown = operation["responses"]["200"]["content"]["application/json"]["example"]
             assert set(shown) <= set(answer.json())
+
+
+def test_a_schema_has_the_limits_of_the_service(operations: dict[str, Any]) -> None:
+    content = operations["POST /front"]["requestBody"]["content"]["application/json"]
+    assert content["schema"]["properties"]["coordinates"]["maxItems"] == LIMITS.cities
+
+
+@pytest.mark.parametrize("code", PROBLEMS)
+def test_every_code_has_an_example_for_the_guide(code: str) -> None:
+    refusal = example_refusal(code)
+    assert (refusal.code, refusal.status) == (code, PROBLEMS[code].status)
+    assert refusal.detail
+    assert "{" not in refusal.detail
+
+
+def test_schemathesis_finds_nothing(address: str, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "schemathesis.cli", "run", f"{address}/openapi.json"]
+    options = ["--no-color", "--generation-deterministic", "--max-examples=20"]
+    hooks = {"SCHEMATHESIS_HOOKS": "tests.helpers.schemathesis_hooks", "PYTHONPATH": str(ROOT)}
+    found = subprocess.run(
+        [*command, *options],
+        cwd=tmp_path,
+        env={**os.environ, **hooks},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert found.returncode == 0, found.stdout
+    assert "10 selected / 10 total" in found.stdout
 
 
 def problems_of(operations: dict[str, Any]) -> list[dict[str, Any]]:

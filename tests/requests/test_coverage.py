@@ -1,23 +1,17 @@
-"""POST /coverage, against a live server."""
+"""Coverage requests: maps, places and second objectives, and every refusal of them."""
 
 import io
 import json
-import struct
-import time
-import zlib
-from collections.abc import Iterator
-from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
-import httpx
 import numpy as np
 import pytest
 from PIL import Image
 
-from tests.helpers.serving import LIMITS, Shuffler, app_of, problem, runner_of, serving, workers_of
+from service.errors import Refusal
+from service.requests.coverage import coverage_schema, parse_coverage_request
+from tests.helpers.serving import LIMITS
 
-JSON = {"Content-Type": "application/json"}
 GRID = [
     [0, 0, 0, 0, 0, 0],
     [0, 0, 0, 0, 0, 0],
@@ -25,354 +19,111 @@ GRID = [
     [0, 0, 0, 0, 0, 0],
     [0, 0, 0, 0, 0, 0],
 ]
-WALLED = [[0, 0, 1, 0], [0, 0, 1, 0]]
 PLACES = [[0, 0], [4, 0], [4, 5], [0, 5], [3, 2]]
 POINTS = [[0, 0], [3, 4], [5, 5], [1, 0], [2, 2]]
 TASK = {"grid": GRID, "cell_size": 0.5, "places": PLACES, "second_coordinates": POINTS}
 
 
-@pytest.fixture(scope="module")
-def client() -> Iterator[httpx.Client]:
-    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=60) as client:
-        yield client
-
-
-def changed(**members: Any) -> dict[str, Any]:
+def body(**members: Any) -> bytes:
     """The task with other members, and without those that are None."""
-    return {name: value for name, value in {**TASK, **members}.items() if value is not None}
+    changed = {name: value for name, value in {**TASK, **members}.items() if value is not None}
+    return json.dumps(changed).encode()
 
 
-def test_places_on_a_map_become_a_front_with_paths(client: httpx.Client) -> None:
-    answer = client.post("/coverage", json=changed(paths=True, start=2, size=10))
-    assert answer.status_code == 200, answer.text
-    body = answer.json()
-    assert body["places"] == PLACES
-    assert body["cities"] == 5
-    assert body["actor"]["name"] == "pa-one-matrix"
-    assert {"survey", "construction", "improvement", "paths"} < set(body["timings_ms"])
-    for item in body["front"]:
-        assert sorted(item["tour"]) == [0, 1, 2, 3, 4]
-        assert item["tour"][0] == 2
-        cells = np.array(item["path"]["cells"])
-        assert cells[0].tolist() == cells[-1].tolist() == PLACES[2]
-        assert {tuple(place) for place in PLACES} <= set(map(tuple, cells.tolist()))
-        assert not np.array(GRID)[tuple(cells.T)].any()
-        walked = 0.5 * np.hypot(*np.diff(cells, axis=0).T).sum()
-        assert walked == pytest.approx(item["path"]["metres"]) == pytest.approx(item["lengths"][0])
-        points = np.array(POINTS)[item["tour"]]
-        steps = np.roll(points, -1, axis=0) - points
-        assert np.hypot(*steps.T).sum() == pytest.approx(item["lengths"][1])
+def refusal(body: bytes, png: bytes | None = None) -> Refusal:
+    with pytest.raises(Refusal) as refused:
+        parse_coverage_request(body, LIMITS, png)
+    return refused.value
 
 
-def test_a_front_of_places_can_be_asked_for_again(client: httpx.Client) -> None:
-    answer = client.post("/coverage", json=changed(paths=True)).json()
-    assert client.get(f"/front/{answer['id']}").json() == answer
-    tour = client.get("/tour", params={"angle": 45, "front": answer["id"]}).json()
-    assert tour["path"]["metres"] == pytest.approx(tour["lengths"][0])
-
-
-def test_paths_come_only_where_they_are_asked_for(client: httpx.Client) -> None:
-    answer = client.post("/coverage", json=TASK).json()
-    assert all(set(item) == {"angle", "lengths", "tour"} for item in answer["front"])
+def test_a_request_becomes_a_coverage_task() -> None:
+    coverage = parse_coverage_request(body(start=2), LIMITS).coverage()
+    np.testing.assert_array_equal(coverage.blocked, np.array(GRID, dtype=np.bool_))
+    np.testing.assert_array_equal(coverage.places, PLACES)
+    np.testing.assert_array_equal(coverage.second_coordinates, POINTS)
+    assert (coverage.cell_size, coverage.robot_radius, coverage.start) == (0.5, 0.0, 2)
+    assert (coverage.spacing, coverage.second_matrix, coverage.cost_layer) == (None, None, None)
 
 
 @pytest.mark.parametrize(
-    "second",
+    ("change", "pointer", "sentence"),
     [
-        {"second_matrix": np.random.default_rng(0).random((5, 5)).tolist()},
-        {"cost_layer": np.random.default_rng(0).random((5, 6)).tolist()},
+        ({"grid": None}, "/grid", "grid is required, as rows or as the part map"),
+        ({"grid": []}, "/grid", "grid must have a row of numbers or more, got none"),
+        ({"grid": [[0, 0], [0]]}, "/grid/1", "grid/1 must have 2 numbers, as the first, got 1"),
+        ({"grid": [[0, 2]]}, "/grid/0/1", "grid/0/1 must be 0 or 1, got 2"),
+        ({"grid": [[0, "x"]]}, "/grid/0/1", 'grid/0/1 must be a valid number, got "x"'),
+        ({"cell_size": None}, "/cell_size", "cell_size is required"),
+        ({"cell_size": 0}, "/cell_size", "cell_size must be at least 1e-150, got 0"),
+        ({"robot_radius": -1}, "/robot_radius", "robot_radius must be at least 0, got -1"),
+        ({"places": [[0, 0, 0]]}, "/places/0", "places/0 must have 2 items or fewer, got 3"),
+        ({"places": [[0, 0.5]]}, "/places/0/1", "places/0/1 must be a valid integer, got 0.5"),
+        ({"start": 5}, "/start", "start must be a city, 0 to 4, got 5"),
+        (
+            {"second_coordinates": None, "second_matrix": [[0, 1], [1]]},
+            "/second_matrix/1",
+            "second_matrix/1 must have 2 numbers, as the first, got 1",
+        ),
+        (
+            {"second_coordinates": None, "second_matrix": [[0, 1]]},
+            "/second_matrix",
+            "second_matrix must be square, got 1 rows of 2 numbers",
+        ),
+        (
+            {"second_coordinates": None, "second_matrix": [[0, 1], [-1, 0]]},
+            "/second_matrix/1/0",
+            "second_matrix/1/0 must not be negative, got -1.0",
+        ),
+        (
+            {"places": None, "spacing": 1, "initial_tours": [[0]]},
+            "/initial_tours",
+            "initial_tours must be of places, and none are given",
+        ),
     ],
 )
-def test_the_second_objective_comes_in_three_ways(
-    client: httpx.Client, second: dict[str, Any]
+def test_what_is_no_coverage_request_is_named(
+    change: dict[str, Any], pointer: str, sentence: str
 ) -> None:
-    answer = client.post("/coverage", json=changed(second_coordinates=None, **second))
-    assert answer.status_code == 200, answer.text
-    assert answer.json()["hypervolume"] > 0
-
-
-def test_places_are_laid_out_by_spacing(client: httpx.Client) -> None:
-    layer = {"second_coordinates": None, "cost_layer": np.ones((5, 6)).tolist()}
-    answer = client.post("/coverage", json=changed(places=None, spacing=1.5, **layer))
-    assert answer.json()["places"] == [[1, 1], [1, 4], [4, 1], [4, 4]]
-
-
-def test_one_place_is_a_front_of_one_tour(client: httpx.Client) -> None:
-    task = changed(places=PLACES[:1], second_coordinates=[[1, 2]], paths=True)
-    [item] = client.post("/coverage", json=task).json()["front"]
-    assert item["path"] == {"cells": [[0, 0]], "metres": 0}
-
-
-# What is no coverage task: the change, where it is wrong, and what is said of it.
-UNPROCESSABLE: list[tuple[dict[str, Any], str, str]] = [
-    ({"grid": None}, "/grid", "grid is required, as rows or as the part map"),
-    ({"grid": []}, "/grid", "grid must have a row of numbers or more, got none"),
-    ({"grid": [[0, 0], [0]]}, "/grid/1", "grid/1 must have 2 numbers, as the first, got 1"),
-    ({"grid": [[0, 2]]}, "/grid/0/1", "grid/0/1 must be 0 or 1, got 2"),
-    ({"grid": [[0, "x"]]}, "/grid/0/1", 'grid/0/1 must be a valid number, got "x"'),
-    ({"cell_size": None}, "/cell_size", "cell_size is required"),
-    ({"cell_size": 0}, "/cell_size", "cell_size must be at least 1e-150, got 0"),
-    ({"robot_radius": -1}, "/robot_radius", "robot_radius must be at least 0, got -1"),
-    ({"robot_radius": 9}, "/grid", "grid must have a free cell farther than 9 m from every"),
-    ({"grid": [[1] * 6] * 5}, "/grid", "grid must have a free cell farther than 0 m from every"),
-    ({"places": None}, "/places", "places or spacing is required, and not both"),
-    ({"spacing": 1}, "/places", "places or spacing is required, and not both"),
-    ({"places": [[0, 0, 0]]}, "/places/0", "places/0 must have 2 items or fewer, got 3"),
-    ({"places": [[0, 0.5]]}, "/places/0/1", "places/0/1 must be a valid integer, got 0.5"),
-    (
-        {"places": [[5, 0], *PLACES[1:]]},
-        "/places/0",
-        "places/0 must be a cell of the grid of 5 x 6 cells, got [5, 0]",
-    ),
-    (
-        {"places": [[2, 0], *PLACES[1:]]},
-        "/places/0",
-        "places/0 must be a free cell, and [2, 0] is an obstacle",
-    ),
-    (
-        {"places": [*PLACES[:4], [3, 1]], "robot_radius": 0.5},
-        "/places/4",
-        "places/4 must be a cell farther than 0.5 m from every obstacle, and [3, 1] is not",
-    ),
-    (
-        {"grid": WALLED, "places": [[0, 0], [1, 3]], "second_coordinates": POINTS[:2]},
-        "/places/1",
-        "places/1 must be reachable from places/0, and no path leads there",
-    ),
-    ({"start": 5}, "/start", "start must be a city, 0 to 4, got 5"),
-    ({"second_coordinates": None}, "/second_matrix", "second_matrix or cost_layer or"),
-    ({"cost_layer": [[1]]}, "/second_matrix", "is required, and only one of them"),
-    ({"second_coordinates": [[0, 0]]}, "/second_coordinates", "a row for each of 5 places, got 1"),
-    (
-        {"second_coordinates": None, "cost_layer": [[1, 1]]},
-        "/cost_layer",
-        "cost_layer must be as large as grid, 5 x 6 cells, got 1 x 2 cells",
-    ),
-    (
-        {"second_coordinates": None, "cost_layer": (-np.eye(5, 6)).tolist()},
-        "/cost_layer/0/0",
-        "cost_layer/0/0 must be finite and not negative, got -1",
-    ),
-    (
-        {"second_coordinates": None, "second_matrix": [[0, 1], [1]]},
-        "/second_matrix/1",
-        "second_matrix/1 must have 2 numbers, as the first, got 1",
-    ),
-    (
-        {"second_coordinates": None, "second_matrix": [[0, 1]]},
-        "/second_matrix",
-        "second_matrix must be square, got 1 rows of 2 numbers",
-    ),
-    (
-        {"second_coordinates": None, "second_matrix": [[0, 1], [-1, 0]]},
-        "/second_matrix/1/0",
-        "second_matrix/1/0 must not be negative, got -1",
-    ),
-    (
-        {"second_coordinates": None, "second_matrix": [[0, 1], [1, 0]]},
-        "/second_matrix",
-        "second_matrix must have a row for each of 5 places, got 2",
-    ),
-    (
-        {"places": None, "spacing": 1, "initial_tours": [[0]]},
-        "/initial_tours",
-        "initial_tours must be of places, and none are given",
-    ),
-]
-
-
-@pytest.mark.parametrize(("change", "pointer", "sentence"), UNPROCESSABLE)
-def test_what_is_no_coverage_task_is_named(
-    client: httpx.Client, change: dict[str, Any], pointer: str, sentence: str
-) -> None:
-    document = problem(client.post("/coverage", json=changed(**change)), 422, "invalid-request")
-    assert document["errors"][0]["pointer"] == pointer
-    assert sentence in document["errors"][0]["detail"]
+    refused = refusal(body(**change))
+    assert (refused.code, refused.errors[0].pointer) == ("invalid-request", pointer)
+    assert refused.detail == sentence
 
 
 @pytest.mark.parametrize("number", ["NaN", "Infinity", "1e400"])
-@pytest.mark.parametrize("member", ["cost_layer", "second_matrix", "second_coordinates", "grid"])
-def test_what_is_not_finite_is_named(client: httpx.Client, member: str, number: str) -> None:
-    others = {"second_coordinates": None, "places": [[0, 0], [0, 1]], member: [["!", 0], [0, 0]]}
-    if member == "cost_layer":
-        others["grid"] = [[0, 0], [0, 0]]
-    body = json.dumps(changed(**others)).replace('"!"', number)
-    if member == "second_matrix":
-        body = body.replace(f"[[{number}, 0], [0, 0]]", f"[[0, {number}], [0, 0]]")
-    document = problem(client.post("/coverage", content=body, headers=JSON), 422, "invalid-request")
-    assert document["errors"][0]["pointer"].startswith(f"/{member}/0/")
+@pytest.mark.parametrize("member", ["second_matrix", "second_coordinates", "grid"])
+def test_what_is_not_finite_is_named(member: str, number: str) -> None:
+    rows = [[0, "!"], [0, 0]]
+    text = body(**{"second_coordinates": None, "places": [[0, 0], [0, 1]], member: rows})
+    refused = refusal(text.replace(b'"!"', number.encode()))
+    assert refused.errors[0].pointer == f"/{member}/0/1"
 
 
-def test_all_places_that_cannot_be_reached_are_named(client: httpx.Client) -> None:
-    task = changed(grid=WALLED, places=[[0, 0], [0, 3], [1, 3]], second_coordinates=POINTS[:3])
-    document = problem(client.post("/coverage", json=task), 422, "invalid-request")
-    assert [fault["pointer"] for fault in document["errors"]] == ["/places/1", "/places/2"]
-    assert document["detail"].endswith("(and 1 more)")
+def test_a_grid_of_too_many_cells_is_refused() -> None:
+    refused = refusal(body(grid=[[0] * 100] * 10))
+    assert (refused.status, refused.code) == (413, "too-many-cells")
+    assert (refused.limit, refused.actual) == (LIMITS.cells, 1000)
 
 
-def test_a_grid_of_too_many_cells_is_413(client: httpx.Client) -> None:
-    answer = client.post("/coverage", json=changed(grid=[[0] * 100] * 10))
-    document = problem(answer, 413, "too-many-cells")
-    assert (document["limit"], document["actual"]) == (LIMITS.cells, 1000)
+def test_too_many_places_are_refused() -> None:
+    refused = refusal(body(places=[[0, 0]] * 51))
+    assert (refused.status, refused.code) == (413, "too-many-cities")
+    assert refused.detail == "places must have at most 50 rows, got 51"
 
 
-def test_too_many_places_are_413(client: httpx.Client) -> None:
-    many = client.post("/coverage", json=changed(places=[[0, 0]] * 51))
-    document = problem(many, 413, "too-many-cities")
-    assert document["detail"] == "places must have at most 50 rows, got 51"
-    ground = {"grid": [[0] * 30] * 30, "cost_layer": [[1] * 30] * 30, "second_coordinates": None}
-    dense = client.post("/coverage", json=changed(places=None, spacing=0.5, **ground))
-    document = problem(dense, 413, "too-many-cities")
-    assert (document["limit"], document["actual"]) == (50, 900)
-    assert document["errors"][0]["pointer"] == "/spacing"
-
-
-def test_without_an_actor_of_matrices_there_is_no_coverage() -> None:
-    with serving(app_of(Shuffler())) as url:
-        problem(httpx.post(f"{url}/coverage", json=TASK), 422, "no-actor")
-
-
-def test_before_the_search_is_compiled_there_is_no_coverage(tmp_path: Path) -> None:
-    warm = tmp_path / "warm"
-    app = app_of(workers=workers_of(runner_of(warm=warm)))
-    with serving(app, warm=False) as url:
-        answer = httpx.post(f"{url}/coverage", json=changed(time_limit=0))
-        problem(answer, 503, "warming-up")
-        warm.touch()
-
-
-def png(grid: Any, mode: str = "L") -> bytes:
-    """A picture of a grid: black where it is 1, white where it is 0."""
+def test_a_map_may_come_as_a_png_and_not_as_a_grid_as_well() -> None:
     stream = io.BytesIO()
-    shades = (255 * (1 - np.array(grid))).astype(np.uint8)
-    Image.fromarray(shades).convert(mode).save(stream, "PNG")
-    return stream.getvalue()
+    Image.fromarray((255 * (1 - np.array(GRID))).astype(np.uint8)).save(stream, "PNG")
+    request = parse_coverage_request(body(grid=None), LIMITS, stream.getvalue())
+    np.testing.assert_array_equal(request.grid, GRID)
+    refused = refusal(body(), stream.getvalue())
+    assert refused.detail == "grid must come once, got it as the part map as well"
 
 
-def post_map(client: httpx.Client, image: bytes, **change: Any) -> httpx.Response:
-    task = changed(**{"grid": None, **change})
-    files = {"request": (None, json.dumps(task)), "map": ("map.png", image, "image/png")}
-    return client.post("/coverage", files=files)
-
-
-@pytest.mark.parametrize("mode", ["1", "L", "LA", "P", "RGB", "RGBA"])
-def test_a_map_may_come_as_a_png(client: httpx.Client, mode: str) -> None:
-    found = post_map(client, png(GRID, mode), time_limit=0)
-    assert found.status_code == 200, found.text
-    expected = client.post("/coverage", json=changed(time_limit=0)).json()
-    assert found.json()["front"] == expected["front"]
-
-
-def chunk(kind: bytes, content: bytes) -> bytes:
-    checksum = zlib.crc32(kind + content)
-    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", checksum)
-
-
-def bomb(width: int, height: int, content: bytes) -> bytes:
-    """A small file that declares a size, and unpacks to something else."""
-    header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + content + chunk(b"IEND", b"")
-
-
-ZEROS = zlib.compress(bytes(50_000_000), 9)
-
-
-def test_a_png_that_declares_too_many_cells_is_refused_by_its_header(
-    client: httpx.Client,
-) -> None:
-    image = bomb(50_000, 50_000, chunk(b"IDAT", ZEROS))
-    document = problem(post_map(client, image), 413, "too-many-cells")
-    assert (document["limit"], document["actual"]) == (LIMITS.cells, 50_000**2)
-    assert document["detail"] == "grid must have at most 900 cells, got 50000 x 50000"
-
-
-def test_a_png_is_unpacked_no_further_than_it_declares(client: httpx.Client) -> None:
-    # All cells are black, and what is packed beyond them is never looked at.
-    document = problem(post_map(client, bomb(6, 5, chunk(b"IDAT", ZEROS))), 422, "invalid-request")
-    assert "must have a free cell" in document["detail"]
-    text = chunk(b"zTXt", b"bomb\0\0" + ZEROS) + chunk(b"IDAT", zlib.compress(bytes(35)))
-    document = problem(post_map(client, bomb(6, 5, text)), 422, "invalid-request")
-    assert document["errors"][0]["pointer"] == "/grid"
-
-
-@pytest.mark.parametrize(
-    ("image", "sentence"),
-    [
-        (b"", "grid must be a PNG file"),
-        (b"GIF89a", "grid must be a PNG file"),
-        (png(GRID)[:40], "grid must be a PNG file that can be read"),
-        (png(GRID)[:-20], "grid must be a PNG file that can be read"),
-        (bomb(0, 5, b""), "grid must be a PNG file that can be read"),
-        (png(GRID, "I;16"), "grid must have 8 bits a channel or fewer, got I;16"),
-    ],
-)
-def test_an_image_that_is_no_map_is_named(
-    client: httpx.Client, image: bytes, sentence: str
-) -> None:
-    document = problem(post_map(client, image), 422, "invalid-request")
-    assert document["errors"][0]["pointer"] == "/grid"
-    assert sentence in document["detail"]
-
-
-def test_a_grid_may_not_come_beside_the_map(client: httpx.Client) -> None:
-    document = problem(post_map(client, png(GRID), grid=GRID), 422, "invalid-request")
-    assert document["detail"] == "grid must come once, got it as the part map as well"
-
-
-LATER = {"Prefer": "respond-async"}
-
-
-def ended(client: httpx.Client, front: str) -> dict[str, Any]:
-    """The front once nothing about it will change."""
-    while (body := client.get(front).json())["status"] in ("queued", "running"):
-        time.sleep(0.02)
-    return body
-
-
-def test_a_front_of_places_may_be_found_later(client: httpx.Client) -> None:
-    accepted = client.post("/coverage", json=changed(paths=True), headers=LATER)
-    assert accepted.status_code == 202
-    assert accepted.headers["preference-applied"] == "respond-async"
-    body = ended(client, accepted.headers["location"])
-    assert (body["status"], body["places"]) == ("done", PLACES)
-    assert all(item["path"]["cells"] for item in body["front"])
-
-
-def test_a_front_that_cannot_be_found_later_says_why(client: httpx.Client) -> None:
-    task = changed(grid=WALLED, places=[[0, 0], [0, 3]], second_coordinates=POINTS[:2])
-    accepted = client.post("/coverage", json=task, headers=LATER)
-    body = ended(client, accepted.headers["location"])
-    assert (body["status"], body["front"]) == ("failed", [])
-    assert (body["problem"]["status"], body["problem"]["code"]) == (422, "invalid-request")
-    assert body["problem"]["errors"][0]["pointer"] == "/places/1"
-
-
-@pytest.fixture(scope="module")
-def patient() -> Iterator[httpx.Client]:
-    """A client of a service that allows what takes long."""
-    limits = replace(LIMITS, body_bytes=2**24, cities=1000, cells=2**20, seconds=600.0)
-    with serving(app_of(limits=limits)) as url, httpx.Client(base_url=url, timeout=60) as client:
-        yield client
-
-
-def test_a_survey_that_takes_long_can_be_cancelled(patient: httpx.Client) -> None:
-    places = np.random.default_rng(0).integers(1000, size=(1000, 2)).tolist()
-    task = {"cell_size": 1, "places": places, "second_coordinates": places}
-    files = {"request": (None, json.dumps(task)), "map": png(np.zeros((1000, 1000)))}
-    front = patient.post("/coverage", files=files, headers=LATER).headers["location"]
-    while patient.get(front).json()["status"] == "queued":
-        time.sleep(0.02)
-    body = patient.delete(front).json()
-    assert (body["status"], body["front"]) == ("cancelled", [])
-
-
-def test_a_search_that_is_cancelled_keeps_what_it_has_found(patient: httpx.Client) -> None:
-    places = np.random.default_rng(1).integers(40, size=(150, 2)).tolist()
-    task = {"cell_size": 1, "places": places, "second_coordinates": places, "paths": True}
-    task |= {"grid": [[0] * 40] * 40, "time_limit": 600, "second_coordinates": places[::-1]}
-    front = patient.post("/coverage", json=task, headers=LATER).headers["location"]
-    while not patient.get(front).json()["front"]:
-        time.sleep(0.02)
-    body = patient.delete(front).json()
-    assert (body["status"], body["places"]) == ("cancelled", places)
-    assert sorted(body["front"][0]["tour"]) == list(range(150))
+def test_the_schema_asks_for_places_and_a_second_objective_in_one_form_each() -> None:
+    schema = coverage_schema(LIMITS, ["pa-one-matrix"])
+    ways = [[each["required"] for each in choice["oneOf"]] for choice in schema["allOf"]]
+    assert ways == [
+        [["places"], ["spacing"]],
+        [["second_matrix"], ["cost_layer"], ["second_coordinates"]],
+    ]
+    assert schema["properties"]["places"]["maxItems"] == LIMITS.cities

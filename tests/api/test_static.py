@@ -1,0 +1,40 @@
+"""The page, the HTTP reference and their files, against a live server."""
+
+from collections.abc import Iterator
+
+import httpx
+import pytest
+
+from tests.helpers.serving import app_of, problem, serving
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[httpx.Client]:
+    with serving(app_of(), warm=False) as address, httpx.Client(base_url=address) as client:
+        yield client
+
+
+@pytest.mark.parametrize(
+    ("path", "kind"),
+    [
+        ("/", "text/html"),
+        ("/docs", "text/html"),
+        ("/page/main.js", "text/javascript"),
+        ("/docs/docs.css", "text/css"),
+        ("/examples/index.json", "application/json"),
+    ],
+)
+def test_files_are_served_and_asked_for_anew_each_time(
+    client: httpx.Client, path: str, kind: str
+) -> None:
+    answer = client.get(path)
+    assert answer.status_code == 200
+    assert answer.headers["content-type"].startswith(kind)
+    assert answer.headers["cache-control"] == "no-cache"
+    unchanged = client.get(path, headers={"If-None-Match": answer.headers["etag"]})
+    assert unchanged.status_code in (200, 304)
+
+
+@pytest.mark.parametrize("path", ["/page/none.js", "/page/../settings.py", "/examples/none.json"])
+def test_what_is_no_file_of_the_page_is_404(client: httpx.Client, path: str) -> None:
+    problem(client.get(path), 404, "no-such-path")

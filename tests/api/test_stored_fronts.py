@@ -1,0 +1,103 @@
+"""Stored fronts over HTTP: given again, by angle, and to their caller alone."""
+
+from collections.abc import Iterator
+
+import httpx
+import numpy as np
+import pytest
+
+from service.api.app import Edge
+from service.api.auth import Access, KeyHash, new_key
+from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
+from tests.helpers.serving import app_of, problem, serving
+
+CITIES = np.random.default_rng(5).random((12, 4)).tolist()
+FRONT = {"coordinates": CITIES, "time_limit": 0}
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[httpx.Client]:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=30) as client:
+        yield client
+
+
+def test_a_front_can_be_asked_for_again(client: httpx.Client) -> None:
+    answer = client.post("/front", json=FRONT).json()
+    again = client.get(f"/front/{answer['id']}")
+    assert (again.status_code, again.json()) == (200, answer)
+
+
+def test_the_tour_at_an_angle_is_the_nearest_of_the_front(client: httpx.Client) -> None:
+    front = client.post("/front", json={"coordinates": CITIES}).json()
+    other = client.post("/front", json={"coordinates": CITIES[:4]}).json()
+    nearest = min(front["front"], key=lambda item: abs(item["angle"] - 30))
+    asked = client.get("/tour", params={"angle": 30, "front": front["id"]})
+    assert asked.json() == {"front": front["id"], **nearest}
+    for angle in (0, 90):
+        end = client.get("/tour", params={"angle": angle, "front": front["id"]}).json()
+        assert end == {"front": front["id"], **front["front"][-1 if angle == 0 else 0]}
+    latest = client.get("/tour", params={"angle": 30})
+    assert latest.json()["front"] == other["id"]
+
+
+@pytest.mark.parametrize(
+    ("query", "parameter", "sentence"),
+    [
+        ("", "angle", "angle is required"),
+        ("angle=-1", "angle", 'angle must be at least 0, got "-1"'),
+        ("angle=90.1", "angle", 'angle must be at most 90, got "90.1"'),
+        ("angle=nan", "angle", 'angle must be a finite number, got "nan"'),
+        ("angle=steep", "angle", "angle must be a valid number, unable to parse"),
+        ("angle=1&fronts=2", "fronts", "fronts is not a field that this request has"),
+    ],
+)
+def test_a_wrong_query_is_named(
+    client: httpx.Client, query: str, parameter: str, sentence: str
+) -> None:
+    document = problem(client.get(f"/tour?{query}"), 422, "invalid-request")
+    assert document["errors"][0]["parameter"] == parameter
+    assert document["detail"].startswith(sentence)
+
+
+@pytest.mark.parametrize("path", ["/front/nowhere", "/tour?angle=30&front=nowhere"])
+def test_an_unknown_front_is_404(client: httpx.Client, path: str) -> None:
+    assert "'nowhere'" in problem(client.get(path), 404, "unknown-front")["detail"]
+
+
+def test_a_tour_before_any_front_is_404() -> None:
+    with serving(app_of()) as url:
+        problem(httpx.get(f"{url}/tour?angle=30"), 404, "no-front")
+
+
+def test_a_front_that_has_made_way_is_410() -> None:
+    with serving(app_of(store=SqliteStore(IN_MEMORY, entries=1, max_age=60))) as url:
+        first, _ = (httpx.post(f"{url}/front", json=FRONT) for _ in range(2))
+        key = first.json()["id"]
+        problem(httpx.get(f"{url}/front/{key}"), 410, "front-expired")
+        problem(httpx.get(f"{url}/tour?angle=3&front={key}"), 410, "front-expired")
+
+
+def test_a_front_that_is_too_old_is_410() -> None:
+    with serving(app_of(store=SqliteStore(IN_MEMORY, entries=1, max_age=1e-9))) as url:
+        httpx.post(f"{url}/front", json=FRONT)
+        problem(httpx.get(f"{url}/tour?angle=3"), 410, "front-expired")
+
+
+def test_a_front_is_there_for_its_caller_alone() -> None:
+    (dispatch, dispatch_hash), (lab, lab_hash) = new_key(), new_key()
+    hashes = [
+        KeyHash(caller="dispatch", digest=dispatch_hash),
+        KeyHash(caller="lab", digest=lab_hash),
+    ]
+    own, other = ({"Authorization": f"Bearer {key}"} for key in (dispatch, lab))
+    with serving(app_of(edge=Edge(access=Access(hashes)))) as url:
+        planned = httpx.post(f"{url}/front", json=FRONT, headers=own).json()["id"]
+        asked = [("GET", f"/front/{planned}"), ("GET", f"/front/{planned}/events")]
+        asked += [("GET", f"/tour?angle=30&front={planned}"), ("DELETE", f"/front/{planned}")]
+        for method, path in asked:
+            answer = httpx.request(method, url + path, headers=other)
+            problem(answer, 404, "unknown-front")
+        problem(httpx.get(f"{url}/tour?angle=30", headers=other), 404, "no-front")
+        for method, path in asked:
+            answer = httpx.request(method, url + path, headers=own)
+            assert answer.status_code in (200, 204)

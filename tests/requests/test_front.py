@@ -1,0 +1,169 @@
+"""Front requests: cities as coordinates or matrices, and every refusal of them."""
+
+import io
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+from service.errors import Refusal
+from service.instance import tour_lengths
+from service.requests.front import front_schema, parse_front_request
+from tests.helpers.serving import LIMITS
+
+COSTS = np.random.default_rng(6).random((2, 12, 12))
+SQUARE = "[[0, 1, 2], [1, 0, 3], [2, 3, 0]]"
+ONE_CITY = [[1, 2, 3, 4]]
+
+
+def refusal(body: str | dict[str, Any], npy: bytes | None = None) -> Refusal:
+    body = body if isinstance(body, str) else json.dumps(body)
+    with pytest.raises(Refusal) as refused:
+        parse_front_request(body.encode(), LIMITS, npy)
+    return refused.value
+
+
+@pytest.mark.parametrize(
+    ("body", "pointer", "sentence"),
+    [
+        ("{}", "/coordinates", "either coordinates or matrices are required, got neither"),
+        (
+            '{"coordinates": [[1, 2, 3, 4]], "matrices": [[[0]], [[0]]]}',
+            "/coordinates",
+            "either coordinates or matrices are required, got both",
+        ),
+        ('{"coordinates": []}', "/coordinates", "coordinates must have 1 items or more, got 0"),
+        (
+            '{"coordinates": [[1, 2, 3, 4], [1, 2, 3]]}',
+            "/coordinates/1",
+            "coordinates/1 must have 4 items or more, got 3",
+        ),
+        (
+            '{"coordinates": [[1, 2, 3, 4, 5]]}',
+            "/coordinates/0",
+            "coordinates/0 must have 4 items or fewer, got 5",
+        ),
+        ('{"coordinates": [7]}', "/coordinates/0", "coordinates/0 must be a valid array, got 7"),
+        ('{"coordinates": "x"}', "/coordinates", 'coordinates must be a valid array, got "x"'),
+        (
+            '{"coordinates": [[1, 2, 3, 4]], "augment": 0}',
+            "/augment",
+            "augment must be at least 1, got 0",
+        ),
+        (
+            '{"coordinates": [[1, 2, 3, 4]], "augment": 9}',
+            "/augment",
+            "augment must be at most 8, got 9",
+        ),
+        (
+            f'{{"matrices": [{SQUARE}, {SQUARE}], "augment": 8}}',
+            "/augment",
+            "augment must be 1 for matrices, which cannot be turned or mirrored, got 8",
+        ),
+    ],
+)
+def test_what_is_no_front_request_is_named(body: str, pointer: str, sentence: str) -> None:
+    refused = refusal(body)
+    assert (refused.code, refused.errors[0].pointer) == ("invalid-request", pointer)
+    assert refused.detail == sentence
+
+
+@pytest.mark.parametrize(
+    ("number", "sentence"),
+    [
+        ("NaN", "must be a finite number, got NaN"),
+        ("Infinity", "must be a finite number, got Infinity"),
+        ("-Infinity", "must be a finite number, got -Infinity"),
+        ("1e400", "must be a finite number, got Infinity"),
+        ("1" + 400 * "0", "must be a finite number, got an integer of more than 40 digits"),
+        ("1e200", "must be at most 1e+150, got 1e+200"),
+        ('"4"', 'must be a valid number, got "4"'),
+        ("true", "must be a valid number, got true"),
+        ("null", "must be a valid number, got null"),
+        ("[4]", "must be a valid number, got a list of 1"),
+        ("{}", "must be a valid number, got an object"),
+    ],
+)
+def test_a_wrong_coordinate_is_named(number: str, sentence: str) -> None:
+    refused = refusal(f'{{"coordinates": [[1, 2, {number}, 4]]}}')
+    assert refused.errors[0].pointer == "/coordinates/0/2"
+    assert refused.detail == f"coordinates/0/2 {sentence}"
+
+
+@pytest.mark.parametrize(
+    ("matrices", "pointer", "sentence"),
+    [
+        ("7", "", "must be a valid array, got 7"),
+        ("null", "", "must be a valid array, got null"),
+        (f"[{SQUARE}]", "", "must have 2 items or more, got 1"),
+        (f"[{SQUARE}, {SQUARE}, {SQUARE}]", "", "must have 2 items or fewer, got 3"),
+        (f"[{SQUARE}, 7]", "/1", "must be a valid array, got 7"),
+        (f"[[[0], 7, [2]], {SQUARE}]", "/0/1", "must be a valid array, got 7"),
+        (f"[{SQUARE}, [[0, -0.5], [1, 0]]]", "/1", "must have 3 rows, as many as matrices/0"),
+        (f"[{SQUARE}, [[0, 1, 2], [1, 0, -0.5], [2, 3, 0]]]", "/1/1/2", "must not be negative"),
+        (f"[{SQUARE}, [[0, 1, 2], [1, 0, NaN], [2, 3, 0]]]", "/1/1/2", "must be a finite number"),
+        (f'[{SQUARE}, [[0, 1, 2], [1, 0, "4"], [2, 3, 0]]]', "/1/1/2", "must be a valid number"),
+        (f"[{SQUARE}, [[0, 1, 2], [1, 0, true], [2, 3, 0]]]", "/1/1/2", "must be a valid number"),
+        (f"[{SQUARE}, [[0, 1, 2], [1, 0, [4]], [2, 3, 0]]]", "/1/1/2", "must be a valid number"),
+    ],
+)
+def test_what_is_not_two_matrices_of_costs_is_named(
+    matrices: str, pointer: str, sentence: str
+) -> None:
+    refused = refusal(f'{{"matrices": {matrices}}}')
+    assert (refused.code, refused.errors[0].pointer) == ("invalid-request", f"/matrices{pointer}")
+    assert refused.detail.startswith(f"matrices{pointer} {sentence}")
+
+
+@pytest.mark.parametrize(("member", "city"), [("coordinates", [0, 0, 0, 0]), ("matrices", None)])
+def test_too_many_cities_are_refused(member: str, city: list[int] | None) -> None:
+    n = LIMITS.cities + 1
+    refused = refusal({member: [city] * n if city else [[[1] * n] * n] * 2})
+    assert (refused.status, refused.code) == (413, "too-many-cities")
+    assert (refused.limit, refused.actual) == (LIMITS.cities, n)
+    assert refused.detail == f"{member} must have at most 50 rows, got 51"
+
+
+@pytest.mark.parametrize(
+    ("request_", "sentence"),
+    [
+        ({"matrices": COSTS.tolist()}, "matrices must come once, got them as a part as well"),
+        ({"coordinates": ONE_CITY}, "either coordinates or matrices are required, got both"),
+    ],
+)
+def test_cities_may_not_come_beside_a_file(request_: dict[str, Any], sentence: str) -> None:
+    stream = io.BytesIO()
+    np.save(stream, COSTS)
+    assert refusal(request_, stream.getvalue()).detail == sentence
+
+
+def test_coordinates_matrices_and_a_file_become_an_instance() -> None:
+    stream = io.BytesIO()
+    np.save(stream, COSTS)
+    request = parse_front_request(json.dumps({"coordinates": ONE_CITY}).encode(), LIMITS)
+    assert (request.kind, request.n) == ("coordinates", 1)
+    for body, npy in (({"matrices": COSTS.tolist()}, None), ({}, stream.getvalue())):
+        request = parse_front_request(json.dumps(body).encode(), LIMITS, npy)
+        assert (request.kind, request.n) == ("matrices", 12)
+        matrices = request.instance().matrices
+        assert matrices is not None
+        np.testing.assert_array_equal(matrices, COSTS * (1 - np.eye(12)))
+
+
+def test_the_diagonal_is_disregarded() -> None:
+    odd = COSTS.copy()
+    odd[:, range(12), range(12)] = [[-1], [1e308]]
+    body = json.dumps({"matrices": odd.tolist()}).replace("1e+308", "NaN")
+    tours = np.array([np.random.default_rng(0).permutation(12)])
+    lengths = [
+        tour_lengths(parse_front_request(text.encode(), LIMITS).instance(), tours)
+        for text in (body, json.dumps({"matrices": COSTS.tolist()}))
+    ]
+    np.testing.assert_array_equal(*lengths)
+
+
+def test_the_schema_asks_for_coordinates_or_matrices() -> None:
+    schema = front_schema(LIMITS, ["pa-one"])
+    assert schema["oneOf"] == [{"required": ["coordinates"]}, {"required": ["matrices"]}]
+    assert schema["properties"]["coordinates"]["maxItems"] == LIMITS.cities

@@ -1,0 +1,95 @@
+"""A body becomes a task, and an actor is chosen for it."""
+
+import json
+
+import numpy as np
+import pytest
+
+from service.coverage.survey import Coverage
+from service.errors import InvalidCoverage, Refusal
+from service.instance import Instance
+from service.requests.task import TaskSource, choose_actor, parse_task
+from tests.helpers.serving import LIMITS, info_of
+
+FACTS = {
+    "pa-one": info_of("pa-one", "coordinates"),
+    "pa-one-matrix": info_of("pa-one-matrix", "matrices"),
+}
+COVERAGE = {
+    "grid": [[0, 0]],
+    "cell_size": 1,
+    "places": [[0, 0], [0, 1]],
+    "second_coordinates": [[0, 0], [1, 1]],
+    "paths": True,
+}
+
+
+def test_a_body_becomes_a_task() -> None:
+    front = json.dumps({"coordinates": np.eye(4).tolist(), "augment": 2, "time_limit": 0})
+    task = parse_task(TaskSource("front", front.encode()), LIMITS, FACTS)
+    assert isinstance(task.subject, Instance)
+    assert (task.actor, task.options.augment, task.paths) == ("pa-one", 2, False)
+    assert task.needs_compiled_code  # twice 20 preferences make more tours than the limit of 30
+    task = parse_task(TaskSource("coverage", json.dumps(COVERAGE).encode()), LIMITS, FACTS)
+    assert isinstance(task.subject, Coverage)
+    assert (task.actor, task.paths, task.needs_compiled_code) == ("pa-one-matrix", True, True)
+
+
+def test_what_cannot_be_planned_is_refused() -> None:
+    ambiguous = json.dumps({**COVERAGE, "spacing": 1}).encode()
+    with pytest.raises(InvalidCoverage, match="places or spacing is required, and not both"):
+        parse_task(TaskSource("coverage", ambiguous), LIMITS, FACTS)
+
+
+@pytest.mark.parametrize(
+    ("loaded", "kind", "name", "code", "detail"),
+    [
+        (
+            ["pa-one", "pa-one-matrix"],
+            "coordinates",
+            "pa-two",
+            "unknown-actor",
+            "actor must be one of pa-one, pa-one-matrix, got 'pa-two'",
+        ),
+        (
+            ["pa-one", "pa-one-matrix"],
+            "matrices",
+            "pa-one",
+            "unfit-actor",
+            "actor must read matrices, as one of pa-one-matrix; pa-one reads coordinates alone",
+        ),
+        (
+            ["pa-one"],
+            "matrices",
+            None,
+            "no-actor",
+            "matrices need an actor that reads them, and none is loaded",
+        ),
+        (
+            ["pa-one"],
+            "matrices",
+            "pa-one",
+            "unfit-actor",
+            "actor must read matrices, as one that is loaded, and there is none; "
+            "pa-one reads coordinates alone",
+        ),
+    ],
+)
+def test_an_actor_that_cannot_be_had_is_refused(
+    loaded: list[str], kind: str, name: str | None, code: str, detail: str
+) -> None:
+    actors = {each: FACTS[each] for each in loaded}
+    with pytest.raises(Refusal) as refused:
+        choose_actor(actors, kind, name)  # type: ignore[arg-type]
+    assert (refused.value.status, refused.value.code) == (422, code)
+    assert refused.value.detail == detail
+
+
+def test_an_actor_of_matrices_serves_coordinates_where_it_is_asked_to() -> None:
+    assert choose_actor(FACTS, "coordinates", "pa-one-matrix") == "pa-one-matrix"
+
+
+def test_where_the_default_is_not_loaded_another_that_serves_takes_its_place() -> None:
+    own = {"own": info_of("own", "matrices")}
+    assert choose_actor(own, "matrices", None) == "own"
+    assert choose_actor(own, "coordinates", None) == "own"

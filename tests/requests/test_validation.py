@@ -1,0 +1,64 @@
+"""JSON that does not fit a model is refused, each fault with its pointer and its sentence."""
+
+import pytest
+
+from service.errors import MOST_FAULTS, Refusal
+from service.requests.schemas import PlanRequest
+from service.requests.validation import parse_json, shorten
+
+
+def refusal(body: bytes) -> Refusal:
+    with pytest.raises(Refusal) as refused:
+        parse_json(PlanRequest, body)
+    return refused.value
+
+
+@pytest.mark.parametrize(
+    ("body", "sentence"),
+    [
+        (b"", "EOF"),
+        (b"{", "EOF"),
+        (b'{"preferences": [1, 2]', "EOF"),
+        (b'{"preferences": [01]}', "invalid number"),
+        (b"{'size': 1}", "key must be a string"),
+        (b'{"actor": "\xff"}', "invalid unicode"),
+        (b'{"actor": "\\ud800"}', "hex escape"),
+        (b"[" * 50_000, "recursion limit exceeded"),
+        (b'{"size": 1' + b"0" * 5000 + b"}", "number out of range"),
+    ],
+)
+def test_a_body_that_is_not_json_is_malformed(body: bytes, sentence: str) -> None:
+    refused = refusal(body)
+    assert (refused.status, refused.code) == (400, "malformed-json")
+    assert sentence in refused.detail
+
+
+@pytest.mark.parametrize(
+    ("body", "sentence"),
+    [
+        (b"[]", "the body must be an object, got a list of 0"),
+        (b"null", "the body must be an object, got null"),
+        (b'{"actor": {}}', "actor must be a valid string, got an object"),
+        (
+            b'{"time_limit": -1' + b"0" * 50 + b"}",
+            "time_limit must be at least 0, got an integer of more than 40 digits",
+        ),
+    ],
+)
+def test_what_came_is_shown(body: bytes, sentence: str) -> None:
+    refused = refusal(body)
+    assert (refused.status, refused.code, refused.detail) == (422, "invalid-request", sentence)
+
+
+def test_every_fault_is_told_up_to_a_number() -> None:
+    refused = refusal(b'{"size": 0, "starts": 1}')
+    assert [fault.pointer for fault in refused.errors] == ["/size", "/starts"]
+    assert refused.detail == "size must be at least 1, got 0 (and 1 more)"
+    many = refusal(b"{" + b",".join(b'"%d": 1' % i for i in range(30)) + b"}")
+    assert len(many.errors) == MOST_FAULTS
+    assert many.detail.endswith("(and 29 more)")
+
+
+def test_a_long_text_is_shown_shortened() -> None:
+    assert shorten("x" * 80) == "x" * 80
+    assert shorten("x" * 81) == "x" * 79 + "…"
