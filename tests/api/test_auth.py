@@ -35,7 +35,7 @@ def url() -> Iterator[str]:
 @pytest.fixture
 def limited() -> Iterator[str]:
     edge = Edge(access=Access(HASHES, Rates("3/hour")))
-    with serving(app_of(edge=edge)) as address:
+    with serving(app_of(edge=edge), warm=False) as address:
         yield address
 
 
@@ -84,7 +84,7 @@ def test_every_path_needs_a_key_but_the_open_ones(url: str) -> None:
 
 
 def test_without_keys_the_document_asks_for_none() -> None:
-    with serving(app_of()) as url:
+    with serving(app_of(), warm=False) as url:
         document = httpx.get(f"{url}/openapi.json").json()
     operations = [each for path in document["paths"].values() for each in path.values()]
     assert not any(operation.get("security") for operation in operations)
@@ -103,7 +103,7 @@ def test_a_caller_over_its_rate_is_told_when_to_come_back_and_others_are_not(lim
 
 def test_without_keys_nobody_is_held_up() -> None:
     edge = Edge(access=Access((), Rates("1/hour")))
-    with serving(app_of(edge=edge)) as url:
+    with serving(app_of(edge=edge), warm=False) as url:
         assert [httpx.get(f"{url}/actors").status_code for _ in range(3)] == [200] * 3
 
 
@@ -157,7 +157,8 @@ def test_the_command_makes_no_key_for_a_name_that_no_entry_can_hold() -> None:
 def test_replicas_count_together_in_redis_and_go_on_without_it(tmp_path: Path) -> None:
     with redis_server(tmp_path) as redis:
         edges = [Edge(access=Access(HASHES, Rates("3/hour", redis.url))) for _ in range(2)]
-        with serving(app_of(edge=edges[0])) as one, serving(app_of(edge=edges[1])) as other:
+        one_app, other_app = (app_of(edge=edge) for edge in edges)
+        with serving(one_app, warm=False) as one, serving(other_app, warm=False) as other:
             counted = [httpx.get(f"{url}/actors", headers=bearing(LAB)) for url in (one, other) * 2]
             assert [answer.status_code for answer in counted] == [200, 200, 200, 429]
             assert 3500 < int(counted[3].headers["retry-after"]) <= 3600

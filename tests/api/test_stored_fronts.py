@@ -65,7 +65,7 @@ def test_an_unknown_front_is_404(client: httpx.Client, path: str) -> None:
 
 
 def test_a_tour_before_any_front_is_404() -> None:
-    with serving(app_of()) as url:
+    with serving(app_of(), warm=False) as url:
         problem(httpx.get(f"{url}/tour?angle=30"), 404, "no-front")
 
 
