@@ -1,15 +1,26 @@
-"""How property tests run: never against a clock, and in continuous integration always alike."""
+"""Set-up of every test run: Ctrl-C, property tests, and the servers that a session shares."""
 
 import os
+import signal
 from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
 
 from tests.helpers.redis_server import Redis, redis_server
+from tests.helpers.serving import serving_released
 
 settings.register_profile("project", deadline=None, derandomize="CI" in os.environ)
 settings.load_profile("project")
+
+
+def pytest_configure() -> None:
+    """Let SIGINT reach the children of this process, however it was started.
+
+    A shell starts background jobs, and nohup its command, with SIGINT ignored, and children
+    inherit that: without this they would not end by Ctrl-C.
+    """
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
@@ -17,3 +28,10 @@ def redis(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Redis]:
     """A real Redis, for tests that leave it running."""
     with redis_server(tmp_path_factory.mktemp("redis")) as server:
         yield server
+
+
+@pytest.fixture(scope="session")
+def released() -> Iterator[str]:
+    """The address of the service with the released actors and one worker."""
+    with serving_released() as address:
+        yield address

@@ -11,24 +11,22 @@ import httpx
 import pytest
 
 from service.settings import Settings
-from tests.helpers.serving import app_of, serving_released
+from tests.helpers.serving import app_of
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
 
 
-def test_the_request_gets_the_answer() -> None:
+def test_the_request_gets_the_answer(released: str) -> None:
     blocks = re.findall(r"```json\n(.*?)```", README, re.DOTALL)
     request, answer = (json.loads(block) for block in blocks)
-    with serving_released() as address:
-        found = httpx.post(f"{address}/front", json=request, timeout=60).json()
+    found = httpx.post(f"{released}/front", json=request, timeout=60).json()
     assert lasting(found) == lasting(answer)
 
 
-def test_the_python_code_runs(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_python_code_runs(capsys: pytest.CaptureFixture[str], released: str) -> None:
     [code] = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    with serving_released() as address:
-        exec(code.replace("http://localhost:8000", address), {})
+    exec(code.replace("http://localhost:8000", released), {})
     hypervolume, *_ = capsys.readouterr().out.split()
     assert 0 < float(hypervolume) < 1
 

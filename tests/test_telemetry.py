@@ -13,11 +13,11 @@ from fastapi import FastAPI
 from opentelemetry.proto.collector.trace.v1.trace_service_pb2 import ExportTraceServiceRequest
 
 from service.telemetry import trace
-from tests.helpers.serving import running
+from tests.helpers.processes import serve_process
 
 
 def test_every_line_of_the_log_is_an_object_and_each_request_has_one() -> None:
-    with running({}) as service:
+    with serve_process({}) as service:
         httpx.get(f"{service.url}/front/none?secret=1", headers={"X-Request-ID": "the-one"})
     lines = [json.loads(line) for line in service.log.splitlines()]
     assert {"time", "level", "logger", "message"} <= set.intersection(*map(set, lines))
@@ -57,7 +57,7 @@ def collector() -> Iterator[tuple[str, list[ExportTraceServiceRequest]]]:
 
 def test_each_request_is_a_span_at_the_collector() -> None:
     with collector() as (endpoint, received):
-        with running({"OTEL_EXPORTER_OTLP_ENDPOINT": endpoint}) as service:
+        with serve_process({"OTEL_EXPORTER_OTLP_ENDPOINT": endpoint}) as service:
             httpx.get(f"{service.url}/front/none")
         resources = [each for request in received for each in request.resource_spans]
     named = {

@@ -11,8 +11,9 @@ import pytest
 
 from service.api.app import Edge
 from service.api.auth import Access, KeyHash, Rates, new_key
+from tests.helpers.processes import serve_process
 from tests.helpers.redis_server import redis_server
-from tests.helpers.serving import app_of, problem, running, serving
+from tests.helpers.serving import app_of, problem, serving
 
 FRONT = {"coordinates": [[0, 0, 1, 3], [2, 5, 0, 0], [4, 1, 2, 2]], "time_limit": 0}
 OPEN = {"/health/live", "/health/ready"}
@@ -134,7 +135,7 @@ def test_the_command_makes_a_key_that_its_entry_lets_in() -> None:
         check=True,
     )
     key, entry = made.stdout.splitlines()
-    with running({"PARETOUR_API_KEYS": f" {entry} , lab:{LAB_HASH}"}) as service:
+    with serve_process({"PARETOUR_API_KEYS": f" {entry} , lab:{LAB_HASH}"}) as service:
         for shown in (key, LAB):
             assert httpx.get(f"{service.url}/actors", headers=bearing(shown)).status_code == 200
         assert httpx.get(f"{service.url}/actors").status_code == 401

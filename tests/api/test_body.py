@@ -14,7 +14,8 @@ import httpx
 import numpy as np
 import pytest
 
-from tests.helpers.serving import LIMITS, Running, app_of, problem, running, serving
+from tests.helpers.processes import ServeProcess, serve_process
+from tests.helpers.serving import LIMITS, app_of, problem, serving
 
 JSON = {"Content-Type": "application/json"}
 CITIES = np.random.default_rng(5).random((12, 4)).tolist()
@@ -105,8 +106,8 @@ def test_parts_that_are_not_as_they_should_be_are_named(
 
 
 @pytest.fixture(scope="module")
-def service() -> Iterator[Running]:
-    with running({"PARETOUR_WORKERS": "1"}) as service:
+def service() -> Iterator[ServeProcess]:
+    with serve_process({"PARETOUR_WORKERS": "1"}) as service:
         yield service
 
 
@@ -119,7 +120,7 @@ def matrices(n: int) -> dict[str, Any]:
     return {"matrices": costs.tolist(), "preferences": 2, "time_limit": 0}
 
 
-def readers(service: Running) -> list[int]:
+def readers(service: ServeProcess) -> list[int]:
     """The processes in which long bodies are read."""
     parent = service.process.pid
     children = Path(f"/proc/{parent}/task/{parent}/children").read_text().split()
@@ -137,7 +138,7 @@ def until_done(answer: Future[httpx.Response], url: str) -> int:
     return times
 
 
-def test_a_long_body_is_planned(service: Running) -> None:
+def test_a_long_body_is_planned(service: ServeProcess) -> None:
     body = json.dumps(matrices(100)).encode()
     assert len(body) > 300_000
     answer = post(service.url, body)
@@ -145,7 +146,7 @@ def test_a_long_body_is_planned(service: Running) -> None:
     assert answer.json()["cities"] == 100
 
 
-def test_what_is_wrong_with_a_long_body_is_said_as_of_a_short_one(service: Running) -> None:
+def test_what_is_wrong_with_a_long_body_is_said_as_of_a_short_one(service: ServeProcess) -> None:
     wrong = matrices(100)
     wrong["matrices"][1][7][3] = -1.5
     document = problem(post(service.url, json.dumps(wrong).encode()), 422, "invalid-request")
@@ -157,7 +158,7 @@ def test_what_is_wrong_with_a_long_body_is_said_as_of_a_short_one(service: Runni
     assert (document["limit"], document["actual"]) == (1000, 40_000)
 
 
-def test_the_service_goes_on_answering_while_it_reads_a_long_body(service: Running) -> None:
+def test_the_service_goes_on_answering_while_it_reads_a_long_body(service: ServeProcess) -> None:
     with ThreadPoolExecutor(1) as pool:
         post(service.url, json.dumps(matrices(100)).encode())  # by now there is a reader
         answer = pool.submit(post, service.url, WRONG)
@@ -165,7 +166,7 @@ def test_the_service_goes_on_answering_while_it_reads_a_long_body(service: Runni
     problem(answer.result(), 422, "invalid-request")
 
 
-def test_a_reader_that_is_killed_is_replaced_and_the_body_read_again(service: Running) -> None:
+def test_a_reader_that_is_killed_is_replaced_and_the_body_read_again(service: ServeProcess) -> None:
     with ThreadPoolExecutor(1) as pool:
         post(service.url, json.dumps(matrices(100)).encode())
         [reader] = readers(service)

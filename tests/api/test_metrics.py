@@ -9,7 +9,9 @@ from prometheus_client.parser import text_string_to_metric_families
 from service.api.app import Edge
 from service.api.metrics import Metrics
 from service.jobs.engine import EngineStats
-from tests.helpers.serving import Broken, app_of, running, serving
+from tests.helpers.actors import Broken
+from tests.helpers.processes import serve_process
+from tests.helpers.serving import app_of, serving
 
 FRONT = {"coordinates": [[0, 0, 1, 3], [2, 5, 0, 0], [4, 1, 2, 2]], "time_limit": 0}
 
@@ -72,7 +74,7 @@ def test_the_workers_are_asked_whenever_prometheus_asks() -> None:
 
 
 def test_fronts_are_counted_by_phase_and_size_class() -> None:
-    with running({}, ready=True) as service:
+    with serve_process({}, ready=True) as service:
         for n, seconds in [(12, 1.0), (12, 0.0), (60, 0.0)]:
             cities = np.random.default_rng(n).random((n, 4)).tolist()
             request = {"coordinates": cities, "time_limit": seconds, "preferences": 5}

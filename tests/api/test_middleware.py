@@ -11,7 +11,8 @@ import pytest
 from service.api.app import Edge
 from service.api.metrics import Metrics
 from service.api.middleware import AnsweredRequest
-from tests.helpers.serving import Broken, app_of, problem, serving
+from tests.helpers.actors import Broken
+from tests.helpers.serving import app_of, problem, serving
 
 FRONT = {"coordinates": [[0, 0, 1, 3], [2, 5, 0, 0], [4, 1, 2, 2]], "time_limit": 0}
 

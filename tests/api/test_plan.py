@@ -17,16 +17,9 @@ from service.instance import Instance, tour_lengths
 from service.jobs.runner import load_runner
 from service.server import build
 from service.settings import Settings
+from tests.helpers.actors import Shuffler
 from tests.helpers.artifacts import by_row_sums
-from tests.helpers.serving import (
-    LIMITS,
-    Shuffler,
-    app_of,
-    problem,
-    runner_of,
-    serving,
-    workers_of,
-)
+from tests.helpers.serving import LIMITS, app_of, problem, runner_of, serving, workers_of
 
 CITIES = np.random.default_rng(5).random((12, 4)).tolist()
 MANY_CITIES = np.random.default_rng(0).random((300, 4)).tolist()

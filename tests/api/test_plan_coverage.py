@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.helpers.serving import LIMITS, Shuffler, app_of, problem, runner_of, serving, workers_of
+from tests.helpers.actors import Shuffler
+from tests.helpers.serving import LIMITS, app_of, problem, runner_of, serving, workers_of
 
 GRID = [
     [0, 0, 0, 0, 0, 0],

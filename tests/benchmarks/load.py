@@ -40,7 +40,7 @@ from tests.benchmarks.traffic import (
     when_due,
 )
 from tests.benchmarks.under_load import load_table
-from tests.helpers.serving import Running, running
+from tests.helpers.processes import ServeProcess, serve_process
 
 CITIES = 40
 SHARE = 0.8  # of the sustained rate, at which answers are timed
@@ -68,7 +68,7 @@ def measure(cores: int, rounds: int, seconds: float) -> dict[str, Any]:
         "PARETOUR_THREADS": "1",
         "PARETOUR_QUEUE": str(MOST_AT_ONCE),  # else a burst is refused, and not timed
     }
-    with running(settings, ready=True) as service:
+    with serve_process(settings, ready=True) as service:
         address = _address(service)
         as_fast_as_answered(address, _bodies(), cores, 1)
         bare, apart, served, timed, bursting = [], [], [], [], []
@@ -104,7 +104,7 @@ def measure(cores: int, rounds: int, seconds: float) -> dict[str, Any]:
     }
 
 
-def _served(service: Running, clients: int, seconds: float) -> dict[str, float]:
+def _served(service: ServeProcess, clients: int, seconds: float) -> dict[str, float]:
     """Answers a second, and what one takes of the processor."""
     server = psutil.Process(service.process.pid)
     workers = server.children(recursive=True)
@@ -145,7 +145,7 @@ def _bodies() -> list[bytes]:
     ]
 
 
-def _address(service: Running) -> tuple[str, int]:
+def _address(service: ServeProcess) -> tuple[str, int]:
     parts = urlsplit(service.url)
     return str(parts.hostname), int(parts.port or 0)
 

@@ -19,8 +19,8 @@ from tqdm import tqdm
 
 from tests.benchmarks.instances import SIZES, paper_instances
 from tests.benchmarks.provenance import provenance, store
-from tests.helpers.browsing import chromium, done, opened
-from tests.helpers.serving import running
+from tests.helpers.browsing import chromium, open_page, wait_until_planned
+from tests.helpers.processes import serve_process
 
 FRAMES = 240  # of each measurement
 LATE = 25.0  # milliseconds: the frame that a browser had planned was missed
@@ -77,7 +77,7 @@ def main(arguments: list[str]) -> None:
 def measure(rounds: int) -> dict[str, Any]:
     """Of each row: the frames' milliseconds, how many were late, and those of the processor."""
     # Two searches at once would take turns on one core with the frames that are timed.
-    with running({"PARETOUR_WORKERS": "1"}, ready=True) as service, chromium() as browser:
+    with serve_process({"PARETOUR_WORKERS": "1"}, ready=True) as service, chromium() as browser:
         rows = {"an empty page": _measured(browser.new_page(), NOTHING, None, rounds)}
         cities = paper_instances(BARE, 1)[0].tolist()
         for width in (1, 2):
@@ -90,11 +90,11 @@ def measure(rounds: int) -> dict[str, Any]:
 
 def _page_row(browser: Browser, address: str, n: int, rounds: int) -> dict[str, float]:
     cities = "\n".join(", ".join(f"{each:.4f}" for each in row) for row in paper_instances(n, 1)[0])
-    with opened(browser, address) as page:
-        done(page)
+    with open_page(browser, address) as page:
+        wait_until_planned(page)
         page.get_by_label("x1, y1, x2, y2").fill(cities)
         page.get_by_role("button", name="Plan").click()
-        done(page)
+        wait_until_planned(page)
         page.get_by_label("A front of 100 tours").wait_for()
         return _measured(page, SLIDER, None, rounds)
 

@@ -20,7 +20,7 @@ from tests.benchmarks.demands import growth, unmet_by_soak
 from tests.benchmarks.provenance import provenance, store
 from tests.benchmarks.under_load import soak_table
 from tests.benchmarks.visitors import Tally, Visitor
-from tests.helpers.serving import running
+from tests.helpers.processes import serve_process
 
 VISITORS = 8
 EVERY = 2.0  # seconds between two looks at the memory
@@ -42,7 +42,7 @@ def main(arguments: list[str]) -> str | None:
 def soak(seconds: float, visitors: int) -> dict[str, Any]:
     """What was answered, what was lost, and how the memory went."""
     tally = Tally()
-    with running({}, ready=True) as service, ThreadPoolExecutor(visitors) as pool:
+    with serve_process({}, ready=True) as service, ThreadPoolExecutor(visitors) as pool:
         parts = urlsplit(service.url)
         address = (str(parts.hostname), int(parts.port or 0))
         until = time.monotonic() + seconds

@@ -14,8 +14,9 @@ import pytest
 
 from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
+from tests.helpers.actors import Shuffler
 from tests.helpers.command import EXAMPLE, ROOT, paretour, started
-from tests.helpers.serving import Shuffler, app_of, serving
+from tests.helpers.serving import app_of, serving
 
 
 def test_the_actors_are_those_of_the_service(url: str) -> None:

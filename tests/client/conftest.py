@@ -10,7 +10,7 @@ from paretour import AsyncClient, Client
 
 from tests.helpers.answers import Connect
 from tests.helpers.serving import LIMITS, app_of, serving
-from tests.helpers.waiting import Waiting
+from tests.helpers.sync_adapter import SyncAdapter
 
 
 @pytest.fixture(params=[Client, AsyncClient])
@@ -21,7 +21,7 @@ def connect(request: pytest.FixtureRequest) -> Iterator[Connect]:
 
         def make(url: str = "http://service", **options: Any) -> Any:
             made = request.param(url, **options)
-            opened.append(made if isinstance(made, Client) else Waiting(made, runner))
+            opened.append(made if isinstance(made, Client) else SyncAdapter(made, runner))
             return opened[-1]
 
         yield make

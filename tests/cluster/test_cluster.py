@@ -30,8 +30,9 @@ from tests.helpers.jobs import (
     later,
     until_found,
 )
+from tests.helpers.processes import ServeProcess, serve_process, work_process
 from tests.helpers.redis_server import LASTING, Redis, redis_server
-from tests.helpers.serving import Running, problem, running, working
+from tests.helpers.serving import problem
 
 SOME_SECONDS = {"coordinates": CITIES, "time_limit": 1.5}
 
@@ -55,13 +56,13 @@ class Machines:
 
     def start_worker(self) -> None:
         before = self.state.workers()
-        self.workers.append(self.stack.enter_context(working(self._settings)))
+        self.workers.append(self.stack.enter_context(work_process(self._settings)))
         while self.state.workers() <= before:
             time.sleep(0.05)
 
     @contextmanager
-    def replica(self) -> Iterator[tuple[Running, httpx.Client]]:
-        with running(self._settings) as service, httpx.Client(base_url=service.url) as client:
+    def replica(self) -> Iterator[tuple[ServeProcess, httpx.Client]]:
+        with serve_process(self._settings) as service, httpx.Client(base_url=service.url) as client:
             client.timeout = 60
             yield service, client
 

@@ -12,8 +12,8 @@ from service.cluster.records import (
 from service.errors import Cancelled, DeadlineExceeded
 from service.jobs.record import UNFINISHED
 from service.search.improve import Progress
-from tests.helpers.puppet import document
 from tests.helpers.released_records import REDIS_HASHES
+from tests.helpers.scripted_runner import document
 from tests.helpers.stores import job, record
 
 

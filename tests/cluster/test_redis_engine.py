@@ -10,9 +10,10 @@ from redis.asyncio import Redis as AsyncRedis
 
 from service.cluster.redis_engine import RedisEngine
 from service.cluster.redis_store import RedisStore
+from tests.helpers.actors import Shuffler
 from tests.helpers.engines import PATIENT, Served, engine_of
 from tests.helpers.jobs import LONG, check, ended, later
-from tests.helpers.serving import Shuffler, engine_app, problem, serving
+from tests.helpers.serving import engine_app, problem, serving
 
 Serve = Callable[..., AbstractContextManager[Served]]
 

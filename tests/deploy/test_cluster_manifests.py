@@ -8,7 +8,7 @@ import pytest
 import redis
 
 from service.cluster.celery_app import QUEUE
-from tests.helpers.deployed import (
+from tests.helpers.deploy_files import (
     AUTOSCALING,
     CLUSTER,
     CLUSTER_COMPOSITION,

@@ -98,19 +98,19 @@ def test_what_the_build_copies_is_there_and_not_ignored() -> None:
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Where the wheel is installed: its own code alone, beside the packages of the tests."""
-    folder = tmp_path_factory.mktemp("image")
-    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check"]
-    build = [*pip, "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", folder, ROOT]
-    subprocess.run(build, check=True)
-    [wheel] = folder.glob("*.whl")
-    prefix = folder / "opt"
-    subprocess.run([*pip, "install", "-q", "--no-deps", "--prefix", prefix, wheel], check=True)
+    prefix = tmp_path_factory.mktemp("image") / "opt"
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "-q"]
+    options = ["--no-deps", "--no-build-isolation", "--prefix", prefix]
+    subprocess.run([*pip, *options, ROOT], check=True)
     return prefix
 
 
 @pytest.fixture
 def environment(installed: Path) -> dict[str, str]:
-    """As in the image: its variables, no home, and nothing of the working tree."""
+    """As in the image: its variables, no home, and nothing of the working tree.
+
+    But the search is interpreted, because to compile it anew takes half a minute.
+    """
     [packages] = installed.glob("lib/*/site-packages")
     given = dict(re.findall(r"(\w+)=(\S+)", only("ENV")))
     with socket.create_server(("127.0.0.1", 0)) as free:
@@ -120,6 +120,8 @@ def environment(installed: Path) -> dict[str, str]:
         "PATH": f"{installed}/bin:{Path(sys.executable).parent}:{os.environ['PATH']}",
         "PYTHONPATH": str(packages),
         "NUMBA_CACHE_DIR": str(installed / "cache"),
+        "NUMBA_DISABLE_JIT": "1",
+        "PARETOUR_WORKERS": "1",
         "PARETOUR_PORT": str(port),
         "HOME": "/nowhere",
     }
@@ -141,7 +143,7 @@ def healthy(environment: dict[str, str]) -> bool:
 
 def first_front(url: str) -> httpx.Response:
     cities = [[0, 0, 1, 3], [2, 5, 0, 0], [4, 1, 2, 2], [3, 3, 5, 1], [1, 4, 4, 4]]
-    deadline = time.monotonic() + 20
+    deadline = time.monotonic() + 60
     while time.monotonic() < deadline:
         try:
             return httpx.post(
@@ -149,7 +151,7 @@ def first_front(url: str) -> httpx.Response:
             )
         except httpx.ConnectError:
             time.sleep(0.02)
-    raise TimeoutError("the server must start within 20 s")
+    raise TimeoutError("the server must start within 60 s")
 
 
 def test_the_image_answers_and_stops_cleanly(
@@ -167,9 +169,9 @@ def test_what_the_build_compiles_is_there(environment: dict[str, str]) -> None:
     [compile_search] = [
         json.loads(argument) for _, argument in INSTRUCTIONS if "warm_up" in argument
     ]
-    # Interpreted, because compiling takes half a minute.
-    interpreted = {**environment, "NUMBA_DISABLE_JIT": "1"}
-    subprocess.run(["python", *compile_search[1:]], cwd="/", env=interpreted, check=True)
+    # Imported and not called: even interpreted it takes some seconds.
+    imported = [argument.replace("warm_up()", "warm_up") for argument in compile_search[1:]]
+    subprocess.run(["python", *imported], cwd="/", env=environment, check=True)
 
 
 def test_the_health_check_fails_where_nothing_listens(environment: dict[str, str]) -> None:

@@ -10,7 +10,7 @@ from compose_spec import PyCompose
 
 from service.__main__ import main
 from service.settings import Settings
-from tests.helpers.deployed import (
+from tests.helpers.deploy_files import (
     AUTOSCALING,
     CACHE,
     COMPOSITIONS,

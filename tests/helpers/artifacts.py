@@ -17,7 +17,7 @@ METADATA = {
 
 
 def always_city_0(path: Path, metadata: dict[str, str]) -> Path:
-    """A file that answers every preference with city 0 over and over."""
+    """Write a file that answers every preference with city 0 over and over; return its path."""
     graph = helper.make_graph(
         [
             helper.make_node("Transpose", ["cities"], ["turned"]),
@@ -40,7 +40,7 @@ def always_city_0(path: Path, metadata: dict[str, str]) -> Path:
 
 
 def by_row_sums(path: Path, name: str = "sums") -> Path:
-    """A file that reads matrices and visits the cities by falling sum of their rows.
+    """Write a file that reads matrices and visits cities by falling row sum; return its path.
 
     Rows of the first objective weigh as much as the preference's first component says, those of
     the second as much as its second.

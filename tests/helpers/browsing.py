@@ -1,48 +1,56 @@
-"""Debian's Chromium, and the page in it."""
+"""Debian's Chromium, and the page in one of its windows."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Literal
 
+import pytest
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
-WITHOUT = "these need Debian's Chromium: apt-get install chromium"
 CHROMIUM = Path("/usr/bin/chromium")
-DESK, PHONE = 1440, 375
-SECOND = 1000.0  # in milliseconds, as the browser counts
+DESK, PHONE = 1440, 375  # widths of a window in pixels
+SECOND = 1000.0  # in milliseconds, playwright's unit
+
+needs_chromium = pytest.mark.skipif(
+    not CHROMIUM.exists(), reason="these need Debian's Chromium: apt-get install chromium"
+)
 
 
 @contextmanager
 def chromium() -> Iterator[Browser]:
+    """Run Chromium until the block ends.
+
+    Until then an event loop is under way in this thread, so that `asyncio.run` is refused.
+    """
     with sync_playwright() as playwright:
         yield playwright.chromium.launch(executable_path=CHROMIUM)
 
 
 @contextmanager
-def opened(
+def open_page(
     browser: Browser,
     address: str,
     width: int = DESK,
     scheme: Literal["light", "dark"] = "light",
 ) -> Iterator[Page]:
-    """The page in a window; whatever the browser complains of is a failure."""
+    """Open the page in a window of its own, and fail if the console has an error at the end."""
     page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)
-    complaints: list[str] = []
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on("console", lambda line: errors.append(line.text) if line.type == "error" else None)
     page.goto(address)
     yield page
     page.close()
     # Chromium writes a line for each refusal of the service, which the page has shown.
-    assert [each for each in complaints if "server responded with a status of" not in each] == []
+    assert [error for error in errors if "server responded with a status of" not in error] == []
 
 
-def done(page: Page) -> None:
-    """Waits until what is being planned is planned."""
+def wait_until_planned(page: Page) -> None:
+    """Wait until the page shows the end of what it is planning."""
     expect(page.locator("#status")).to_contain_text("Done", timeout=60 * SECOND)
 
 
-def drawn(page: Page) -> None:
-    """Waits for the next frame, in which the page draws what was asked of it in this one."""
+def wait_for_next_frame(page: Page) -> None:
+    """Wait for the frame in which the page draws what was changed in this one."""
     page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")

@@ -1,4 +1,4 @@
-"""A real Redis, on a port of its own."""
+"""A redis-server process on a port of its own, which tests may end and begin again."""
 
 import shutil
 import socket
@@ -17,7 +17,7 @@ LASTING = ("redis-server", "--save", "", "--appendonly", "yes")
 
 @dataclass
 class Redis:
-    """A server that can be told to end, and to begin again, and where it is."""
+    """A server with its files in a folder; it keeps port and folder when it begins again."""
 
     port: int
     folder: Path
@@ -26,16 +26,19 @@ class Redis:
 
     @property
     def url(self) -> str:
+        """Its first database."""
         return f"redis://127.0.0.1:{self.port}/0"
 
     def begin(self) -> None:
-        own = ["--port", str(self.port), "--bind", "127.0.0.1", "--dir", str(self.folder)]
+        """Start the process, and wait until it listens."""
+        options = ["--port", str(self.port), "--bind", "127.0.0.1", "--dir", str(self.folder)]
         self.process = subprocess.Popen(
-            [*self.command, *own], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            [*self.command, *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
         _wait_until_listening(self.port)
 
     def end(self) -> None:
+        """Kill the process."""
         if self.process is not None:
             self.process.kill()
             self.process.wait()
@@ -43,7 +46,7 @@ class Redis:
 
 @contextmanager
 def redis_server(folder: Path, command: Sequence[str] = FORGETFUL) -> Iterator[Redis]:
-    """A server with these options, its files in a folder; skips the test if there is none."""
+    """Run redis-server with these options until the block ends; skip where it is not installed."""
     if shutil.which("redis-server") is None:
         pytest.skip("redis-server is not installed")
     with socket.create_server(("127.0.0.1", 0)) as free:

@@ -1,4 +1,4 @@
-"""What schemathesis has to know beyond the OpenAPI document."""
+"""Corrections of schemathesis' requests, for rules that no JSON schema can state."""
 
 import uuid
 from typing import Any
@@ -8,26 +8,28 @@ import schemathesis
 
 @schemathesis.hook
 def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noqa: ARG001
-    """No schema can say that a matrix is square, that its costs are not negative but on the
-    diagonal, that some actors read no matrices, that a start is one of the cities, that a tour
-    visits each once, that places are free cells of a grid, nor that a key belongs to one body.
+    """Make a request that the schema allows one that the service accepts.
+
+    The rules: a matrix is square; its costs are not negative but on the diagonal; some actors read
+    no matrices; a start is one of the cities; a tour visits each of them once; places are free
+    cells of a grid; an idempotency key belongs to one body.
     """
     if _is_key((case.headers or {}).get("Idempotency-Key")):
         case.headers["Idempotency-Key"] = uuid.uuid4().hex
     match case.body:
         case {"grid": _} as body if case.meta.generation.mode.is_positive:
             _make_coverable(body)
-        case {"coordinates": [_, *_] as rows, **others}:
-            _make_fit(case.body, len(rows), others)
-        case {"matrices": [[_, *_] as rows, _] as matrices, **others} if _are_matrices(matrices):
+        case {"coordinates": [_, *_] as rows}:
+            _fit_to_cities(case.body, len(rows))
+        case {"matrices": [[_, *_] as rows, _] as matrices} if _are_matrices(matrices):
             case.body["matrices"] = [[[1.0] * len(rows)] * len(rows)] * 2
-            if others.get("actor") == "pa-one":
+            if case.body.get("actor") == "pa-one":
                 case.body["actor"] = "pa-one-matrix"
-            _make_fit(case.body, len(rows), others)
+            _fit_to_cities(case.body, len(rows))
 
 
 def _make_coverable(body: dict[str, Any]) -> None:
-    """Replaces a task that the schema allows by one that can be done."""
+    """Replace a task of coverage by one that can be done, with the same fields."""
     body |= {"grid": [[0, 0], [0, 0]], "robot_radius": 0, "start": 0, "actor": "pa-one-matrix"}
     body.pop("initial_tours", None)
     n = 2 if "places" in body else 1
@@ -41,43 +43,44 @@ def _make_coverable(body: dict[str, Any]) -> None:
     body |= {name: value for name, value in fit.items() if name in body}
 
 
-def _make_fit(body: dict[str, Any], n: int, others: dict[str, Any]) -> None:
-    if isinstance(others.get("start"), int | float) and others["start"] >= n:
+def _fit_to_cities(body: dict[str, Any], n: int) -> None:
+    """Replace a start and initial tours by such as fit n cities."""
+    if isinstance(body.get("start"), int | float) and body["start"] >= n:
         body["start"] = 0
-    if _are_tours(others.get("initial_tours")):
+    if _are_tours(body.get("initial_tours")):
         body["initial_tours"] = [list(range(n))]
 
 
-def _are_matrices(given: list[Any]) -> bool:
-    """Whether the schema takes them for matrices."""
+def _are_matrices(value: list[Any]) -> bool:
+    """Whether the schema allows the value as matrices."""
     return all(
         isinstance(rows, list)
         and rows != []
         and all(isinstance(row, list) and all(map(_is_number, row)) for row in rows)
-        for rows in given
+        for rows in value
     )
 
 
-def _are_tours(given: Any) -> bool:
-    """Whether the schema takes them for tours."""
+def _are_tours(value: Any) -> bool:
+    """Whether the schema allows the value as tours."""
     return (
-        isinstance(given, list)
-        and given != []
-        and all(isinstance(tour, list) for tour in given)
-        and all(_is_city(city) for tour in given for city in tour)
+        isinstance(value, list)
+        and value != []
+        and all(isinstance(tour, list) for tour in value)
+        and all(_is_city(city) for tour in value for city in tour)
     )
 
 
-def _is_key(given: Any) -> bool:
-    """Whether the schema takes it for an idempotency key."""
+def _is_key(value: Any) -> bool:
+    """Whether the schema allows the value as an idempotency key."""
     return (
-        isinstance(given, str) and 0 < len(given) <= 255 and given.isascii() and given.isprintable()
+        isinstance(value, str) and 0 < len(value) <= 255 and value.isascii() and value.isprintable()
     )
 
 
-def _is_city(given: Any) -> bool:
-    return _is_number(given) and given % 1 == 0 and 0 <= given < 2**31
+def _is_city(value: Any) -> bool:
+    return _is_number(value) and value % 1 == 0 and 0 <= value < 2**31
 
 
-def _is_number(given: Any) -> bool:
-    return not isinstance(given, bool) and isinstance(given, int | float)
+def _is_number(value: Any) -> bool:
+    return not isinstance(value, bool) and isinstance(value, int | float)

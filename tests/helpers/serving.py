@@ -1,28 +1,20 @@
-"""A live server in a thread, and an actor to put behind it."""
+"""The application with stand-ins for its actors, and live servers in a thread of the test."""
 
-import os
-import signal
 import socket
-import subprocess
-import sys
-import tempfile
 import threading
 import time
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import httpx
-import numpy as np
 import uvicorn
 from fastapi import FastAPI
 
-from service.actor import ActorInfo
 from service.api.app import Edge, create_app
-from service.instance import Instance, Kind
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
 from service.jobs.runner import MakeRunner, NamedActor, TaskRunner
@@ -32,78 +24,29 @@ from service.jobs.worker_pool import WorkerPool
 from service.requests.limits import Limits
 from service.server import build
 from service.settings import Settings
+from tests.helpers.actors import Shuffler, info_of
 
 LIMITS = Limits(body_bytes=100_000, cities=50, cells=900, preferences=20, size=30, seconds=0.2)
-
-
-def info_of(name: str, inputs: Kind) -> ActorInfo:
-    return ActorInfo(
-        name=name,
-        digest="0" * 64,
-        commit="0000000",
-        inputs=inputs,
-        sizes=[20, 60],
-        angles=[0, 90],
-        config={},
-        figures={},
-    )
-
-
-@dataclass(frozen=True)
-class Shuffler:
-    """An actor that shuffles the cities, each time the same way.
-
-    With a gate it leaves a mark beside it, and waits until the gate is there.
-    """
-
-    gate: Path | None = None
-    info: ActorInfo = field(default_factory=lambda: info_of("pa-one", "coordinates"))
-
-    @property
-    def started(self) -> bool:
-        assert self.gate is not None
-        return self.gate.with_suffix(".started").exists()
-
-    def open(self) -> None:
-        assert self.gate is not None
-        self.gate.touch()
-
-    def close(self) -> None:
-        assert self.gate is not None
-        for mark in (self.gate, self.gate.with_suffix(".started")):
-            mark.unlink(missing_ok=True)
-
-    def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
-        if self.gate is not None:
-            self.gate.with_suffix(".started").touch()
-            while not self.gate.exists():
-                time.sleep(0.005)
-        rng = np.random.default_rng(0)
-        return np.array([rng.permutation(instance.n) for _ in preferences])
-
-
-class Broken(Shuffler):
-    """An actor with a bug."""
-
-    def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
-        raise RuntimeError(f"no tour of {instance.n} cities for {len(preferences)} preferences")
-
-
 ACTORS = (Shuffler(), Shuffler(info=info_of("pa-one-matrix", "matrices")))
 
 
 @dataclass(frozen=True)
 class ColdRunner(TaskRunner):
-    """A runner that is warm once there is a file."""
+    """A runner whose warm-up lasts until the file `warm` exists."""
 
     warm: Path = Path("/nowhere")
 
     def warm_up(self) -> None:
+        """Wait until the file exists."""
         while not self.warm.exists():
             time.sleep(0.005)
 
 
 def runner_of(*actors: NamedActor, limits: Limits = LIMITS, warm: Path | None = None) -> MakeRunner:
+    """Return a picklable factory of runners with these actors, by default two that shuffle.
+
+    With `warm`, the path of a file, their warm-up lasts until it exists.
+    """
     by_name = {actor.info.name: actor for actor in actors or ACTORS}
     if warm is None:
         return partial(TaskRunner, by_name, limits)
@@ -116,6 +59,7 @@ def workers_of(
     queue: int = 8,
     seconds: float = 60.0,
 ) -> WorkerPool:
+    """Return a pool of one process with a queue of eight, unless others are asked for."""
     make_runner = make_runner or runner_of()
     return WorkerPool(make_runner, workers=workers, queue=queue, seconds=seconds)
 
@@ -127,6 +71,7 @@ def app_of(
     limits: Limits = LIMITS,
     edge: Edge | None = None,
 ) -> FastAPI:
+    """Return the application with the engine of one machine and, by default, a store in memory."""
     store = store or SqliteStore(IN_MEMORY, entries=100, max_age=60)
     workers = workers or workers_of(runner_of(*actors, limits=limits))
     return engine_app(store, LocalEngine(workers, store), *actors, limits=limits, edge=edge)
@@ -139,13 +84,20 @@ def engine_app(
     limits: Limits = LIMITS,
     edge: Edge | None = None,
 ) -> FastAPI:
+    """Return the application with this engine and this store."""
     info = {actor.info.name: actor.info for actor in actors or ACTORS}
     return create_app(info, store, engine, limits, "test", edge)
 
 
 @contextmanager
 def serving(app: FastAPI, drain: int = 5, warm: bool = True) -> Iterator[str]:
-    """The address of a server that answers as long as the block lasts."""
+    """Serve an application in a thread until the block ends, and yield its address.
+
+    Args:
+        app: the application.
+        drain: seconds that open requests have when it is told to stop.
+        warm: whether to wait until its workers are warm.
+    """
     listening = socket.create_server(("127.0.0.1", 0))
     server = uvicorn.Server(uvicorn.Config(app, log_config=None, timeout_graceful_shutdown=drain))
     thread = threading.Thread(target=server.run, args=[[listening]])
@@ -163,68 +115,16 @@ def serving(app: FastAPI, drain: int = 5, warm: bool = True) -> Iterator[str]:
 
 @contextmanager
 def serving_released() -> Iterator[str]:
-    """The address of the service as it is released, once it takes work of every kind."""
+    """Serve the service as it is released, and yield its address once its worker is warm.
+
+    The fixture `released` of tests/conftest.py is such a server for a whole session.
+    """
     with serving(build(Settings(workers=1))) as address:
         yield address
 
 
-@dataclass
-class Running:
-    """The command `paretour serve`, and what it has written to its log once it has ended."""
-
-    url: str
-    process: subprocess.Popen[bytes]
-    log: bytes = b""
-
-
-@contextmanager
-def running(settings: Mapping[str, str], ready: bool = False) -> Iterator[Running]:
-    """The service as a process of its own, which answers, or is ready, and ends with the block."""
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
-    command = [sys.executable, "-m", "service", "serve", "--port", str(port)]
-    # Whoever does not wait until it is ready has no use for compiled code.
-    environment = {**os.environ, "NUMBA_DISABLE_JIT": "0" if ready else "1", **settings}
-    with (
-        tempfile.TemporaryFile() as log,
-        subprocess.Popen(command, env=environment, stderr=log) as process,
-    ):
-        service = Running(f"http://127.0.0.1:{port}", process)
-        try:
-            _wait_for(f"{service.url}/health/{'ready' if ready else 'live'}")
-            yield service
-        finally:
-            process.send_signal(signal.SIGTERM)
-            process.wait(timeout=60)
-            log.seek(0)
-            service.log = log.read()
-
-
-@contextmanager
-def working(settings: Mapping[str, str]) -> Iterator[subprocess.Popen[bytes]]:
-    """The command `paretour work`, which ends with the block."""
-    command = [sys.executable, "-m", "service", "work"]
-    environment = {**os.environ, **settings}
-    with subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL) as process:
-        try:
-            yield process
-        finally:
-            process.send_signal(signal.SIGTERM)
-            process.wait(timeout=60)
-
-
-def _wait_for(url: str) -> None:
-    deadline = time.monotonic() + 300
-    while time.monotonic() < deadline:
-        with suppress(httpx.ConnectError):
-            if httpx.get(url).status_code == 200:
-                return
-        time.sleep(0.05)
-    raise TimeoutError(f"{url} must answer within five minutes")
-
-
 def problem(response: httpx.Response, status: int, code: str) -> dict[str, Any]:
-    """The problem document, checked for what every one of them must say."""
+    """Return the problem document of a response, after a check of the members that all have."""
     assert response.status_code == status, response.text
     assert response.headers["content-type"] == "application/problem+json"
     document = response.json()

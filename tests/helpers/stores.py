@@ -11,7 +11,7 @@ from service.jobs.record import Record
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
 from service.requests.task import TaskSource
-from tests.helpers.puppet import document
+from tests.helpers.scripted_runner import document
 
 
 def record(id_: str, caller: str = "us", **more: Any) -> Record:

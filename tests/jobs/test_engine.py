@@ -13,6 +13,7 @@ import pytest
 
 from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
+from tests.helpers.actors import Broken, Shuffler
 from tests.helpers.engines import Clustered, Embedded, engine_of
 from tests.helpers.jobs import (
     CITIES,
@@ -26,7 +27,7 @@ from tests.helpers.jobs import (
     later,
     until_found,
 )
-from tests.helpers.serving import Broken, Shuffler, problem
+from tests.helpers.serving import problem
 
 Engine = Embedded | Clustered
 

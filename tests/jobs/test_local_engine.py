@@ -12,7 +12,7 @@ from service.jobs.record import Record
 from service.jobs.submission import Submission
 from service.jobs.worker_pool import WorkerPool
 from service.requests.task import TaskSource
-from tests.helpers.serving import Shuffler
+from tests.helpers.actors import Shuffler
 
 FRONT = FrontDocument(
     cities=3,

@@ -20,14 +20,14 @@ from service.errors import (
 )
 from service.jobs.front_document import FrontDocument
 from service.jobs.worker_pool import WorkerPool
-from tests.helpers.puppet import Puppet, source, working
+from tests.helpers.scripted_runner import ScriptedRunner, source, worker_pool
 
 
 def run(test: Callable[[WorkerPool], Awaitable[None]], *args: Any, **options: Any) -> None:
     """A test with workers at work."""
 
     async def with_workers() -> None:
-        async with working(*args, **options) as workers:
+        async with worker_pool(*args, **options) as workers:
             await asyncio.wait_for(test(workers), timeout=60)
 
     asyncio.run(with_workers())
@@ -130,7 +130,7 @@ def test_work_whose_process_is_killed_is_done_by_another(tmp_path: Path) -> None
         assert (await front(workers, b"die")).terminated == "converged"
         assert workers.lost == 1
 
-    run(test, Puppet(lives=lives))
+    run(test, ScriptedRunner(lives=lives))
 
 
 def test_work_that_kills_two_processes_is_given_up_and_others_are_done(tmp_path: Path) -> None:
@@ -144,7 +144,7 @@ def test_work_that_kills_two_processes_is_given_up_and_others_are_done(tmp_path:
         assert (await other.front()).terminated == "converged"
         assert lives.read_bytes() == b"3"
 
-    run(test, Puppet(lives=lives), queue=1)
+    run(test, ScriptedRunner(lives=lives), queue=1)
 
 
 def test_a_process_killed_while_idle_is_replaced() -> None:
@@ -171,7 +171,7 @@ def test_compiled_code_may_not_be_used_before_it_is_warm(tmp_path: Path) -> None
         assert (await front(workers)).terminated == "converged"
         workers.check_ready()
 
-    run(test, Puppet(warm=tmp_path / "warm"), workers=2)
+    run(test, ScriptedRunner(warm=tmp_path / "warm"), workers=2)
 
 
 def is_warm(workers: WorkerPool) -> bool:

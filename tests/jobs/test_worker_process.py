@@ -9,10 +9,10 @@ ROOT = Path(__file__).parents[2]
 
 ORPHANS = """
 import asyncio
-from tests.helpers.puppet import source, working
+from tests.helpers.scripted_runner import source, worker_pool
 
 async def main():
-    async with working(workers=2) as workers:
+    async with worker_pool(workers=2) as workers:
         submissions = [workers.submit(source(b"hang")) for _ in range(2)]
         while workers.working < 2:
             await asyncio.sleep(0.01)

@@ -15,31 +15,22 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Browser, Locator, Page, Route, expect
 
-from service.cli.tsplib import parse_matrix
-from service.server import build
+from service.cli.tsplib import matrix
 from service.settings import Settings
-from tests.helpers.browsing import CHROMIUM, DESK, PHONE, WITHOUT, chromium, done, drawn, opened
+from tests.helpers.browsing import (
+    DESK,
+    PHONE,
+    needs_chromium,
+    open_page,
+    wait_for_next_frame,
+    wait_until_planned,
+)
 from tests.helpers.serving import app_of, serving
 
 SERVICE = Path(__file__).parents[2] / "service"
 CITIES = "0, 0, 5, 5\n3.1, 0.4, 9, 1\n5.2, 2, 2, 8\n4, 5.5, 7, 7\n1, 4.2, 1, 2\n2.5, 2.5, 6, 0"
 
 at_both_widths = pytest.mark.parametrize("width", [DESK, PHONE])
-needs_browser = pytest.mark.skipif(not CHROMIUM.exists(), reason=WITHOUT)
-
-
-@pytest.fixture(scope="module")
-def address() -> Iterator[str]:
-    with serving(build(Settings())) as address:
-        while httpx.get(f"{address}/health/ready").status_code == 503:
-            pass
-        yield address
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
 
 
 @pytest.fixture
@@ -49,14 +40,14 @@ def width() -> int:
 
 
 @pytest.fixture
-def page(width: int, browser: Browser, address: str) -> Iterator[Page]:
+def page(width: int, browser: Browser, released: str) -> Iterator[Page]:
     """The page with its first example planned."""
-    with opened(browser, address, width) as page:
-        done(page)
+    with open_page(browser, released, width) as page:
+        wait_until_planned(page)
         yield page
 
 
-@needs_browser
+@needs_chromium
 @at_both_widths
 def test_the_page_opens_with_an_example_and_its_front(page: Page) -> None:
     expect(page.get_by_label("A front of 100 tours: distance from")).to_be_visible()
@@ -64,7 +55,7 @@ def test_the_page_opens_with_an_example_and_its_front(page: Page) -> None:
     expect(page.locator("#figures")).to_contain_text("Network alone")
 
 
-@needs_browser
+@needs_chromium
 @at_both_widths
 def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> None:
     slider = page.get_by_role("slider", name="Angle")
@@ -81,14 +72,14 @@ def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> N
     expect(slider).to_have_attribute("aria-valuetext", re.compile("tour 99 of 100"))
 
 
-@needs_browser
+@needs_chromium
 def test_a_pinned_tour_stays_beside_the_selected_one(page: Page) -> None:
     slider = page.get_by_role("slider", name="Angle")
     slider.press("Home")
-    drawn(page)
+    wait_for_next_frame(page)
     page.get_by_role("button", name="Pin to compare").click()
     slider.press("End")
-    drawn(page)
+    wait_for_next_frame(page)
     selected, pinned, difference = page.get_by_role("row", name="Risk").get_by_role("cell").all()
     assert number(selected) < number(pinned)
     expect(difference).to_contain_text("\N{MINUS SIGN}")
@@ -96,7 +87,7 @@ def test_a_pinned_tour_stays_beside_the_selected_one(page: Page) -> None:
     expect(page.get_by_role("row", name="Risk").get_by_role("cell")).to_have_count(1)
 
 
-@needs_browser
+@needs_chromium
 def test_what_was_found_stays_when_the_search_is_stopped(page: Page) -> None:
     page.get_by_label("Seconds of search").fill("50")
     page.get_by_role("button", name="Plan").click()
@@ -107,7 +98,7 @@ def test_what_was_found_stays_when_the_search_is_stopped(page: Page) -> None:
     expect(page.get_by_role("button", name="Plan")).to_be_enabled()
 
 
-@needs_browser
+@needs_chromium
 def test_the_search_is_stopped_before_the_service_has_taken_it(page: Page) -> None:
     def hold(route: Route) -> None:
         if "prefer" not in route.request.headers:
@@ -121,7 +112,7 @@ def test_the_search_is_stopped_before_the_service_has_taken_it(page: Page) -> No
     expect(page.get_by_role("button", name="Plan")).to_be_enabled()
 
 
-@needs_browser
+@needs_chromium
 def test_a_link_opens_the_same_front_with_its_cities(page: Page, browser: Browser) -> None:
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy link").click()
@@ -137,42 +128,42 @@ def test_a_link_opens_the_same_front_with_its_cities(page: Page, browser: Browse
     other.close()
 
 
-@needs_browser
+@needs_chromium
 def test_a_link_to_the_networks_front_calls_it_that(page: Page, browser: Browser) -> None:
     page.get_by_label("Seconds of search").fill("0")
     page.get_by_role("button", name="Plan").click()
-    done(page)
+    wait_until_planned(page)
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy link").click()
     expect(page.get_by_text("Copied")).to_be_visible()
-    with opened(browser, page.evaluate("navigator.clipboard.readText()")) as other:
-        done(other)
+    with open_page(browser, page.evaluate("navigator.clipboard.readText()")) as other:
+        wait_until_planned(other)
         for shown in (page, other):
             expect(shown.locator("#legend .alone")).to_be_visible()
             expect(shown.locator("#legend .improved")).to_be_hidden()
 
 
-@needs_browser
+@needs_chromium
 def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
     page: Page, browser: Browser
 ) -> None:
     matrices = np.random.default_rng(0).random((2, 60, 60)).tolist()
     bring(page, {"costs.json": json.dumps({"matrices": matrices, "time_limit": 0})})
     page.get_by_role("button", name="Plan").click()
-    done(page)
+    wait_until_planned(page)
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy link").click()
     expect(page.get_by_text("This link opens the front without its maps")).to_be_visible()
     link = page.evaluate("navigator.clipboard.readText()")
     assert len(link) < 100
-    with opened(browser, link) as other:
-        done(other)
+    with open_page(browser, link) as other:
+        wait_until_planned(other)
         expect(other.get_by_text("The link names a front alone")).to_be_visible()
         expect(other.locator("#plane-1")).to_be_hidden()
         expect(other.get_by_label("A front of")).to_be_visible()
 
 
-@needs_browser
+@needs_chromium
 def test_a_picture_of_a_map_is_covered(browser: Browser) -> None:
     with serving(app_of(limits=Settings().limits)) as address:
         page = browser.new_page()
@@ -187,13 +178,13 @@ def test_a_picture_of_a_map_is_covered(browser: Browser) -> None:
         expect(page.get_by_label("Metres a cell")).to_have_value("0.05")
         page.get_by_label("Seconds of search").fill("0.1")
         page.get_by_role("button", name="Plan").click()
-        done(page)
+        wait_until_planned(page)
         expect(page.locator("#grid")).to_be_visible()
         expect(page.locator("#plane-1")).to_be_hidden()
         page.close()
 
 
-@needs_browser
+@needs_chromium
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
@@ -216,7 +207,7 @@ def tsplib(places: str) -> str:
     return f"{head}\n{places}\nEOF\n"
 
 
-@needs_browser
+@needs_chromium
 @pytest.mark.parametrize(
     "files",
     [
@@ -246,7 +237,7 @@ def pair(tmp_path: Path) -> list[Path]:
     return files
 
 
-@needs_browser
+@needs_chromium
 def test_two_files_of_tsplib_give_the_front_of_the_command_line(
     page: Page, pair: list[Path]
 ) -> None:
@@ -260,7 +251,7 @@ def test_two_files_of_tsplib_give_the_front_of_the_command_line(
     page.get_by_label("Seed").fill("3")
     page.get_by_label("Seconds of search").fill("50")
     page.get_by_role("button", name="Plan").click()
-    done(page)
+    wait_until_planned(page)
     with page.expect_download() as saved:
         page.get_by_role("button", name="Save JSON").click()
     found = json.loads(saved.value.path().read_text())
@@ -268,22 +259,20 @@ def test_two_files_of_tsplib_give_the_front_of_the_command_line(
         assert found[name] == expected[name]
 
 
-@needs_browser
+@needs_chromium
 def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
     page: Page, browser: Browser, pair: list[Path]
 ) -> None:
     page.get_by_label("Open files").set_input_files(pair)
     expect(page.get_by_label("Distances rounded")).to_be_checked()
     page.get_by_role("button", name="Plan").click()
-    done(page)
-    assert asked_by_curl(page)["matrices"] == [
-        parse_matrix(file.read_text()).tolist() for file in pair
-    ]
+    wait_until_planned(page)
+    assert asked_by_curl(page)["matrices"] == [matrix(file.read_text()).tolist() for file in pair]
     link = page.get_by_role("button", name="Copy link")
     link.click()
     expect(link).to_have_text("Copied")
-    with opened(browser, page.evaluate("navigator.clipboard.readText()")) as other:
-        done(other)
+    with open_page(browser, page.evaluate("navigator.clipboard.readText()")) as other:
+        wait_until_planned(other)
         expect(other.get_by_label("Distances rounded")).to_be_checked()
         expect(other.locator("#plane-1 canvas.selected")).to_be_visible()
         other.get_by_label("Distances rounded").uncheck()
@@ -291,7 +280,7 @@ def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
         assert len(asked_by_curl(other)["coordinates"]) == 12
 
 
-@needs_browser
+@needs_chromium
 def test_a_list_of_angles_in_a_file_is_asked_for(page: Page) -> None:
     bring(page, {"few.json": '{"coordinates": [[0, 0, 5, 5]], "preferences": [10, 80]}'})
     assert asked_by_curl(page)["preferences"] == [10, 80]
@@ -300,7 +289,7 @@ def test_a_list_of_angles_in_a_file_is_asked_for(page: Page) -> None:
     assert asked_by_curl(page)["preferences"] == 7
 
 
-@needs_browser
+@needs_chromium
 def test_what_the_service_refuses_is_said_at_the_field(page: Page) -> None:
     page.get_by_label("Seconds of search").fill("soon")
     page.get_by_role("button", name="Plan").click()
@@ -312,7 +301,7 @@ def test_what_the_service_refuses_is_said_at_the_field(page: Page) -> None:
     expect(page.locator("#cities-fault")).to_contain_text("City 1 must have 4 items")
 
 
-@needs_browser
+@needs_chromium
 def test_cities_are_clicked_into_place_plane_by_plane(page: Page) -> None:
     page.get_by_role("button", name="Clear").click()
     page.get_by_role("button", name="Click into place").click()
@@ -324,7 +313,7 @@ def test_cities_are_clicked_into_place_plane_by_plane(page: Page) -> None:
     expect(page.locator("#status")).to_have_text("Done: 1 tour found.")
 
 
-@needs_browser
+@needs_chromium
 @at_both_widths
 def test_the_keyboard_is_enough(page: Page) -> None:
     page.get_by_label("x1, y1, x2, y2").fill(CITIES)
@@ -342,26 +331,26 @@ def test_the_keyboard_is_enough(page: Page) -> None:
     expect(slider).to_have_attribute("aria-valuetext", re.compile("tour 5 of 5"))
 
 
-@needs_browser
-def test_the_front_can_be_taken_along(page: Page, address: str) -> None:
+@needs_chromium
+def test_the_front_can_be_taken_along(page: Page, released: str) -> None:
     with page.expect_download() as saved:
         page.get_by_role("button", name="Save JSON").click()
     answer = json.loads(saved.value.path().read_text())
-    assert answer == httpx.get(f"{address}/front/{answer['id']}").json()
+    assert answer == httpx.get(f"{released}/front/{answer['id']}").json()
     with page.expect_download() as saved:
         page.get_by_role("button", name="Save CSV").click()
     head, *lines = saved.value.path().read_text().splitlines()
     assert head == "angle,length_1,length_2,tour"
     assert len(lines) == len(answer["front"])
     asked = asked_by_curl(page)
-    found = httpx.post(f"{address}/front", json={**asked, "time_limit": 0}).json()
+    found = httpx.post(f"{released}/front", json={**asked, "time_limit": 0}).json()
     assert found["cities"] == 61
 
 
-@needs_browser
-def test_the_reference_needs_nothing_from_elsewhere(browser: Browser, address: str) -> None:
+@needs_chromium
+def test_the_reference_needs_nothing_from_elsewhere(browser: Browser, released: str) -> None:
     page = browser.new_page()
-    page.goto(f"{address}/docs")
+    page.goto(f"{released}/docs")
     expect(
         page.get_by_role(
             "button", name="POST /front Plan the front of tours through the cities given"
@@ -387,7 +376,7 @@ def bring(page: Page, files: dict[str, str]) -> None:
 
 
 def figure(page: Page, name: str) -> float:
-    drawn(page)
+    wait_for_next_frame(page)
     return number(page.get_by_role("row", name=name).get_by_role("cell").first)
 
 
@@ -401,14 +390,14 @@ def test_what_the_page_loads_weighs_less_than_half_a_megabyte() -> None:
 
 
 def test_every_vendored_library_comes_with_its_licence() -> None:
-    libraries = [*SERVICE.glob("page/vendor/*"), *SERVICE.glob("docs/vendor/*")]
+    libraries = [*SERVICE.glob("page/vendor/*"), *SERVICE.glob("reference/vendor/*")]
     assert libraries
     assert all((library / "LICENSE").exists() for library in libraries)
 
 
-def test_a_browser_may_load_nothing_from_elsewhere(address: str) -> None:
+def test_a_browser_may_load_nothing_from_elsewhere(released: str) -> None:
     for path in ("/", "/docs", "/actors", "/nowhere"):
-        policy = httpx.get(f"{address}{path}").headers["content-security-policy"]
+        policy = httpx.get(f"{released}{path}").headers["content-security-policy"]
         assert "default-src 'none'" in policy
         assert "unsafe" not in policy
         assert "http" not in policy

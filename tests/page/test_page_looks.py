@@ -1,20 +1,25 @@
 """How the page looks: on a phone and on a desk, in light and in dark, whatever is planned on it."""
 
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.helpers.browsing import CHROMIUM, DESK, PHONE, WITHOUT, chromium, done, drawn, opened
-from tests.helpers.serving import serving_released
+from tests.helpers.browsing import (
+    DESK,
+    PHONE,
+    needs_chromium,
+    open_page,
+    wait_for_next_frame,
+    wait_until_planned,
+)
 
 EXAMPLES = ["City deliveries", "Drone inspection", "Warehouse cleaning"]
 LEGIBLE, SEEN = 4.5, 3.0  # contrasts that WCAG 2.2 demands of text, and of lines
 
-pytestmark = pytest.mark.skipif(not CHROMIUM.exists(), reason=WITHOUT)
+pytestmark = needs_chromium
 
 # Every piece of text that is seen, with its colour and what lies behind it.
 TEXTS = """() => {
@@ -50,27 +55,15 @@ LINES = """() => {
 }"""
 
 
-@pytest.fixture(scope="module")
-def address() -> Iterator[str]:
-    with serving_released() as address:
-        yield address
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
-
-
 @pytest.mark.parametrize("width", [DESK, PHONE])
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_nothing_sticks_out_at_either_width(
-    browser: Browser, address: str, width: int, example: str
+    browser: Browser, released: str, width: int, example: str
 ) -> None:
-    with opened(browser, address, width) as page:
-        done(page)
+    with open_page(browser, released, width) as page:
+        wait_until_planned(page)
         page.get_by_label("Example").select_option(example)
-        done(page)
+        wait_until_planned(page)
         unfold(page)
         assert page.evaluate("document.documentElement.scrollWidth") == width
         page.get_by_label("Seconds of search").fill("as long as it takes, if that is not forever")
@@ -81,10 +74,10 @@ def test_nothing_sticks_out_at_either_width(
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_every_text_is_legible_against_what_lies_behind_it(
-    browser: Browser, address: str, scheme: Any
+    browser: Browser, released: str, scheme: Any
 ) -> None:
-    with opened(browser, address, scheme=scheme) as page:
-        done(page)
+    with open_page(browser, released, scheme=scheme) as page:
+        wait_until_planned(page)
         page.get_by_role("button", name="Pin to compare").click()
         page.get_by_label("Seconds of search").fill("soon")
         page.get_by_role("button", name="Plan").click()
@@ -100,14 +93,14 @@ def test_every_text_is_legible_against_what_lies_behind_it(
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_cities_and_tours_stand_out_from_the_maps(
-    browser: Browser, address: str, scheme: Any
+    browser: Browser, released: str, scheme: Any
 ) -> None:
-    with opened(browser, address, scheme=scheme) as page:
-        done(page)
+    with open_page(browser, released, scheme=scheme) as page:
+        wait_until_planned(page)
         page.get_by_role("slider", name="Angle").press("Home")
         page.get_by_role("button", name="Pin to compare").click()
         page.get_by_role("slider", name="Angle").press("End")
-        drawn(page)
+        wait_for_next_frame(page)
         lines = page.evaluate(LINES)
         assert len(lines) == 6  # cities, the selected tour and the pinned one, in either plane
         for (*colour, alpha), ground in lines:
@@ -115,32 +108,32 @@ def test_cities_and_tours_stand_out_from_the_maps(
             assert contrast(colour, ground) >= SEEN
 
 
-def test_the_maps_follow_when_the_page_turns_dark(browser: Browser, address: str) -> None:
-    with opened(browser, address) as page:
-        done(page)
-        drawn(page)
+def test_the_maps_follow_when_the_page_turns_dark(browser: Browser, released: str) -> None:
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        wait_for_next_frame(page)
         before = page.evaluate(LINES)
         page.emulate_media(color_scheme="dark")
-        drawn(page)
+        wait_for_next_frame(page)
         after = page.evaluate(LINES)
         assert all(one[0] != other[0] for one, other in zip(before, after, strict=True))
 
 
-def test_a_thousand_cities_and_a_hundred_tours_are_shown(browser: Browser, address: str) -> None:
+def test_a_thousand_cities_and_a_hundred_tours_are_shown(browser: Browser, released: str) -> None:
     cities = np.random.default_rng(0).random((1000, 4)).round(4)
-    with opened(browser, address) as page:
-        done(page)
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
         page.get_by_label("x1, y1, x2, y2").fill("\n".join(",".join(map(str, r)) for r in cities))
         expect(page.locator("#count")).to_have_text("1,000 cities")
         page.get_by_role("button", name="Plan").click()
         expect(page.get_by_label("A front of 100 tours")).to_be_visible(timeout=120_000)
-        done(page)
+        wait_until_planned(page)
         slider = page.get_by_role("slider", name="Angle")
         shown = set()
         for key, place in [("Home", 1), ("PageUp", 11), ("End", 100)]:
             slider.press(key)
             expect(slider).to_have_attribute("aria-valuetext", re.compile(f"tour {place} of 100"))
-            drawn(page)
+            wait_for_next_frame(page)
             shown.add(page.locator("#plane-1 canvas.selected").evaluate("c => c.toDataURL()"))
         assert len(shown) == 3
 

@@ -1,26 +1,18 @@
 """The page before a service that is not ready, or wants to know who calls."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
 from playwright.sync_api import Browser, expect
 
 from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
 from service.settings import Settings
-from tests.helpers.browsing import CHROMIUM, WITHOUT, chromium, done, opened
+from tests.helpers.browsing import needs_chromium, open_page, wait_until_planned
 from tests.helpers.serving import app_of, runner_of, serving, workers_of
 
 LIMITS = Settings().limits
 
-pytestmark = pytest.mark.skipif(not CHROMIUM.exists(), reason=WITHOUT)
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
+pytestmark = needs_chromium
 
 
 def test_the_page_says_that_the_service_warms_up_and_goes_on_by_itself(
@@ -29,12 +21,12 @@ def test_the_page_says_that_the_service_warms_up_and_goes_on_by_itself(
     warm = tmp_path / "warm"
     workers = workers_of(runner_of(limits=LIMITS, warm=warm))
     app = app_of(workers=workers, limits=LIMITS)
-    with serving(app, warm=False) as address, opened(browser, address) as page:
+    with serving(app, warm=False) as address, open_page(browser, address) as page:
         status = page.locator("#status")
         expect(status).to_contain_text("The search is being compiled")
         expect(page.get_by_role("button", name="Stop")).to_be_enabled()
         warm.touch()
-        done(page)
+        wait_until_planned(page)
         expect(page.get_by_label("A front of")).to_be_visible()
 
 
@@ -42,7 +34,7 @@ def test_the_page_asks_for_a_key_and_uses_it(browser: Browser) -> None:
     key, digest = new_key()
     access = Access([KeyHash(caller="dispatch", digest=digest)])
     app = app_of(limits=LIMITS, edge=Edge(access=access))
-    with serving(app) as address, opened(browser, address) as page:
+    with serving(app) as address, open_page(browser, address) as page:
         field = page.get_by_label("API key")
         expect(page.locator("#key-fault")).to_contain_text("key")
         expect(field).to_be_focused()
@@ -52,6 +44,6 @@ def test_the_page_asks_for_a_key_and_uses_it(browser: Browser) -> None:
         expect(page.locator("#status")).to_be_hidden()
         field.fill(key)
         field.press("Enter")
-        done(page)
+        wait_until_planned(page)
         expect(page.locator("#key-fault")).to_be_empty()
         expect(page.get_by_label("A front of")).to_be_visible()

@@ -9,7 +9,8 @@ from service.coverage.survey import Coverage
 from service.errors import InvalidCoverage, Refusal
 from service.instance import Instance
 from service.requests.task import TaskSource, choose_actor, parse_task
-from tests.helpers.serving import LIMITS, info_of
+from tests.helpers.actors import info_of
+from tests.helpers.serving import LIMITS
 
 FACTS = {
     "pa-one": info_of("pa-one", "coordinates"),

@@ -1,4 +1,4 @@
-"""A planner that does what it is told, in a worker process: the body of the work says what."""
+"""A runner for tests of worker processes, which does what the body of a request names."""
 
 import os
 import signal
@@ -20,25 +20,28 @@ from service.search.improve import Progress
 
 
 @dataclass(frozen=True)
-class Puppet:
-    """Its lives are bytes in a file, if it has one: with each work that kills it, one goes.
+class ScriptedRunner:
+    """A runner that fails, dies, waits, hangs or reports, as the body says.
 
-    It warms up once the file `warm` is there, if it is to wait for one.
+    Each death takes one byte from the file `lives`; where none is left it plans instead. With
+    `warm`, the path of a file, its warm-up lasts until the file exists.
     """
 
     lives: Path = Path("/nowhere")
     warm: Path | None = None
 
     def warm_up(self) -> None:
+        """Wait until the file exists."""
         while self.warm is not None and not self.warm.exists():
             time.sleep(0.01)
 
     def run(self, source: TaskSource, stop: Callable[[], bool], report: Report) -> FrontDocument:
+        """Return a front of one tour, after what the body names."""
         match source.body:
             case b"fail":
                 raise KeyError("city")
             case b"die":
-                self._die_while_it_lives()
+                self._die_once_more()
             case b"wait":
                 while not stop():
                     time.sleep(0.001)
@@ -53,13 +56,14 @@ class Puppet:
                     time.sleep(0.01)
         return document("converged")
 
-    def _die_while_it_lives(self) -> None:
+    def _die_once_more(self) -> None:
         if left := self.lives.read_bytes():
             self.lives.write_bytes(left[1:])
             os.kill(os.getpid(), signal.SIGKILL)
 
 
 def document(terminated: str | None, gained: float | None = None) -> FrontDocument:
+    """Return a front of one tour through three cities."""
     front = Front(
         tours=np.arange(3)[np.newaxis],
         points=np.ones((1, 2)),
@@ -74,22 +78,23 @@ def document(terminated: str | None, gained: float | None = None) -> FrontDocume
 
 
 def source(body: bytes = b"") -> TaskSource:
+    """Return a task's source of which the body says what the runner does."""
     return TaskSource("front", body)
 
 
-def _same(puppet: Puppet) -> Puppet:
-    return puppet
+def _same(runner: ScriptedRunner) -> ScriptedRunner:
+    return runner
 
 
 @asynccontextmanager
-async def working(
-    puppet: Puppet | None = None, workers: int = 1, queue: int = 0, seconds: float = 60.0
+async def worker_pool(
+    runner: ScriptedRunner | None = None, workers: int = 1, queue: int = 0, seconds: float = 60.0
 ) -> AsyncIterator[WorkerPool]:
-    """Workers at work."""
-    make_runner = partial(_same, puppet or Puppet())
-    crew = WorkerPool(make_runner, workers=workers, queue=queue, seconds=seconds)
-    await crew.start()
+    """Run a pool of processes with such a runner until the block ends."""
+    make_runner = partial(_same, runner or ScriptedRunner())
+    pool = WorkerPool(make_runner, workers=workers, queue=queue, seconds=seconds)
+    await pool.start()
     try:
-        yield crew
+        yield pool
     finally:
-        await crew.close()
+        await pool.close()

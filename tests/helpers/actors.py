@@ -1,0 +1,70 @@
+"""Stand-ins for released actors, to put behind a server."""
+
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from service.actor import ActorInfo
+from service.instance import Instance, Kind
+
+
+def info_of(name: str, inputs: Kind) -> ActorInfo:
+    """Return the information of an actor with this name that reads coordinates or matrices."""
+    return ActorInfo(
+        name=name,
+        digest="0" * 64,
+        commit="0000000",
+        inputs=inputs,
+        sizes=[20, 60],
+        angles=[0, 90],
+        config={},
+        figures={},
+    )
+
+
+@dataclass(frozen=True)
+class Shuffler:
+    """An actor that shuffles the cities, each time the same way.
+
+    With a gate, which is the path of a file, it touches `<gate>.started` at each call and waits
+    until the gate exists. So a test in another process sees that it began, and lets it go on.
+    """
+
+    gate: Path | None = None
+    info: ActorInfo = field(default_factory=lambda: info_of("pa-one", "coordinates"))
+
+    @property
+    def started(self) -> bool:
+        """Whether a call has reached the gate since it was closed."""
+        assert self.gate is not None
+        return self.gate.with_suffix(".started").exists()
+
+    def open(self) -> None:
+        """Let all calls pass."""
+        assert self.gate is not None
+        self.gate.touch()
+
+    def close(self) -> None:
+        """Make the next call wait."""
+        assert self.gate is not None
+        for mark in (self.gate, self.gate.with_suffix(".started")):
+            mark.unlink(missing_ok=True)
+
+    def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
+        """Return one random tour for each preference, once the gate is open."""
+        if self.gate is not None:
+            self.gate.with_suffix(".started").touch()
+            while not self.gate.exists():
+                time.sleep(0.005)
+        rng = np.random.default_rng(0)
+        return np.array([rng.permutation(instance.n) for _ in preferences])
+
+
+class Broken(Shuffler):
+    """An actor that raises RuntimeError at every call."""
+
+    def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
+        """Raise RuntimeError."""
+        raise RuntimeError(f"no tour of {instance.n} cities for {len(preferences)} preferences")

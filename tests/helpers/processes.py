@@ -1,0 +1,74 @@
+"""The commands `paretour serve` and `paretour work` as processes of their own."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+
+import httpx
+
+
+@dataclass
+class ServeProcess:
+    """A running `paretour serve`; `log` is what it wrote to standard error, once it has ended."""
+
+    url: str
+    process: subprocess.Popen[bytes]
+    log: bytes = b""
+
+
+@contextmanager
+def serve_process(settings: Mapping[str, str], ready: bool = False) -> Iterator[ServeProcess]:
+    """Run `paretour serve` with these environment variables until the block ends.
+
+    Args:
+        settings: environment variables beside the test's own.
+        ready: whether to wait until its workers are warm, and not only until it answers. Without,
+            the search is interpreted, because compiled code would not be used.
+    """
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    command = [sys.executable, "-m", "service", "serve", "--port", str(port)]
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "0" if ready else "1", **settings}
+    with (
+        tempfile.TemporaryFile() as log,
+        subprocess.Popen(command, env=environment, stderr=log) as process,
+    ):
+        service = ServeProcess(f"http://127.0.0.1:{port}", process)
+        try:
+            _wait_until_ok(f"{service.url}/health/{'ready' if ready else 'live'}")
+            yield service
+        finally:
+            process.send_signal(signal.SIGTERM)
+            process.wait(timeout=60)
+            log.seek(0)
+            service.log = log.read()
+
+
+@contextmanager
+def work_process(settings: Mapping[str, str]) -> Iterator[subprocess.Popen[bytes]]:
+    """Run `paretour work` with these environment variables until the block ends."""
+    command = [sys.executable, "-m", "service", "work"]
+    environment = {**os.environ, **settings}
+    with subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL) as process:
+        try:
+            yield process
+        finally:
+            process.send_signal(signal.SIGTERM)
+            process.wait(timeout=60)
+
+
+def _wait_until_ok(url: str) -> None:
+    deadline = time.monotonic() + 300
+    while time.monotonic() < deadline:
+        with suppress(httpx.ConnectError):
+            if httpx.get(url).status_code == 200:
+                return
+        time.sleep(0.05)
+    raise TimeoutError(f"{url} must answer within five minutes")
