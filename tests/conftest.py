@@ -3,6 +3,7 @@
 import os
 import signal
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -10,17 +11,19 @@ from hypothesis import settings
 from tests.helpers.redis_server import Redis, redis_server
 from tests.helpers.serving import serving_released
 
+NO_CERTIFICATES = Path(__file__).parent
+
 settings.register_profile("project", deadline=None, derandomize="CI" in os.environ)
 settings.load_profile("project")
 
 
 def pytest_configure() -> None:
-    """Let SIGINT reach the children of this process, however it was started.
-
-    A shell starts background jobs, and nohup its command, with SIGINT ignored, and children
-    inherit that: without this they would not end by Ctrl-C.
-    """
+    """Prepare what child processes inherit: the signal of Ctrl-C, and where certificates are."""
+    # A shell starts background jobs, and nohup its command, with SIGINT ignored.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    # No test calls https, and httpx takes 40 ms to load certificates at each httpx.get.
+    os.environ.pop("SSL_CERT_FILE", None)
+    os.environ["SSL_CERT_DIR"] = str(NO_CERTIFICATES)
 
 
 @pytest.fixture(scope="session")

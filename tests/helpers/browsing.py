@@ -1,9 +1,10 @@
 """Debian's Chromium, and the page in one of its windows."""
 
+import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import pytest
 from playwright.sync_api import Browser, Page, expect, sync_playwright
@@ -54,3 +55,23 @@ def wait_until_planned(page: Page) -> None:
 def wait_for_next_frame(page: Page) -> None:
     """Wait for the frame in which the page draws what was changed in this one."""
     page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
+def open_files(page: Page, files: dict[str, str]) -> None:
+    """Open text files on the page, given by name and content."""
+    payloads = [
+        {"name": name, "mimeType": "text/plain", "buffer": text.encode()}
+        for name, text in files.items()
+    ]
+    page.get_by_label("Open files").set_input_files(payloads)
+
+
+def curl_body(page: Page) -> Any:
+    """Return the body of the request that the page copies as a curl command."""
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    curl = page.get_by_role("button", name="Copy as curl")
+    curl.click()
+    expect(curl).to_have_text("Copied")
+    command = page.evaluate("navigator.clipboard.readText()")
+    assert command.startswith(f"curl {page.url.partition('#')[0]}front ")
+    return json.loads(command.splitlines()[1])

@@ -105,7 +105,7 @@ def serving(app: FastAPI, drain: int = 5, warm: bool = True) -> Iterator[str]:
     url = f"http://127.0.0.1:{listening.getsockname()[1]}"
     try:
         while not server.started or (warm and httpx.get(f"{url}/health/ready").status_code == 503):
-            time.sleep(0.01)
+            time.sleep(0.02)
         yield url
     finally:
         server.should_exit = True

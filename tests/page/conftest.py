@@ -1,11 +1,11 @@
-"""One browser for all tests of the page."""
+"""One browser for all tests of the page, and the page in it with its first example planned."""
 
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, Page
 
-from tests.helpers.browsing import chromium
+from tests.helpers.browsing import DESK, chromium, open_page, wait_until_planned
 
 
 @pytest.fixture(scope="package")
@@ -13,3 +13,17 @@ def browser() -> Iterator[Browser]:
     """Chromium, which ends with these tests, since others run event loops of their own."""
     with chromium() as browser:
         yield browser
+
+
+@pytest.fixture
+def width() -> int:
+    """The width of the window in pixels; a test at several widths is parametrised by them."""
+    return DESK
+
+
+@pytest.fixture
+def page(width: int, browser: Browser, released: str) -> Iterator[Page]:
+    """The page with its first example planned."""
+    with open_page(browser, released, width) as page:
+        wait_until_planned(page)
+        yield page

@@ -1,0 +1,149 @@
+"""Files opened on the page: lists of cities, JSON, TSPLIB, pictures of maps."""
+
+import json
+import subprocess
+import sys
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import Browser, Page, expect
+
+from service.cli.tsplib import matrix
+from service.settings import Settings
+from tests.helpers.browsing import (
+    curl_body,
+    needs_chromium,
+    open_files,
+    open_page,
+    wait_until_planned,
+)
+from tests.helpers.serving import app_of, serving
+
+ROOT = Path(__file__).parents[2]
+
+pytestmark = needs_chromium
+
+
+def test_a_picture_of_a_map_is_covered(browser: Browser) -> None:
+    with serving(app_of(limits=Settings().limits)) as address:
+        page = browser.new_page()
+        page.goto(address)
+        walls = np.full((20, 30), 255, dtype=np.uint8)
+        walls[5:15, 12:14] = 0
+        picture = BytesIO()
+        Image.fromarray(walls).save(picture, "PNG")
+        given = {"name": "map.png", "mimeType": "image/png", "buffer": picture.getvalue()}
+        page.get_by_label("Open files").set_input_files([given])
+        expect(page.get_by_text("A grid of 20 by 30 cells")).to_be_visible()
+        expect(page.get_by_label("Metres a cell")).to_have_value("0.05")
+        page.get_by_label("Seconds of search").fill("0.1")
+        page.get_by_role("button", name="Plan").click()
+        wait_until_planned(page)
+        expect(page.locator("#grid")).to_be_visible()
+        expect(page.locator("#plane-1")).to_be_hidden()
+        page.close()
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("stops.csv", "x,y,u,v\n1,2,3,4\n5,6,7\n", "stops.csv must have four numbers on each line"),
+        ("stops.json", '{"coordinates": [', "stops.json must be JSON"),
+        ("stops.json", '{"coordinates": [1, 2]}', "coordinates of stops.json must be rows"),
+        ("map.json", '{"grid": []}', "grid of map.json must have a cell or more"),
+        ("kroA.tsp", "EDGE_WEIGHT_TYPE: EUC_2D\n", "open it together with the other"),
+    ],
+)
+def test_a_bad_file_is_refused_in_a_sentence(page: Page, name: str, text: str, said: str) -> None:
+    open_files(page, {name: text})
+    expect(page.locator("#file-fault")).to_contain_text(said, ignore_case=True)
+    expect(page.locator("#count")).to_have_text("61 cities")
+
+
+def tsplib(places: str) -> str:
+    cities = len(places.splitlines())
+    head = f"DIMENSION: {cities}\nEDGE_WEIGHT_TYPE: EUC_2D\nNODE_COORD_SECTION"
+    return f"{head}\n{places}\nEOF\n"
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"cities.csv": "x,y,u,v\n0,0,5,5\n3,1,9,1\n5,2,2,8\n"},
+        {"cities.json": '{"coordinates": [[0, 0, 5, 5], [3, 1, 9, 1], [5, 2, 2, 8]]}'},
+        {
+            "a.tsp": tsplib("1 0 0\n2 3 1\n3 5 2"),
+            "b.tsp": tsplib("1 5 5\n2 9 1\n3 2 8"),
+        },
+    ],
+    ids=["csv", "json", "tsplib"],
+)
+def test_a_file_of_cities_is_planned(page: Page, files: dict[str, str]) -> None:
+    open_files(page, files)
+    expect(page.get_by_label("x1, y1, x2, y2")).to_have_value("0, 0, 5, 5\n3, 1, 9, 1\n5, 2, 2, 8")
+    page.get_by_role("button", name="Plan").click()
+    expect(page.locator("#status")).to_have_text("Done: 1 tour found.")
+
+
+@pytest.fixture
+def tsplib_files(tmp_path: Path) -> list[Path]:
+    """Two files of TSPLIB; halves of whole numbers, so that many distances are halves as well."""
+    halves = np.random.default_rng(4).integers(0, 20, (2, 12, 2)) / 2
+    files = [tmp_path / "a.tsp", tmp_path / "b.tsp"]
+    for file, places in zip(files, halves, strict=True):
+        file.write_text(tsplib("\n".join(f"{i} {x} {y}" for i, (x, y) in enumerate(places, 1))))
+    return files
+
+
+def test_two_files_of_tsplib_give_the_front_of_the_command_line(
+    page: Page, tsplib_files: list[Path]
+) -> None:
+    command = [sys.executable, "-m", "service", "front", *tsplib_files, "--json"]
+    command += ["--time-limit", "50", "--seed", "3"]
+    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    expected = json.loads(ended.stdout)
+    assert expected["terminated"] == "converged"
+    page.get_by_label("Open files").set_input_files(tsplib_files)
+    page.get_by_text("More settings").click()
+    page.get_by_label("Seed").fill("3")
+    page.get_by_label("Seconds of search").fill("50")
+    page.get_by_role("button", name="Plan").click()
+    wait_until_planned(page)
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save JSON").click()
+    found = json.loads(saved.value.path().read_text())
+    for name in ("front", "points", "hypervolume", "reference_point", "terminated", "actor"):
+        assert found[name] == expected[name]
+
+
+def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
+    page: Page, browser: Browser, tsplib_files: list[Path]
+) -> None:
+    page.get_by_label("Open files").set_input_files(tsplib_files)
+    expect(page.get_by_label("Distances rounded")).to_be_checked()
+    page.get_by_role("button", name="Plan").click()
+    wait_until_planned(page)
+    assert curl_body(page)["matrices"] == [
+        matrix(file.read_text()).tolist() for file in tsplib_files
+    ]
+    link = page.get_by_role("button", name="Copy link")
+    link.click()
+    expect(link).to_have_text("Copied")
+    with open_page(browser, page.evaluate("navigator.clipboard.readText()")) as other:
+        wait_until_planned(other)
+        expect(other.get_by_label("Distances rounded")).to_be_checked()
+        expect(other.locator("#plane-1 canvas.selected")).to_be_visible()
+        other.get_by_label("Distances rounded").uncheck()
+        expect(other.get_by_label("No front yet")).to_be_visible()
+        assert len(curl_body(other)["coordinates"]) == 12
+
+
+def test_a_list_of_angles_in_a_file_is_asked_for(page: Page) -> None:
+    open_files(page, {"few.json": '{"coordinates": [[0, 0, 5, 5]], "preferences": [10, 80]}'})
+    assert curl_body(page)["preferences"] == [10, 80]
+    page.get_by_text("More settings").click()
+    page.get_by_label("Directions of the network").fill("7")
+    assert curl_body(page)["preferences"] == 7

@@ -1,0 +1,63 @@
+"""Links that the page copies: they open the same front in another window."""
+
+import json
+
+import numpy as np
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import (
+    needs_chromium,
+    open_files,
+    open_page,
+    wait_until_planned,
+)
+
+pytestmark = needs_chromium
+
+
+def test_a_link_opens_the_same_front_with_its_cities(page: Page, browser: Browser) -> None:
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Copy link").click()
+    expect(page.get_by_text("Copied")).to_be_visible()
+    front = page.locator("#front-chart").get_attribute("aria-label")
+    other = browser.new_page()
+    other.goto(page.evaluate("navigator.clipboard.readText()"))
+    expect(other.locator("#count")).to_have_text("61 cities")
+    expect(other.locator("#front-chart")).to_have_attribute("aria-label", front or "")
+    expect(other.get_by_text("Its growth is drawn here while a search runs")).to_be_visible()
+    other.goto(page.url.partition("#")[0] + "#front=none")
+    expect(other.locator("#request-fault")).to_have_text("There is no front 'none'.")
+    other.close()
+
+
+def test_a_link_to_the_networks_front_calls_it_that(page: Page, browser: Browser) -> None:
+    page.get_by_label("Seconds of search").fill("0")
+    page.get_by_role("button", name="Plan").click()
+    wait_until_planned(page)
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Copy link").click()
+    expect(page.get_by_text("Copied")).to_be_visible()
+    with open_page(browser, page.evaluate("navigator.clipboard.readText()")) as other:
+        wait_until_planned(other)
+        for shown in (page, other):
+            expect(shown.locator("#legend .alone")).to_be_visible()
+            expect(shown.locator("#legend .improved")).to_be_hidden()
+
+
+def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
+    page: Page, browser: Browser
+) -> None:
+    matrices = np.random.default_rng(0).random((2, 60, 60)).tolist()
+    open_files(page, {"costs.json": json.dumps({"matrices": matrices, "time_limit": 0})})
+    page.get_by_role("button", name="Plan").click()
+    wait_until_planned(page)
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Copy link").click()
+    expect(page.get_by_text("This link opens the front without its maps")).to_be_visible()
+    link = page.evaluate("navigator.clipboard.readText()")
+    assert len(link) < 100
+    with open_page(browser, link) as other:
+        wait_until_planned(other)
+        expect(other.get_by_text("The link names a front alone")).to_be_visible()
+        expect(other.locator("#plane-1")).to_be_hidden()
+        expect(other.get_by_label("A front of")).to_be_visible()
