@@ -1,4 +1,4 @@
-"""The files that deploy the cluster: its parts find one another, and Redis does as they say."""
+"""The files that deploy the cluster: addresses and names agree, and Redis takes its options."""
 
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from service.cluster.celery_app import QUEUE
 from tests.helpers.deploy_files import (
     AUTOSCALING,
     CLUSTER,
-    CLUSTER_COMPOSITION,
+    CLUSTER_COMPOSE,
     containers_of,
     our_pods,
     our_services,
@@ -32,7 +32,7 @@ def redis_urls() -> dict[str, str]:
     services = {
         name: service["environment"]["PARETOUR_REDIS_URL"]
         for name, service in our_services().items()
-        if name.startswith(CLUSTER_COMPOSITION.name)
+        if name.startswith(CLUSTER_COMPOSE.name)
     }
     return pods | services
 
@@ -47,12 +47,12 @@ def test_replicas_and_workers_share_one_redis() -> None:
             assert (parts.hostname, parts.port) == (service["metadata"]["name"], port["port"])
             assert parts.password == "$(REDIS_PASSWORD)"
         else:
-            assert parts.hostname in CLUSTER_COMPOSITION.services
+            assert parts.hostname in CLUSTER_COMPOSE.services
         assert parts.path == "/0"
 
 
 def test_redis_is_where_nobody_else_comes() -> None:
-    services, networks = CLUSTER_COMPOSITION.services, CLUSTER_COMPOSITION.whole["networks"]
+    services, networks = CLUSTER_COMPOSE.services, CLUSTER_COMPOSE.document["networks"]
     assert networks["inside"]["internal"] is True
     assert services["redis"]["networks"] == ["inside"]
     assert "ports" not in services["redis"]
@@ -76,7 +76,7 @@ def test_workers_are_scaled_by_the_messages_that_wait() -> None:
 
 def redis_commands() -> dict[str, list[str]]:
     [container] = CLUSTER.pods["paretour-redis"]["spec"]["containers"]
-    services = CLUSTER_COMPOSITION.services
+    services = CLUSTER_COMPOSE.services
     return {"kubernetes": container["command"], "compose": services["redis"]["command"]}
 
 

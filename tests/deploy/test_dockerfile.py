@@ -1,4 +1,4 @@
-"""The image: what its recipe promises, and its steps run as plain commands."""
+"""The Dockerfile: its instructions, and its steps run as plain commands."""
 
 import json
 import os
@@ -17,15 +17,15 @@ import httpx
 import pytest
 
 ROOT = Path(__file__).parents[2]
-RECIPE = (ROOT / "Dockerfile").read_text().replace("\\\n", " ")
+DOCKERFILE = (ROOT / "Dockerfile").read_text().replace("\\\n", " ")
 INSTRUCTIONS = [
-    tuple(line.split(maxsplit=1)) for line in RECIPE.splitlines() if re.match("[A-Z]+ ", line)
+    tuple(line.split(maxsplit=1)) for line in DOCKERFILE.splitlines() if re.match("[A-Z]+ ", line)
 ]
 FINAL = INSTRUCTIONS[[name for name, _ in INSTRUCTIONS].index("FROM", 1) :]
 
 
 def only(name: str) -> str:
-    """The argument of the one instruction of this name in the final stage."""
+    """Return the argument of the one instruction of this name in the final stage."""
     [argument] = [argument for each, argument in FINAL if each == name]
     return argument
 

@@ -1,4 +1,4 @@
-"""The files that deploy: valid to their own tools, and in agreement with image and settings."""
+"""The files of service/deploy are valid to Kubernetes and Compose, and fit image and settings."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -13,12 +13,12 @@ from service.settings import Settings
 from tests.helpers.deploy_files import (
     AUTOSCALING,
     CACHE,
-    COMPOSITIONS,
+    COMPOSE_FILES,
     DEPLOY,
     IMAGE,
     MANIFESTS,
     USER,
-    Composition,
+    ComposeFile,
     Manifest,
     all_pods,
     all_services,
@@ -37,7 +37,7 @@ of_our_pods = pytest.mark.parametrize("pod", our_pods().values(), ids=our_pods()
 
 
 def test_no_file_is_left_out() -> None:
-    tested = {each.name for each in (*MANIFESTS, *COMPOSITIONS, AUTOSCALING)}
+    tested = {each.name for each in (*MANIFESTS, *COMPOSE_FILES, AUTOSCALING)}
     assert tested == {path.name for path in DEPLOY.iterdir()}
 
 
@@ -47,9 +47,9 @@ def test_kubernetes_knows_every_field(manifest: Manifest) -> None:
         kubernetes_validate.validate(each, kubernetes_validate.latest_version(), strict=True)
 
 
-@pytest.mark.parametrize("composition", COMPOSITIONS, ids=lambda each: each.name)
-def test_compose_knows_every_field(composition: Composition) -> None:
-    PyCompose.from_yaml(yaml.safe_dump(composition.whole)).validate()
+@pytest.mark.parametrize("compose_file", COMPOSE_FILES, ids=lambda each: each.name)
+def test_compose_knows_every_field(compose_file: ComposeFile) -> None:
+    PyCompose.from_yaml(yaml.safe_dump(compose_file.document)).validate()
 
 
 @pytest.mark.parametrize("pod", all_pods().values(), ids=all_pods())
@@ -133,7 +133,7 @@ def test_services_of_compose_have_time_to_drain(service: dict[str, Any]) -> None
 
 
 def commands() -> Iterator[list[str]]:
-    """What is run of our image, where that is not what the image itself says."""
+    """Yield the commands that replace the one of the image, and those of probes."""
     for pod in our_pods().values():
         for container in pod["spec"]["containers"]:
             if "command" in container:

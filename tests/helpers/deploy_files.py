@@ -1,4 +1,4 @@
-"""The files that deploy, read."""
+"""The files of service/deploy, parsed, and what the Dockerfile says of user and volume."""
 
 import re
 from collections.abc import Iterator
@@ -17,74 +17,82 @@ CACHE = re.search(r"^VOLUME (\S+)", IMAGE, re.MULTILINE)
 
 @dataclass(frozen=True)
 class Manifest:
-    """The objects of Kubernetes in one file."""
+    """A file of Kubernetes objects."""
 
     name: str
 
     @property
     def objects(self) -> list[dict[str, Any]]:
+        """All objects of the file."""
         return list(yaml.safe_load_all((DEPLOY / self.name).read_text()))
 
     @property
     def pods(self) -> dict[str, dict[str, Any]]:
-        """Of each that has them, how its pods are made."""
+        """The pod template of each object that has one, by the object's name."""
         return {
-            each["metadata"]["name"]: each["spec"]["template"]
-            for each in self.objects
-            if "template" in each.get("spec", {})
+            item["metadata"]["name"]: item["spec"]["template"]
+            for item in self.objects
+            if "template" in item.get("spec", {})
         }
 
     def named(self, kind: str) -> dict[str, dict[str, Any]]:
-        return {each["metadata"]["name"]: each for each in self.objects if each["kind"] == kind}
+        """Return the objects of a kind by name."""
+        return {item["metadata"]["name"]: item for item in self.objects if item["kind"] == kind}
 
 
 @dataclass(frozen=True)
-class Composition:
-    """The services of Compose in one file, with what they have in common merged into each."""
+class ComposeFile:
+    """A file of Docker Compose, with its YAML anchors resolved."""
 
     name: str
 
     @property
-    def whole(self) -> dict[str, Any]:
-        whole: dict[str, Any] = yaml.safe_load((DEPLOY / self.name).read_text())
-        return whole
+    def document(self) -> dict[str, Any]:
+        """The whole file."""
+        document: dict[str, Any] = yaml.safe_load((DEPLOY / self.name).read_text())
+        return document
 
     @property
     def services(self) -> dict[str, dict[str, Any]]:
-        services: dict[str, dict[str, Any]] = self.whole["services"]
+        """Its services by name."""
+        services: dict[str, dict[str, Any]] = self.document["services"]
         return services
 
 
 EMBEDDED, CLUSTER = Manifest("kubernetes.yaml"), Manifest("cluster-kubernetes.yaml")
 AUTOSCALING = Manifest("cluster-autoscaling.yaml")
 MANIFESTS = (EMBEDDED, CLUSTER)
-CLUSTER_COMPOSITION = Composition("cluster-compose.yaml")
-COMPOSITIONS = (Composition("compose.yaml"), CLUSTER_COMPOSITION)
+CLUSTER_COMPOSE = ComposeFile("cluster-compose.yaml")
+COMPOSE_FILES = (ComposeFile("compose.yaml"), CLUSTER_COMPOSE)
 
 
 def all_pods() -> dict[str, dict[str, Any]]:
+    """Return the pod templates of all manifests by file and name."""
     return {f"{file.name} {name}": pod for file in MANIFESTS for name, pod in file.pods.items()}
 
 
 def all_services() -> dict[str, dict[str, Any]]:
+    """Return the services of all Compose files by file and name."""
     return {
         f"{file.name} {name}": service
-        for file in COMPOSITIONS
+        for file in COMPOSE_FILES
         for name, service in file.services.items()
     }
 
 
 def containers_of(pod: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yield the containers of a pod template, those of its start first."""
     for part in ("initContainers", "containers"):
         yield from pod["spec"].get(part, [])
 
 
 def is_ours(container: dict[str, Any]) -> bool:
-    """Whether it, or a service of Compose, is of our image."""
+    """Whether a container, or a service of Compose, runs the image of the Dockerfile."""
     return bool(container["image"] == "paretour")
 
 
 def our_pods() -> dict[str, dict[str, Any]]:
+    """Return the pods of which all containers run our image."""
     return {
         name: pod
         for name, pod in all_pods().items()
@@ -93,4 +101,5 @@ def our_pods() -> dict[str, dict[str, Any]]:
 
 
 def our_services() -> dict[str, dict[str, Any]]:
+    """Return the services of Compose that run our image."""
     return {name: service for name, service in all_services().items() if is_ours(service)}
