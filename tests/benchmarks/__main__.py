@@ -1,4 +1,4 @@
-"""`python -m tests.benchmarks NAME ...`: runs a benchmark, and writes RESULTS.md anew."""
+"""`python -m tests.benchmarks NAME ...`: run a benchmark, and write RESULTS.md anew."""
 
 import argparse
 import sys
@@ -30,10 +30,10 @@ _NAMES = (
 
 
 def main() -> None:
-    """The command line; what follows the name is the benchmark's own.
+    """Run the benchmark that the command line names, with the arguments after its name.
 
-    A benchmark that knows what it must find gives a sentence on what it did not, which is printed,
-    and the exit status is 1.
+    A benchmark with demands returns a sentence on each that does not hold. These are printed, and
+    the exit status is 1.
     """
     parser = argparse.ArgumentParser("python -m tests.benchmarks", description=__doc__)
     parser.add_argument("name", choices=_NAMES)

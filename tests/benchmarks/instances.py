@@ -22,11 +22,7 @@ def paper_instances(n: int, count: int = COUNT) -> list[NDArray[np.float64]]:
 
 
 def check_tours(tours: NDArray[np.integer], n: int) -> None:
-    """Nothing, if every row visits each of n cities once.
-
-    Raises:
-        RuntimeError: some row does not.
-    """
+    """Raise RuntimeError when some row does not visit each of n cities once."""
     if not (np.sort(tours, axis=1) == np.arange(n)).all():
         raise RuntimeError("not every tour visits every city once")
 

@@ -1,4 +1,4 @@
-"""Where a figure comes from."""
+"""Results in files, each with the commit, processor and date that it was measured at."""
 
 import json
 import platform
@@ -11,7 +11,7 @@ RESULTS = Path(__file__).parent / "results"
 
 
 def provenance(threads: int) -> dict[str, Any]:
-    """Commit, processor, threads and date of a measurement."""
+    """Return commit, processor, version of Python, threads and date of a measurement."""
     described = ["git", "describe", "--always", "--dirty", "--exclude", "*"]
     return {
         "commit": subprocess.run(described, capture_output=True, text=True).stdout.strip(),
@@ -23,14 +23,14 @@ def provenance(threads: int) -> dict[str, Any]:
 
 
 def load(name: str) -> dict[str, Any]:
-    """The stored results of a benchmark; nothing if it has not run."""
+    """Return the stored results of a benchmark: an empty dictionary if it has not run."""
     path = RESULTS / f"{name}.json"
     stored: dict[str, Any] = json.loads(path.read_text()) if path.exists() else {}
     return stored
 
 
 def store(name: str, results: dict[str, Any]) -> None:
-    """Writes the results of a benchmark."""
+    """Write the results of a benchmark."""
     RESULTS.mkdir(exist_ok=True)
     (RESULTS / f"{name}.json").write_text(json.dumps(results, indent=2) + "\n")
 

@@ -1,6 +1,6 @@
-"""`tests/benchmarks/RESULTS.md`, made of the stored results and of what the paper prints.
+"""Render `tests/benchmarks/RESULTS.md` from the stored results and the paper's printed ones.
 
-No figure of ours stands here: all of them come from `results/*.json`.
+All figures of ours come from `results/*.json`, the printed ones from `printed.py`.
 """
 
 from pathlib import Path
@@ -39,7 +39,7 @@ taken while other programs wanted the same processor, which makes them too long.
 
 
 def page() -> str:
-    """All of it."""
+    """Return the whole page as Markdown."""
     paper = (_main(), _training(), _coverage(), _layers(), _concave(), _fronts())
     return "\n".join((INTRODUCTION, *paper, beyond.section(), under_load.section()))
 
@@ -84,7 +84,7 @@ def _search_row(stored: dict[str, Any], key: str, corners: list[str]) -> list[st
 
 
 def _with_search(stored: dict[str, Any]) -> dict[str, Any]:
-    """Adds what `search` has: Paretour's shortest and longest runs, OR-Tools on more instances.
+    """Add the rows of `search`: Paretour's shortest and longest runs, OR-Tools on more instances.
 
     Its seconds are by the clock on the wall, and OR-Tools shared its core.
     """
@@ -104,7 +104,7 @@ def _only(entry: dict[str, Any], mark: int) -> dict[str, Any]:
 
 
 def _origins(stored: dict[str, Any]) -> str:
-    """Where the rows were measured."""
+    """Return the machines and commits that the rows were measured on."""
     entries = [entry for entry in stored.values() if of(entry)]
     machines = sorted({f"{entry['cpu']}, {entry['date']}" for entry in entries})
     commits = sorted({f"`{entry['commit']}`" for entry in entries})
@@ -112,7 +112,7 @@ def _origins(stored: dict[str, Any]) -> str:
 
 
 def _below(stored: dict[str, Any]) -> str:
-    """Which rows do not reach what is printed."""
+    """Return the rows whose hypervolume is below the printed one."""
     found = []
     for row, shares in printed.HYPERVOLUME.items():
         for n, share in zip(SIZES, shares, strict=True):

@@ -1,4 +1,4 @@
-"""`python -m tests.benchmarks tables`: measures what the page of results is missing.
+"""`python -m tests.benchmarks tables`: measure the rows that RESULTS.md is missing.
 
 The page, RESULTS.md, is written anew after every benchmark; `--render` does nothing else. Every
 part stores what it measures and goes on where it stopped. The long rows of the main table take
@@ -9,7 +9,7 @@ import argparse
 
 
 def main(arguments: list[str]) -> None:
-    """The command line."""
+    """Measure the missing rows, or nothing with `--render`."""
     parser = argparse.ArgumentParser("python -m tests.benchmarks tables", description=__doc__)
     parser.add_argument("--count", type=int, default=25, help="instances of each size")
     parser.add_argument("--render", action="store_true", help="measure nothing")

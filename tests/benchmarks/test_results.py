@@ -1,4 +1,4 @@
-"""The page of results is what its stored figures say."""
+"""RESULTS.md is what the renderer makes of the stored results."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""The rivals of the benchmarks do what they are measured for; no optional library is needed."""
+"""The rivals give valid and good tours; those of a missing optional library are skipped."""
 
 from importlib import import_module
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""Benchmarks that go on where they stopped, and the rows that they measure."""
+"""A benchmark that is run again measures only the rows that are missing."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What is demanded of the service under load is judged and shown as it was found."""
+"""Demands on the service under load: which do not hold, and how RESULTS.md shows them."""
 
 import threading
 from typing import Any
