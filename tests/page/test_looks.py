@@ -125,6 +125,7 @@ def test_a_thousand_cities_and_a_hundred_tours_are_shown(browser: Browser, relea
         wait_until_planned(page)
         page.get_by_label("x1, y1, x2, y2").fill("\n".join(",".join(map(str, r)) for r in cities))
         expect(page.locator("#count")).to_have_text("1,000 cities")
+        page.get_by_label("Seconds of search").fill("2")
         page.get_by_role("button", name="Plan").click()
         expect(page.get_by_label("A front of 100 tours")).to_be_visible(timeout=120_000)
         wait_until_planned(page)
