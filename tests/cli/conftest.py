@@ -1,19 +1,15 @@
 """A service, and a file to plan."""
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.helpers.serving import serving_released
-
 
 @pytest.fixture(scope="package")
-def url() -> Iterator[str]:
-    with serving_released() as address:
-        yield address
+def url(released: str) -> str:
+    return released
 
 
 @pytest.fixture

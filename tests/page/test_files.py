@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Browser, Page, expect
 
-from service.cli.tsplib import matrix
+from service.cli.tsplib import parse_matrix
 from service.settings import Settings
 from tests.helpers.browsing import (
     curl_body,
@@ -127,7 +127,7 @@ def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
     page.get_by_role("button", name="Plan").click()
     wait_until_planned(page)
     assert curl_body(page)["matrices"] == [
-        matrix(file.read_text()).tolist() for file in tsplib_files
+        parse_matrix(file.read_text()).tolist() for file in tsplib_files
     ]
     link = page.get_by_role("button", name="Copy link")
     link.click()

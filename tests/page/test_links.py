@@ -5,12 +5,7 @@ import json
 import numpy as np
 from playwright.sync_api import Browser, Page, expect
 
-from tests.helpers.browsing import (
-    needs_chromium,
-    open_files,
-    open_page,
-    wait_until_planned,
-)
+from tests.helpers.browsing import needs_chromium, open_files, open_page, wait_until_planned
 
 pytestmark = needs_chromium
 

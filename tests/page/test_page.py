@@ -7,13 +7,7 @@ import httpx
 import pytest
 from playwright.sync_api import Browser, Locator, Page, Route, expect
 
-from tests.helpers.browsing import (
-    DESK,
-    PHONE,
-    curl_body,
-    needs_chromium,
-    wait_for_next_frame,
-)
+from tests.helpers.browsing import DESK, PHONE, curl_body, needs_chromium, wait_for_next_frame
 
 CITIES = "0, 0, 5, 5\n3.1, 0.4, 9, 1\n5.2, 2, 2, 8\n4, 5.5, 7, 7\n1, 4.2, 1, 2\n2.5, 2.5, 6, 0"
 
