@@ -1,18 +1,18 @@
 /** The page: a request on the one side, its front on the other. */
 
-import { isCity, rowsOf, textOf } from "./cities.js";
-import { csv, curl, download } from "./exports.js";
-import { clearFaults, showFault, showFaults } from "./faults.js";
-import { Fields } from "./fields.js";
-import { read } from "./files.js";
-import { askedFor, described, kindOf, requestFor } from "./instance.js";
-import { fragment, linked } from "./link.js";
-import { counted } from "./numbers.js";
-import { UNNAMED } from "./objectives.js";
-import { Placing } from "./placing.js";
-import { Planning } from "./planning.js";
-import { Result } from "./result.js";
-import { Service } from "./service.js";
+import { isCity, rowsOf, textOf } from "./inputs/cities.js";
+import { csv, curl, download } from "./result/exports.js";
+import { clearFaults, showFault, showFaults } from "./planning/faults.js";
+import { Fields } from "./inputs/fields.js";
+import { read } from "./inputs/files.js";
+import { askedFor, described, kindOf, requestFor } from "./inputs/instance.js";
+import { fragment, linked } from "./result/link.js";
+import { counted } from "./common/numbers.js";
+import { UNNAMED } from "./common/objectives.js";
+import { Placing } from "./inputs/placing.js";
+import { Planning } from "./planning/planning.js";
+import { Result } from "./result/result.js";
+import { Service } from "./planning/service.js";
 
 const element = (id) => document.getElementById(id);
 const form = element("request");

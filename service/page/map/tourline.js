@@ -1,7 +1,7 @@
 /** A tour on a map, on a canvas of its own: another tour is drawn at once, and nothing else anew. */
 
-import "./vendor/leaflet/leaflet.js";
-import { colour, onSchemeChange } from "./colours.js";
+import "../vendor/leaflet/leaflet.js";
+import { colour, onSchemeChange } from "../common/colours.js";
 
 const { L } = globalThis;
 

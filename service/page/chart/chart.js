@@ -1,10 +1,10 @@
 /** The front on two axes: the network's alone under the improved one. */
 
-import uPlot from "./vendor/uplot/uPlot.esm.js";
-import { colour, onSchemeChange } from "./colours.js";
-import { counted, length } from "./numbers.js";
-import { UNNAMED, withUnit } from "./objectives.js";
-import { drawnNearest } from "./tours.js";
+import uPlot from "../vendor/uplot/uPlot.esm.js";
+import { colour, onSchemeChange } from "../common/colours.js";
+import { counted, length } from "../common/numbers.js";
+import { UNNAMED, withUnit } from "../common/objectives.js";
+import { drawnNearest } from "../result/tours.js";
 
 const FONT = "12px system-ui, sans-serif";
 const REACH = 40; // pixels within which a click selects a point

@@ -2,7 +2,7 @@
 
 import { rowsOf } from "./cities.js";
 import { OBJECTIVES, coverageOf } from "./image.js";
-import { UNNAMED } from "./objectives.js";
+import { UNNAMED } from "../common/objectives.js";
 import { isTsplib, pair } from "./tsplib.js";
 
 /**

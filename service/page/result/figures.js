@@ -1,6 +1,6 @@
 /** How good a front is, and how long it took. */
 
-import { length, share } from "./numbers.js";
+import { length, share } from "../common/numbers.js";
 
 /** Fills two lists: what the front is worth, and what else is known of it. */
 export function showFigures(list, more, alone, answer) {

@@ -1,7 +1,7 @@
 /** The cities and tours on the map of one plane. */
 
-import "./vendor/leaflet/leaflet.js";
-import { colour, onSchemeChange } from "./colours.js";
+import "../vendor/leaflet/leaflet.js";
+import { colour, onSchemeChange } from "../common/colours.js";
 import { fitting, flatMap } from "./flatmap.js";
 import { Frame } from "./frame.js";
 import { TourLine } from "./tourline.js";

@@ -1,8 +1,8 @@
 /** A slider over the angles of a front, in the direction of its chart; arrow keys go tour by tour. */
 
-import { degrees, length } from "./numbers.js";
-import { UNNAMED } from "./objectives.js";
-import { nearest } from "./tours.js";
+import { degrees, length } from "../common/numbers.js";
+import { UNNAMED } from "../common/objectives.js";
+import { nearest } from "../result/tours.js";
 
 const STEPS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 };
 

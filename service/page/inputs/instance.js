@@ -2,7 +2,7 @@
 
 import { isCity, rowsOf } from "./cities.js";
 import { rounded } from "./distances.js";
-import { Problem } from "./service.js";
+import { Problem } from "../planning/service.js";
 
 // Two matrices of more fill the longest body that a service takes, and the browser's memory.
 const MOST_ROUNDED = 1500;

@@ -1,8 +1,8 @@
 /** How the hypervolume grew while the search went on. */
 
-import uPlot from "./vendor/uplot/uPlot.esm.js";
-import { colour, onSchemeChange } from "./colours.js";
-import { share } from "./numbers.js";
+import uPlot from "../vendor/uplot/uPlot.esm.js";
+import { colour, onSchemeChange } from "../common/colours.js";
+import { share } from "../common/numbers.js";
 
 const FONT = "11px system-ui, sans-serif";
 

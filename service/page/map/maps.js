@@ -1,7 +1,7 @@
 /** The maps of an instance: two linked planes, one grid, or none where there are only costs. */
 
 import { GridMap } from "./gridmap.js";
-import { kindOf } from "./instance.js";
+import { kindOf } from "../inputs/instance.js";
 import { Planes } from "./planes.js";
 
 const element = (id) => document.getElementById(id);

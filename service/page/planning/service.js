@@ -1,6 +1,6 @@
 /** The service, as this page asks it. */
 
-import { EventSourceParserStream } from "./vendor/eventsource-parser/stream.js";
+import { EventSourceParserStream } from "../vendor/eventsource-parser/stream.js";
 
 /** Why the service refused, or that it did not answer at all. */
 export class Problem extends Error {

@@ -1,7 +1,7 @@
 /** An occupancy grid with its places, and the paths of tours on it. */
 
-import "./vendor/leaflet/leaflet.js";
-import { colour, onSchemeChange, rgb } from "./colours.js";
+import "../vendor/leaflet/leaflet.js";
+import { colour, onSchemeChange, rgb } from "../common/colours.js";
 import { fitting, flatMap } from "./flatmap.js";
 import { TourLine } from "./tourline.js";
 

@@ -1,13 +1,13 @@
 /** A front and its tours, as they are looked at: chart, slider, figures and maps select together. */
 
-import { FrontChart } from "./chart.js";
+import { FrontChart } from "../chart/chart.js";
 import { compare } from "./comparison.js";
 import { showFigures } from "./figures.js";
-import { Growth } from "./growth.js";
-import { Maps } from "./maps.js";
-import { length } from "./numbers.js";
-import { UNNAMED, titled } from "./objectives.js";
-import { AngleSlider } from "./slider.js";
+import { Growth } from "../chart/growth.js";
+import { Maps } from "../map/maps.js";
+import { length } from "../common/numbers.js";
+import { UNNAMED, titled } from "../common/objectives.js";
+import { AngleSlider } from "../chart/slider.js";
 import { nearest } from "./tours.js";
 
 const element = (id) => document.getElementById(id);

@@ -1,7 +1,7 @@
 /** The selected tour's figures beside the pinned one's. */
 
-import { degrees, difference, length } from "./numbers.js";
-import { withUnit } from "./objectives.js";
+import { degrees, difference, length } from "../common/numbers.js";
+import { withUnit } from "../common/objectives.js";
 
 export function compare(table, objectives, selected, pinned) {
   const rows = [

@@ -1,6 +1,6 @@
 /** A map of no place on earth: plain coordinates, moved and zoomed by mouse and keyboard. */
 
-import "./vendor/leaflet/leaflet.js";
+import "../vendor/leaflet/leaflet.js";
 
 const { L } = globalThis;
 const BUTTONS = 54; // pixels that the zoom buttons take from the map's left
