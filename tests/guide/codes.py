@@ -1,0 +1,31 @@
+"""The table of refusals in `errors.md`, made of `service.errors.PROBLEMS`."""
+
+from service.errors import PROBLEMS, Problem
+from tests.guide.pages import GUIDE
+
+PAGE = GUIDE / "errors.md"
+
+
+def codes() -> str:
+    """Return the table of codes as Markdown, by status and code."""
+    ordered = sorted(PROBLEMS.items(), key=lambda item: (item[1].status, item[0]))
+    rows = [
+        f"| {problem.status} | `{code}` | {_sentence(problem)} | {_operations(problem)} |"
+        for code, problem in ordered
+    ]
+    head = ["| status | code | sentence | answered by |", "|---|---|---|---|"]
+    return "\n".join([*head, *rows]) + "\n"
+
+
+def _sentence(problem: Problem) -> str:
+    if problem.sentence in ("{detail}", "{reason}"):
+        return "says what is wrong, and where"
+    return problem.sentence.replace(":g}", "}").replace("|", "\\|")
+
+
+def _operations(problem: Problem) -> str:
+    if problem.operations == ("*",):
+        return "several paths, as `/docs` says"
+    if not problem.operations:
+        return "any path"
+    return ", ".join(f"`{operation}`" for operation in problem.operations)

@@ -1,0 +1,84 @@
+"""Run the blocks of a page, from top to bottom, as its reader would."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.guide.pages import README, ROOT, Block, blocks, split_commands
+
+REACHED = "localhost:8000"
+RUN = ("curl ", "paretour ")
+
+
+def write_inputs(folder: Path) -> None:
+    """Write the files that commands of the pages read, and the command `paretour` in `bin`."""
+    [request] = [block.text for block in blocks(README) if block.title == "cities.json"]
+    (folder / "cities.json").write_text(request)
+    rng = np.random.default_rng(0)
+    np.save(folder / "costs.npy", rng.random((2, 7, 7)))
+    (folder / "service").symlink_to(ROOT / "service")
+    command = folder / "bin" / "paretour"
+    command.parent.mkdir()
+    command.write_text(f'#!/bin/sh\nexec {sys.executable} -m service "$@"\n')
+    command.chmod(0o755)
+
+
+def run_page(page: Path, folder: Path, address: str) -> list[str]:
+    """Run all of a page's blocks that can be run here, and return what each command printed."""
+    printed: list[str] = []
+    for block in blocks(page):
+        if block.title == "answer":
+            assert lasting(json.loads(printed[-1])) == lasting(json.loads(block.text))
+        elif block.title:
+            (folder / block.title).write_text(block.text)
+        else:
+            printed += _run(block, folder, address)
+    return printed
+
+
+def lasting(answer: dict[str, Any]) -> dict[str, Any]:
+    """Return the answer without what differs from run to run; each tour in one direction."""
+    front = [
+        {
+            "angle": round(item["angle"], 6),
+            "lengths": [round(length, 6) for length in item["lengths"]],
+            "tour": min(item["tour"], item["tour"][:1] + item["tour"][:0:-1]),
+        }
+        for item in answer["front"]
+    ]
+    changed = {"front": front, "hypervolume": round(answer["hypervolume"], 6)}
+    kept = {name: value for name, value in answer.items() if name not in ("id", "timings_ms")}
+    return kept | changed
+
+
+def _run(block: Block, folder: Path, address: str) -> list[str]:
+    reached = address.removeprefix("http://")
+    if block.language == "python":
+        exec(block.text.replace(REACHED, reached), {})
+    if block.language != "sh":
+        return []
+    commands = [line for line in split_commands(block.text) if line.startswith(RUN)]
+    return [_printed(line.replace(REACHED, reached), folder) for line in commands]
+
+
+def _printed(command: str, folder: Path) -> str:
+    path = f"{folder / 'bin'}:{os.environ['PATH']}"
+    imported = f"{ROOT}:{ROOT / 'service/client'}"
+    command = command.replace("curl ", "curl --silent --show-error --fail-with-body ", 1)
+    ended = subprocess.run(
+        command,
+        shell=True,
+        cwd=folder,
+        env={**os.environ, "PATH": path, "PYTHONPATH": imported},
+        capture_output=True,
+        text=True,
+    )
+    if ended.returncode:
+        pytest.fail(f"{command}\n{ended.stdout}{ended.stderr}")
+    return ended.stdout

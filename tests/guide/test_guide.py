@@ -1,0 +1,183 @@
+"""The README and the guide: their blocks run, their links lead somewhere, their tables are true."""
+
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from service.errors import PROBLEMS
+from service.settings import Settings
+from tests.guide.codes import codes
+from tests.guide.pages import (
+    GUIDE,
+    PAGES,
+    README,
+    ROOT,
+    anchors,
+    blocks,
+    commands,
+    links,
+    made_part,
+)
+from tests.guide.sessions import RUN, run_page, write_inputs
+from tests.guide.tree import PAGE as TREE_PAGE
+from tests.guide.tree import modules, named, tree
+from tests.helpers.serving import app_of, serving_released
+
+# Commands that a test of their own runs or checks: deployment, the image, set-up and linters.
+NOT_RUN = ("docker ", "kubectl ", "python3 -m venv ", ".venv/bin/")
+COMMAND_LINE = GUIDE / "use-the-command-line.md"
+FROM_PYTHON = GUIDE / "call-it-from-python.md"
+RUNNABLE = [
+    page
+    for page in PAGES
+    if any(block.language == "python" for block in blocks(page))
+    or any(command.startswith(RUN) for command in commands(page))
+]
+OTHERS = [page for page in RUNNABLE if page not in (COMMAND_LINE, FROM_PYTHON)]
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    with serving_released() as url:
+        yield url
+
+
+@pytest.mark.parametrize("page", OTHERS, ids=lambda page: page.stem)
+def test_the_blocks_of_every_other_page_run_from_top_to_bottom(
+    page: Path, address: str, tmp_path: Path
+) -> None:
+    if any(command.startswith("curl ") for command in commands(page)) and not shutil.which("curl"):
+        pytest.skip("curl is not installed")
+    write_inputs(tmp_path)
+    run_page(page, tmp_path, address)
+
+
+def test_the_python_code_prints_a_hypervolume(
+    address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run_page(FROM_PYTHON, tmp_path, address)
+    hypervolume, *_ = capsys.readouterr().out.split()
+    assert 0 < float(hypervolume) < 1
+
+
+def test_the_command_line_writes_a_table_and_a_picture(address: str, tmp_path: Path) -> None:
+    write_inputs(tmp_path)
+    assert len(run_page(COMMAND_LINE, tmp_path, address)) >= 4
+    assert (tmp_path / "front.csv").read_text().startswith("angle,")
+    assert (tmp_path / "front.png").exists()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_every_block_is_of_a_kind_that_a_test_knows(page: Path) -> None:
+    assert {block.language for block in blocks(page)} <= {"json", "python", "sh", "text"}
+    assert all(block.title for block in blocks(page) if block.language == "json")
+    assert all(command.startswith((*RUN, *NOT_RUN)) for command in commands(page))
+    assert page.read_text().count("\n```") == 2 * len(blocks(page))
+
+
+def test_every_option_of_the_training_commands_is_one_of_the_command() -> None:
+    options: dict[str, set[str]] = {}
+    for command in commands(GUIDE / "train-and-add-an-actor.md"):
+        words = shlex.split(command.replace("\\\n", " "))
+        if words[1] == "-m":
+            options.setdefault(words[2], set()).update(
+                word for word in words if word.startswith("--")
+            )
+    assert {"models.expert", "models.train", "models.drl_moa", "export"} == set(options)
+    for module, named_options in options.items():
+        command = [sys.executable, "-m", module, "--help"]
+        shown = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+        assert [option for option in named_options if option not in shown.stdout] == []
+
+
+def test_every_benchmark_that_a_page_names_is_there() -> None:
+    named_ones = {
+        name
+        for page in PAGES
+        for name in re.findall(r"`python -m tests\.benchmarks ([a-z_]+)", page.read_text())
+    }
+    assert named_ones
+    assert all((ROOT / f"tests/benchmarks/{name}.py").exists() for name in named_ones)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_every_link_leads_to_a_file_and_a_heading(page: Path) -> None:
+    for target in links(page):
+        path, _, anchor = target.partition("#")
+        file = (page.parent / path).resolve() if path else page
+        assert file.exists(), target
+        assert not anchor or anchor in anchors(file), target
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_every_file_that_a_page_names_is_there(page: Path) -> None:
+    paths = re.findall(r"`((?:service|models|export|tests)/[\w./-]+)`", page.read_text())
+    assert [path for path in paths if not (ROOT / path).exists()] == []
+
+
+def test_every_page_is_in_the_index_and_within_reach_of_the_readme() -> None:
+    pages = {page.name for page in GUIDE.glob("*.md")} - {"index.md"}
+    assert pages == set(links(GUIDE / "index.md")) - {"../../README.md"}
+    assert pages | {"index.md"} == {Path(link).name for link in links(README) if "guide/" in link}
+
+
+def test_the_readme_is_short_and_its_figures_are_those_of_the_results() -> None:
+    text = README.read_text()
+    assert len(text.splitlines()) <= 150
+    results = (ROOT / "tests/benchmarks/RESULTS.md").read_text()
+    guide = (GUIDE / "how-good-is-it.md").read_text()
+    table = text.partition("## How good it is")[2].partition("## More")[0]
+    figures = re.findall(r"\b\d\d\.\d\d(?= \()", table)
+    assert len(figures) == 20
+    assert [figure for figure in figures if figure not in results + guide] == []
+
+
+def test_the_tree_names_every_module_and_no_other() -> None:
+    assert named(made_part(TREE_PAGE, "tree")) == modules()
+
+
+def test_the_tree_says_what_the_modules_say_of_themselves() -> None:
+    assert made_part(TREE_PAGE, "tree") == tree(), "run python -m tests.guide"
+
+
+def test_the_table_of_codes_is_that_of_the_service() -> None:
+    table = made_part(GUIDE / "errors.md", "codes")
+    assert set(re.findall(r"^\| \d+ \| `([a-z-]+)`", table, re.MULTILINE)) == set(PROBLEMS)
+    assert table == codes(), "run python -m tests.guide"
+
+
+def test_every_setting_is_described() -> None:
+    text = (GUIDE / "run-it-in-production.md").read_text()
+    for name, field in Settings.model_fields.items():
+        variable = field.validation_alias or f"PARETOUR_{name.upper()}"
+        assert f"| `{variable}` |" in text
+        assert field.description is not None
+        assert field.description in text
+
+
+def test_every_limit_names_a_setting_and_a_code_that_there_are() -> None:
+    text = (GUIDE / "limits.md").read_text()
+    variables = re.findall(r"`PARETOUR_(\w+)`", text)
+    assert {variable.lower() for variable in variables} <= set(Settings.model_fields)
+    rows = re.findall(r"\| (\d{3}) `([a-z-]+)` \|", text)
+    assert len(rows) >= 10
+    assert all(PROBLEMS[code].status == int(status) for status, code in rows)
+
+
+def test_every_status_that_the_service_may_answer_with_is_described() -> None:
+    paths = app_of().openapi()["paths"]
+    promised = {
+        status
+        for operations in paths.values()
+        for operation in operations.values()
+        for status in operation["responses"]
+    }
+    table = (GUIDE / "errors.md").read_text().partition("| status | when |")[2].partition("\n\n")[0]
+    described = set(re.findall(r"\b[45]\d\d\b", table))
+    assert {status for status in promised if status >= "400"} <= described
