@@ -1,8 +1,13 @@
 """Rules of the repository that can be run."""
 
+import re
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
+from statistics import median
+
+from tests.guide.tree import sentence
 
 ROOT = Path(__file__).parent.parent
 TOP_LEVEL = {"pyproject.toml", "Dockerfile", "README.md", "LICENSE"} | {
@@ -11,6 +16,18 @@ TOP_LEVEL = {"pyproject.toml", "Dockerfile", "README.md", "LICENSE"} | {
     "export",
     "tests",
 }
+
+MOST_AT_THE_TOP = 12  # Python files of service/ itself
+MOST_IN_A_FOLDER = 16  # modules, beside the __init__.py
+MOST_LINES = 280
+CODE = ("service", "models", "export")
+RIDDLES = re.compile(r"(What|Who|Whatever|Whichever|How|Where|When)\b")
+
+
+def modules(*suffixes: str) -> list[Path]:
+    """The modules of the code itself, without libraries of others."""
+    paths = [Path(path) for path in tracked() if path.startswith(CODE)]
+    return [path for path in paths if path.suffix in suffixes and "vendor" not in path.parts]
 
 
 def tracked() -> list[str]:
@@ -31,6 +48,29 @@ def test_the_service_starts_without_the_factory() -> None:
 def test_the_top_level_holds_what_the_design_names_and_nothing_else() -> None:
     visible = {path.split("/")[0] for path in tracked() if not path.startswith(".")}
     assert visible == TOP_LEVEL
+
+
+def test_the_service_has_few_files_at_its_top() -> None:
+    top = [path for path in modules(".py") if path.parent == Path("service")]
+    assert len(top) <= MOST_AT_THE_TOP
+
+
+def test_no_folder_holds_too_many_modules() -> None:
+    found = Counter(path.parent for path in modules(".py", ".js") if path.name != "__init__.py")
+    assert {folder: n for folder, n in found.items() if n > MOST_IN_A_FOLDER} == {}
+
+
+def test_no_module_is_too_long_and_most_are_neither_long_nor_short() -> None:
+    paths = [path for path in modules(".py") if path.name not in ("__init__.py", "__main__.py")]
+    lines = {path: len((ROOT / path).read_text().splitlines()) for path in paths}
+    assert {path: n for path, n in lines.items() if n > MOST_LINES} == {}
+    assert 80 <= median(lines.values()) <= 160
+
+
+def test_every_module_says_what_it_is_for() -> None:
+    said = {path: sentence(ROOT / path) for path in modules(".py", ".js")}
+    assert [path for path, first in said.items() if not first] == []
+    assert {path: first for path, first in said.items() if RIDDLES.match(first)} == {}
 
 
 def test_the_readme_and_continuous_integration_run_the_same_test_command() -> None:
