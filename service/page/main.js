@@ -1,4 +1,4 @@
-/** The page: a request on the one side, its front on the other. */
+/** The page, put together: a request on the left, its front on the right. */
 
 import { isCity, rowsOf, textOf } from "./inputs/cities.js";
 import { csv, curl, download } from "./result/exports.js";

@@ -1,4 +1,4 @@
-/** The front on two axes: the network's alone under the improved one. */
+/** The chart of the front: the points of the network's tours under those of the improved ones. */
 
 import uPlot from "../vendor/uplot/uPlot.esm.js";
 import { colour, onSchemeChange } from "../common/colours.js";

@@ -1,4 +1,4 @@
-/** How the hypervolume grew while the search went on. */
+/** A chart of the hypervolume's growth during a search. */
 
 import uPlot from "../vendor/uplot/uPlot.esm.js";
 import { colour, onSchemeChange } from "../common/colours.js";

@@ -1,4 +1,4 @@
-/** The style sheet's colours, for what is drawn on a canvas. */
+/** The style sheet's colours, for the canvases of charts and maps. */
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
 

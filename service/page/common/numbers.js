@@ -1,4 +1,4 @@
-/** Numbers as people read them. */
+/** Format numbers as people read them. */
 
 const LENGTH = new Intl.NumberFormat("en", { maximumSignificantDigits: 6 });
 

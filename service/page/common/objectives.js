@@ -1,4 +1,4 @@
-/** What the two lengths of a tour mean. */
+/** Names and units of the two objectives. */
 
 export const UNNAMED = [
   { name: "length 1", unit: "" },

@@ -1,4 +1,4 @@
-/** The settings of a request: what each is called, and which requests have it. */
+/** The fields of a request: their names, and which kinds of request have them. */
 
 const FIELDS = [
   { name: "cell_size", label: "Metres a cell", where: "coverage" },

@@ -1,4 +1,4 @@
-/** Files that people bring, as the members of a request. */
+/** Read the files that people open or drop into the members of a request. */
 
 import { rowsOf } from "./cities.js";
 import { OBJECTIVES, coverageOf } from "./image.js";

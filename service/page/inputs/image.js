@@ -1,4 +1,4 @@
-/** A picture of a map as a coverage task: dark is blocked, and nearness to walls is risk. */
+/** Turn a picture of a map into a coverage task: dark is blocked, nearness to walls is risk. */
 
 const REACH = 10; // cells from a wall, beyond which there is no risk
 const PLACES_ACROSS = 12; // places along the longer side, as a first proposal

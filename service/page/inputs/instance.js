@@ -1,4 +1,4 @@
-/** What is planned: cities in two planes, two matrices of costs, places on a grid, or not known. */
+/** The kinds of instance (planes, matrices, grid, or not known) and the requests for them. */
 
 import { isCity, rowsOf } from "./cities.js";
 import { rounded } from "./distances.js";

@@ -1,4 +1,4 @@
-/** TSPLIB files: one says, for one objective, where the cities lie or what each way costs. */
+/** Read a TSPLIB file: the coordinates or the costs of one objective. */
 
 import { rounded } from "./distances.js";
 

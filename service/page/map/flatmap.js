@@ -1,4 +1,4 @@
-/** A map of no place on earth: plain coordinates, moved and zoomed by mouse and keyboard. */
+/** A Leaflet map of plain coordinates, moved and zoomed by mouse and keyboard. */
 
 import "../vendor/leaflet/leaflet.js";
 

@@ -1,4 +1,4 @@
-/** Where a plane's own units lie on a map whose longer side has a hundred. */
+/** Scale a plane's own units to a map whose longer side is 100. */
 
 const SIDE = 100;
 

@@ -1,4 +1,4 @@
-/** Two maps of the same cities, one for each objective: what is pointed at on one shows on both. */
+/** Two linked maps of the same cities: a city that is pointed at on one is marked on both. */
 
 import { Plane } from "./plane.js";
 

@@ -1,4 +1,4 @@
-/** A tour on a map, on a canvas of its own: another tour is drawn at once, and nothing else anew. */
+/** Draw a tour on a canvas of its own, so that choosing another tour redraws nothing else. */
 
 import "../vendor/leaflet/leaflet.js";
 import { colour, onSchemeChange } from "../common/colours.js";

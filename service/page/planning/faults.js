@@ -1,4 +1,4 @@
-/** What the service found wrong, said at the field at fault. */
+/** Show each fault of a refusal at the field that it is about. */
 
 const FIELD_OF = { coordinates: "cities", matrices: "cities" };
 const COLUMNS = ["x₁", "y₁", "x₂", "y₂"];

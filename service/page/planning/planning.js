@@ -1,4 +1,4 @@
-/** From a request to its front: first the network's alone, then the one that the search improves. */
+/** Plan a request in two steps: the network's front at once, then the improved one. */
 
 import { Problem } from "./service.js";
 

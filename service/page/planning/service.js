@@ -1,4 +1,4 @@
-/** The service, as this page asks it. */
+/** Call the service over HTTP, and follow its events. */
 
 import { EventSourceParserStream } from "../vendor/eventsource-parser/stream.js";
 

@@ -1,4 +1,4 @@
-/** The selected tour's figures beside the pinned one's. */
+/** Compare the selected tour's figures with those of the pinned one. */
 
 import { degrees, difference, length } from "../common/numbers.js";
 import { withUnit } from "../common/objectives.js";

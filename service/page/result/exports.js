@@ -1,4 +1,4 @@
-/** A request and its front, to take elsewhere. */
+/** Write a request as a curl command, and a front as CSV. */
 
 /** The same request as a shell command. */
 export function curl({ path, body }) {

@@ -1,4 +1,4 @@
-/** How good a front is, and how long it took. */
+/** Show a front's hypervolume and the times that it took. */
 
 import { length, share } from "../common/numbers.js";
 

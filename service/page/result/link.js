@@ -1,4 +1,4 @@
-/** Links to a stored front, which carry what it answers: `#front=ID&asked=...`. */
+/** Links to a stored front that carry its request: `#front=ID&asked=...`. */
 
 const MOST = 16000; // characters, beyond which chats, mail and some servers cut addresses off
 

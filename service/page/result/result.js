@@ -1,4 +1,4 @@
-/** A front and its tours, as they are looked at: chart, slider, figures and maps select together. */
+/** Show a front: chart, slider, figures and maps, which select a tour together. */
 
 import { FrontChart } from "../chart/chart.js";
 import { compare } from "./comparison.js";

@@ -1,4 +1,4 @@
-/** Which tour of a front is meant. */
+/** Find the tour of a front that is nearest to an angle or to a place on the chart. */
 
 /** The index of the tour whose direction is nearest to the angle in degrees. */
 export function nearest(front, angle) {
