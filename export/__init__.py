@@ -1,1 +1,1 @@
-"""From a checkpoint to one ONNX file that the service can serve."""
+"""Export of trained actors to ONNX files that the service runs."""

@@ -1,4 +1,4 @@
-"""`python -m export CHECKPOINT`: a released checkpoint to one ONNX file.
+"""`python -m export CHECKPOINT`: write a released checkpoint as one ONNX file.
 
 The file is kept only if its greedy tours are those of the actor in torch.
 """
@@ -6,20 +6,37 @@ The file is kept only if its greedy tours are those of the actor in torch.
 import argparse
 import json
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import torch
 from onnx import ModelProto, helper
 
+from export import pa_one, stepwise
 from export.check import compare, onnx_tours, session
-from export.graph import to_onnx
 from models.checkpoint import Trained, load_weights
 from models.config import as_plain
+from models.networks.actor import Actor
 from models.validation import COUNTS, mean_hypervolume, validation_sets
+
+# By the construction of an actor's tours.
+_EXPORTERS: dict[str, Callable[[Any], ModelProto]] = {
+    "stepwise": stepwise.to_onnx,
+    "fragments": pa_one.to_onnx,
+}
+
+
+def to_onnx(actor: Actor) -> ModelProto:
+    """Return the actor as one graph: an instance and preferences (k, 2) to tours (k, n).
+
+    The instance is cities (n, 4) or matrices (2, n, n), as the actor reads it.
+    """
+    return _EXPORTERS[actor.construction](actor)
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """The command line."""
+    """Run the command."""
     parser = argparse.ArgumentParser("python -m export", description=__doc__)
     parser.add_argument("checkpoint", type=Path, help="weights.pt of a training run")
     parser.add_argument("--out", type=Path, help="default: service/actors/NAME.onnx")
@@ -35,7 +52,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def describe(model: ModelProto, trained: Trained) -> None:
-    """Writes into the file what it is, and the hypervolume that it reaches when run."""
+    """Add the metadata: name, configuration, origin, and the hypervolume that the file reaches."""
     config = trained.config
     helper.set_model_props(
         model,
@@ -54,7 +71,7 @@ def describe(model: ModelProto, trained: Trained) -> None:
 
 
 def _hypervolumes(model: ModelProto, reads: str) -> dict[str, float]:
-    """Mean hypervolume on the validation instances, reference point (n, n), by cities."""
+    """Return the mean hypervolume by number of cities, reference point (n, n)."""
     running = session(model)
     return {
         str(validation.cities): round(
@@ -71,14 +88,14 @@ def _hypervolumes(model: ModelProto, reads: str) -> dict[str, float]:
 
 
 def _commit() -> str:
-    asked = subprocess.run(
+    described = subprocess.run(
         ["git", "describe", "--always", "--dirty"], capture_output=True, text=True, check=True
     )
-    return asked.stdout.strip()
+    return described.stdout.strip()
 
 
 def _property(model: ModelProto, key: str) -> str:
-    return next(each.value for each in model.metadata_props if each.key == key)
+    return next(entry.value for entry in model.metadata_props if entry.key == key)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
-"""The attention of PA-One for matrices: block by block of cities, so that memory stays small.
+"""Attention of PA-One for matrices in ONNX, block by block of cities, so that memory stays small.
 
 At once, the scores of n cities are groups x heads x n x n numbers, 4 GB at 5,000 cities. In the
-exported graph a node stands for the attention of a layer, and an ONNX function says what it
-does: a Loop over blocks of queries, which works out how near the cities of its block are to all.
+exported graph a node stands for the attention of a layer, and an ONNX function defines it: a Loop
+over blocks of queries, which computes how near the cities of its block are to all cities.
 """
 
 from copy import deepcopy
@@ -11,9 +11,9 @@ import torch
 from onnx import ModelProto, inliner, parser
 from torch import Tensor
 
-from models.networks.build import StepwiseActor
+from models.networks.actor import StepwiseActor
 from models.networks.layers import SeeFading
-from models.networks.matrix_features import MatrixEncoder
+from models.networks.pa_one_matrix import MatrixEncoder
 
 _BLOCK = 64  # cities whose scores fit into a processor's cache
 
@@ -90,7 +90,7 @@ See (query, key, value, rates, costs, weights) => (seen)
 
 
 def with_nodes(actor: StepwiseActor) -> StepwiseActor:
-    """The actor, attention that fades as nodes of the graph that it is exported to."""
+    """Return the actor with its fading attention as nodes of the graph that it is exported to."""
     if not isinstance(actor.encoder, MatrixEncoder):
         return actor
     changed = deepcopy(actor)
@@ -112,6 +112,6 @@ def _node(costs: Tensor, weights: Tensor) -> SeeFading:
 
 
 def in_blocks(model: ModelProto) -> ModelProto:
-    """The model with every such node replaced by what it does."""
+    """Return the model with every such node replaced by the function above."""
     model.functions.append(parser.parse_function(_SEE % _BLOCK))
     return inliner.inline_local_functions(model)

@@ -1,6 +1,7 @@
-"""Whether an ONNX file does what the actor in torch does."""
+"""Comparison of an ONNX file with the actor in torch: their tours must be the same."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import onnxruntime
@@ -9,17 +10,16 @@ from numpy.typing import NDArray
 from onnx import ModelProto
 from torch import Generator, Tensor
 
-from models.data.sampling import fan_of_preferences, uniform_instances
-from models.networks.build import Actor, StepwiseActor
-from models.networks.pa_one import OneActor
+from models.data.instances import uniform_instances
+from models.data.preferences import fan_of_preferences
+from models.networks.actor import Actor, StepwiseActor
 from models.rollout import log_likelihoods_by_city
-from models.validation import greedy_tours
 
 CITIES = (3, 7, 40, 200, 1000)
 PREFERENCES = (1, 20, 100)
 # Logits this close are a tie: float32 sums of two orders differ by less, and either city may win.
 _TIE = 1e-3
-# PA-One joins by many comparisons at once; which of them were close, small changes tell.
+# PA-One joins by many comparisons at once; small changes to the cities show which were close.
 _ROUNDING, _ROUNDINGS = 1e-6, 8
 
 
@@ -28,7 +28,7 @@ class TourMismatch(Exception):
 
 
 def session(model: ModelProto) -> onnxruntime.InferenceSession:
-    """A session on the CPU."""
+    """Return a session on the CPU."""
     return onnxruntime.InferenceSession(
         model.SerializeToString(), providers=["CPUExecutionProvider"]
     )
@@ -37,35 +37,37 @@ def session(model: ModelProto) -> onnxruntime.InferenceSession:
 def onnx_tours(
     running: onnxruntime.InferenceSession, instance: Tensor, preferences: Tensor
 ) -> NDArray[np.int64]:
-    """The tours, shape (k, n), of an instance as the file reads it and preferences (k, 2)."""
+    """Return the tours, shape (k, n), that the file builds of an instance, preferences (k, 2)."""
     name = running.get_inputs()[0].name
     inputs = {name: instance.numpy(), "preferences": preferences.numpy()}
     tours: NDArray[np.int64] = running.run(["tours"], inputs)[0]
     return tours
 
 
-def compare(actor: Actor, model: ModelProto, sizes: Sequence[int] = CITIES) -> None:
-    """Builds tours both ways for every number of cities given and of preferences above.
+def compare(
+    actor: Actor,
+    model: ModelProto,
+    sizes: Sequence[int] = CITIES,
+    counts: Sequence[int] = PREFERENCES,
+) -> None:
+    """Build tours both ways, for all these numbers of cities and of preferences.
 
     Raises:
-        TourMismatch: some tour differs, and not from a tie on. A dimension of the graph's interface
-            that should be dynamic is not.
+        TourMismatch: some tour differs, and not only after a tie; or a dimension of the graph's
+            interface that should be dynamic is fixed.
     """
     _check_dimensions(model)
     running = session(model)
     for n in sizes:
         generator = Generator().manual_seed(n)
         instance = uniform_instances(actor.reads, 1, n, generator, torch.device("cpu"))
-        for k in PREFERENCES:
+        for k in counts:
             preferences = fan_of_preferences(k, torch.device("cpu"))
-            expected = greedy_tours(actor, instance, preferences)[0]
+            expected = actor.tours(instance, preferences)[0]
             tours = torch.from_numpy(onnx_tours(running, instance[0], preferences))
-            if torch.equal(tours, expected):
-                continue
-            if isinstance(actor, OneActor):
-                _check_rounding(actor, instance, preferences, (tours, expected))
-            else:
-                _check_ties(actor, instance, preferences, (tours, expected))
+            if not torch.equal(tours, expected):
+                check_difference = _DIFFERENCE_CHECKS[actor.construction]
+                check_difference(actor, instance, preferences, (tours, expected))
 
 
 def _check_dimensions(model: ModelProto) -> None:
@@ -82,15 +84,15 @@ def _check_dimensions(model: ModelProto) -> None:
 
 
 def _check_rounding(
-    actor: OneActor, instance: Tensor, preferences: Tensor, both: tuple[Tensor, Tensor]
+    actor: Actor, instance: Tensor, preferences: Tensor, both: tuple[Tensor, Tensor]
 ) -> None:
-    """Raises unless all tours that differ do so in torch, too, when cities are rounded."""
+    """Raise TourMismatch unless the tours that differ do so in torch when cities are rounded."""
     tours, expected = both
     robust = torch.ones(len(expected), dtype=torch.bool)
     generator = Generator().manual_seed(0)
     for _ in range(_ROUNDINGS):
         moved = instance * (1 + _ROUNDING * torch.randn(instance.shape, generator=generator))
-        robust &= (greedy_tours(actor, moved, preferences)[0] == expected).all(dim=1)
+        robust &= (actor.tours(moved, preferences)[0] == expected).all(dim=1)
     differs = tours != expected
     for i in (differs.any(dim=1) & robust).nonzero().flatten().tolist():
         parting = int(differs[i].nonzero()[0])
@@ -103,12 +105,14 @@ def _check_rounding(
 def _check_ties(
     actor: StepwiseActor, instance: Tensor, preferences: Tensor, both: tuple[Tensor, Tensor]
 ) -> None:
-    """Raises unless, wherever two tours part, torch finds both next cities all but as likely."""
+    """Raise TourMismatch unless torch finds both cities about as likely where two tours part."""
     rows, members, places = actor.grouped(preferences)
     with torch.no_grad():
         memory, conditioning = actor.remember(instance, rows), actor.decoder.condition(rows)
         likelihoods = [
-            log_likelihoods_by_city(actor, memory, conditioning, tours[None, members])[0, places]
+            log_likelihoods_by_city(actor.decoder, memory, conditioning, tours[None, members])[
+                0, places
+            ]
             for tours in both
         ]
     differs = both[0] != both[1]
@@ -122,3 +126,10 @@ def _check_ties(
                 f"tours of {differs.shape[1]} cities part at position {parting}, where "
                 f"log-likelihoods must differ by at most {_TIE}, got {gap:g}"
             )
+
+
+# By the construction of an actor's tours.
+_DIFFERENCE_CHECKS: dict[str, Callable[[Any, Tensor, Tensor, tuple[Tensor, Tensor]], None]] = {
+    "stepwise": _check_ties,
+    "fragments": _check_rounding,
+}

@@ -1,4 +1,4 @@
-"""Parts of an actor as ONNX, to be put together by hand."""
+"""Export of parts of an actor to ONNX, and their assembly into one graph."""
 
 import logging
 import warnings
@@ -19,11 +19,11 @@ def exported(
     outputs: Sequence[str],
     axes: Mapping[int, Any],
 ) -> ModelProto:
-    """The module as a graph of its own, of which the axes of the sizes that are given stay free."""
+    """Export a module as a graph of its own; axes of the given sizes become dynamic."""
 
     def dynamic(argument: Any) -> Any:
         if isinstance(argument, tuple):
-            return tuple(dynamic(each) for each in argument)
+            return tuple(dynamic(part) for part in argument)
         return {axis: axes[size] for axis, size in enumerate(argument.shape) if size in axes}
 
     logging.getLogger("torch.onnx").setLevel(logging.ERROR)  # it warns of torchvision's absence
@@ -43,7 +43,7 @@ def exported(
 
 
 def inlined(model: ModelProto, functions: Sequence[FunctionProto]) -> ModelProto:
-    """The model with each function in its place, and the weights of all in the outermost graph."""
+    """Return the model with each function inlined, and all weights in the outermost graph."""
     model.functions.extend(functions)
     model = inliner.inline_local_functions(model)
     model.graph.initializer.extend(_taken_out(model.graph))
@@ -51,7 +51,7 @@ def inlined(model: ModelProto, functions: Sequence[FunctionProto]) -> ModelProto
 
 
 def _taken_out(graph: GraphProto) -> list[TensorProto]:
-    """The constant tensors of a graph and of those in it, which lose them; names are unique."""
+    """Remove the constant tensors of a graph and its subgraphs, and return them."""
     constants, others = [], []
     for node in graph.node:
         if node.op_type == "Constant" and node.attribute[0].name == "value":
@@ -70,10 +70,11 @@ def _taken_out(graph: GraphProto) -> list[TensorProto]:
 
 
 def as_function(name: str, model: ModelProto) -> FunctionProto:
-    """A graph as a function of that name, its weights as constants inside."""
+    """Return a graph as a function of that name, its weights as constants inside."""
     graph = model.graph
     constants = [
-        helper.make_node("Constant", [], [each.name], value=each) for each in graph.initializer
+        helper.make_node("Constant", [], [tensor.name], value=tensor)
+        for tensor in graph.initializer
     ]
     return helper.make_function(
         DOMAIN,

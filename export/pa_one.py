@@ -13,18 +13,17 @@ from torch import Tensor, nn
 from torch.export import Dim
 
 from export.onnx_parts import as_function, exported, inlined
-from models.lagrangian import weights
-from models.networks.aiming import aimed
-from models.networks.fragments import Fragments, cleared, first_steps, next_city
-from models.networks.pa_one import (
+from models.data.preferences import turned_outwards, weights
+from models.networks.candidates import (
     CANDIDATES,
-    OneActor,
-    begun,
-    by_weight,
-    first_look,
-    look,
+    cheapest_candidates,
+    first_candidates,
     padded_distances,
+    single_cities,
+    weighted_costs,
 )
+from models.networks.fragments import Fragments, cleared, first_steps, next_city
+from models.networks.pa_one import OneActor
 
 _ROOM = 10_000_000  # costs of a block, 40 MB; a round takes a few times as much
 
@@ -100,44 +99,53 @@ actor (float[n, 4] cities, float[k, 2] preferences) => (int64[k, n] tours)
 
 
 class _Prepare(nn.Module):
+    """The distances, and the weights of each preference."""
+
     def forward(self, cities: Tensor, preferences: Tensor) -> tuple[Tensor, Tensor]:
-        return padded_distances(cities), weights(aimed(preferences))
+        return padded_distances(cities), weights(turned_outwards(preferences))
 
 
 class _Begin(nn.Module):
-    """The costs of the rows, and what is left of their cities after a first round."""
+    """The costs of the rows, and their fragments after a first round."""
 
     def __init__(self, actor: OneActor) -> None:
         super().__init__()
         self.actor = actor
 
     def forward(self, distances: Tensor, rows: Tensor) -> tuple[Tensor, ...]:
-        costs = by_weight(distances, rows)
-        return costs, *_left(self.actor.round(costs, begun(costs), first_look(costs)))
+        costs = weighted_costs(distances, rows)
+        fragments = self.actor.round(costs, single_cities(costs), first_candidates(costs))
+        return costs, *_left(fragments)
 
 
 class _Round(nn.Module):
+    """The fragments after one more round."""
+
     def __init__(self, actor: OneActor) -> None:
         super().__init__()
         self.actor = actor
 
     def forward(self, costs: Tensor, given: tuple[Tensor, ...]) -> tuple[Tensor, ...]:
         fragments = Fragments(*given)
-        return _left(self.actor.round(costs, fragments, look(costs, fragments)))
+        return _left(self.actor.round(costs, fragments, cheapest_candidates(costs, fragments)))
 
 
 def _left(fragments: Fragments) -> tuple[Tensor, ...]:
-    """Cleared fragments, how many ends to keep, and whether there is more to join."""
+    """Return the cleared fragments, how many ends to keep, and whether more are to be joined."""
     after, kept = cleared(fragments)
     return *after, kept[None], (after.left > 1).any()
 
 
 class _Start(nn.Module):
+    """The first two cities of each finished tour."""
+
     def forward(self, fragments: tuple[Tensor, ...]) -> tuple[Tensor, Tensor]:
         return first_steps(Fragments(*fragments))
 
 
 class _Next(nn.Module):
+    """The next city of each finished tour."""
+
     def forward(self, links: Tensor, before: Tensor, now: Tensor) -> Tensor:
         return next_city(links, before, now)
 
@@ -156,11 +164,11 @@ _FRAGMENTS = ("ends", "partners", "open", "links", "left")
 
 
 def to_onnx(actor: OneActor) -> ModelProto:
-    """The actor as one graph: cities (n, 4) and preferences (k, 2) to tours (k, n)."""
+    """Return the actor as one graph: cities (n, 4) and preferences (k, 2) to tours (k, n)."""
     cities, rows = torch.rand(_N, 4), torch.rand(_R, 2)
     distances = padded_distances(cities)
-    costs = by_weight(distances, rows)
-    whole = begun(costs)
+    costs = weighted_costs(distances, rows)
+    whole = single_cities(costs)
     ends, partners, open_ = (part[:, :_E].contiguous() for part in whole[:3])
     some = Fragments(ends, partners, open_, whole.links, whole.left)
     left = [*(f"new_{name}" for name in _FRAGMENTS), "kept", "go_on"]
@@ -183,9 +191,9 @@ def to_onnx(actor: OneActor) -> ModelProto:
     }
     functions = []
     for name, part in parts.items():
-        one = exported(*part, _AXES)
-        opset = next(each.version for each in one.opset_import if not each.domain)
-        functions.append(as_function(name, one))
+        graph = exported(*part, _AXES)
+        opset = next(used.version for used in graph.opset_import if not used.domain)
+        functions.append(as_function(name, graph))
     model = parser.parse_model(_ACTOR % {"opset": opset, "room": _ROOM})
     model = inlined(model, functions)
     onnx.checker.check_model(model, full_check=True)

@@ -15,8 +15,8 @@ from torch.export import Dim
 
 from export.attention_blocks import in_blocks, with_nodes
 from export.onnx_parts import exported
-from models.networks.build import Conditioning, Memory, StepwiseActor
-from models.networks.stepwise import Moment
+from models.networks.actor import StepwiseActor
+from models.networks.stepwise import Conditioning, Memory, Moment
 from models.rollout import starts_in_turn
 
 # Sizes to trace at: no other axis has them, so each axis shows whether it is n or k.
@@ -27,7 +27,7 @@ _INPUTS = {"coordinates": "cities", "matrices": "matrices"}  # by what an actor 
 
 
 class _Encode(nn.Module):
-    """From an instance and preferences to all that decoding needs, and the state before a step.
+    """The tables that decoding needs of an instance and preferences, and the state before a step.
 
     The state is the last three cities, the first city and the visited cities of each tour.
     """
@@ -41,16 +41,16 @@ class _Encode(nn.Module):
         memory = self.actor.remember(instance[None], grouping.rows)
         rows = self.actor.decoder.condition(grouping.rows)
         n = instance.shape[-2]
-        nowhere = torch.zeros_like(grouping.members) + n  # (r,)
+        no_city = torch.zeros_like(grouping.members) + n  # (r,)
         starts = starts_in_turn(grouping.rows, instance)
-        at = nowhere if self.actor.decoder.chooses_first else starts
-        recent = torch.stack((at, nowhere, nowhere), dim=-1)
+        at = no_city if self.actor.decoder.chooses_first else starts
+        recent = torch.stack((at, no_city, no_city), dim=-1)
         visited = torch.arange(n) == at[:, None]
         return *memory, *rows, grouping.places, recent, at.clone(), visited
 
 
 class _Step(nn.Module):
-    """From the state before a step of all tours to the state after it, and the cities chosen."""
+    """The state of all tours after a step, from that before it, and the cities chosen."""
 
     def __init__(
         self, actor: StepwiseActor, memory: type[Memory], rows: type[Conditioning]
@@ -75,9 +75,9 @@ class _Step(nn.Module):
 
 
 def to_onnx(actor: StepwiseActor) -> ModelProto:
-    """The actor as one graph: an instance and preferences (k, 2) to greedy tours (k, n).
+    """Return the actor as one graph: an instance and preferences (k, 2) to tours (k, n).
 
-    The instance is cities (n, 4) or matrices (2, n, n), whichever the actor reads.
+    The instance is cities (n, 4) or matrices (2, n, n), as the actor reads it.
     """
     name = _INPUTS[actor.reads]
     instance = torch.rand(_N, 4) if name == "cities" else torch.rand(2, _N, _N)
@@ -140,7 +140,7 @@ def _joined(
 
 
 def _loop_body(step: GraphProto, shared: set[str]) -> tuple[GraphProto, list[TensorProto]]:
-    """The step as a Loop's body, and its constants, for the scope around it."""
+    """Return the step as a Loop's body, and its constants, for the scope around it."""
 
     def renamed(name: str) -> str:
         return name if name in shared or not name else f"step_{name}"
@@ -185,7 +185,7 @@ def _loop_body(step: GraphProto, shared: set[str]) -> tuple[GraphProto, list[Ten
 
 
 def _ending(chooses_first: bool) -> list[NodeProto]:
-    """From the chosen cities, a row a step, to tours, a row a preference."""
+    """Return the nodes from the chosen cities, a row a step, to tours, a row a preference."""
     if chooses_first:
         whole = [helper.make_node("Identity", ["chosen"], ["by_step"])]
     else:

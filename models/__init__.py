@@ -1,1 +1,1 @@
-"""The factory: networks that map cities and preferences to tours, and their training."""
+"""Training of actors: networks that build tours of instances for preferences."""

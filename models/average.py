@@ -13,23 +13,23 @@ from models.checkpoint import Trained, load_weights, write
 
 
 def average(trained: list[Trained]) -> Trained:
-    """The mean of the weights; the configuration and steps of the last, the seconds of all.
+    """Return the mean of the weights; the configuration and steps of the last, the seconds of all.
 
     Raises:
-        ValueError: there is none, or their networks differ.
+        ValueError: there is no checkpoint, or their networks differ.
     """
-    networks = {each.config.network for each in trained}
+    networks = {checkpoint.config.network for checkpoint in trained}
     if len(networks) != 1:
         raise ValueError(f"checkpoints must be of one network, got {len(networks)}")
-    states = [each.actor.state_dict() for each in trained]
+    states = [checkpoint.actor.state_dict() for checkpoint in trained]
     mean = {name: torch.stack([s[name] for s in states]).mean(dim=0) for name in states[0]}
     *_, last = trained
     last.actor.load_state_dict(mean)
-    return last._replace(seconds=sum(each.seconds for each in trained))
+    return last._replace(seconds=sum(checkpoint.seconds for checkpoint in trained))
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """The command line."""
+    """Run the command."""
     parser = argparse.ArgumentParser("python -m models.average", description=__doc__)
     parser.add_argument("checkpoints", type=Path, nargs="+", help="weights.pt of training runs")
     parser.add_argument("--out", type=Path, required=True, help="the checkpoint to write")

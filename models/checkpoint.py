@@ -1,25 +1,28 @@
-"""All that a training run is at one moment; a run resumed from it equals one never stopped."""
+"""Checkpoints: training runs that can be resumed, and the weights that are released.
+
+A run that is resumed from its checkpoint equals one that never stopped.
+"""
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 import torch
-from torch import Generator, Tensor, nn
+from torch import Generator, Tensor
 from torch.optim import Adam
 from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
 from models.config import TrainingConfig, as_plain, from_plain
-from models.networks.build import Actor, build
+from models.networks.actor import Actor
+from models.networks.build import build
 from models.networks.critic import Critic
-from models.networks.layers import FadingLayer
-from models.networks.pa_one import OneActor, TellingLayer
 
 
 @dataclass
 class Run:
-    """A training run: weights, optimisers, multipliers, generators, and how far it has come.
+    """A training run: weights, optimisers, multipliers, generators, steps and seconds so far.
 
     Products are computed in its precision; weights and losses are of float32.
     """
@@ -39,12 +42,12 @@ class Run:
     precision: torch.dtype = torch.float32
 
 
+GENERATORS = ("instance_generator", "sampling_generator")
 _STATEFUL = ("actor", "averaged", "critic", "optimizer", "critic_optimizer")
-_GENERATORS = ("instance_generator", "sampling_generator")
 
 
 def new_run(config: TrainingConfig, device: torch.device) -> Run:
-    """A run at its beginning; everything random follows from the configuration's seed."""
+    """Return a run at its beginning; everything random follows from the configuration's seed."""
     actor = build(config.network, config.seed).to(device)
     with torch.random.fork_rng():
         torch.manual_seed(config.seed + 1)
@@ -66,31 +69,46 @@ def new_run(config: TrainingConfig, device: torch.device) -> Run:
 
 
 def save(run: Run, path: Path) -> None:
-    """Writes the run; the file at path is the old one or the new one, never a torn one."""
-    state: dict[str, Any] = {name: getattr(run, name).state_dict() for name in _STATEFUL}
-    state |= {name: getattr(run, name).get_state() for name in _GENERATORS}
+    """Write the run."""
+    state = state_of(run, _STATEFUL)
     state |= {"config": as_plain(run.config), "multipliers": run.multipliers}
-    state |= {"step": run.step, "seconds": run.seconds}
+    write_whole(state, path)
+
+
+def resume(path: Path, device: torch.device) -> Run:
+    """Return the run that was saved at path."""
+    state = torch.load(path, map_location="cpu", weights_only=True)
+    run = new_run(from_plain(state["config"]), device)
+    restore(run, state, _STATEFUL)
+    run.multipliers = state["multipliers"].to(device)
+    return run
+
+
+def state_of(run: Any, stateful: Sequence[str]) -> dict[str, Any]:
+    """Return the state of a run: stateful parts by name, generators, step and seconds."""
+    state: dict[str, Any] = {name: getattr(run, name).state_dict() for name in stateful}
+    state |= {name: getattr(run, name).get_state() for name in GENERATORS}
+    return state | {"step": run.step, "seconds": run.seconds}
+
+
+def restore(run: Any, state: dict[str, Any], stateful: Sequence[str]) -> None:
+    """Give a new run the state that `state_of` returned."""
+    for name in stateful:
+        getattr(run, name).load_state_dict(state[name])
+    for name in GENERATORS:
+        getattr(run, name).set_state(state[name])
+    run.step, run.seconds = state["step"], state["seconds"]
+
+
+def write_whole(state: dict[str, Any], path: Path) -> None:
+    """Write a file that is the old one or the new one at any moment, never a torn one."""
     unfinished = path.with_suffix(".part")
     torch.save(state, unfinished)
     os.replace(unfinished, path)
 
 
-def resume(path: Path, device: torch.device) -> Run:
-    """The run that was saved at path."""
-    state = torch.load(path, map_location="cpu", weights_only=True)
-    run = new_run(from_plain(state["config"]), device)
-    for name in _STATEFUL:
-        getattr(run, name).load_state_dict(state[name])
-    for name in _GENERATORS:
-        getattr(run, name).set_state(state[name])
-    run.multipliers = state["multipliers"].to(device)
-    run.step, run.seconds = state["step"], state["seconds"]
-    return run
-
-
 class Trained(NamedTuple):
-    """A released checkpoint: what was trained, how, and for how long."""
+    """A released checkpoint: the trained actor, its configuration, steps and seconds."""
 
     config: TrainingConfig
     actor: Actor
@@ -99,19 +117,19 @@ class Trained(NamedTuple):
 
 
 def save_weights(run: Run, path: Path) -> None:
-    """Writes what a released checkpoint holds: averaged weights, configuration, steps, seconds."""
+    """Write the released checkpoint of a run: averaged weights, configuration, steps, seconds."""
     write(Trained(run.config, averaged_actor(run), run.step, run.seconds), path)
 
 
 def write(trained: Trained, path: Path) -> None:
-    """Writes a checkpoint that `load_weights` reads."""
+    """Write a checkpoint that `load_weights` reads."""
     state = trained._asdict()
     state |= {"config": as_plain(trained.config), "actor": trained.actor.state_dict()}
-    torch.save(state, path)
+    write_whole(state, path)
 
 
 def load_weights(path: Path) -> Trained:
-    """The released checkpoint at path."""
+    """Return the released checkpoint at path."""
     state = torch.load(path, map_location="cpu", weights_only=True)
     config = from_plain(state["config"])
     actor = build(config.network, config.seed)
@@ -120,30 +138,22 @@ def load_weights(path: Path) -> Trained:
 
 
 def averaged_actor(run: Run) -> Actor:
-    """The actor with averaged weights: the one that is validated and released."""
+    """Return the actor with averaged weights: the one that is validated and released."""
     return cast(Actor, run.averaged.module)
 
 
-def start_from(run: Run, weights: Actor) -> None:
-    """Gives a run at its beginning the weights of another actor: one of its shape, or shallower.
+def start_from(run: Run, trained: Actor) -> None:
+    """Give a run at its beginning the weights of an actor of its shape, or a shallower one.
 
     The layers that the shallower one lacks change nothing at first.
+
+    Raises:
+        ValueError: the actor is shallower, and its layers cannot begin by changing nothing.
     """
-    state = weights.state_dict()
-    if len(_layers(run.actor)) > len(_layers(weights)):
-        state = _silenced(run.actor, len(_layers(weights))) | state
+    state = trained.state_dict()
+    depth = len(trained.encoder_layers)
+    if len(run.actor.encoder_layers) > depth:
+        run.actor.silence_layers(depth)
+        state = run.actor.state_dict() | state
     run.actor.load_state_dict(state)
     averaged_actor(run).load_state_dict(state)
-
-
-def _layers(actor: Actor) -> nn.ModuleList:
-    return actor.layers if isinstance(actor, OneActor) else actor.encoder.layers
-
-
-def _silenced(actor: Actor, depth: int) -> dict[str, Tensor]:
-    """The weights of an actor of which the layers from depth on add nothing."""
-    for layer in _layers(actor)[depth:]:
-        if not isinstance(layer, FadingLayer | TellingLayer):
-            raise ValueError(f"{type(actor).__name__} must begin from weights of as many layers")
-        layer.silence()
-    return actor.state_dict()

@@ -1,30 +1,20 @@
-"""What a network and a training run are made of: frozen, checked, stored with the weights."""
+"""Configurations of networks and training runs: frozen, checked, stored with the weights."""
 
-from argparse import ArgumentParser, Namespace
-from dataclasses import Field, asdict, dataclass, field, fields
-from typing import Any, TypeVar
+from dataclasses import asdict, dataclass, fields
+from typing import Any
 
-T = TypeVar("T")
-NAMES = ("pa-one", "pa-one-matrix", "pa-at", "pa-ean", "pa-ad")
+from models.networks.actor import Architecture
+from models.networks.build import ACTORS
+from models.options import setting
 
-
-def setting(default: Any, meaning: str) -> Any:
-    """A field with its default and the sentence that explains it on the command line."""
-    return field(default=default, metadata={"meaning": meaning})
+NAMES = tuple(ACTORS)
 
 
 @dataclass(frozen=True, kw_only=True)
-class NetworkConfig:
-    """Which actor, and how large."""
+class NetworkConfig(Architecture):
+    """The name and sizes of an actor that there is."""
 
     name: str = setting("pa-one", f"one of {', '.join(NAMES)}")
-    width: int = setting(128, "features of a city")
-    heads: int = setting(8, "attention heads")
-    layers: int = setting(5, "encoder layers")
-    feedforward: int = setting(512, "hidden features of an encoder layer")
-    clip: float = setting(10.0, "bound on the pointer's logits before distances are taken off")
-    graph_layers: int = setting(3, "of PA-AD's graph encoder; 0 leaves out all but its features")
-    preference_layers: int = setting(1, "0 leaves the preference out, as in the paper's ablation")
 
     def __post_init__(self) -> None:
         if self.name not in NAMES:
@@ -40,14 +30,14 @@ class NetworkConfig:
 
     @property
     def label(self) -> str:
-        """The name, with the paper's minus where a part is left out as in its ablations."""
+        """The name, with the paper's minus sign where an ablation leaves a part out."""
         graphless = self.name == "pa-ad" and self.graph_layers == 0
         return self.name + ("-" if graphless or self.preference_layers == 0 else "")
 
 
 @dataclass(frozen=True, kw_only=True)
 class TrainingConfig:
-    """Algorithm 1 of the paper, and what it leaves open. Angles of preferences: (0, 90) degrees."""
+    """The settings of Algorithm 1 of the paper, and of the other ways to train."""
 
     network: NetworkConfig = NetworkConfig()
     objective: str = setting("weighted-sum", "lagrangian (the paper's), weighted-sum or imitation")
@@ -90,30 +80,17 @@ class TrainingConfig:
                 raise ValueError(f"{name} must be at least 1, got {getattr(self, name)}")
 
 
-def add_options(parser: ArgumentParser, kind: type[Any]) -> None:
-    """An option for each setting of a configuration, with its default and its sentence."""
-    for each in _settings(kind):
-        option = "--" + each.name.replace("_", "-")
-        meaning = f"{each.metadata['meaning']} (default {each.default})"
-        parser.add_argument(option, type=type(each.default), default=each.default, help=meaning)
-
-
-def from_options(kind: type[T], given: Namespace, **others: Any) -> T:
-    """The configuration that the options describe; what is no setting comes by name."""
-    return kind(**{each.name: getattr(given, each.name) for each in _settings(kind)}, **others)
-
-
-def _settings(kind: type[Any]) -> list[Field[Any]]:
-    return [each for each in fields(kind) if "meaning" in each.metadata]
-
-
 def as_plain(config: TrainingConfig) -> dict[str, Any]:
-    """The configuration as nested dictionaries of numbers and strings."""
+    """Return the configuration as nested dictionaries of numbers and strings."""
     return asdict(config)
 
 
 def from_plain(plain: dict[str, Any]) -> TrainingConfig:
-    """The inverse of `as_plain`; unknown or missing names are errors."""
+    """Return the configuration that `as_plain` wrote.
+
+    Raises:
+        ValueError: a name is unknown or missing.
+    """
     expected = {f.name for f in fields(TrainingConfig)}
     if set(plain) != expected:
         raise ValueError(f"fields must be {sorted(expected)}, got {sorted(plain)}")

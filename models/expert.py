@@ -1,7 +1,7 @@
 """Near-optimal tours to learn from: `python -m models.expert --out runs/expert --shards 100`.
 
 A shard holds instances of one size and, for each of its preferences, the best tour that the local
-search of the service found. What a shard holds follows from the seed and its number: shards that
+search of the service found. Its content follows from the seed and its number: shards that
 exist are left as they are, and several processes may make shards of one folder.
 """
 
@@ -15,9 +15,10 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from models.config import add_options, from_options, setting
+from models.data.dataset import Shard
 from models.data.generators import PLANES, coverage_matrices
 from models.data.instances import closed, distance_matrices
+from models.options import add_options, from_options, setting
 from service.instance import Instance
 from service.preferences import from_angles, weights
 from service.search.improve import improve
@@ -27,7 +28,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class ExpertConfig:
-    """What the shards hold."""
+    """The content of the shards: kind, sizes, and how long the search works."""
 
     kind: str = setting("coordinates", "coordinates, or matrices of several kinds")
     instances: int = setting(200, "instances of a shard")
@@ -47,37 +48,8 @@ class ExpertConfig:
             raise ValueError(f"shaped must be from 0 to 1, got {self.shaped}")
 
 
-@dataclass(frozen=True, eq=False)
-class Shard:
-    """Instances, preferences (k, 2) by ascending angle, and their tours (m, k, n).
-
-    The instances are cities (m, n, 4) or matrices (m, 2, n, n).
-    """
-
-    instances: NDArray[np.float32]
-    preferences: NDArray[np.float32]
-    tours: NDArray[np.int16]
-
-    @classmethod
-    def load(cls, path: Path) -> "Shard":
-        """The shard at path."""
-        with np.load(path) as stored:
-            return cls(stored["instances"], stored["preferences"], stored["tours"])
-
-    def save(self, path: Path) -> None:
-        """Writes the shard whole or not at all."""
-        unfinished = path.with_suffix(".part.npz")
-        np.savez(
-            unfinished,
-            instances=self.instances,
-            preferences=self.preferences,
-            tours=self.tours,
-        )
-        unfinished.rename(path)
-
-
 def make_shard(config: ExpertConfig, number: int) -> Shard:
-    """The shard with that number."""
+    """Return the shard with that number."""
     generator = np.random.default_rng([config.seed, number])
     n = int(generator.integers(config.least_cities, config.most_cities + 1))
     shares = (np.arange(config.preferences) + generator.random(config.preferences)) * 90
@@ -85,7 +57,7 @@ def make_shard(config: ExpertConfig, number: int) -> Shard:
     draw = _cities if config.kind == "coordinates" else _matrices
     instances = np.stack([draw(n, config.shaped, generator) for _ in range(config.instances)])
     iterations = config.iterations_per_city * n
-    tours = [expert_tours(each, preferences, iterations, number) for each in instances]
+    tours = [expert_tours(costs, preferences, iterations, number) for costs in instances]
     return Shard(
         instances.astype(np.float32),
         preferences.astype(np.float32),
@@ -94,22 +66,22 @@ def make_shard(config: ExpertConfig, number: int) -> Shard:
 
 
 def expert_tours(
-    given: Array, preferences: Array, iterations: int, seed: int
+    costs: Array, preferences: Array, iterations: int, seed: int
 ) -> NDArray[np.integer]:
-    """For each preference the best tour of the front that the search finds.
+    """Return, for each preference (k, 2), the best tour of the front that the search finds.
 
     The best is that with the least weighted sum of scaled lengths.
-    What is given is cities (n, 4) or matrices (2, n, n).
+    The costs are given by cities (n, 4) or matrices (2, n, n).
     """
-    instance = Instance(coordinates=given) if given.ndim == 2 else Instance(matrices=given)
-    nothing = np.empty((0, instance.n), dtype=np.int64)
-    found = improve(instance, nothing, iterations=iterations, seed=seed)
-    costs = (found.points / instance.scale) @ weights(preferences).T  # (p, k)
-    return found.tours[costs.argmin(axis=0)]
+    instance = Instance(coordinates=costs) if costs.ndim == 2 else Instance(matrices=costs)
+    no_tours = np.empty((0, instance.n), dtype=np.int64)
+    front = improve(instance, no_tours, iterations=iterations, seed=seed)
+    sums = (front.points / instance.scale) @ weights(preferences).T  # (p, k)
+    return front.tours[sums.argmin(axis=0)]
 
 
 def _cities(n: int, shaped: float, generator: Generator) -> Array:
-    """Cities in the unit squares of both planes, each plane of a kind of its own."""
+    """Draw cities in the unit squares of both planes, each plane of a kind of its own."""
     names = list(PLANES)
     shares = [1 - shaped] + [shaped / (len(names) - 1)] * (len(names) - 1)
     kinds = generator.choice(names, p=shares, size=2)
@@ -117,7 +89,7 @@ def _cities(n: int, shaped: float, generator: Generator) -> Array:
 
 
 def _matrices(n: int, shaped: float, generator: Generator) -> Array:
-    """Costs of every step: distances in planes or on maps, or entries without a plane."""
+    """Draw costs of every step: distances in planes or on maps, or entries without a plane."""
     match generator.choice(("planes", "map", "entries", "closed"), p=(0.4, 0.3, 0.15, 0.15)):
         case "planes":
             cities = torch.from_numpy(_cities(n, shaped, generator))
@@ -136,7 +108,7 @@ def _entries(n: int, generator: Generator) -> Array:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """The command line."""
+    """Run the command."""
     parser = argparse.ArgumentParser("python -m models.expert", description=__doc__)
     parser.add_argument("--out", type=Path, required=True, help="folder of the shards")
     parser.add_argument("--shards", type=int, default=100, help="how many there shall be")

@@ -1,4 +1,4 @@
-"""What the actor is trained to lower.
+"""Objectives that actors are trained to lower: the Lagrangian and the weighted sum.
 
 Mehta, Taghipour and Saeedi (2022), arXiv:2203.01298, equations 10 to 18: make the norm of a
 tour's two lengths small, while the vector of lengths points along the preference. The weighted
@@ -8,11 +8,13 @@ sum is the usual alternative, of the linear scalarisation that the paper compare
 from jaxtyping import Float
 from torch import Tensor
 
+from models.data.preferences import weights
+
 
 def violation(
     points: Float[Tensor, "b k 2"], preferences: Float[Tensor, "k 2"]
 ) -> Float[Tensor, "b k"]:
-    """One minus the cosine of the angle between each point and its preference."""
+    """Return one minus the cosine of the angle between each point and its preference."""
     return 1 - (points * preferences).sum(-1) / points.norm(dim=-1)
 
 
@@ -21,7 +23,7 @@ def lagrangian(
     preferences: Float[Tensor, "k 2"],
     multipliers: Float[Tensor, " k"],
 ) -> Float[Tensor, "b k"]:
-    """The norm of each point plus its preference's multiplier times its violation."""
+    """Return the norm of each point plus its preference's multiplier times its violation."""
     return points.norm(dim=-1) + multipliers * violation(points, preferences)
 
 
@@ -31,18 +33,13 @@ def ascended(
     ascent_rate: float,
     limits: tuple[float, float],
 ) -> Float[Tensor, " k"]:
-    """The multipliers after one step up along the mean violation, clipped to the limits."""
+    """Return the multipliers after one step up along the mean violation, clipped to the limits."""
     least, most = limits
     return (multipliers + ascent_rate * violations.mean(dim=0)).clamp(least, most)
-
-
-def weights(preferences: Float[Tensor, "*k 2"]) -> Float[Tensor, "*k 2"]:
-    """The weights that go with a direction, adding to 1: see `service.preferences`."""
-    return preferences.flip(-1) / preferences.sum(-1, keepdim=True)
 
 
 def weighted_sum(
     points: Float[Tensor, "b k 2"], preferences: Float[Tensor, "k 2"]
 ) -> Float[Tensor, "b k"]:
-    """The sum of each point's lengths under the weights that go with its preference."""
+    """Return the sum of each point's lengths under the weights that go with its preference."""
     return (points * weights(preferences)).sum(-1)

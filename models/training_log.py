@@ -1,40 +1,30 @@
-"""What a training run shows while it goes and leaves beside its checkpoint."""
+"""The log of a training run: a progress bar, lines of a CSV file, a curve."""
 
 import csv
 import json
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
+from typing import Self
 
 import matplotlib.pyplot as plt
 from tqdm import tqdm
 
 from models.checkpoint import Run
 from models.config import as_plain
+from models.steps import StepMeans
 
 
-@dataclass(frozen=True)
-class Step:
-    """What one step measured, means over its tours."""
+class ProgressLog:
+    """A progress bar over the steps, and `log.csv` in the folder of a run."""
 
-    loss: float
-    objective: float
-    violation: float
-    multiplier: float
-
-
-class Record:
-    """A progress bar, `config.json`, `log.csv` (a line a validation) and `curve.png`."""
-
-    def __init__(self, out: Path, run: Run, steps: int) -> None:
+    def __init__(self, out: Path, steps: int, done: int) -> None:
         out.mkdir(parents=True, exist_ok=True)
-        (out / "config.json").write_text(json.dumps(as_plain(run.config), indent=2) + "\n")
-        self._out, self._run = out, run
-        self._steps: list[Step] = []
-        self._bar = tqdm(total=steps, initial=run.step, unit="step", dynamic_ncols=True)
-        self._hypervolumes = ""
+        self.path = out / "log.csv"
+        self._bar = tqdm(total=steps, initial=done, unit="step", dynamic_ncols=True)
 
-    def __enter__(self) -> "Record":
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -45,37 +35,52 @@ class Record:
     ) -> None:
         self._bar.close()
 
-    def stepped(self, step: Step) -> None:
-        """After each step."""
-        self._steps.append(step)
-        shown = " ".join(f"{name} {value:.3g}" for name, value in asdict(step).items())
-        self._bar.set_postfix_str(f"{shown} {self._hypervolumes}", refresh=False)
+    def advance(self, text: str) -> None:
+        """Move the bar by one step, with the text beside it."""
+        self._bar.set_postfix_str(text, refresh=False)
         self._bar.update()
 
-    def validated(self, hypervolumes: dict[int, float]) -> None:
-        """After each validation: mean hypervolume by number of cities."""
-        self._hypervolumes = " ".join(f"hv{n} {100 * hv:.2f}" for n, hv in hypervolumes.items())
-        self._append_line(hypervolumes)
-        self._draw_curve()
-
-    def _append_line(self, hypervolumes: dict[int, float]) -> None:
-        line: dict[str, object] = {"step": self._run.step, "seconds": f"{self._run.seconds:.1f}"}
-        line |= {
-            name: f"{sum(getattr(s, name) for s in self._steps) / len(self._steps):.6g}"
-            for name in Step.__dataclass_fields__
-        }
-        line |= {f"hypervolume_{n}": f"{hv:.6f}" for n, hv in hypervolumes.items()}
-        self._steps.clear()
-        path = self._out / "log.csv"
-        new = not path.exists()
-        with path.open("a", newline="") as file:
-            writer = csv.DictWriter(file, line)
+    def append(self, line: Mapping[str, object]) -> None:
+        """Append a line to `log.csv`, of values by column; the first brings the header."""
+        new = not self.path.exists()
+        with self.path.open("a", newline="") as file:
+            writer = csv.DictWriter(file, list(line))
             if new:
                 writer.writeheader()
             writer.writerow(line)
 
+
+class TrainingLog(ProgressLog):
+    """The log of an actor's training: a line a validation, `config.json` and `curve.png`."""
+
+    def __init__(self, out: Path, run: Run, steps: int) -> None:
+        super().__init__(out, steps, run.step)
+        (out / "config.json").write_text(json.dumps(as_plain(run.config), indent=2) + "\n")
+        self._out, self._run = out, run
+        self._steps: list[StepMeans] = []
+        self._hypervolumes = ""
+
+    def stepped(self, step: StepMeans) -> None:
+        """Report a step."""
+        self._steps.append(step)
+        shown = " ".join(f"{name} {value:.3g}" for name, value in asdict(step).items())
+        self.advance(f"{shown} {self._hypervolumes}")
+
+    def validated(self, hypervolumes: dict[int, float]) -> None:
+        """Report a validation: mean hypervolume by number of cities."""
+        self._hypervolumes = " ".join(f"hv{n} {100 * hv:.2f}" for n, hv in hypervolumes.items())
+        line: dict[str, object] = {"step": self._run.step, "seconds": f"{self._run.seconds:.1f}"}
+        line |= {
+            name: f"{sum(getattr(s, name) for s in self._steps) / len(self._steps):.6g}"
+            for name in StepMeans.__dataclass_fields__
+        }
+        line |= {f"hypervolume_{n}": f"{hv:.6f}" for n, hv in hypervolumes.items()}
+        self._steps.clear()
+        self.append(line)
+        self._draw_curve()
+
     def _draw_curve(self) -> None:
-        with (self._out / "log.csv").open(newline="") as file:
+        with self.path.open(newline="") as file:
             lines = list(csv.DictReader(file))
         names = [name for name in lines[0] if name.startswith("hypervolume_")]
         figure, panels = plt.subplots(len(names), sharex=True, figsize=(7, 3 * len(names)))

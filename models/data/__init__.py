@@ -1,1 +1,1 @@
-"""Instances and preferences to train on, and their labels."""
+"""Training data: instances, preferences, and tours to imitate."""

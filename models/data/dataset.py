@@ -1,15 +1,46 @@
-"""Batches of expert tours to imitate, no two alike."""
+"""The data set of expert tours: shards in a folder, and random batches of them to imitate."""
 
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import torch
 from jaxtyping import Float, Int
+from numpy.typing import NDArray
 from torch import Generator, Tensor
 
 from models.data.instances import are_matrices
-from models.expert import Shard
+
+
+@dataclass(frozen=True, eq=False)
+class Shard:
+    """Instances, preferences (k, 2) by ascending angle, and their tours (m, k, n).
+
+    The instances are cities (m, n, 4) or matrices (m, 2, n, n).
+    """
+
+    instances: NDArray[np.float32]
+    preferences: NDArray[np.float32]
+    tours: NDArray[np.int16]
+
+    @classmethod
+    def load(cls, path: Path) -> "Shard":
+        """Return the shard at path."""
+        with np.load(path) as stored:
+            return cls(stored["instances"], stored["preferences"], stored["tours"])
+
+    def save(self, path: Path) -> None:
+        """Write the shard whole or not at all."""
+        unfinished = path.with_suffix(".part.npz")
+        np.savez(
+            unfinished,
+            instances=self.instances,
+            preferences=self.preferences,
+            tours=self.tours,
+        )
+        unfinished.rename(path)
 
 
 class Batch(NamedTuple):
@@ -24,17 +55,17 @@ class Batch(NamedTuple):
 
 
 class Labels:
-    """The shards in a folder; those that are added to it later are found too."""
+    """The shards in a folder; shards that are added later are found too."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._load = lru_cache(maxsize=64)(Shard.load)
 
     def batch(self, instances: int, preferences: int, starts: int, generator: Generator) -> Batch:
-        """A batch from one shard, mirrored, turned and begun at random.
+        """Return a batch from one shard, mirrored, reversed and begun at random.
 
         Raises:
-            FileNotFoundError: the folder has no shard.
+            FileNotFoundError: the folder has no shards.
         """
         paths = sorted(self._folder.glob("shard-?????.npz"))
         if not paths:
@@ -52,7 +83,7 @@ class Labels:
         if _below(2, generator):
             batch = _exchanged(batch)
         if _below(2, generator):
-            batch = _turned_back(batch)
+            batch = _reversed(batch)
         tours = batch.tours.repeat_interleave(starts, dim=1)
         return batch._replace(tours=_begun_anywhere(tours, generator))
 
@@ -61,14 +92,14 @@ def _below(bound: int, generator: Generator) -> int:
     return int(torch.randint(bound, (), generator=generator))
 
 
-def _one_of_each_stretch(count: int, wanted: int, generator: Generator) -> Int[Tensor, " k"]:
-    """Indices, one at random from each of `wanted` equal stretches of range(count)."""
-    shares = (torch.arange(wanted) + torch.rand(wanted, generator=generator)) / wanted
+def _one_of_each_stretch(count: int, k: int, generator: Generator) -> Int[Tensor, " k"]:
+    """Draw one index from each of k equal stretches of range(count)."""
+    shares = (torch.arange(k) + torch.rand(k, generator=generator)) / k
     return (shares * count).long().clamp(max=count - 1)
 
 
 def _mirrored(cities: Float[Tensor, "b n 4"], generator: Generator) -> Float[Tensor, "b n 4"]:
-    """One of the eight symmetries of the square for each instance and plane."""
+    """Apply one of the eight symmetries of the square to each instance and plane."""
     b, n, _ = cities.shape
     planes = cities.view(b, n, 2, 2)
     swap = torch.rand(b, 1, 2, 1, generator=generator) < 0.5
@@ -78,7 +109,7 @@ def _mirrored(cities: Float[Tensor, "b n 4"], generator: Generator) -> Float[Ten
 
 
 def _exchanged(batch: Batch) -> Batch:
-    """The same with the planes exchanged: preference a becomes 90 degrees minus a."""
+    """Exchange the objectives: the preference at angle a becomes that at 90 degrees minus a."""
     if are_matrices(batch.instances):
         instances = batch.instances.flip(1)
     else:
@@ -86,14 +117,14 @@ def _exchanged(batch: Batch) -> Batch:
     return Batch(instances, batch.preferences.flip(0, 1), batch.tours.flip(1))
 
 
-def _turned_back(batch: Batch) -> Batch:
-    """The same with every step the other way: what it costs, and the tours."""
-    turned = batch.instances.mT if are_matrices(batch.instances) else batch.instances
-    return batch._replace(instances=turned, tours=batch.tours.flip(-1))
+def _reversed(batch: Batch) -> Batch:
+    """Reverse every step: its costs, and the tours."""
+    instances = batch.instances.mT if are_matrices(batch.instances) else batch.instances
+    return batch._replace(instances=instances, tours=batch.tours.flip(-1))
 
 
 def _begun_anywhere(tours: Int[Tensor, "b r n"], generator: Generator) -> Int[Tensor, "b r n"]:
-    """Each tour from a city at random."""
+    """Begin each tour at a city at random."""
     b, r, n = tours.shape
     start = torch.randint(n, (b, r, 1), generator=generator)
     return tours.gather(-1, (start + torch.arange(n)) % n)

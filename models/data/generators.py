@@ -15,25 +15,25 @@ Cells = NDArray[np.int64]
 
 
 def uniform(n: int, generator: Generator) -> Array:
-    """Anywhere in the unit square, shape (n, 2)."""
+    """Draw cities anywhere in the unit square, shape (n, 2)."""
     return generator.random((n, 2))
 
 
 def clustered(n: int, generator: Generator) -> Array:
-    """In two to seven Gaussian clusters, which may overlap."""
+    """Draw cities in two to seven Gaussian clusters, which may overlap."""
     centres = generator.random((generator.integers(2, 8), 2))
     cities = centres[generator.integers(len(centres), size=n)]
     return _in_unit_square(cities + generator.normal(scale=0.07, size=(n, 2)))
 
 
 def stretched(n: int, generator: Generator) -> Array:
-    """Evenly in a box whose long side is up to ten times the other."""
+    """Draw cities evenly in a box whose long side is up to ten times the other."""
     sides = np.array([1.0, 10 ** -generator.random()])
     return generator.random((n, 2)) * generator.permutation(sides)
 
 
 def streets(n: int, generator: Generator) -> Array:
-    """Along the streets of a city laid out as a grid, three to ten in either direction."""
+    """Draw cities along the streets of a grid, three to ten in either direction."""
     cities = generator.random((n, 2))
     across = np.arange(n), generator.integers(2, size=n)
     count = generator.integers(3, 11)
@@ -47,7 +47,7 @@ def _in_unit_square(cities: Array) -> Array:
 
 
 PLANES: dict[str, Callable[[int, Generator], Array]] = {
-    each.__name__: each for each in (uniform, clustered, stretched, streets)
+    draw.__name__: draw for draw in (uniform, clustered, stretched, streets)
 }
 
 
@@ -62,7 +62,7 @@ _DOOR = 3
 
 
 def coverage_matrices(generator: Generator, n: int, side: int = SIDE) -> Array:
-    """Costs, shape (2, n, n), between n random places on a map of a random kind.
+    """Draw costs, shape (2, n, n), between n random places on a map of a random kind.
 
     The first are lengths of shortest paths, in cells; the second, distances between random points
     of the unit square.
@@ -74,9 +74,9 @@ def coverage_matrices(generator: Generator, n: int, side: int = SIDE) -> Array:
 
 
 def coverage_map(generator: Generator, n: int, side: int = SIDE) -> tuple[Mask, Cells]:
-    """Which cells are free, shape (side, side), and n different ones, shape (n, 2), in one region.
+    """Draw a map: its free cells as a mask, shape (side, side), and n of them, shape (n, 2).
 
-    Drawn again while its largest region has too few cells.
+    These are different and in one region. A map whose largest region is too small is drawn again.
     """
     while True:
         free = drawn_map(generator, MAPS[generator.integers(len(MAPS))], side)
@@ -86,7 +86,11 @@ def coverage_map(generator: Generator, n: int, side: int = SIDE) -> tuple[Mask, 
 
 
 def drawn_map(generator: Generator, kind: str, side: int) -> Mask:
-    """Which cells of a map of this kind, shape (side, side), are free."""
+    """Draw the mask of free cells, shape (side, side), of a map of this kind.
+
+    Raises:
+        ValueError: there is no such kind.
+    """
     match kind:
         case "random":
             return generator.random((side, side)) >= generator.uniform(*_FILL)
@@ -100,7 +104,7 @@ def drawn_map(generator: Generator, kind: str, side: int) -> Mask:
 
 
 def uniform_distances(generator: Generator, n: int) -> Array:
-    """Distances, shape (n, n), between points uniform in the unit square."""
+    """Draw distances, shape (n, n), between points uniform in the unit square."""
     points = generator.random((n, 2))
     return np.hypot(*(points[:, np.newaxis] - points).transpose(2, 0, 1))
 
@@ -116,7 +120,7 @@ def _blocks(generator: Generator, side: int) -> Mask:
 
 
 def _divide(generator: Generator, house: Mask, rows: Span, columns: Span) -> None:
-    """Divides a room by a wall with a door, and each part again as long as there is space."""
+    """Divide a room by a wall with a door, and each part again as long as there is space."""
     if columns[1] - columns[0] > rows[1] - rows[0]:
         house, rows, columns = house.T, columns, rows
     (top, bottom), (left, right) = rows, columns

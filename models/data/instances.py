@@ -1,20 +1,53 @@
-"""Instances as tensors, of either kind: cities (b, n, 4), or matrices of costs (b, 2, n, n).
+"""Instances as tensors: uniform ones, tour lengths, starts.
 
-The last axis but one has the cities of both.
+An instance is given by its cities (n, 4), columns 0-1 in plane 1 and 2-3 in plane 2, or by its
+matrices of costs (2, n, n). A batch has the axis b before: (b, n, 4) or (b, 2, n, n). The last
+axis but one counts the cities of both.
 """
 
 import torch
 from jaxtyping import Float, Int
-from torch import Tensor
+from torch import Generator, Tensor
+
+
+def uniform_cities(
+    count: int, cities: int, generator: Generator, device: torch.device
+) -> Float[Tensor, "b n 4"]:
+    """Draw cities uniform in the unit square of each plane."""
+    return torch.rand(count, cities, 4, generator=generator).to(device)
+
+
+def uniform_instances(
+    reads: str, count: int, cities: int, generator: Generator, device: torch.device
+) -> Tensor:
+    """Draw uniform cities, as an actor reads them: "coordinates", or "matrices" of distances."""
+    drawn = uniform_cities(count, cities, generator, device)
+    return drawn if reads == "coordinates" else distance_matrices(drawn)
+
+
+def city_count(least: int, most: int, generator: Generator) -> int:
+    """Draw a number of cities, uniform from least to most, both included."""
+    return int(torch.randint(least, most + 1, (), generator=generator))
+
+
+def distinct_starts(
+    count: int, cities: int, starts: int, generator: Generator, device: torch.device
+) -> Int[Tensor, "b s"]:
+    """Draw different cities for each instance, as many as there are starts, in random order.
+
+    Where there are fewer cities than starts, cities repeat.
+    """
+    keys = torch.rand(count, max(cities, starts), generator=generator)
+    return (keys.argsort(dim=1)[:, :starts] % cities).to(device)
 
 
 def are_matrices(instances: Tensor) -> bool:
-    """Whether the instances are given by what each step costs, not by where the cities are."""
+    """Return whether the instances are matrices of costs rather than coordinates of cities."""
     return instances.ndim == 4
 
 
 def distance_matrices(cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b 2 n n"]:
-    """Distances in each plane.
+    """Return the distances in each plane.
 
     Written without cdist, which would freeze n when a network is exported.
     """
@@ -24,7 +57,7 @@ def distance_matrices(cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b 2 n n"
 
 
 def closed(matrices: Float[Tensor, "*b n n"]) -> Float[Tensor, "*b n n"]:
-    """The least costs of getting from city to city over any others (Floyd, 1962)."""
+    """Return the least costs of getting from city to city over any others (Floyd, 1962)."""
     for k in range(matrices.shape[-1]):
         by_way_of_k = matrices[..., :, k, None] + matrices[..., None, k, :]
         matrices = torch.minimum(matrices, by_way_of_k)
@@ -32,7 +65,7 @@ def closed(matrices: Float[Tensor, "*b n n"]) -> Float[Tensor, "*b n n"]:
 
 
 def tour_lengths(instances: Tensor, tours: Int[Tensor, "b r n"]) -> Float[Tensor, "b r 2"]:
-    """Both lengths of each closed tour."""
+    """Return both lengths of each closed tour."""
     b, r, n = tours.shape
     if are_matrices(instances):
         steps = (tours * n + tours.roll(-1, dims=2)).view(b, 1, r * n).expand(-1, 2, -1)

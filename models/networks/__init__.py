@@ -1,1 +1,1 @@
-"""The actors and critics, and what they are made of."""
+"""Networks: the actors, their layers, the critic."""

@@ -27,7 +27,7 @@ _MOST = 43.0
 
 
 def exponential(projected: Float[Tensor, "*x p"]) -> Float[Tensor, "*x p"]:
-    """exp(2x), which cities and rows are given by."""
+    """Return exp(2x), the form in which `pointed` takes cities and rows."""
     return (2 * projected).clamp(-_MOST, _MOST).exp()
 
 
@@ -37,7 +37,7 @@ def pointed(
     judge: Float[Tensor, " p"],
     visited: Bool[Tensor, "b r n"],
 ) -> Float[Tensor, "b r n"]:
-    """The scores, with v the judge; whatever it may be where visited."""
+    """Return the scores of the cities for each row, with v the judge; undefined where visited."""
     if cities.device.type == "cpu" and not torch.compiler.is_exporting():
         quotients: Tensor = _Quotients.apply(  # type: ignore[no-untyped-call]  # torch's
             cities, rows, judge, visited
@@ -53,9 +53,9 @@ class _Quotients(torch.autograd.Function):
     """The sums of v / (1 + exp(2x) exp(2y)), zero where visited."""
 
     @staticmethod
-    def forward(ctx: Any, *given: Tensor) -> Tensor:
-        ctx.save_for_backward(*given)
-        cities, rows, judge, visited = _as_arrays(given)
+    def forward(ctx: Any, *tensors: Tensor) -> Tensor:
+        ctx.save_for_backward(*tensors)
+        cities, rows, judge, visited = _as_arrays(tensors)
         sums = np.zeros(visited.shape, np.float32)
         _add_up(cities, rows, judge, visited, sums)
         return torch.from_numpy(sums)
@@ -75,7 +75,7 @@ def _as_arrays(tensors: tuple[Tensor, ...]) -> list[NDArray[Any]]:
 
 
 def _compiled(function: Callable[P, None]) -> Callable[P, None]:
-    """As machine code that may reorder sums; unwrapped, for tests wrap functions in checks."""
+    """Compile a function to code that may reorder sums; unwrapped of the checks that tests add."""
     kernel: Callable[P, None] = njit(fastmath=True, cache=True, nogil=True)(
         inspect.unwrap(function)
     )
@@ -100,7 +100,10 @@ def _add_up(
 
 @_compiled
 def _add_gradients(of_sum: np.float32, given: Three, gradients: Three, room: Array) -> None:
-    """Of one city and row. Short loops over few arrays become vector code, one long one not."""
+    """Add the gradients of one city and row.
+
+    Short loops over few arrays become vector code, one long loop does not.
+    """
     city, row, judge = given
     of_city, of_row, of_judge = gradients
     for p in range(len(room)):

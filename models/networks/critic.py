@@ -1,19 +1,19 @@
-"""The paper's baseline: a network that predicts what the actor will reach."""
+"""The critic, the paper's baseline: a network that predicts the actor's objective."""
 
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from models.config import NetworkConfig
 from models.data.instances import are_matrices
+from models.networks.actor import Architecture
 from models.networks.layers import AttentionEncoder, feedforward
 from models.networks.matrix_features import initial_features
 
 
 class Critic(nn.Module):
-    """Predicts the objective of the actor's tour from the cities and the preference."""
+    """A predictor of the objective of the actor's tour, from an instance and a preference."""
 
-    def __init__(self, config: NetworkConfig, reads: str) -> None:
+    def __init__(self, config: Architecture, reads: str) -> None:
         super().__init__()
         self.encoder = AttentionEncoder(
             4 if reads == "coordinates" else 12,
@@ -26,11 +26,11 @@ class Critic(nn.Module):
         self.judge = feedforward(config.width, 1, hidden=config.width)
 
     def forward(self, instances: Tensor, preferences: Float[Tensor, "k 2"]) -> Float[Tensor, "b k"]:
-        """The prediction for each instance, cities or matrices, and preference."""
-        given = instances
+        """Return the prediction for each instance, cities or matrices, and preference."""
+        features = instances
         if are_matrices(instances):
-            given = initial_features(instances).flatten(2)
-        graph = self.encoder(given).mean(dim=1)  # (b, d)
+            features = initial_features(instances).flatten(2)
+        graph = self.encoder(features).mean(dim=1)  # (b, d)
         judged: Tensor = self.judge(
             torch.relu(graph[:, None] + self.encode_preference(preferences))
         )

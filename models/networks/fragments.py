@@ -1,4 +1,4 @@
-"""Tours in the making: paths, here called fragments, that grow together until one is left.
+"""Fragments: the paths of which PA-One makes a tour, and the operations that join them.
 
 A row is one tour. Its *ends* are the cities that still lack a neighbour: both ends of each path,
 and every city that is still alone, which is an end once and lacks two. Ends that have got all
@@ -12,7 +12,7 @@ import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor
 
-# What an impossible edge costs, and how little it is wanted. Twice this is a finite float.
+# The cost of an impossible edge, and minus its logit. Twice this is a finite float.
 NEVER = 1e9
 
 
@@ -32,47 +32,47 @@ class Fragments(NamedTuple):
 
     @property
     def on_paths(self) -> Bool[Tensor, "r e"]:
-        """Which ends are of a path; the others are cities alone."""
-        return self.partners != _each(self.ends)
+        """The ends that are of a path; the others are cities alone."""
+        return self.partners != _positions(self.ends)
 
     @property
     def names(self) -> Int[Tensor, "r e"]:
         """One number for both ends of a fragment."""
-        return torch.minimum(self.partners, _each(self.ends))
+        return torch.minimum(self.partners, _positions(self.ends))
 
     def trimmed(self) -> "Fragments":
-        """The same without positions at which no row has an open end."""
+        """Return the fragments without positions at which no row has an open end."""
         moved, kept = cleared(self)
         ends, partners, open_ = (part[:, : int(kept)] for part in moved[:3])
         return Fragments(ends, partners, open_, self.links, self.left)
 
 
-def _each(positions: Tensor) -> Int[Tensor, " e"]:
+def _positions(positions: Tensor) -> Int[Tensor, " e"]:
     return torch.arange(positions.shape[1], device=positions.device)
 
 
 def all_alone(like: Float[Tensor, "r n"]) -> Fragments:
-    """Every city a fragment of its own, for as many rows and cities as the given tensor has."""
-    nothing = torch.zeros_like(like, dtype=torch.long)
-    cities = nothing + torch.arange(like.shape[1], device=like.device)
-    links = torch.cat((nothing, nothing, nothing[:, :1]), dim=1) - 1
-    return Fragments(cities, cities.clone(), nothing == 0, links, (nothing + 1).sum(dim=1))
+    """Return every city as a fragment of its own, for the rows and cities of the tensor."""
+    zeros = torch.zeros_like(like, dtype=torch.long)
+    cities = zeros + torch.arange(like.shape[1], device=like.device)
+    links = torch.cat((zeros, zeros, zeros[:, :1]), dim=1) - 1
+    return Fragments(cities, cities.clone(), zeros == 0, links, (zeros + 1).sum(dim=1))
 
 
 def cleared(fragments: Fragments) -> tuple[Fragments, Int[Tensor, ""]]:
-    """The open ends of each row first, and how many of all ends are worth keeping."""
+    """Return the open ends of each row first, and how many positions hold an open end."""
     open_ = fragments.open
     positions = open_.long().cumsum(dim=1) - 1
     e = open_.shape[1]
-    each = _each(open_).expand_as(positions)
-    room = torch.cat((each, each[:, :1]), dim=1)  # closed ends go beyond the last
-    order = room.scatter(1, torch.where(open_, positions, e), each)[:, :-1]
+    index = _positions(open_).expand_as(positions)
+    room = torch.cat((index, index[:, :1]), dim=1)  # closed ends go beyond the last
+    order = room.scatter(1, torch.where(open_, positions, e), index)[:, :-1]
     kept = open_.sum(dim=1, keepdim=True)
     partners = positions.gather(1, fragments.partners.gather(1, order))
     moved = Fragments(
         fragments.ends.gather(1, order),
-        torch.where(each < kept, partners, each),
-        each < kept,
+        torch.where(index < kept, partners, index),
+        index < kept,
         fragments.links,
         fragments.left,
     )
@@ -80,23 +80,23 @@ def cleared(fragments: Fragments) -> tuple[Fragments, Int[Tensor, ""]]:
 
 
 def possible(fragments: Fragments, candidates: Int[Tensor, "r e c"]) -> Bool[Tensor, "r e c"]:
-    """Whether each end may be joined to each of its candidates, given by position."""
+    """Return whether each end may be joined to each of its candidates, given by position."""
     names = torch.where(fragments.open, fragments.names, -1)
     theirs = names.gather(1, candidates.flatten(1)).view_as(candidates)
     return (theirs >= 0) & (theirs != names[..., None]) & fragments.open[..., None]
 
 
-def best_mates(
-    fragments: Fragments, candidates: Int[Tensor, "r e c"], wanted: Float[Tensor, "r e c"]
+def mutual_best(
+    fragments: Fragments, candidates: Int[Tensor, "r e c"], edge_logits: Float[Tensor, "r e c"]
 ) -> Int[Tensor, "r e"]:
-    """Whom to join each end to, by position, or minus one.
+    """Return the end to which to join each end, by position, or minus one.
 
-    Every end names the candidate that it wants most, and two fragments are joined by an edge that
-    both their ends want no less than any other that they name or are named for. So each fragment
-    is joined to one other at most, no cycle closes, and in every row some are joined. An edge is
-    wanted as much by both its ends, and by -NEVER where it is impossible.
+    Every end names its candidate with the highest logit, and two fragments are joined by an edge
+    whose logit is no lower than that of any other edge that either of them names or is named for.
+    So each fragment is joined to one other at most, no cycle closes, and in every row some are
+    joined. The logit of an edge is the same for both its ends, and -NEVER where it is impossible.
     """
-    best, which = wanted.max(dim=-1)
+    best, which = edge_logits.max(dim=-1)
     mates = candidates.gather(2, which[..., None]).squeeze(-1)
     own = fragments.names
     theirs = own.gather(1, mates)
@@ -105,21 +105,21 @@ def best_mates(
     agreed = (best > -NEVER / 2) & (best >= highest.gather(1, own))
     agreed &= best >= highest.gather(1, theirs)
 
-    # Of edges wanted alike, a fragment takes the one with the highest number.
-    each = _each(own)
-    e = each[-1] + 1
-    numbers = torch.where(agreed, torch.minimum(each, mates) * e + torch.maximum(each, mates), -1)
+    # Of edges with one logit, a fragment takes the one with the highest number.
+    index = _positions(own)
+    e = index[-1] + 1
+    numbers = torch.where(agreed, torch.minimum(index, mates) * e + torch.maximum(index, mates), -1)
     most = torch.full_like(numbers, -1).scatter_reduce(1, own, numbers, "amax")
     most = most.scatter_reduce(1, theirs, numbers, "amax")
     agreed &= (most.gather(1, own) == numbers) & (most.gather(1, theirs) == numbers)
 
     chosen = torch.where(agreed, mates, -1)
     room = torch.cat((chosen, chosen[:, :1]), dim=1)
-    return room.scatter(1, torch.where(agreed, mates, e), each.expand_as(mates))[:, :-1]
+    return room.scatter(1, torch.where(agreed, mates, e), index.expand_as(mates))[:, :-1]
 
 
 def joined(fragments: Fragments, mates: Int[Tensor, "r e"]) -> Fragments:
-    """The fragments with each end joined to its mate, where it has one."""
+    """Return the fragments with each end joined to its mate, where it has one."""
     ends, partners, open_, links, left = fragments
     at = mates >= 0
     second = fragments.on_paths
@@ -132,7 +132,7 @@ def joined(fragments: Fragments, mates: Int[Tensor, "r e"]) -> Fragments:
 
 
 def walked(fragments: Fragments) -> Int[Tensor, "r n"]:
-    """The tours of rows that have one fragment left, from one of its ends to the other."""
+    """Return the tours of rows that have one fragment left, from one of its ends to the other."""
     links = fragments.links
     n = (links.shape[1] - 1) // 2
     before, now = first_steps(fragments)
@@ -144,7 +144,7 @@ def walked(fragments: Fragments) -> Int[Tensor, "r n"]:
 
 
 def first_steps(fragments: Fragments) -> tuple[Int[Tensor, " r"], Int[Tensor, " r"]]:
-    """One end of each row's last fragment, and the city after it."""
+    """Return one end of each row's last fragment, and the city after it."""
     number = fragments.open.long()
     one = fragments.ends.gather(1, number.argmax(dim=1, keepdim=True))
     return one.squeeze(1), fragments.links.gather(1, one).squeeze(1)
@@ -153,7 +153,7 @@ def first_steps(fragments: Fragments) -> tuple[Int[Tensor, " r"], Int[Tensor, " 
 def next_city(
     links: Int[Tensor, "r l"], before: Int[Tensor, " r"], now: Int[Tensor, " r"]
 ) -> Int[Tensor, " r"]:
-    """The neighbour of the city now that is not the one before."""
+    """Return the neighbour of the city now that is not the one before."""
     n = (links.shape[1] - 1) // 2
     first = links.gather(1, now[:, None]).squeeze(1)
     second = links.gather(1, now[:, None] + n).squeeze(1)

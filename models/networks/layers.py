@@ -1,11 +1,12 @@
-"""From what is given of each city to features: the encoder of PA-AT, and layers of others.
+"""Layers of the encoders: attention of several kinds, feed-forward, preference encoders.
 
-PA-AT's is the encoder of Kool, van Hoof and Welling (2019), arXiv:1803.08475. The layers of
+PA-AT's encoder is that of Kool, van Hoof and Welling (2019), arXiv:1803.08475. The layers of
 PA-One for matrices differ in two ways: they normalise before each layer rather than after, so
 that deeper stacks train; and their heads attend less the more a step between two cities costs,
 each head at rates of its own in either objective and under the preference's weights.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from functools import partial
 
@@ -13,11 +14,11 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-# What each head of each city sees, from its queries, keys and values, all (b, h, n, d / h).
+# Attention: from queries, keys and values to the sums of each head, all (b, h, n, d / h).
 See = Callable[[Tensor, Tensor, Tensor], Tensor]
-# The same, given first at which rates, (h, m), each head fades with each measure of nearness.
+# The same, after the rates (h, m) at which each head fades with each measure of nearness.
 SeeFading = Callable[[Tensor, Tensor, Tensor, Tensor], Tensor]
-# The way that layers see, from costs (b, s, 2, n, n) of s kinds and weights (g, 2).
+# From costs (b, s, 2, n, n) of s kinds and weights (g, 2) to the attention of the layers.
 Seeing = Callable[[Tensor, Tensor], SeeFading]
 
 
@@ -27,7 +28,7 @@ def see(
     value: Float[Tensor, "b h n e"],
     bias: Float[Tensor, "b h n n"] | None = None,
 ) -> Float[Tensor, "b h n e"]:
-    """Scaled dot-product attention; the bias is added to the scores."""
+    """Return scaled dot-product attention; the bias is added to the scores."""
     scores = query @ key.mT / query.shape[-1] ** 0.5
     return (scores if bias is None else scores + bias).softmax(dim=-1) @ value
 
@@ -39,7 +40,7 @@ def see_fading(
     key: Float[Tensor, "b h n e"],
     value: Float[Tensor, "b h n e"],
 ) -> Float[Tensor, "b h n e"]:
-    """Attention that falls off, for each head at rates of its own, as measures of nearness do."""
+    """Return attention that falls off as nearness does, for each head at rates of its own."""
     # As a product it is one pass over (b, h, n, n), the largest thing there is.
     bias = (rates @ nearness.flatten(2)).unflatten(2, nearness.shape[2:])
     return see(query, key, value, bias)
@@ -55,7 +56,7 @@ class SelfAttention(nn.Module):
         self.merge = nn.Linear(width, width, bias=False)
 
     def forward(self, features: Float[Tensor, "b n d"], see: See = see) -> Float[Tensor, "b n d"]:
-        """Each city's view of all cities."""
+        """Return the view that each city has of all cities."""
         parts = (
             part.unflatten(-1, (self.heads, -1)).transpose(1, 2)
             for part in self.project(features).chunk(3, dim=-1)
@@ -65,16 +66,18 @@ class SelfAttention(nn.Module):
 
 
 def feedforward(width: int, out: int, hidden: int) -> nn.Sequential:
-    """Two linear layers with a rectifier between them."""
+    """Return two linear layers with a rectifier between them."""
     return nn.Sequential(nn.Linear(width, hidden), nn.ReLU(), nn.Linear(hidden, out))
 
 
 def preference_encoder(width: int, layers: int) -> nn.Module:
-    """The paper's: one linear layer, (k, 2) to (k, d); or none, and all preferences are alike."""
-    return nn.Linear(2, width) if layers else _Alike(width)
+    """Return the paper's encoder, one linear layer from (k, 2) to (k, d), or one without layers."""
+    return nn.Linear(2, width) if layers else _ZeroEncoder(width)
 
 
-class _Alike(nn.Module):
+class _ZeroEncoder(nn.Module):
+    """An encoder to which all preferences are alike."""
+
     def __init__(self, width: int) -> None:
         super().__init__()
         self.width = width
@@ -84,25 +87,33 @@ class _Alike(nn.Module):
 
 
 class AttentionEncoder(nn.Module):
-    """Kool et al.: attention and feed-forward, each with a skip and then batch normalisation."""
+    """The encoder of Kool et al.: an embedding and layers of attention and feed-forward."""
 
-    def __init__(self, given: int, width: int, heads: int, layers: int, hidden: int) -> None:
+    def __init__(self, inputs: int, width: int, heads: int, layers: int, hidden: int) -> None:
         super().__init__()
-        self.embed = nn.Linear(given, width)
+        self.embed = nn.Linear(inputs, width)
         self.layers = nn.ModuleList(
             PostNormLayer(SelfAttention(width, heads), width, hidden) for _ in range(layers)
         )
 
     def forward(self, cities: Float[Tensor, "b n g"]) -> Float[Tensor, "b n d"]:
-        """Features of the cities, from what is given of each."""
+        """Return the features of the cities, from g numbers given of each."""
         features: Tensor = self.embed(cities)
         for layer in self.layers:
             features = layer(features)
         return features
 
 
+class SilenceableLayer(nn.Module, ABC):
+    """A layer with a skip that can begin as the identity, so that a trained stack can grow."""
+
+    @abstractmethod
+    def silence(self) -> None:
+        """Make the layer give back the features as they came, until it is trained."""
+
+
 class PostNormLayer(nn.Module):
-    """Attention of a kind and a feed-forward, each with a skip and then batch normalisation."""
+    """Attention and a feed-forward, each with a skip and then batch normalisation."""
 
     def __init__(self, attend: nn.Module, width: int, hidden: int) -> None:
         super().__init__()
@@ -111,7 +122,7 @@ class PostNormLayer(nn.Module):
         self.norms = nn.ModuleList(nn.BatchNorm1d(width) for _ in range(2))
 
     def forward(self, features: Float[Tensor, "b n d"]) -> Float[Tensor, "b n d"]:
-        """Features of the cities, each in view of all."""
+        """Return the features of the cities, each in view of all."""
         features = self._normalised(0, features + self.attend(features))
         return self._normalised(1, features + self.think(features))
 
@@ -121,17 +132,17 @@ class PostNormLayer(nn.Module):
 
 
 def seeing_at_once(costs: Float[Tensor, "b s 2 n n"], weights: Float[Tensor, "g 2"]) -> SeeFading:
-    """Attention of all cities to all in one product.
+    """Return attention of all cities to all in one product.
 
-    Near is what costs little, of s kinds of cost: in the first plane, the second, or by weight.
+    Nearness falls with each of s kinds of cost: in the first objective, the second, or by weight.
     """
-    each = costs.repeat_interleave(len(weights), dim=0)
+    by_group = costs.repeat_interleave(len(weights), dim=0)
     shares = weights.repeat(len(costs), 1)[:, None, :, None, None]
-    measures = torch.cat((each, (each * shares).sum(dim=2, keepdim=True)), dim=2)
+    measures = torch.cat((by_group, (by_group * shares).sum(dim=2, keepdim=True)), dim=2)
     return partial(see_fading, -measures.flatten(1, 2).log1p())
 
 
-class FadingLayer(nn.Module):
+class FadingLayer(SilenceableLayer):
     """Attention whose heads fade, each at rates of its own, as several measures of nearness fall.
 
     The kinds of head, rows of first rates by measure, take turns.
@@ -148,13 +159,13 @@ class FadingLayer(nn.Module):
         self.fading = nn.Parameter(torch.tensor(turns))  # (h, m)
 
     def silence(self) -> None:
-        """Makes the layer give back the features as they came, until it is trained."""
+        """Make the layer give back the features as they came, until it is trained."""
         for last in (self.attend.merge, self.think[-1]):
             for weights in last.parameters():
                 nn.init.zeros_(weights)
 
     def forward(self, features: Float[Tensor, "b n d"], see: SeeFading) -> Float[Tensor, "b n d"]:
-        """Features of the cities, each in view of those near it."""
+        """Return the features of the cities, each in view of those near it."""
         features = features + self.attend(self.norms[0](features), partial(see, self.fading))
         thought: Tensor = self.think(self.norms[1](features))
         return features + thought

@@ -11,13 +11,14 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from models.networks.actor import Architecture, StepwiseActor
 from models.networks.additive_attention import exponential, pointed
 from models.networks.layers import PostNormLayer, preference_encoder
-from models.networks.stepwise import Moment, look_up
+from models.networks.stepwise import Decoder, Moment, look_up
 
 
 class EANEncoder(nn.Module):
-    """Deudon et al.: normalised embeddings, then attention and feed-forward as in Kool et al."""
+    """The encoder of Deudon et al.: normalised embeddings, then layers as in Kool et al."""
 
     def __init__(self, width: int, heads: int, layers: int, hidden: int) -> None:
         super().__init__()
@@ -28,7 +29,7 @@ class EANEncoder(nn.Module):
         )
 
     def forward(self, cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b n d"]:
-        """Features of the cities."""
+        """Return the features of the cities."""
         features: Tensor = self.norm(self.embed(cities).transpose(1, 2)).transpose(1, 2)
         for layer in self.layers:
             features = layer(features)
@@ -44,7 +45,7 @@ class RectifiedAttention(nn.Module):
         self.project = nn.Linear(width, 3 * width)
 
     def forward(self, features: Float[Tensor, "b n d"]) -> Float[Tensor, "b n d"]:
-        """Each city's view of all cities."""
+        """Return the view that each city has of all cities."""
         query, key, value = (
             part.unflatten(-1, (self.heads, -1)).transpose(1, 2)  # (b, h, n, d / h)
             for part in self.project(features).relu().chunk(3, dim=-1)
@@ -56,7 +57,7 @@ class RectifiedAttention(nn.Module):
 class EANMemory(NamedTuple):
     """PA-EAN's tables of the instances; those of past cities end with a row for "none yet".
 
-    Pointers are the exponentials of projections, as `models.pointing` takes them.
+    Pointers are the exponentials of projections, see `models.networks.additive_attention`.
     """
 
     pointers: Float[Tensor, "b p n"]
@@ -66,13 +67,13 @@ class EANMemory(NamedTuple):
 
 
 class EANConditioning(NamedTuple):
-    """What a preference adds to the projections of every city, and so to PA-EAN's rows."""
+    """The part of a preference in the projections of every city, and so in PA-EAN's rows."""
 
     past: Float[Tensor, "r 3 q"]
     pointers: Float[Tensor, "r p"]
 
 
-class EANDecoder(nn.Module):
+class EANDecoder(Decoder):
     """Deudon et al.'s pointer; the encoding of a preference is added to the features of all cities.
 
     A city's score is v . tanh(x + y), with x of the city and y of the row. The tables of the
@@ -94,12 +95,12 @@ class EANDecoder(nn.Module):
         self.judge = nn.Parameter(torch.empty(pointer).uniform_(-0.1, 0.1) * (3 / pointer) ** 0.5)
 
     def remember(self, features: Float[Tensor, "b n d"]) -> EANMemory:
-        """The tables of the instances."""
+        """Compute the tables of the instances."""
         past = nn.functional.pad(self.project_past(features), (0, 0, 0, 1))
         return EANMemory(exponential(self.project_city(features)).mT, *past.chunk(3, dim=-1))
 
     def condition(self, preferences: Float[Tensor, "k 2"]) -> EANConditioning:
-        """The rows of the preferences."""
+        """Return the part of each preference in the rows."""
         encoding = self.encode_preference(preferences)
         past = self.project_past(encoding).unflatten(-1, (3, -1))
         return EANConditioning(past, self.project_city(encoding))
@@ -107,7 +108,7 @@ class EANDecoder(nn.Module):
     def logits(
         self, memory: EANMemory, rows: EANConditioning, moment: Moment
     ) -> Float[Tensor, "b r n"]:
-        """Unnormalised log-probabilities of the next city; minus infinity where visited."""
+        """Return unnormalised log-probabilities of the next city; minus infinity where visited."""
         n = moment.visited.shape[-1]
         begun = (moment.recent < n).to(rows.past.dtype)
         query = torch.einsum("brt,rtq->brq", begun, rows.past)
@@ -116,3 +117,24 @@ class EANDecoder(nn.Module):
         pointing = exponential(self.project_query(query.relu()) + rows.pointers)
         scores = pointed(memory.pointers.mT, pointing, self.judge, moment.visited)
         return (self.clip * torch.tanh(scores)).masked_fill(moment.visited, -torch.inf)
+
+
+class EANActor(StepwiseActor):
+    """PA-EAN."""
+
+    reads = "coordinates"
+    encoder: EANEncoder
+    decoder: EANDecoder
+
+    def __init__(self, config: Architecture) -> None:
+        super().__init__()
+        self.encoder = EANEncoder(config.width, config.heads, config.layers, config.feedforward)
+        self.decoder = EANDecoder(config.width, config.clip, config.preference_layers)
+
+    def remember(
+        self,
+        instances: Float[Tensor, "b n 4"],
+        preferences: Float[Tensor, "r 2"],  # noqa: ARG002, the encoder does without
+    ) -> EANMemory:
+        """Compute what decoding needs of the instances, once for all preferences."""
+        return self.decoder.remember(self.encoder(instances))

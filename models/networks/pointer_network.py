@@ -23,7 +23,7 @@ class PointerMemory(NamedTuple):
 
 
 class PointerActor(nn.Module):
-    """A GRU follows the tour; its state attends to the cities, and what it sees points at one."""
+    """DRL-MOA's actor: a GRU reads the tour, its state attends to the cities, and points at one."""
 
     def __init__(self, width: int) -> None:
         super().__init__()
@@ -36,7 +36,7 @@ class PointerActor(nn.Module):
         self.judges = nn.Parameter(torch.empty(2, width).uniform_(-1, 1) * (3 / width) ** 0.5)
 
     def remember(self, cities: Float[Tensor, "b n 4"]) -> PointerMemory:
-        """The tables of the instances."""
+        """Compute the tables of the instances."""
         features = self.embed_city(cities)
         tables = exponential(self.project_city(features)).chunk(2, dim=-1)
         return PointerMemory(features, *tables)
@@ -47,17 +47,17 @@ class PointerActor(nn.Module):
         states: Float[Tensor, "b t d"],
         visited: Bool[Tensor, "b t n"],
     ) -> Float[Tensor, "b t n"]:
-        """Unnormalised log-probabilities of the next city; minus infinity where visited."""
-        nothing = torch.zeros_like(visited)
+        """Return unnormalised log-probabilities of the next city; minus infinity where visited."""
+        none_visited = torch.zeros_like(visited)
         states = exponential(self.project_state(states))
-        shares = pointed(memory.attended, states, self.judges[0], nothing).softmax(dim=-1)
+        shares = pointed(memory.attended, states, self.judges[0], none_visited).softmax(dim=-1)
         contexts = exponential(self.project_context(shares @ memory.features))
         scores = pointed(memory.pointed, contexts, self.judges[1], visited)
         return scores.masked_fill(visited, -torch.inf)
 
 
 class PointerCritic(nn.Module):
-    """Predicts the objective that the actor will reach: a sum over the cities."""
+    """A predictor of the actor's objective: a sum over the cities."""
 
     def __init__(self, width: int) -> None:
         super().__init__()
@@ -65,7 +65,7 @@ class PointerCritic(nn.Module):
         self.judge = nn.Sequential(nn.Linear(4, width), *hidden, nn.Linear(20, 1))
 
     def forward(self, cities: Float[Tensor, "b n 4"]) -> Float[Tensor, " b"]:
-        """The prediction for each instance."""
+        """Return the prediction for each instance."""
         judged: Tensor = self.judge(cities).sum(dim=(1, 2))
         return judged
 
@@ -74,7 +74,7 @@ class PointerCritic(nn.Module):
 def build_tours(
     actor: PointerActor, cities: Float[Tensor, "b n 4"], choose: Choose = greedily
 ) -> Int[Tensor, "b n"]:
-    """A tour of each instance; the first city is chosen too."""
+    """Build a tour of each instance; the first city is chosen too."""
     b, n, _ = cities.shape
     memory = actor.remember(cities)
     visited = torch.zeros(b, 1, n, dtype=torch.bool)
@@ -90,7 +90,7 @@ def build_tours(
 def log_likelihoods(
     actor: PointerActor, cities: Float[Tensor, "b n 4"], tours: Int[Tensor, "b n"]
 ) -> Float[Tensor, " b"]:
-    """The log-likelihood of each tour, from all of its moments at once."""
+    """Return the log-likelihood of each tour, from all of its moments at once."""
     ordered = cities.gather(1, tours[..., None].expand(-1, -1, 4))
     before = torch.cat((torch.zeros_like(ordered[:, :1]), ordered[:, :-1]), dim=1)
     states, _ = actor.follow(actor.embed_last(before))

@@ -14,7 +14,6 @@ from pathlib import Path
 import torch
 
 from models.checkpoint import Trained, load_weights
-from models.validation import greedy_tours
 from service.instance import Instance, tour_lengths
 from service.preferences import fan, from_angles
 from tests.benchmarks.instances import COUNT, SIZES, check_tours, paper_instances
@@ -48,6 +47,6 @@ def row_name(trained: Trained) -> str:
 def _points(trained: Trained, instance: Instance) -> Points:
     cities = torch.from_numpy(instance.scaled_coordinates).float()[None]
     preferences = torch.from_numpy(from_angles(fan(TOURS))).float()
-    tours = greedy_tours(trained.actor, cities, preferences)[0].numpy()
+    tours = trained.actor.tours(cities, preferences)[0].numpy()
     check_tours(tours, instance.n)
     return tour_lengths(instance, tours)

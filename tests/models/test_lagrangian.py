@@ -7,8 +7,7 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.lagrangian import ascended, lagrangian, violation, weighted_sum, weights
-from service import preferences as service_preferences
+from models.lagrangian import ascended, lagrangian, violation, weighted_sum
 
 LENGTHS = st.floats(0.01, 1000)
 ANGLES = st.floats(0.001, math.pi / 2 - 0.001)
@@ -47,12 +46,6 @@ def test_multipliers_rise_by_the_mean_violation_and_stay_within_their_limits() -
     violations = torch.tensor([[0.1, 0.0, 0.9], [0.3, 0.0, 0.9]])
     found = ascended(torch.tensor([1.0, 0.5, 9.9]), violations, 2.0, (0.6, 10.0))
     assert found.tolist() == pytest.approx([1.4, 0.6, 10.0])
-
-
-@given(angle=ANGLES)
-def test_the_weights_of_a_direction_are_those_of_the_service(angle: float) -> None:
-    found = weights(direction(angle)).numpy()
-    assert found == pytest.approx(service_preferences.weights(direction(angle).numpy()))
 
 
 def test_the_first_length_counts_little_for_a_tour_that_may_be_long_in_it() -> None:

@@ -1,4 +1,4 @@
-"""From checkpoint to ONNX file."""
+"""Exported files against their actors in torch."""
 
 from pathlib import Path
 
@@ -6,11 +6,12 @@ import onnx
 import pytest
 from onnx import ModelProto, numpy_helper
 
+from export.__main__ import to_onnx
 from export.check import TourMismatch, compare
-from export.graph import to_onnx
 from models.checkpoint import load_weights
-from models.config import NetworkConfig
-from models.networks.build import Actor, build
+from models.config import NAMES, NetworkConfig
+from models.networks.actor import Actor
+from models.networks.build import build
 
 ROOT = Path(__file__).parents[2]
 ACTORS = ROOT / "service/actors"
@@ -21,20 +22,21 @@ def small(name: str) -> Actor:
     return build(config, seed=2).eval()
 
 
-@pytest.fixture(scope="module", params=["pa-at", "pa-ean", "pa-ad", "pa-one", "pa-one-matrix"])
+@pytest.fixture(scope="module", params=NAMES)
 def exported(request: pytest.FixtureRequest) -> tuple[Actor, ModelProto]:
     actor = small(request.param)
     return actor, to_onnx(actor)
 
 
 def test_the_file_builds_the_tours_that_torch_builds(exported: tuple[Actor, ModelProto]) -> None:
-    compare(*exported, sizes=(3, 7, 40, 130))  # 130: more than two blocks
+    compare(*exported, sizes=(3, 7, 130), counts=(1, 20))  # 130: more than two blocks
 
 
 @pytest.mark.parametrize("path", sorted(ACTORS.glob("*.onnx")), ids=lambda path: path.stem)
 def test_the_released_file_builds_the_tours_of_the_released_checkpoint(path: Path) -> None:
     trained = load_weights(ROOT / f"models/checkpoints/{path.stem}.pt")
-    compare(trained.actor, onnx.load(path), sizes=(3, 40, 200))  # the export itself goes further
+    # The export itself goes further.
+    compare(trained.actor, onnx.load(path), sizes=(3, 60), counts=(1, 20))
 
 
 def test_a_file_with_other_weights_is_refused(exported: tuple[Actor, ModelProto]) -> None:

@@ -1,9 +1,9 @@
-"""Maps and coverage instances for training and tables."""
+"""Random instances: planes of several shapes, maps, and coverage matrices."""
 
 import numpy as np
 import pytest
 
-from models.data.generators import MAPS, coverage_map, coverage_matrices, drawn_map
+from models.data.generators import MAPS, PLANES, coverage_map, coverage_matrices, drawn_map
 from service.coverage.grid import largest_region, regions
 from service.instance import Instance
 
@@ -55,3 +55,23 @@ def test_coverage_matrices_are_symmetric_metrics() -> None:
         assert (matrices[:, :, None] <= detours + 1e-9).all()
         assert (matrices[0] + np.eye(30) >= 1).all()
         assert 0 < matrices[1].max() < np.sqrt(2)
+
+
+@pytest.mark.parametrize("kind", PLANES)
+def test_every_kind_of_plane_fills_the_unit_square_in_its_own_way(kind: str) -> None:
+    cities = PLANES[kind](300, np.random.default_rng(2))
+    assert cities.shape == (300, 2)
+    assert cities.min() >= 0
+    assert cities.max() <= 1
+    extent = np.sort(np.ptp(cities, axis=0))
+    on_streets = [len(np.unique(cities[:, axis])) < 299 for axis in (0, 1)]
+    spacing = np.sqrt(((cities[:, None] - cities) ** 2).sum(-1) + 9 * np.eye(300)).min(axis=1)
+    match kind:
+        case "uniform":
+            assert extent[0] > 0.9
+        case "clustered":
+            assert spacing.mean() < 0.02
+        case "stretched":
+            assert extent[0] < 0.9
+        case "streets":
+            assert all(on_streets)
