@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import TypeVar
 
 import matplotlib.pyplot as plt
 from tqdm import tqdm
@@ -14,6 +14,8 @@ from tqdm import tqdm
 from models.checkpoint import Run
 from models.config import as_plain
 from models.steps import StepMeans
+
+L = TypeVar("L", bound="ProgressLog")
 
 
 class ProgressLog:
@@ -24,7 +26,7 @@ class ProgressLog:
         self.path = out / "log.csv"
         self._bar = tqdm(total=steps, initial=done, unit="step", dynamic_ncols=True)
 
-    def __enter__(self) -> Self:
+    def __enter__(self: L) -> L:
         return self
 
     def __exit__(
