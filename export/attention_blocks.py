@@ -91,10 +91,9 @@ See (query, key, value, rates, costs, weights) => (seen)
 
 def with_nodes(actor: StepwiseActor) -> StepwiseActor:
     """Return the actor with its fading attention as nodes of the graph that it is exported to."""
-    if not isinstance(actor.encoder, MatrixEncoder):
-        return actor
     changed = deepcopy(actor)
-    changed.encoder.seeing = _node
+    if isinstance(changed.encoder, MatrixEncoder):
+        changed.encoder.seeing = _node
     return changed
 
 
