@@ -55,7 +55,7 @@ class FixedStats:
 
     now: EngineStats
 
-    async def standing(self) -> EngineStats:
+    async def stats(self) -> EngineStats:
         return self.now
 
 
