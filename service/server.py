@@ -8,7 +8,6 @@ import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import FrameType
 from typing import NoReturn
@@ -16,6 +15,7 @@ from typing import NoReturn
 import uvicorn
 from fastapi import FastAPI
 
+from service import installed_version
 from service.actor import load_actors
 from service.api.app import Edge, create_app
 from service.api.auth import Access, Rates
@@ -48,7 +48,7 @@ def build(settings: Settings) -> FastAPI:
         store,
         engine,
         settings.limits,
-        _version(),
+        installed_version(),
         Edge(
             access=Access(settings.api_keys, Rates(settings.rate, settings.redis_url)),
             metrics=metrics,
@@ -171,13 +171,6 @@ def _check_actors(directory: Path, threads: int) -> None:
 
 def _load_actors(directory: Path, threads: int) -> None:
     load_actors(directory, threads)
-
-
-def _version() -> str:
-    try:
-        return version("paretour")
-    except PackageNotFoundError:
-        return "not installed"
 
 
 def _exit(_signal: int, _frame: FrameType | None) -> NoReturn:

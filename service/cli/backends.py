@@ -4,12 +4,15 @@ import json
 from dataclasses import asdict, dataclass
 from typing import Protocol
 
+import httpx
 from paretour import Actor, Client, Front, Plan
 from paretour.values import parse_front
 from rich.console import Console
 
 from service.cli.errors import UsageError
 from service.cli.progress import interrupt_flag, progress_bar
+
+LOADING = "loading the search; the first time it is compiled, for half a minute"
 
 
 class Backend(Protocol):
@@ -67,7 +70,7 @@ class RemoteBackend:
             return client.actors()
 
     def _client(self) -> Client:
-        return Client(self.url, api_key=self.api_key)
+        return Client(_with_scheme(self.url), api_key=self.api_key)
 
 
 class LocalBackend:
@@ -94,16 +97,15 @@ class LocalBackend:
         )
         upload = None if plan.file is None else plan.file.content
         kind: TaskKind = "coverage" if plan.path == "/coverage" else "front"
-        source = TaskSource(kind, plan.json, upload)
-        if plan.seconds != 0:
-            announcement = "loading the search; the first time it is compiled, for half a minute"
-            with console.status(announcement):
-                runner.warm_up()
-        with interrupt_flag() as interrupted, progress_bar(console, plan.seconds) as show:
-            try:
-                document = runner.run(source, interrupted, lambda progress, _: show(progress))
-            except Refusal as error:
-                raise UsageError(str(error)) from None
+        try:
+            task = runner.parse(TaskSource(kind, plan.json, upload))
+            if task.needs_compiled_code:
+                with console.status(LOADING):
+                    runner.warm_up()
+            with interrupt_flag() as interrupted, progress_bar(console, plan.seconds) as show:
+                document = runner.run(task, interrupted, lambda progress, _: show(progress))
+        except Refusal as error:
+            raise UsageError(str(error)) from None
         status = "cancelled" if interrupted() else "done"
         return parse_front(json.loads(document.json(id="", status=status)))
 
@@ -116,3 +118,19 @@ class LocalBackend:
             lambda settings: load_actors(settings.actors, settings.threads), load_settings()
         )
         return tuple(Actor(**asdict(actor.info)) for _, actor in sorted(loaded.items()))
+
+
+def _with_scheme(url: str) -> str:
+    """Return a URL, whose scheme is http where it has none, as localhost:8000.
+
+    Raises:
+        UsageError: It is no URL of a service.
+    """
+    whole = url if "://" in url else f"http://{url}"
+    try:
+        parsed = httpx.URL(whole)
+    except httpx.InvalidURL as error:
+        raise UsageError(f"--url must be a URL, as localhost:8000, got {url!r}: {error}") from None
+    if parsed.scheme not in ("http", "https") or not parsed.host:
+        raise UsageError(f"--url must be a URL, as localhost:8000, got {url!r}")
+    return whole

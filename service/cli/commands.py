@@ -7,8 +7,9 @@ option, come at once.
 from functools import partial
 from typing import Annotated
 
-from typer import Argument, Option, Typer
+from typer import Argument, Exit, Option, Typer, echo
 
+from service import installed_version
 from service.cli.options import (
     ActorName,
     Angle,
@@ -16,6 +17,7 @@ from service.cli.options import (
     ApiKey,
     AsCsv,
     AsJson,
+    AsTable,
     Augment,
     CellSize,
     CostLayer,
@@ -42,9 +44,24 @@ app = Typer(
     " ended its search; 1 a fault of paretour; 2 a wrong command, file or request; 3 a service that"
     " cannot be reached, lets nobody in, or fails; 130 Ctrl-C before there was a front.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        echo(f"paretour {installed_version()}")
+        raise Exit
+
+
+@app.callback()
+def options(
+    _version: Annotated[
+        bool,
+        Option("--version", help="Print the version.", callback=_print_version, is_eager=True),
+    ] = False,
+) -> None:
+    """Take the options that stand before a command."""
 
 
 @app.command()
@@ -61,6 +78,7 @@ def front(  # noqa: PLR0913  an option each
     unrounded: Unrounded = False,
     as_json: AsJson = False,
     as_csv: AsCsv = False,
+    as_table: AsTable = False,
     plot: Plot = None,
     url: Url = None,
     api_key: ApiKey = None,
@@ -81,7 +99,7 @@ def front(  # noqa: PLR0913  an option each
     run_front(
         partial(plan_cities, file, file2, unrounded=unrounded, angles=angles, options=options),
         backend_for(url, api_key),
-        OutputFormat(as_json=as_json, as_csv=as_csv, plot=plot),
+        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
     )
 
 
@@ -132,6 +150,7 @@ def coverage(  # noqa: PLR0913  an option each
     actor: ActorName = None,
     as_json: AsJson = False,
     as_csv: AsCsv = False,
+    as_table: AsTable = False,
     plot: Plot = None,
     url: Url = None,
     api_key: ApiKey = None,
@@ -155,7 +174,7 @@ def coverage(  # noqa: PLR0913  an option each
     run_front(
         partial(plan_map, file, cost_layer, options),
         backend_for(url, api_key),
-        OutputFormat(as_json=as_json, as_csv=as_csv, plot=plot),
+        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
     )
 
 

@@ -1,29 +1,46 @@
 """Read the files that cities and maps come in, as members of a request."""
 
-import csv
 import json
+import sys
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from service.cli.csv_tables import Ids, Table, parse_table
 from service.cli.errors import UnreadableFile
 from service.cli.tsplib import parse_coordinates, parse_matrix
 
 Array = NDArray[np.float64]
 Request = dict[str, Any]
 T = TypeVar("T")
+STANDARD_INPUT = Path("-")
 _TSPLIB = (".tsp", ".atsp")
+_PNG = b"\x89PNG"
 
 
-def read_request(files: Sequence[Path], *, unrounded: bool = False) -> Request:
-    """Return the request in one file, or in two, with one objective each.
+@dataclass(frozen=True)
+class _Content:
+    """What a file holds, and the suffix that says of which format it is."""
+
+    suffix: str
+    data: bytes
+
+    @property
+    def text(self) -> str:
+        return self.data.decode()
+
+
+def read_request(files: Sequence[Path], *, unrounded: bool = False) -> tuple[Request, Ids | None]:
+    """Return the request in one file, or in two, with one objective each; and the cities' ids.
 
     One file is JSON, a request or its coordinates alone, or CSV, with four numbers for each city.
     Two files are CSV, with two columns for cities in a plane or else a matrix of costs; or they
-    are TSPLIB's, which become matrices, or coordinates if `unrounded`.
+    are TSPLIB's, which become matrices, or coordinates if `unrounded`. A file named - is standard
+    input, JSON or CSV. Ids come from a column of CSV, and are None where there is none.
 
     Raises:
         UnreadableFile: A file is none of these; the message names it.
@@ -31,25 +48,31 @@ def read_request(files: Sequence[Path], *, unrounded: bool = False) -> Request:
     """
     if len(files) == 1:
         return _read(files[0], _read_cities)
-    first, second = (_read(file, lambda path: _read_objective(path, unrounded)) for file in files)
+    if files[0] == files[1] == STANDARD_INPUT:
+        raise UnreadableFile("standard input can be one of both files, not both")
+    tables = [_read(file, lambda content: _read_objective(content, unrounded)) for file in files]
+    first, second = (table.numbers for table in tables)
     if first.shape != second.shape:
         sizes = " and ".join("x".join(map(str, array.shape)) for array in (first, second))
         raise UnreadableFile(f"both files must have as many numbers, got {sizes}")
     if first.shape[1] == 2:
-        return {"coordinates": np.concatenate((first, second), axis=1).tolist()}
-    return {"matrices": np.stack((first, second))}
+        return {"coordinates": np.concatenate((first, second), axis=1).tolist()}, _ids_of(*tables)
+    return {"matrices": np.stack((first, second))}, _ids_of(*tables)
 
 
 def read_map(path: Path) -> tuple[Request, bytes | None]:
     """Return the request in a JSON file, or an empty one and the content of a PNG file.
 
+    Standard input, a file named -, is either.
+
     Raises:
         UnreadableFile: The file is neither; the message names it.
         OSError: There is no such file.
     """
-    if path.suffix == ".png":
-        return {}, path.read_bytes()
-    return _read(path, lambda path: _parse_json(path.read_text())), None
+    content = _content(path)
+    if content.suffix == ".png":
+        return {}, content.data
+    return _parsed(path, content, lambda content: _parse_json(content.text)), None
 
 
 def read_layer(path: Path) -> Array:
@@ -59,34 +82,51 @@ def read_layer(path: Path) -> Array:
         UnreadableFile: The file is no table of numbers; the message names it.
         OSError: There is no such file.
     """
-    return _read(path, _read_table)
+    return _read(path, _read_layer)
 
 
-def _read(path: Path, read: Callable[[Path], T]) -> T:
+def _content(path: Path) -> _Content:
+    """Return what a file holds, or standard input, whose format is told by its first bytes."""
+    if path != STANDARD_INPUT:
+        return _Content(path.suffix, path.read_bytes())
+    data = sys.stdin.buffer.read()
+    if data.startswith(_PNG):
+        return _Content(".png", data)
+    return _Content(".json" if data.lstrip()[:1] in (b"{", b"[") else ".csv", data)
+
+
+def _read(path: Path, read: Callable[[_Content], T]) -> T:
     """Return what a function reads from a file, with the file's name in its errors."""
+    return _parsed(path, _content(path), read)
+
+
+def _parsed(path: Path, content: _Content, parse: Callable[[_Content], T]) -> T:
+    """Return what a function parses from the content of a file, with its name in the errors."""
     try:
-        return read(path)
+        return parse(content)
     except (UnreadableFile, UnicodeDecodeError) as error:
-        raise UnreadableFile(f"{path}: {error}") from None
+        name = "standard input" if path == STANDARD_INPUT else path
+        raise UnreadableFile(f"{name}: {error}") from None
 
 
-def _read_cities(path: Path) -> Request:
-    """Return the request in a file that holds both objectives."""
-    if path.suffix in _TSPLIB:
+def _read_cities(content: _Content) -> tuple[Request, Ids | None]:
+    """Return the request in a file that holds both objectives, and the cities' ids."""
+    if content.suffix in _TSPLIB:
         raise UnreadableFile("a file of TSPLIB is one objective: name another for the other one")
-    if path.suffix == ".json":
-        return _parse_json(path.read_text())
-    rows = _read_table(path)
-    if rows.shape[1] != 4:
-        raise UnreadableFile(f"must have 4 columns, x and y in either plane, got {rows.shape[1]}")
-    return {"coordinates": rows.tolist()}
+    if content.suffix == ".json":
+        return _parse_json(content.text), None
+    table = parse_table(content.text)
+    columns = table.numbers.shape[1]
+    if columns != 4:
+        raise UnreadableFile(f"must have 4 columns, x and y in either plane, got {columns}")
+    return {"coordinates": table.numbers.tolist()}, table.ids
 
 
 def _parse_json(text: str) -> Request:
     """Return the request that a text is, or whose coordinates it is."""
     try:
         value = json.loads(text)
-    except json.JSONDecodeError as error:
+    except (ValueError, RecursionError) as error:
         raise UnreadableFile(f"must be JSON: {error}") from None
     if isinstance(value, list):
         return {"coordinates": value}
@@ -95,45 +135,31 @@ def _parse_json(text: str) -> Request:
     raise UnreadableFile("must be a request, an object, or its coordinates, a list")
 
 
-def _read_objective(path: Path, unrounded: bool) -> Array:
+def _read_objective(content: _Content, unrounded: bool) -> Table:
     """Return the cities in a plane, shape (n, 2), or the costs between them, shape (n, n)."""
-    if path.suffix in _TSPLIB:
-        return (parse_coordinates if unrounded else parse_matrix)(path.read_text())
-    rows = _read_table(path)
-    if rows.shape[1] not in (2, len(rows)):
+    if content.suffix in _TSPLIB:
+        return Table((parse_coordinates if unrounded else parse_matrix)(content.text))
+    table = parse_table(content.text)
+    rows, columns = table.numbers.shape
+    if columns not in (2, rows):
         demand = "must have 2 columns, x and y, or as many as rows"
-        raise UnreadableFile(f"{demand}, got {len(rows)} rows of {rows.shape[1]}")
-    return rows
+        raise UnreadableFile(f"{demand}, got {rows} rows of {columns}")
+    return table
 
 
-def _read_table(path: Path) -> Array:
-    """Return the numbers of a CSV file, whose first line may be a heading."""
-    lines = path.read_text(encoding="utf-8-sig").splitlines()
-    separator = next((character for character in ";\t" if lines and character in lines[0]), ",")
-    rows = csv.reader(lines, delimiter=separator)
-    table = [(number, row) for number, row in enumerate(rows, 1) if row]
-    if table and not any(_is_number(field) for field in table[0][1]):
-        del table[0]
-    if not table:
-        raise UnreadableFile("must have a row of numbers for each city, got none")
-    for number, row in table:
-        _check_row(number, row, len(table[0][1]))
-    return np.array([row for _, row in table], dtype=np.float64)
+def _read_layer(content: _Content) -> Array:
+    table = parse_table(content.text)
+    if table.ids is not None:
+        raise UnreadableFile("must hold numbers alone, got a column of ids")
+    return table.numbers
 
 
-def _check_row(number: int, row: list[str], width: int) -> None:
-    """Raise UnreadableFile if a line has fields that are not numbers, or not so many."""
-    if len(row) != width:
-        raise UnreadableFile(
-            f"line {number} must have {width} fields, as the first row, got {len(row)}"
-        )
-    for field in row:
-        if not _is_number(field):
-            raise UnreadableFile(f"line {number} must hold numbers, got {field[:80]!r}")
+def _ids_of(first: Table, second: Table) -> Ids | None:
+    """Return the ids of the cities in two tables.
 
-
-def _is_number(field: str) -> bool:
-    try:
-        return bool(np.isfinite(float(field)))
-    except ValueError:
-        return False
+    Raises:
+        UnreadableFile: Both have ids, and not the same ones.
+    """
+    if first.ids and second.ids and first.ids != second.ids:
+        raise UnreadableFile("both files must have the same ids, in the same order")
+    return first.ids or second.ids

@@ -9,7 +9,8 @@ File = Annotated[
     Path,
     Argument(
         help="JSON: a request, or its coordinates. CSV: four numbers for each city, x and y in the"
-        " plane of either objective. Or, with a second file, the first objective."
+        " plane of either objective, maybe after a column id. Or, with a second file, the first"
+        " objective. - is standard input."
     ),
 ]
 SecondFile = Annotated[
@@ -40,19 +41,28 @@ Unrounded = Annotated[
     ),
 ]
 AsJson = Annotated[bool, Option("--json", help="Print the answer as the service gives it.")]
+AsTable = Annotated[
+    bool, Option("--table", help="Print all tours on a terminal too, not a chart and three tours.")
+]
 AsCsv = Annotated[bool, Option("--csv", help="Print a line for each tour.")]
 Angle = Annotated[
     float, Option(min=0, max=90, help="The trade-off: near 0 the second length is small.")
 ]
 Plot = Annotated[Path | None, Option(help="Draw the front into this file.")]
-Url = Annotated[str | None, Option(help="A running service that shall plan, not this process.")]
+Url = Annotated[
+    str | None,
+    Option(help="A running service that shall plan, not this process; as localhost:8000."),
+]
 ApiKey = Annotated[
     str | None, Option(help="For a service that asks for one.", envvar="PARETOUR_API_KEY")
 ]
 
 MapFile = Annotated[
     Path,
-    Argument(metavar="MAP", help="PNG, dark where there are obstacles; or JSON, a whole request."),
+    Argument(
+        metavar="MAP",
+        help="PNG, dark where there are obstacles; or JSON, a whole request. - is standard input.",
+    ),
 ]
 CellSize = Annotated[float | None, Option(help="Metres that a pixel is wide.")]
 RobotRadius = Annotated[float | None, Option(help="In metres.", show_default="0")]

@@ -15,9 +15,11 @@ from rich.table import Table
 from typer import echo
 
 from service.cli.backends import Backend
+from service.cli.csv_tables import Ids
 from service.cli.errors import UsageError, exit_on_error
+from service.cli.terminal_chart import draw_front
 
-BuildPlan = Callable[[], Plan]
+BuildPlan = Callable[[], tuple[Plan, Ids | None]]
 
 _STDERR = Console(stderr=True)
 _TERMINATED: Mapping[str | None, str] = {
@@ -30,16 +32,20 @@ _TERMINATED: Mapping[str | None, str] = {
 
 @dataclass(frozen=True, kw_only=True)
 class OutputFormat:
-    """The format to print a front in, a table by default, and the file to draw it into."""
+    """The format to print a front in, and the file to draw it into.
+
+    By default it is a chart with three tours on a terminal, and a table of all tours elsewhere.
+    """
 
     as_json: bool = False
     as_csv: bool = False
+    as_table: bool = False
     plot: Path | None = None
 
     def check(self) -> None:
         """Raise UsageError if two formats are asked for."""
-        if self.as_json and self.as_csv:
-            raise UsageError("a front is printed as --json or as --csv, not as both")
+        if self.as_json + self.as_csv + self.as_table > 1:
+            raise UsageError("a front is printed as --json, --csv or --table, not as both")
 
 
 def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> None:
@@ -47,8 +53,9 @@ def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> 
     with exit_on_error():
         output.check()
         draw = None if output.plot is None else _drawing_into(output.plot)
-        front = backend.front(build_plan(), _STDERR)
-        _print(front, output)
+        plan, ids = build_plan()
+        front = backend.front(plan, _STDERR)
+        _print(front, ids, output, Console())
         if draw is not None:
             draw(front)
     _STDERR.print(front_summary(front), highlight=False)
@@ -57,9 +64,10 @@ def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> 
 def run_tour(build_plan: BuildPlan, backend: Backend, angle: float, as_json: bool) -> None:
     """Plan a front and print its tour nearest to an angle in degrees."""
     with exit_on_error():
-        front = backend.front(build_plan(), _STDERR)
+        plan, ids = build_plan()
+        front = backend.front(plan, _STDERR)
     tour = front.nearest(angle)
-    echo(tour_as_json(tour) if as_json else tour_as_text(tour.tour))
+    echo(tour_as_json(tour) if as_json else tour_as_text(tour.tour, ids))
     _STDERR.print(tour_summary(tour), highlight=False)
 
 
@@ -78,13 +86,13 @@ def front_as_json(front: Front) -> str:
     return json.dumps(front.document)
 
 
-def front_as_csv(front: Front) -> str:
-    """Return a line for each tour, with spaces between its cities."""
+def front_as_csv(front: Front, ids: Ids | None = None) -> str:
+    """Return a line for each tour, with spaces between its cities, or between their ids."""
     text = io.StringIO()
     lines = csv.writer(text, lineterminator="\n")
     lines.writerow(("angle", "length_1", "length_2", "tour"))
     for angle, lengths, tour in zip(front.angles, front.lengths, front.tours, strict=True):
-        lines.writerow((float(angle), *lengths.tolist(), tour_as_text(tour)))
+        lines.writerow((float(angle), *lengths.tolist(), tour_as_text(tour, ids)))
     return text.getvalue().rstrip()
 
 
@@ -96,6 +104,19 @@ def front_as_table(front: Front) -> Table:
     for angle, lengths in zip(front.angles, front.lengths, strict=True):
         table.add_row(f"{angle:.2f}", *(f"{length:.6g}" for length in lengths))
     return table
+
+
+def print_chart(front: Front, console: Console) -> None:
+    """Print a chart of a front on a console, and the lengths of three of its tours."""
+    utf8 = console.encoding.startswith("utf")
+    console.print(draw_front(front.lengths, "•" if utf8 else "o"), highlight=False)
+    table = Table("tour", "angle", "first length", "second length")
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for name, i in _choices(front.lengths).items():
+        lengths = (f"{length:.6g}" for length in front.lengths[i])
+        table.add_row(name, f"{front.angles[i]:.2f}", *lengths)
+    console.print(table)
 
 
 def front_summary(front: Front) -> str:
@@ -112,9 +133,15 @@ def tour_as_json(tour: Tour) -> str:
     return json.dumps(members)
 
 
-def tour_as_text(tour: NDArray[np.int64]) -> str:
-    """Return the cities of a tour, shape (n,), with spaces between."""
-    return " ".join(map(str, tour.tolist()))
+def tour_as_text(tour: NDArray[np.int64], ids: Ids | None = None) -> str:
+    """Return the cities of a tour, shape (n,), with spaces between.
+
+    Cities with ids go by them; one with a space or a quotation mark in it is quoted, as in CSV.
+    """
+    text = io.StringIO()
+    names = tour.tolist() if ids is None else [ids[city] for city in tour]
+    csv.writer(text, delimiter=" ", lineterminator="").writerow(names)
+    return text.getvalue()
 
 
 def tour_summary(tour: Tour) -> str:
@@ -136,13 +163,27 @@ def actors_as_table(actors: Iterable[Actor]) -> Table:
     return table
 
 
-def _print(front: Front, output: OutputFormat) -> None:
+def _choices(lengths: NDArray[np.float64]) -> dict[str, int]:
+    """Return, of points with shape (m, 2), both ends and the knee: the least sum in their box."""
+    low, high = lengths.min(axis=0), lengths.max(axis=0)
+    box = np.where(high > low, high - low, 1.0)
+    return {
+        "least first length": int(np.lexsort((lengths[:, 1], lengths[:, 0]))[0]),
+        "knee": int(((lengths - low) / box).sum(axis=1).argmin()),
+        "least second length": int(np.lexsort((lengths[:, 0], lengths[:, 1]))[0]),
+    }
+
+
+def _print(front: Front, ids: Ids | None, output: OutputFormat, console: Console) -> None:
     if output.as_json:
         echo(front_as_json(front))
     elif output.as_csv:
-        echo(front_as_csv(front))
+        echo(front_as_csv(front, ids))
+    elif console.is_terminal and len(front.tours) and not output.as_table:
+        print_chart(front, console)
+        _STDERR.print("--table prints every tour, --csv its cities too", highlight=False)
     else:
-        Console().print(front_as_table(front))
+        console.print(front_as_table(front))
 
 
 def _drawing_into(path: Path) -> Callable[[Front], None]:

@@ -6,8 +6,11 @@ from typing import Any, cast
 
 from paretour import CoverageRequest, FrontRequest, Plan, coverage_plan, front_plan
 
+from service.cli.csv_tables import Ids
 from service.cli.errors import UsageError
 from service.cli.files import read_layer, read_map, read_request
+
+_SECOND_OBJECTIVES = ("second_matrix", "cost_layer", "second_coordinates")
 
 Options = Mapping[str, Any]  # members of a request; None leaves a member to the file
 
@@ -19,30 +22,43 @@ def plan_cities(
     unrounded: bool = False,
     angles: str | None = None,
     options: Options,
-) -> Plan:
-    """Return the plan for cities in a file, or in one for each objective.
+) -> tuple[Plan, Ids | None]:
+    """Return the plan for cities in a file, or in one for each objective; and the cities' ids.
 
     Raises:
         UnreadableFile: A file is not of its format.
         OSError: There is no such file.
         UsageError: `angles` are not numbers with commas between.
     """
-    request = read_request([file] if file2 is None else [file, file2], unrounded=unrounded)
+    request, ids = read_request([file] if file2 is None else [file, file2], unrounded=unrounded)
     given = _without_none({**options, "preferences": _parse_angles(angles)})
-    return front_plan(cast(FrontRequest, {**request, **given}))
+    return front_plan(cast(FrontRequest, {**request, **given})), ids
 
 
-def plan_map(file: Path, cost_layer: Path | None, options: Options) -> Plan:
-    """Return the plan for places on the map in a file, maybe with costs in another.
+def plan_map(file: Path, cost_layer: Path | None, options: Options) -> tuple[Plan, None]:
+    """Return the plan for places on the map in a file, maybe with costs in another; and no ids.
 
     Raises:
         UnreadableFile: A file is not of its format.
         OSError: There is no such file.
+        UsageError: Something that a plan needs is missing; the message names all of it.
     """
     request, png = read_map(file)
     costs = None if cost_layer is None else read_layer(cost_layer)
-    given = _without_none({**options, "cost_layer": costs})
-    return coverage_plan(cast(CoverageRequest, {**request, **given}), png)
+    whole = {**request, **_without_none({**options, "cost_layer": costs})}
+    _check_complete(whole)
+    return coverage_plan(cast(CoverageRequest, whole), png), None
+
+
+def _check_complete(request: Mapping[str, Any]) -> None:
+    needs = {
+        "--cell-size": ("cell_size",),
+        "--spacing (or places in a request)": ("spacing", "places"),
+        "--cost-layer (or second_matrix or second_coordinates in a request)": _SECOND_OBJECTIVES,
+    }
+    missing = [need for need, members in needs.items() if not request.keys() & set(members)]
+    if missing:
+        raise UsageError(f"a map cannot be covered without {', '.join(missing)}")
 
 
 def _parse_angles(text: str | None) -> list[float] | None:

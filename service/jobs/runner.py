@@ -65,13 +65,17 @@ class TaskRunner:
         """Compile the search, or load it from the cache."""
         warm_up()
 
+    def parse(self, source: TaskSource) -> Task:
+        """Return the task in a source; the exceptions are those of `parse_task`."""
+        infos = {name: actor.info for name, actor in self.actors.items()}
+        return parse_task(source, self.limits, infos)
+
     def run(
         self, task: TaskSource | Task, stop: Callable[[], bool], report: Report
     ) -> FrontDocument:
         """Return the front of a task, parsed or not."""
         if isinstance(task, TaskSource):
-            infos = {name: actor.info for name, actor in self.actors.items()}
-            task = parse_task(task, self.limits, infos)
+            task = self.parse(task)
         if isinstance(task.subject, Coverage):
             return self._cover(task, task.subject, stop, report)
         front = self._plan(task, task.subject, stop, report)

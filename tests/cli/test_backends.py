@@ -1,5 +1,6 @@
 """Both backends: this process, and a service."""
 
+import io
 import json
 import os
 import pty
@@ -10,10 +11,15 @@ import time
 from pathlib import Path
 
 import httpx
+import numpy as np
 import pytest
+from paretour import front_plan
+from rich.console import Console
 
 from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
+from service.cli.backends import LOADING, LocalBackend, RemoteBackend
+from service.cli.errors import UsageError
 from tests.helpers.actors import Shuffler
 from tests.helpers.command import EXAMPLE, ROOT, paretour, started
 from tests.helpers.serving import app_of, serving
@@ -71,6 +77,45 @@ def test_ctrl_c_before_there_is_a_front_ends_with_130(cities: Path, tmp_path: Pa
             assert running.stdout.read() == b""
         (tmp_path / "gate").touch()
     assert running.returncode == 130
+
+
+COMPILES = [
+    ({"time_limit": 0}, False),
+    ({"time_limit": 0, "bound": True}, True),
+    ({"time_limit": 0, "size": 1}, True),  # the best subset of what the network builds
+    ({"time_limit": 0.01}, True),
+]
+
+
+@pytest.mark.parametrize(("options", "compiles"), COMPILES)
+def test_the_compilation_is_announced_where_compiled_code_is_run(
+    options: dict[str, float], compiles: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    announced: list[str] = []
+    console = Console(file=io.StringIO())
+    status = console.status
+    monkeypatch.setattr(console, "status", lambda text: announced.append(text) or status(text))
+    coordinates = np.random.default_rng(0).random((6, 4)).tolist()
+    LocalBackend().front(front_plan({"coordinates": coordinates, **options}), console)
+    assert announced == [LOADING] * compiles
+
+
+def test_what_is_refused_is_refused_before_anything_is_compiled() -> None:
+    console = Console(file=io.StringIO())
+    console.status = None  # type: ignore[assignment]
+    with pytest.raises(UsageError, match="seed must be"):
+        LocalBackend().front(front_plan({"coordinates": [[0, 0, 1, 1]], "seed": -1}), console)
+
+
+def test_a_url_without_a_scheme_is_of_http(url: str, cities: Path) -> None:
+    address = url.removeprefix("http://")
+    assert paretour("front", cities, "--time-limit", 0, "--url", address).returncode == 0
+
+
+@pytest.mark.parametrize("url", ["", "ftp://localhost", "http://", "http://[::1", "a:b:c"])
+def test_what_is_no_url_is_refused(url: str) -> None:
+    with pytest.raises(UsageError, match="--url must be a URL"):
+        RemoteBackend(url, None).actors()
 
 
 def test_with_a_service_neither_compiler_nor_network_is_loaded() -> None:

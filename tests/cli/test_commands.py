@@ -15,6 +15,7 @@ from paretour import Client
 from PIL import Image
 from typer.testing import CliRunner
 
+from service import installed_version
 from service.cli.commands import app
 from tests.helpers.artifacts import by_row_sums
 from tests.helpers.command import EXAMPLE, ROOT, paretour
@@ -117,6 +118,7 @@ WRONG = [
     (["front", EXAMPLE, "--plot", "none/front.png"], "in a directory that is there"),
     (["tour", EXAMPLE], "Missing option"),
     (["coverage", "none.png"], "none.png: No such file"),
+    (["front", EXAMPLE, "--url", "ftp://x"], "--url must be a URL"),
     (["coverage", "README.md"], "README.md: must be JSON"),
 ]
 
@@ -140,6 +142,17 @@ def test_without_matplotlib_a_plot_is_refused_before_anything_is_planned(cities:
     ended = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
     assert (ended.returncode, ended.stdout) == (2, "")
     assert "pip install 'paretour[plot]'" in ended.stderr
+
+
+def test_the_version_is_printed() -> None:
+    ended = CliRunner().invoke(app, ["--version"])
+    assert (ended.exit_code, ended.stdout) == (0, f"paretour {installed_version()}\n")
+
+
+def test_commands_and_options_can_be_completed() -> None:
+    assert "--install-completion" in CliRunner().invoke(app, ["--help"]).stdout
+    words = {"_PARETOUR_COMPLETE": "complete_bash", "COMP_WORDS": "paretour cov", "COMP_CWORD": "1"}
+    assert paretour(**words).stdout.split() == ["coverage"]
 
 
 def test_help_waits_for_nothing_heavy() -> None:

@@ -11,6 +11,7 @@ from paretour import Front, Plan
 from paretour.values import parse_front
 from rich.console import Console
 
+from service.cli.errors import UsageError
 from service.cli.output import (
     OutputFormat,
     front_as_csv,
@@ -39,8 +40,12 @@ class Prepared:
         return ()
 
 
-def build_plan() -> Plan:
-    return Plan("/front", {})
+def build_plan() -> tuple[Plan, None]:
+    return Plan("/front", {}), None
+
+
+def build_named() -> tuple[Plan, tuple[str, ...]]:
+    return Plan("/front", {}), ("depot", "b 2", "c")
 
 
 def test_json_is_the_answer_of_the_service() -> None:
@@ -92,3 +97,34 @@ def test_a_front_is_printed_in_the_format_asked_for(
 def test_the_tour_at_an_angle_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     run_tour(build_plan, Prepared(), 30, as_json=False)
     assert capsys.readouterr() == ("0 2 1\n", "angle 30.00, lengths 2 and 1\n")
+
+
+def test_cities_go_by_their_ids_where_they_have_some(capsys: pytest.CaptureFixture[str]) -> None:
+    run_tour(build_named, Prepared(), 30, as_json=False)
+    assert capsys.readouterr().out == 'depot c "b 2"\n'
+    run_front(build_named, Prepared(), OutputFormat(as_csv=True))
+    rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
+    assert next(csv.reader([rows[0]["tour"]], delimiter=" ")) == ["depot", "b 2", "c"]
+    run_tour(build_named, Prepared(), 30, as_json=True)
+    assert json.loads(capsys.readouterr().out)["tour"] == [0, 2, 1]
+
+
+def test_a_front_that_is_piped_is_a_whole_table(capsys: pytest.CaptureFixture[str]) -> None:
+    run_front(build_plan, Prepared(), OutputFormat())
+    assert "knee" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("as_table", "is_there"), [(False, True), (True, False)])
+def test_a_front_on_a_terminal_is_a_chart_and_three_tours(
+    as_table: bool, is_there: bool, capsys: pytest.CaptureFixture[str], monkeypatch: Any
+) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")  # which rich takes for a terminal
+    run_front(build_plan, Prepared(), OutputFormat(as_table=as_table))
+    printed = capsys.readouterr().out
+    assert all((word in printed) == is_there for word in ("knee", "least second length", "+---"))
+    assert "first length" in printed
+
+
+def test_two_formats_at_once_are_refused() -> None:
+    with pytest.raises(UsageError, match="not as both"):
+        OutputFormat(as_csv=True, as_table=True).check()

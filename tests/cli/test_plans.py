@@ -13,7 +13,7 @@ from service.cli.plans import plan_cities, plan_map
 def test_options_stand_over_the_file_where_they_are_given(tmp_path: Path) -> None:
     file = tmp_path / "a.json"
     file.write_text('{"coordinates": [[1, 2, 3, 4]], "seed": 3, "size": 5}')
-    plan = plan_cities(file, angles="10,45.5", options={"seed": 4, "size": None})
+    plan, _ = plan_cities(file, angles="10,45.5", options={"seed": 4, "size": None})
     assert plan.path == "/front"
     assert plan.request == {
         "coordinates": [[1, 2, 3, 4]],
@@ -26,7 +26,7 @@ def test_options_stand_over_the_file_where_they_are_given(tmp_path: Path) -> Non
 def test_two_files_are_one_plan(tmp_path: Path) -> None:
     for name in ("a.csv", "b.csv"):
         (tmp_path / name).write_text("0,1,2\n3,0,4\n5,6,0\n")
-    plan = plan_cities(tmp_path / "a.csv", tmp_path / "b.csv", options={})
+    plan, _ = plan_cities(tmp_path / "a.csv", tmp_path / "b.csv", options={})
     assert plan.file is not None
     assert plan.file.part == "matrices"
 
@@ -40,8 +40,23 @@ def test_angles_must_be_numbers(tmp_path: Path) -> None:
 def test_a_map_is_a_file_beside_its_options_and_costs(tmp_path: Path) -> None:
     (tmp_path / "map.png").write_bytes(b"PNG")
     (tmp_path / "costs.csv").write_text("1,2\n3,4\n")
-    plan = plan_map(tmp_path / "map.png", tmp_path / "costs.csv", {"spacing": 2.0, "paths": None})
+    options = {"cell_size": 1.0, "spacing": 2.0, "paths": None}
+    plan, _ = plan_map(tmp_path / "map.png", tmp_path / "costs.csv", options)
     assert plan.file is not None
     assert (plan.path, plan.file.content) == ("/coverage", b"PNG")
     np.testing.assert_array_equal(plan.request["cost_layer"], [[1, 2], [3, 4]])
-    assert json.loads(plan.json).keys() == {"spacing", "cost_layer"}
+    assert json.loads(plan.json).keys() == {"cell_size", "spacing", "cost_layer"}
+
+
+def test_everything_that_a_map_lacks_is_named_at_once(tmp_path: Path) -> None:
+    (tmp_path / "map.png").write_bytes(b"PNG")
+    with pytest.raises(UsageError, match=r"without --cell-size, --spacing .*, --cost-layer"):
+        plan_map(tmp_path / "map.png", None, {"spacing": None})
+    (tmp_path / "map.json").write_text('{"grid": [[0]], "places": [[0, 0]], "cell_size": 1}')
+    with pytest.raises(UsageError, match="without --cost-layer"):
+        plan_map(tmp_path / "map.json", None, {})
+
+
+def test_ids_of_cities_come_beside_the_plan(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("depot,1,2,3,4\nb,5,6,7,8\n")
+    assert plan_cities(tmp_path / "a.csv", options={})[1] == ("depot", "b")

@@ -13,7 +13,7 @@ import pytest
 from tests.guide.pages import README, ROOT, Block, blocks, split_commands
 
 REACHED = "localhost:8000"
-RUN = ("curl ", "paretour ")
+RUN = ("curl ", "paretour ", "cat ")
 
 
 def write_inputs(folder: Path) -> None:

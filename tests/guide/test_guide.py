@@ -76,7 +76,9 @@ def test_the_python_code_prints_a_hypervolume(
 
 def test_the_command_line_writes_a_table_and_a_picture(address: str, tmp_path: Path) -> None:
     write_inputs(tmp_path)
-    assert len(run_page(COMMAND_LINE, tmp_path, address)) >= 4
+    printed = run_page(COMMAND_LINE, tmp_path, address)
+    assert len(printed) >= 9
+    assert any(line.startswith("depot order-") for line in printed)
     assert (tmp_path / "front.csv").read_text().startswith("angle,")
     assert (tmp_path / "front.png").exists()
 

@@ -1,0 +1,40 @@
+"""Draw a front in characters, for a terminal."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+WIDTH = 64  # columns that points are drawn in
+HEIGHT = 12  # lines that points are drawn in, of 15
+_TITLE = "second length"
+
+
+def draw_front(lengths: NDArray[np.float64], point: str = "•") -> str:
+    """Return a chart of points, shape (m, 2), with the first length to the right.
+
+    It has 15 lines at most, none of which is longer than 79 characters. Points so near to each
+    other that they share a character are one.
+    """
+    columns, rows = (_places(lengths[:, m], size) for m, size in ((0, WIDTH), (1, HEIGHT)))
+    canvas = np.full((HEIGHT, WIDTH), " ")
+    canvas[HEIGHT - 1 - rows, columns] = point
+    (left, low), (right, high) = lengths.min(axis=0), lengths.max(axis=0)
+    labels = {0: f"{high:.6g}", HEIGHT - 1: f"{low:.6g}"}
+    margin = max(map(len, labels.values()))
+    lines = [
+        f"{labels.get(row, ''):>{margin}} |{''.join(canvas[row])}".rstrip() for row in range(HEIGHT)
+    ]
+    ends = (f"{left:.6g}", f"{right:.6g}")
+    between = "first length".center(WIDTH - sum(map(len, ends)))
+    indent = " " * (margin + 1)
+    return "\n".join(
+        (_TITLE, *lines, f"{indent}+{'-' * WIDTH}", f"{indent} {ends[0]}{between}{ends[1]}")
+    )
+
+
+def _places(values: NDArray[np.float64], size: int) -> NDArray[np.int64]:
+    """Return the character, 0 to size - 1, that each value lies in; all 0 where they are equal."""
+    low, high = values.min(), values.max()
+    # The halves are finite even where the difference of two finite numbers is not.
+    half = high / 2 - low / 2
+    shares = np.zeros_like(values) if half == 0 else (values / 2 - low / 2) / half
+    return np.rint(shares * (size - 1)).astype(np.int64)
