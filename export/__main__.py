@@ -1,10 +1,11 @@
-"""`python -m export CHECKPOINT`: write a released checkpoint as one ONNX file.
+"""`python -m export CHECKPOINT`: write a trained actor as one ONNX file, with its card.
 
 The file is kept only if its greedy tours are those of the actor in torch.
 """
 
 import argparse
 import json
+import re
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -14,11 +15,16 @@ import torch
 from onnx import ModelProto, helper
 
 from export import pa_one, stepwise
+from export.card import card
 from export.check import compare, onnx_tours, session
 from models.checkpoint import Trained, load_weights
 from models.config import as_plain
 from models.networks.actor import Actor
 from models.validation import COUNTS, mean_hypervolume, validation_sets
+
+RELEASED = Path(__file__).parents[1] / "service/actors"
+OWN_ACTORS = Path("runs/actors")
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 # By the construction of an actor's tours.
 _EXPORTERS: dict[str, Callable[[Any], ModelProto]] = {
@@ -39,25 +45,46 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the command."""
     parser = argparse.ArgumentParser("python -m export", description=__doc__)
     parser.add_argument("checkpoint", type=Path, help="weights.pt of a training run")
-    parser.add_argument("--out", type=Path, help="default: service/actors/NAME.onnx")
+    parser.add_argument("--name", help="of the actor, as requests ask for it")
+    parser.add_argument("--out", type=Path, help="default: runs/actors/NAME.onnx")
+    parser.add_argument(
+        "--replace", action="store_true", help="write over a file, or take a released actor's name"
+    )
     options = parser.parse_args(arguments)
     trained = load_weights(options.checkpoint)
+    name = options.name or trained.config.network.label
+    out = options.out or OWN_ACTORS / f"{name}.onnx"
+    if refusal := _refusal(name, out, options.replace):
+        parser.error(refusal)
     model = to_onnx(trained.actor)
     compare(trained.actor, model)
-    describe(model, trained)
-    out = options.out or Path("service/actors") / f"{trained.config.network.label}.onnx"
+    describe(model, trained, name)
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_bytes(model.SerializeToString())
-    print(f"{out}: tours equal torch's; hypervolume {_property(model, 'figures')}")
+    metadata = {entry.key: entry.value for entry in model.metadata_props}
+    out.with_suffix(".md").write_text(card(name, str(options.checkpoint), trained, metadata))
+    print(f"{out}: tours equal torch's; hypervolume {metadata['figures']}")
 
 
-def describe(model: ModelProto, trained: Trained) -> None:
+def _refusal(name: str, out: Path, replace: bool) -> str | None:
+    """Return why an actor of this name is not written into this file, None where it may be."""
+    if not _NAME.fullmatch(name):
+        return f"--name must be 1 to 64 letters, digits, dots, - and _, got {name!r}"
+    if replace:
+        return None
+    if (RELEASED / f"{name}.onnx").exists():
+        return f"{name} is a released actor: give another --name, or --replace"
+    taken = [path for path in (out, out.with_suffix(".md")) if path.exists()]
+    return f"{taken[0]} exists: give another --name or --out, or --replace" if taken else None
+
+
+def describe(model: ModelProto, trained: Trained, name: str) -> None:
     """Add the metadata: name, configuration, origin, and the hypervolume that the file reaches."""
     config = trained.config
     helper.set_model_props(
         model,
         {
-            "name": config.network.label,
+            "name": name,
             "inputs": trained.actor.reads,
             "config": json.dumps(as_plain(config)),
             "commit": _commit(),
@@ -92,10 +119,6 @@ def _commit() -> str:
         ["git", "describe", "--always", "--dirty"], capture_output=True, text=True, check=True
     )
     return described.stdout.strip()
-
-
-def _property(model: ModelProto, key: str) -> str:
-    return next(entry.value for entry in model.metadata_props if entry.key == key)
 
 
 if __name__ == "__main__":

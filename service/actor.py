@@ -100,20 +100,36 @@ class OnnxActor:
         return {"cities": instance.scaled_coordinates.astype(np.float32)}
 
 
-def load_actors(directory: Path, threads: int) -> dict[str, OnnxActor]:
-    """Return the actors of the ONNX files in a directory, by name.
+def load_actors(
+    directory: Path, threads: int, own_directory: Path | None = None
+) -> dict[str, OnnxActor]:
+    """Return the actors of the ONNX files in a directory, and in one of the user's, by name.
 
     Each has an inference session of so many threads.
 
     Raises:
-        ValueError: There is no file, or two actors have the same name.
+        ValueError: There is no file in a directory, or two actors have the same name.
     """
-    actors = [OnnxActor(path, threads) for path in sorted(directory.glob("*.onnx"))]
-    by_name = {actor.info.name: actor for actor in actors}
-    if not actors or len(by_name) < len(actors):
-        names = [actor.info.name for actor in actors]
-        raise ValueError(f"{directory} must hold ONNX files of different names, got {names}")
-    return by_name
+    actors: dict[str, OnnxActor] = {}
+    files: dict[str, Path] = {}
+    for path in [*_onnx_files(directory), *(_onnx_files(own_directory) if own_directory else ())]:
+        actor = OnnxActor(path, threads)
+        name = actor.info.name
+        if name in actors:
+            both = f"{files[name]} and {path}"
+            raise ValueError(
+                f"ONNX files must hold actors of different names, got {name} in {both}"
+            )
+        actors[name], files[name] = actor, path
+    return actors
+
+
+def _onnx_files(directory: Path) -> list[Path]:
+    """Return the ONNX files of a directory; raise ValueError where there is none."""
+    found = sorted(directory.glob("*.onnx"))
+    if not found:
+        raise ValueError(f"{directory} must hold ONNX files, got none")
+    return found
 
 
 def _kind(inputs: str, path: Path) -> Kind:

@@ -8,7 +8,6 @@ import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
-from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
@@ -38,7 +37,7 @@ def build(settings: Settings) -> FastAPI:
         ValueError: There are no actors, the store cannot be opened, or an extra is not installed.
     """
     # The workers load the actors, too: here only their facts are needed.
-    actors = load_actors(settings.actors, settings.threads)
+    actors = load_actors(settings.actors, settings.threads, settings.own_actors)
     metrics = Metrics()
     make_engine = _local_engine if settings.redis_url is None else _redis_engine
     store, engine = make_engine(settings, metrics)
@@ -91,7 +90,7 @@ def build_worker(settings: Settings) -> Callable[[], int]:
     from service.cluster.celery_app import make_celery
     from service.cluster.worker import CeleryWorker, make_record_worker
 
-    _check_actors(settings.actors, settings.threads)
+    _check_actors(settings)
     logging.config.dictConfig(logging_config())
     seconds = settings.request_seconds
     worker = CeleryWorker(
@@ -152,7 +151,9 @@ def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
 
 
 def _make_runner(settings: Settings) -> MakeRunner:
-    return partial(load_runner, settings.actors, settings.threads, settings.limits)
+    return partial(
+        load_runner, settings.actors, settings.threads, settings.limits, settings.own_actors
+    )
 
 
 def _redis_url(settings: Settings) -> str:
@@ -162,15 +163,15 @@ def _redis_url(settings: Settings) -> str:
     return settings.redis_url
 
 
-def _check_actors(directory: Path, threads: int) -> None:
+def _check_actors(settings: Settings) -> None:
     """Load the networks once, in another process: onnxruntime does not survive a fork."""
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(1, mp_context=context) as pool:
-        pool.submit(_load_actors, directory, threads).result()
+        pool.submit(_load_actors, settings).result()
 
 
-def _load_actors(directory: Path, threads: int) -> None:
-    load_actors(directory, threads)
+def _load_actors(settings: Settings) -> None:
+    load_actors(settings.actors, settings.threads, settings.own_actors)
 
 
 def _exit(_signal: int, _frame: FrameType | None) -> NoReturn:

@@ -50,6 +50,9 @@ class Settings(BaseSettings):
     actors: Path = Field(
         Path(__file__).parent / "actors", description="directory of the networks, ONNX files"
     )
+    own_actors: Path | None = Field(
+        None, description="directory of more networks, which are served beside those"
+    )
     workers: int = Field(
         default_factory=_cores, ge=1, description="processes that plan, one request at a time each"
     )

@@ -92,7 +92,9 @@ class LocalBackend:
         from service.requests.task import TaskKind, TaskSource
 
         runner = load_with(
-            lambda settings: load_runner(settings.actors, settings.threads, settings.limits),
+            lambda settings: load_runner(
+                settings.actors, settings.threads, settings.limits, settings.own_actors
+            ),
             load_settings(),
         )
         upload = None if plan.file is None else plan.file.content
@@ -115,7 +117,8 @@ class LocalBackend:
         from service.cli.configuration import load_settings, load_with
 
         loaded = load_with(
-            lambda settings: load_actors(settings.actors, settings.threads), load_settings()
+            lambda settings: load_actors(settings.actors, settings.threads, settings.own_actors),
+            load_settings(),
         )
         return tuple(Actor(**asdict(actor.info)) for _, actor in sorted(loaded.items()))
 

@@ -141,6 +141,8 @@ def warm_up() -> None:
     shortest_paths.warm_up()
 
 
-def load_runner(directory: Path, threads: int, limits: Limits) -> TaskRunner:
-    """Return a runner with the actors of a directory."""
-    return TaskRunner(load_actors(directory, threads), limits)
+def load_runner(
+    directory: Path, threads: int, limits: Limits, own_directory: Path | None = None
+) -> TaskRunner:
+    """Return a runner with the actors of a directory, and of one of the user's."""
+    return TaskRunner(load_actors(directory, threads, own_directory), limits)

@@ -52,7 +52,8 @@ def main(arguments: list[str]) -> None:
     warm_up()
     stored = load("ablation")
     known = stored["rows"] if stored.get("digest") == actor.info.digest else {}
-    results: dict[str, Any] = {**provenance(1), "digest": actor.info.digest, "rows": known}
+    facts = {"digest": actor.info.digest, "instances": options.count}
+    results: dict[str, Any] = {**provenance(1), **facts, "rows": known}
     for n, limits in SECONDS.items():
         instances = [Instance(coordinates=x) for x in paper_instances(n, options.count)]
         for limit in limits:

@@ -3,23 +3,43 @@
 import json
 import platform
 import subprocess
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 RESULTS = Path(__file__).parent / "results"
+ROOT = Path(__file__).parents[2]
+
+
+_EXTENTS = ("instances", "minutes", "visitors", "frames", "rounds")  # of how much was measured
+_MADE = (":!tests/benchmarks/results", ":!tests/benchmarks/RESULTS.md")  # by benchmarks themselves
+
+
+class Unstored(NamedTuple):
+    """Rows that were measured and not stored, and why they were not."""
+
+    rows: dict[str, Any]
+    reason: str
+
+
+UNSTORED: dict[str, Unstored] = {}  # by benchmark, of this process
 
 
 def provenance(threads: int) -> dict[str, Any]:
     """Return commit, processor, version of Python, threads and date of a measurement."""
-    described = ["git", "describe", "--always", "--dirty", "--exclude", "*"]
     return {
-        "commit": subprocess.run(described, capture_output=True, text=True).stdout.strip(),
+        "commit": _git("rev-parse", "--short", "HEAD") + ("-dirty" if changed_files() else ""),
         "cpu": _cpu(),
         "python": platform.python_version(),
         "threads": threads,
         "date": datetime.now(UTC).date().isoformat(),
     }
+
+
+def changed_files() -> list[str]:
+    """Return the tracked files that differ from the commit, but for what benchmarks write."""
+    return _git("diff", "HEAD", "--name-only", "--", ".", *_MADE).splitlines()
 
 
 def load(name: str) -> dict[str, Any]:
@@ -29,10 +49,60 @@ def load(name: str) -> dict[str, Any]:
     return stored
 
 
-def store(name: str, results: dict[str, Any]) -> None:
-    """Write the results of a benchmark."""
+def store(name: str, results: dict[str, Any], partial: str = "") -> None:
+    """Write the results of a benchmark, unless stored ones are worth more.
+
+    They are not written where the code was not that of a commit, nor where they lack something
+    that is stored: a row, an instance, a minute. Then the rows that differ go into `UNSTORED`.
+
+    Args:
+        name: The benchmark.
+        results: All of its results, those that are stored too.
+        partial: Why they are of less than a whole run, where they do not show it themselves.
+    """
+    stored = load(name)
+    if results == stored:
+        return
+    reason = _reason(stored, results, partial)
+    if reason:
+        rows = {key: value for key, value in results.items() if stored.get(key) != value}
+        UNSTORED[name] = Unstored(rows, reason)
+        return
+    UNSTORED.pop(name, None)
     RESULTS.mkdir(exist_ok=True)
     (RESULTS / f"{name}.json").write_text(json.dumps(results, indent=2) + "\n")
+
+
+def _reason(stored: dict[str, Any], results: dict[str, Any], partial: str) -> str:
+    """Return why results are not stored, an empty string where they are."""
+    if changed := changed_files():
+        return f"the code is not that of a commit: {', '.join(changed[:3])} changed"
+    if stored and partial:
+        return f"the stored run is whole, and this one is not: {partial}"
+    if lacking := next(_lacking(stored, results), ""):
+        return f"the run lacks what is stored: {lacking}"
+    return ""
+
+
+def _lacking(stored: Any, new: Any, place: str = "") -> Iterator[str]:
+    """Yield the places where stored results have more rows, instances or minutes than new ones."""
+    if isinstance(stored, dict) and isinstance(new, dict):
+        for key, value in stored.items():
+            inner = f"{place}/{key}"
+            if key not in new:
+                yield inner
+            elif key in _EXTENTS and isinstance(value, int | float) and new[key] < value:
+                yield f"{inner} {value}, got {new[key]}"
+            else:
+                yield from _lacking(value, new[key], inner)
+    elif isinstance(stored, list) and place.endswith(_EXTENTS) and len(new) < len(stored):
+        yield f"{place} {len(stored)}, got {len(new)}"
+
+
+def _git(*arguments: str) -> str:
+    """Return what git prints in this repository; an empty string where there is none."""
+    ended = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True)
+    return ended.stdout.strip()
 
 
 def _cpu() -> str:

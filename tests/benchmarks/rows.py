@@ -46,7 +46,8 @@ def resume(
 ) -> None:
     """Measures the instances that have no result yet, storing after each.
 
-    Results of another network, known by its digest, are measured anew. Beside the results it
+    Results of another network, known by its digest, are measured anew, and take the place of the
+    stored ones once they are as many. Beside the results it
     stores where they come from, and how many programs wanted the processor when they began.
     """
     results = load(benchmark)

@@ -25,6 +25,7 @@ def test_the_command_writes_the_page_of_other_results(
     tmp_path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(provenance, "RESULTS", tmp_path)
+    monkeypatch.setattr(provenance, "changed_files", list)
     monkeypatch.setattr(render, "PAGE", tmp_path / "RESULTS.md")
     share = {"(40, 40)": 60.0, "(50, 50)": 70.0}
     where = {"cpu": "abacus", "date": "today", "commit": "none", "busy": 2.0}

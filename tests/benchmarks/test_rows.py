@@ -23,6 +23,7 @@ CPU = torch.device("cpu")
 def results(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder of results."""
     monkeypatch.setattr(provenance, "RESULTS", tmp_path / "results")
+    monkeypatch.setattr(provenance, "changed_files", list)
     return tmp_path / "results"
 
 

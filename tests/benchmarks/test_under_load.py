@@ -109,6 +109,7 @@ def test_the_page_shows_what_was_found_and_what_does_not_hold(
 ) -> None:
     monkeypatch.setattr(provenance, "RESULTS", tmp_path)
     assert section().count("Not measured.") == 2
+    monkeypatch.setattr(provenance, "changed_files", list)
     provenance.store("load", loaded(served_share=0.8))
     provenance.store("soak", soaked())
     page = section()

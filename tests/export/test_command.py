@@ -1,0 +1,66 @@
+"""`python -m export`: an actor of one's own, and no released one lost."""
+
+from pathlib import Path
+
+import onnx
+import pytest
+import torch
+
+import export.__main__ as command
+from models.checkpoint import new_run, save_weights
+from models.config import NetworkConfig, TrainingConfig
+from service.actor import load_actors
+
+SMALL = NetworkConfig(name="pa-one", width=8, heads=2, layers=1, feedforward=8)
+
+
+@pytest.fixture
+def weights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The weights of a run that was never trained, in a folder of its own, which is current."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(command, "to_onnx", lambda _: onnx.load(command.RELEASED / "pa-one.onnx"))
+    monkeypatch.setattr(command, "compare", lambda *_: None)
+    monkeypatch.setattr(command, "_hypervolumes", lambda *_: {"40": 0.5})
+    monkeypatch.setattr(command, "_commit", lambda: "none")
+    path = tmp_path / "weights.pt"
+    save_weights(new_run(TrainingConfig(network=SMALL), torch.device("cpu")), path)
+    return path
+
+
+def test_an_actor_of_ones_own_is_served_beside_those_released(weights: Path) -> None:
+    command.main([str(weights), "--name", "my-one"])
+    loaded = load_actors(command.RELEASED, 1, Path("runs/actors"))
+    assert {"my-one", "pa-one", "pa-one-matrix"} <= loaded.keys()
+    assert loaded["my-one"].info.digest != loaded["pa-one"].info.digest
+    card = Path("runs/actors/my-one.md").read_text()
+    assert '`"actor": "my-one"`' in card
+    assert "| 40 | 50.00 |" in card
+
+
+REFUSED = [
+    ([], "pa-one is a released actor"),
+    (["--name", "pa-at"], "pa-at is a released actor"),
+    (["--name", "../x"], "--name must be 1 to 64 letters"),
+    (["--name", "my-one"], "runs/actors/my-one.onnx exists"),
+    (["--name", "other", "--out", "runs/actors/my-one.onnx"], "runs/actors/my-one.onnx exists"),
+]
+
+
+@pytest.mark.parametrize(("options", "sentence"), REFUSED)
+def test_nothing_is_written_over(
+    weights: Path, options: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written = Path("runs/actors/my-one.onnx")
+    written.parent.mkdir(parents=True)
+    written.write_bytes(b"mine")
+    with pytest.raises(SystemExit) as ended:
+        command.main([str(weights), *options])
+    assert ended.value.code == 2
+    assert sentence in capsys.readouterr().err
+    assert [path.read_bytes() for path in written.parent.iterdir()] == [b"mine"]
+
+
+def test_a_file_is_replaced_where_that_is_asked_for(weights: Path) -> None:
+    for _ in range(2):
+        command.main([str(weights), "--out", "here/one.onnx", "--replace"])
+    assert list(load_actors(Path("here"), 1)) == ["pa-one"]
