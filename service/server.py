@@ -27,7 +27,7 @@ from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.worker_pool import WorkerPool
 from service.settings import Settings
-from service.telemetry import logging_config, trace
+from service.telemetry import log_loading, logging_config, trace
 
 
 def build(settings: Settings) -> FastAPI:
@@ -57,6 +57,8 @@ def build(settings: Settings) -> FastAPI:
     )
     if settings.traces:
         trace(app)
+    if sys.stderr.isatty():
+        log_loading(app, engine.check_ready)
     return app
 
 
@@ -74,7 +76,7 @@ def serve(app: FastAPI, settings: Settings) -> None:
         # Not uvloop: 1 % more answers, but it does not shut down while Redis is connected.
         loop="asyncio",
         server_header=False,
-        log_config=logging_config(),
+        log_config=logging_config(plain=sys.stderr.isatty()),
         access_log=False,
         timeout_graceful_shutdown=settings.drain_seconds,
     )

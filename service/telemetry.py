@@ -1,8 +1,19 @@
-"""Logs as lines of JSON, and traces for OpenTelemetry."""
+"""Logs as lines of JSON, or on a terminal as plain lines; and traces for OpenTelemetry."""
 
+import asyncio
+import logging
+import time
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from typing import Any
 
 from fastapi import FastAPI
+
+from service.errors import Refusal
+
+_POLL_SECONDS = 0.2  # between two questions whether the search is loaded
+_SAY_SECONDS = 10.0  # between two lines on how long it has taken so far
+_KNOWN = frozenset(vars(logging.makeLogRecord({}))) | {"message", "asctime", "color_message"}
 
 _VERBOSE = (  # loggers whose lines repeat what the service logs itself
     "uvicorn.access",
@@ -11,22 +22,77 @@ _VERBOSE = (  # loggers whose lines repeat what the service logs itself
 )
 
 
-def logging_config(level: str = "INFO") -> dict[str, Any]:
-    """Return a configuration of `logging`: JSON to standard error, one object a line."""
-    formatter = {
+class PlainFormatter(logging.Formatter):
+    """Formats a record as a line to read: time, message, and the members added to it."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return the line."""
+        added = {name: value for name, value in vars(record).items() if name not in _KNOWN}
+        members = "".join(f" {name}={_short(value)}" for name, value in added.items())
+        return super().format(record) + members
+
+
+def _short(value: object) -> str:
+    return f"{value:.3g}" if isinstance(value, float) else str(value)
+
+
+def logging_config(level: str = "INFO", plain: bool = False) -> dict[str, Any]:
+    """Return a configuration of `logging`: a line for each record to standard error.
+
+    It is an object of JSON, or if `plain` a line for people to read.
+    """
+    json_lines = {
         "()": "pythonjsonlogger.json.JsonFormatter",
         "format": "%(asctime)s %(levelname)s %(name)s %(message)s",
         "rename_fields": {"asctime": "time", "levelname": "level", "name": "logger"},
         "datefmt": "%Y-%m-%dT%H:%M:%S%z",
     }
+    plain_lines = {
+        "()": PlainFormatter,
+        "format": "%(asctime)s %(message)s",
+        "datefmt": "%H:%M:%S",
+    }
     return {
         "version": 1,
         "disable_existing_loggers": False,
-        "formatters": {"json": formatter},
-        "handlers": {"stderr": {"class": "logging.StreamHandler", "formatter": "json"}},
+        "formatters": {"lines": plain_lines if plain else json_lines},
+        "handlers": {"stderr": {"class": "logging.StreamHandler", "formatter": "lines"}},
         "root": {"level": level, "handlers": ["stderr"]},
         "loggers": {name: {"level": "WARNING"} for name in _VERBOSE},
     }
+
+
+def log_loading(app: FastAPI, check_ready: Callable[[], Awaitable[None]]) -> None:
+    """Have an application log how the loading of its search goes, from its start on."""
+    lifespan: Callable[[Any], AbstractAsyncContextManager[Any]] = app.router.lifespan_context
+
+    @asynccontextmanager
+    async def lifespan_with_log(app: Any) -> AsyncIterator[Any]:
+        async with lifespan(app) as state:
+            logged = asyncio.create_task(_log_until_ready(check_ready))
+            yield state
+            logged.cancel()
+
+    app.router.lifespan_context = lifespan_with_log
+
+
+async def _log_until_ready(check_ready: Callable[[], Awaitable[None]]) -> None:
+    log = logging.getLogger("paretour")
+    log.info("loading the search; the first time it is compiled, for half a minute")
+    began = time.monotonic()
+    said = 0.0
+    while True:
+        seconds = time.monotonic() - began
+        try:
+            await check_ready()
+        except Refusal:
+            if seconds - said >= _SAY_SECONDS:
+                said = seconds
+                log.info("still loading, %.0f s", seconds)
+            await asyncio.sleep(_POLL_SECONDS)
+        else:
+            log.info("ready after %.1f s", seconds)
+            return
 
 
 def trace(app: FastAPI) -> None:

@@ -1,6 +1,7 @@
 """The log of the command, one object a line, and traces as a collector receives them."""
 
 import json
+import logging
 import sys
 import threading
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ import pytest
 from fastapi import FastAPI
 from opentelemetry.proto.collector.trace.v1.trace_service_pb2 import ExportTraceServiceRequest
 
-from service.telemetry import trace
+from service.telemetry import PlainFormatter, trace
 from tests.helpers.processes import serve_process
 
 
@@ -75,3 +76,10 @@ def test_traces_without_their_extra_are_refused(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(sys.modules, "opentelemetry.sdk", None)
     with pytest.raises(ValueError, match=r"needs the extra paretour\[tracing\]: .*opentelemetry"):
         trace(FastAPI())
+
+
+def test_a_plain_line_has_the_members_of_a_record_behind_its_message() -> None:
+    record = logging.makeLogRecord({"msg": "request", "status": 200, "seconds": 0.01234})
+    record.color_message = "coloured"
+    line = PlainFormatter("%(message)s").format(record)
+    assert line == "request status=200 seconds=0.0123"

@@ -1,11 +1,15 @@
 """The commands of an operator that can be tested without a service of their own."""
 
 import hashlib
+import os
+import pty
+import re
 
 import pytest
 import typer
 
 from service.cli.admin import run_alive, run_key, run_serve
+from tests.helpers.command import started
 
 
 def test_a_key_is_printed_with_its_entry(capsys: pytest.CaptureFixture[str]) -> None:
@@ -30,6 +34,21 @@ def test_a_wrong_setting_ends_with_2(capsys: pytest.CaptureFixture[str]) -> None
         run_serve(host=None, port=70000, workers=None)
     assert ended.value.exit_code == 2
     assert "port: " in capsys.readouterr().err
+
+
+def test_on_a_terminal_a_service_says_in_plain_lines_where_it_is_and_when_it_is_ready() -> None:
+    terminal, other_end = pty.openpty()
+    with started("serve", "--port", 0, "--workers", 1, stderr=other_end) as running:
+        os.close(other_end)
+        shown = b""
+        while b"ready after" not in shown:
+            shown += os.read(terminal, 1024)
+        running.terminate()
+    os.close(terminal)
+    assert running.returncode == 0
+    assert re.search(rb"running on http://127\.0\.0\.1:\d{2,5}", shown)
+    assert b"loading the search" in shown
+    assert b'{"' not in shown
 
 
 def test_without_redis_there_is_no_worker_to_ask_after(
