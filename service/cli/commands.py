@@ -5,9 +5,10 @@ option, come at once.
 """
 
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Any
 
-from typer import Argument, Exit, Option, Typer, echo
+from typer import Argument, BadParameter, Exit, Option, Typer, echo
+from typer.core import TyperCommand
 
 from service import installed_version
 from service.cli.options import (
@@ -103,7 +104,32 @@ def front(  # noqa: PLR0913  an option each
     )
 
 
-@app.command()
+class _NamingAllMissing(TyperCommand):
+    """A command that names every missing argument and option at once."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse the arguments."""
+        given = list(args)
+        try:
+            return super().parse_args(ctx, args)
+        except BadParameter as error:
+            missing = self._missing(ctx, given)
+            if len(missing) > 1:
+                ctx.fail(f"Missing {' and '.join(missing)}.")
+            raise error
+
+    def _missing(self, ctx: Any, args: list[str]) -> list[str]:
+        values, _, _ = self.make_parser(ctx).parse_args(args=args)
+        missing = []
+        for parameter in self.get_params(ctx):
+            value, _ = parameter.consume_value(ctx, values)
+            if parameter.required and parameter.value_is_missing(value):
+                option = parameter.opts[0].startswith("-")
+                missing.append(f"'{parameter.opts[0] if option else parameter.opts[0].upper()}'")
+        return missing
+
+
+@app.command(cls=_NamingAllMissing)
 def tour(  # noqa: PLR0913  an option each
     file: File,
     file2: SecondFile = None,

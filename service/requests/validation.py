@@ -1,7 +1,8 @@
 """Validate JSON against a pydantic model, and word each error as a refusal of this service."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from difflib import get_close_matches
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
@@ -25,12 +26,14 @@ def parse_json(model: type[Model], body: bytes) -> Model:
         if errors[0]["type"] == "json_invalid":
             reason = errors[0]["ctx"]["error"]
             raise Refusal("malformed-json", reason=reason) from None
-        raise refusal_of(errors) from None
+        raise refusal_of(errors, fields=model.model_fields.keys()) from None
 
 
-def refusal_of(errors: Sequence[ErrorDetails], parameters: bool = False) -> Refusal:
-    """Return pydantic's errors in a body, or in query parameters, as one refusal."""
-    faults = [_fault(error, parameters) for error in errors[:MOST_FAULTS]]
+def refusal_of(
+    errors: Sequence[ErrorDetails], parameters: bool = False, fields: Collection[str] = ()
+) -> Refusal:
+    """Return pydantic's errors in a body with these fields, or in query parameters."""
+    faults = [_fault(error, parameters, fields) for error in errors[:MOST_FAULTS]]
     more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
     return Refusal("invalid-request", detail=faults[0].detail + more, errors=faults)
 
@@ -56,14 +59,24 @@ def shorten(text: str) -> str:
     return text if len(text) <= 80 else f"{text[:79]}…"
 
 
-def _fault(error: ErrorDetails, parameters: bool) -> Fault:
+def _fault(error: ErrorDetails, parameters: bool, fields: Collection[str]) -> Fault:
     # FastAPI puts "query" first; brackets mark a branch of a union, which the caller never wrote.
     parts = [str(part) for part in error["loc"] if not str(part).startswith("[")]
     if parameters:
         name = shorten(".".join(parts[1:]))
         return Fault(detail=f"{name} {_demand(error)}", parameter=name)
     pointer = shorten("".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts))
-    return Fault(detail=f"{pointer.lstrip('/') or 'the body'} {_demand(error)}", pointer=pointer)
+    hint = _hint(error, fields)
+    name = pointer.lstrip("/") or "the body"
+    return Fault(detail=f"{name} {_demand(error)}{hint}", pointer=pointer)
+
+
+def _hint(error: ErrorDetails, fields: Collection[str]) -> str:
+    """Return the field that an unknown one may be meant for, as the end of a sentence."""
+    if error["type"] != "extra_forbidden" or len(error["loc"]) != 1:
+        return ""
+    near = get_close_matches(shorten(str(error["loc"][0])), fields, n=1)
+    return f"; did you mean {near[0]}?" if near else ""
 
 
 def _demand(error: ErrorDetails) -> str:

@@ -30,6 +30,7 @@ from service.requests.validation import parse_json
         ('"actor": 1', "/actor", "actor must be a valid string, got 1"),
         ('"seed": -1', "/seed", "seed must be at least 0, got -1"),
         ('"cities": 1', "/cities", "cities is not a field that this request has"),
+        ('"tims_limit": 1', "/tims_limit", "request has; did you mean time_limit?"),
         ('"a/b~c": 1', "/a~1b~0c", "is not a field that this request has"),
     ],
 )
