@@ -16,11 +16,13 @@ import pytest
 from paretour import front_plan
 from rich.console import Console
 
+from service.actor import load_actors
 from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
 from service.cli.backends import LOADING, LocalBackend, RemoteBackend
 from service.cli.errors import UsageError
 from tests.helpers.actors import Shuffler
+from tests.helpers.artifacts import by_row_sums
 from tests.helpers.command import EXAMPLE, ROOT, paretour, started
 from tests.helpers.serving import app_of, serving
 
@@ -32,6 +34,14 @@ def test_the_actors_are_those_of_the_service(url: str) -> None:
         json.loads(local.stdout) == json.loads(remote.stdout) == httpx.get(f"{url}/actors").json()
     )
     assert "pa-one" in paretour("actors").stdout
+
+
+def test_an_actor_of_ones_own_stands_beside_the_others(tmp_path: Path) -> None:
+    by_row_sums(tmp_path / "sums.onnx")
+    listed = paretour("actors", "--json", PARETOUR_OWN_ACTORS=str(tmp_path))
+    names = [actor["name"] for actor in json.loads(listed.stdout)["actors"]]
+    assert {"pa-one", load_actors(tmp_path, 1).popitem()[0]} <= set(names)
+    assert len(names) == 6
 
 
 def test_a_key_is_given_by_option_or_by_variable(cities: Path) -> None:
