@@ -132,7 +132,10 @@ def _local_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
         on_front=metrics.planned,
     )
     store = SqliteStore(
-        settings.store, entries=settings.store_entries, max_age=settings.store_seconds
+        settings.store,
+        entries=settings.store_entries,
+        max_age=settings.store_seconds,
+        max_bytes=settings.store_bytes,
     )
     return store, LocalEngine(workers, store)
 
@@ -146,6 +149,7 @@ def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
         redis_url,
         entries=settings.store_entries,
         max_age=settings.store_seconds,
+        max_bytes=settings.store_bytes,
         queue=settings.queue,
         seconds=settings.request_seconds,
         on_front=metrics.planned,

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from service.api.auth import KeyHash
+from service.jobs.store import STORE_BYTES
 from service.requests.limits import Limits
 
 
@@ -78,7 +79,12 @@ class Settings(BaseSettings):
     store: str = Field(
         ":memory:", description="file of fronts and jobs, which then outlive the service"
     )
-    store_entries: int = Field(256, ge=1, description="fronts kept for later questions")
+    store_entries: int = Field(
+        256, ge=1, description="fronts kept for later questions; callers with most make way"
+    )
+    store_bytes: int = Field(
+        STORE_BYTES, ge=1, description="the most bytes of those; callers with most make way"
+    )
     store_seconds: float = Field(3600.0, gt=0, description="how long a front is kept")
     redis_url: str | None = Field(
         None,

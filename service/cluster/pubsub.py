@@ -57,7 +57,8 @@ class Subscriptions:
                 if message is None:
                     await channel.ping()  # which raises where the connection is lost
                 elif message["type"] == "message":
-                    self._handle(*message["data"].decode().split(":"))
+                    id_, _, status = message["data"].decode(errors="replace").partition(":")
+                    self._handle(id_, status)
 
     def _handle(self, id: str, status: str) -> None:  # noqa: A002
         if status not in UNFINISHED:

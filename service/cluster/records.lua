@@ -1,67 +1,5 @@
 -- What is done with records. Each call happens at once for everybody, or not at all.
--- ARGV: what to do, the time in seconds, and what else that needs.
-
-local P = 'paretour:'
-local NUMBER, LOST = P .. 'number', P .. 'lost'
-local UNFINISHED, FINISHED, GONE = P .. 'unfinished', P .. 'finished', P .. 'gone'
-local WORKERS, TOLD = P .. 'workers', P .. 'told'
-
-local function front_of(id) return P .. 'front:' .. id end
-local function work_of(id) return P .. 'work:' .. id end
-local function all_of(caller) return P .. 'caller:' .. caller end
-local function gone_of(caller) return P .. 'gone:' .. caller end
-local function key_of(caller, key) return P .. 'key:' .. caller .. ':' .. key end
-
-local function is_finished(status) return status ~= 'queued' and status ~= 'running' end
-
-local function forget(id)
-  local caller, key = unpack(redis.call('HMGET', front_of(id), 'caller', 'key'))
-  redis.call('DEL', front_of(id), work_of(id))
-  redis.call('ZREM', UNFINISHED, id)
-  redis.call('ZREM', FINISHED, id)
-  if caller then redis.call('ZREM', all_of(caller), id) end
-  if key and redis.call('GET', key_of(caller, key)) == id then
-    redis.call('DEL', key_of(caller, key))
-  end
-end
-
-local function put(now, id, fields)
-  forget(id)
-  local number = redis.call('INCR', NUMBER)
-  redis.call('HSET', front_of(id), 'number', number, 'kept', now, unpack(fields))
-  local status, caller, key =
-    unpack(redis.call('HMGET', front_of(id), 'status', 'caller', 'key'))
-  if is_finished(status) then
-    redis.call('ZADD', FINISHED, number, id)
-    redis.call('ZADD', all_of(caller), number, id)
-  else
-    redis.call('ZADD', UNFINISHED, number, id)
-  end
-  if key then redis.call('SET', key_of(caller, key), id) end
-end
-
-local function keep_work(id, fields)
-  if #fields > 0 then redis.call('HSET', work_of(id), unpack(fields)) end
-end
-
-local function make_way(now, max_age, entries, tombstones)
-  while true do
-    local oldest = redis.call('ZRANGE', FINISHED, 0, 0)[1]
-    if not oldest then break end
-    local caller, kept = unpack(redis.call('HMGET', front_of(oldest), 'caller', 'kept'))
-    local fits = redis.call('ZCARD', FINISHED) <= tonumber(entries)
-    if fits and kept and tonumber(kept) >= now - max_age then break end
-    forget(oldest)
-    if caller then
-      redis.call('ZADD', GONE, redis.call('INCR', NUMBER), caller .. ':' .. oldest)
-      redis.call('SADD', gone_of(caller), oldest)
-    end
-  end
-  while redis.call('ZCARD', GONE) > tonumber(tombstones) do
-    local caller, id = string.match(redis.call('ZPOPMIN', GONE)[1], '^(.*):(.*)$')
-    redis.call('SREM', gone_of(caller), id)
-  end
-end
+-- ARGV: what to do, the time in seconds, and what else that needs. stored_records.lua comes before.
 
 -- Counts of fields come before them, because a list of lists cannot be given.
 local function rest(first) return {unpack(ARGV, first)} end
@@ -72,7 +10,10 @@ end
 
 local verbs = {}
 
-function verbs.make_way(now) make_way(now, unpack(ARGV, 3)) end
+function verbs.make_way(now)
+  local max_age, entries, tombstones, bytes = unpack(ARGV, 3, 6)
+  make_way(now, tonumber(max_age), tonumber(entries), tonumber(tombstones), tonumber(bytes))
+end
 
 function verbs.put(now)
   local id, fields, work = ARGV[3], split(4)
@@ -87,7 +28,7 @@ function verbs.admit(now)
   if earlier then
     local same, status = unpack(redis.call('HMGET', front_of(earlier), 'digest', 'status'))
     if same ~= digest then return 'mismatch' end
-    if status ~= 'failed' then return redis.call('HGETALL', front_of(earlier)) end
+    if status ~= 'failed' then return {earlier, redis.call('HGETALL', front_of(earlier))} end
     redis.call('HDEL', front_of(earlier), 'key')
   end
   put(now, id, fields)
@@ -98,7 +39,7 @@ end
 function verbs.get(_)
   local caller, id = unpack(ARGV, 3, 4)
   if redis.call('HGET', front_of(id), 'caller') == caller then
-    return redis.call('HGETALL', front_of(id))
+    return {id, redis.call('HGETALL', front_of(id))}
   end
   return redis.call('SISMEMBER', gone_of(caller), id) == 1 and 'expired' or 'unknown'
 end
@@ -106,16 +47,28 @@ end
 function verbs.latest(_)
   local caller = ARGV[3]
   local id = redis.call('ZREVRANGE', all_of(caller), 0, 0)[1]
-  if id then return redis.call('HGETALL', front_of(id)) end
+  if id then return {id, redis.call('HGETALL', front_of(id))} end
   return redis.call('EXISTS', gone_of(caller)) == 1 and 'expired' or 'unknown'
 end
 
 function verbs.forget(_) forget(ARGV[3]) end
 
+-- A record that cannot be read: who follows it is told that it has ended.
+function verbs.drop(_)
+  local id, caller = ARGV[3], ARGV[4]
+  drop(id, caller)
+  redis.call('PUBLISH', TOLD, id .. ':failed')
+end
+
+-- Fails where Redis takes no more data, which it tells only who would write.
+function verbs.write(now)
+  redis.call('SET', P .. 'written', now)
+end
+
 function verbs.unfinished(_)
   local found = {}
   for index, id in ipairs(redis.call('ZRANGE', UNFINISHED, 0, -1)) do
-    found[index] = {redis.call('HGETALL', front_of(id)), redis.call('HGETALL', work_of(id))}
+    found[index] = {id, redis.call('HGETALL', front_of(id)), redis.call('HGETALL', work_of(id))}
   end
   return found
 end

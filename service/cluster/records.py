@@ -1,7 +1,7 @@
 """The form of a record in Redis: the fields of its hashes, and the script that changes them.
 
 Replicas and workers of different releases share one Redis. The names of fields and stop reasons,
-the columns in `jobs.store` and the keys in `records.lua` therefore stay as they are.
+the columns in `jobs.store` and the keys in `stored_records.lua` therefore stay as they are.
 """
 
 import json
@@ -16,10 +16,18 @@ from redis import exceptions
 from service.errors import Cancelled, DeadlineExceeded
 from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason
-from service.jobs.store import SOURCE_COLUMNS, front_columns, record_columns, record_from
+from service.jobs.store import (
+    SOURCE_COLUMNS,
+    UnreadableRecord,
+    front_columns,
+    record_columns,
+    record_from,
+)
 from service.search.improve import Progress
 
-SCRIPT = (Path(__file__).parent / "records.lua").read_text()
+SCRIPT = "".join(
+    (Path(__file__).parent / name).read_text() for name in ("stored_records.lua", "records.lua")
+)
 LEASE = 5.0  # seconds without a sign of life after which a worker is lost
 CHANNEL = "paretour:told"  # where the script publishes "id:status" after each change
 
@@ -33,8 +41,15 @@ STOP_REASONS: Mapping[StopReason, bytes] = {Cancelled: b"Stopped", DeadlineExcee
 REASON_OF = {name: reason for reason, name in STOP_REASONS.items()}
 TAKEN_OVER = b"taken"
 
-# Redis does not answer, or is full.
-UNAVAILABLE = (exceptions.ConnectionError, exceptions.TimeoutError, exceptions.OutOfMemoryError)
+# Redis does not answer, is full, or is a copy that takes no writes.
+UNAVAILABLE = (
+    exceptions.ConnectionError,
+    exceptions.TimeoutError,
+    exceptions.OutOfMemoryError,
+    exceptions.ReadOnlyError,
+)
+# How errors begin where Redis cannot write to its disk, or to enough copies.
+REFUSES_WRITES = ("MISCONF", "NOREPLICAS")
 
 Argument = str | bytes | float
 _TEXTS = ("id", "caller", "request_id", "status", "key", "digest", "kind")
@@ -70,7 +85,18 @@ def progress_arguments(progress: Progress, front: FrontDocument) -> list[Argumen
 
 
 def stored_record(*hashes: Iterable[bytes]) -> StoredRecord:
-    """Return the record in a hash, or in one and that of its source, as HGETALL gives them."""
+    """Return the record in a hash, or in one and that of its source, as HGETALL gives them.
+
+    Raises:
+        UnreadableRecord: They are damaged, or of another program.
+    """
+    try:
+        return _decode(*hashes)
+    except (ArithmeticError, LookupError, TypeError, ValueError) as error:
+        raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error
+
+
+def _decode(*hashes: Iterable[bytes]) -> StoredRecord:
     fields = {name: value for each in hashes for name, value in _fields(each).items()}
     record = record_from(fields)
     if GAINED in fields:

@@ -20,7 +20,6 @@ from service.cluster.records import (
     STOP_REASONS,
     StoredRecord,
     record_arguments,
-    stored_record,
 )
 from service.cluster.redis_store import RedisStore
 from service.errors import (
@@ -35,6 +34,7 @@ from service.errors import (
 from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason, as_ended
+from service.jobs.store import STORE_BYTES
 
 _POLL = 2.0  # seconds without a notification after which a record is read all the same
 _GRACE = 1.0  # seconds for a worker to stop by itself
@@ -107,9 +107,9 @@ class RedisEngine:
         """Raise nothing: jobs wait in the queue until a worker has the compiled search."""
 
     async def check_ready(self) -> None:
-        """Raise ShuttingDown, or StoreUnavailable when Redis does not answer."""
+        """Raise ShuttingDown, or StoreUnavailable when Redis does not answer or is full."""
         await self.check_open()
-        await self._store.call("standing")
+        await self._store.check_writable()
 
     async def run(self, record: Record, disconnected: Future[None]) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it."""
@@ -192,11 +192,20 @@ class RedisEngine:
 
     async def _sweep(self) -> None:
         while True:
-            with suppress(StoreUnavailable):
-                for id_ in await self._store.call("stale", LEASE, QUEUE):
-                    self._log.warning("front %s has lost its worker, sent again", id_.decode())
-                    await self._send_id(id_.decode())
+            try:
+                await self._send_stale()
+            except StoreUnavailable:
+                pass
+            except Exception:
+                # Else nothing would ever be sent again.
+                self._log.exception("jobs that lost their worker could not be sent again")
             await asyncio.sleep(_SWEEP)
+
+    async def _send_stale(self) -> None:
+        for id_ in await self._store.call("stale", LEASE, QUEUE):
+            name = id_.decode(errors="replace")
+            self._log.warning("front %s has lost its worker, sent again", name[:80])
+            await self._send_id(name)
 
     def _on_finished(self, id: str) -> None:  # noqa: A002
         self._spawn(self._claim(id))
@@ -204,8 +213,9 @@ class RedisEngine:
     async def _claim(self, id: str) -> None:  # noqa: A002
         """Pass a finished front on, unless another replica has."""
         with suppress(StoreUnavailable):
-            if fields := await self._store.call("claim", id):
-                self._on_front(stored_record(fields).record.front)
+            fields = await self._store.call("claim", id)
+            if fields and (stored := await self._store.read(id.encode(), fields)) is not None:
+                self._on_front(stored.record.front)
 
     def _spawn(self, coroutine: Coroutine[None, None, None]) -> None:
         task = asyncio.create_task(coroutine)
@@ -222,11 +232,12 @@ async def _wait(changed: Event, seconds: float) -> None:
 _SECONDS = 2.0  # that one reply of Redis may take
 
 
-def connect(
+def connect(  # noqa: PLR0913  a setting each
     redis_url: str,
     *,
     entries: int,
     max_age: float,
+    max_bytes: int = STORE_BYTES,
     queue: int,
     seconds: float,
     on_front: Callable[[FrontDocument], None] = lambda _: None,
@@ -236,6 +247,6 @@ def connect(
     redis = Redis.from_url(
         redis_url, retry=Retry(NoBackoff(), 1), socket_timeout=_SECONDS, socket_keepalive=True
     )
-    store = RedisStore(redis, entries=entries, max_age=max_age)
+    store = RedisStore(redis, entries=entries, max_age=max_age, max_bytes=max_bytes)
     send = partial(send_record, make_celery(redis_url, seconds))
     return store, RedisEngine(redis, store, send, queue=queue, seconds=seconds, on_front=on_front)

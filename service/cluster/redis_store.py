@@ -1,12 +1,14 @@
 """The store in Redis, shared by all replicas."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from time import time
 from typing import Any
 
 from redis.asyncio import Redis
+from redis.exceptions import ResponseError
 
 from service.cluster.records import (
+    REFUSES_WRITES,
     SCRIPT,
     UNAVAILABLE,
     Argument,
@@ -16,10 +18,11 @@ from service.cluster.records import (
 )
 from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
 from service.jobs.record import Record
+from service.jobs.store import STORE_BYTES, UnreadableRecord, log_dropped
 
 
 class RedisStore:
-    """Keeps at most `entries` finished records, none older than `max_age` seconds.
+    """Keeps at most `entries` finished records of `max_bytes`, none older than `max_age` seconds.
 
     Of those that were dropped it remembers the last `tombstones` ids. Only `unfinished` returns
     records with their sources.
@@ -31,12 +34,13 @@ class RedisStore:
         *,
         entries: int,
         max_age: float,
+        max_bytes: int = STORE_BYTES,
         tombstones: int = 10_000,
         clock: Callable[[], float] = time,
     ) -> None:
         self._redis = redis
         self._script = redis.register_script(SCRIPT)
-        self._bounds = (max_age, entries, tombstones)
+        self._bounds = (max_age, entries, tombstones, max_bytes)
         self._clock = clock
 
     async def put(self, record: Record) -> None:
@@ -48,13 +52,16 @@ class RedisStore:
         """Store a new record and return it, or return the one that has its idempotency key."""
         await self._evict()
         identity = (record.id, record.caller, record.key or "", record.digest)
-        match await self.call("admit", *identity, *record_arguments(record)):
-            case b"new":
-                return record
-            case b"mismatch":
-                raise IdempotencyMismatch
-            case earlier:
-                return stored_record(earlier).record
+        while True:
+            match await self.call("admit", *identity, *record_arguments(record)):
+                case b"new":
+                    return record
+                case b"mismatch":
+                    raise IdempotencyMismatch
+                case [id_, *hashes]:
+                    earlier = await self.read(id_, *hashes, caller=record.caller)
+                    if earlier is not None:
+                        return earlier.record
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
         """Return the caller's record with this id."""
@@ -70,7 +77,8 @@ class RedisStore:
 
     async def unfinished(self) -> list[Record]:
         """Return all unfinished records with their sources, the oldest first."""
-        return [stored_record(*hashes).record for hashes in await self.call("unfinished")]
+        found = [await self.read(*each, whole=True) for each in await self.call("unfinished")]
+        return [stored.record for stored in found if stored is not None]
 
     async def close(self) -> None:
         """Close the connections."""
@@ -80,12 +88,20 @@ class RedisStore:
         """Run a verb of the script and return its reply.
 
         Raises:
-            StoreUnavailable: Redis does not answer.
+            StoreUnavailable: Redis does not answer, or takes no more data where the verb writes.
         """
         try:
             return await self._script(args=[verb, self._clock(), *arguments])
         except UNAVAILABLE as error:
             raise StoreUnavailable from error
+        except ResponseError as error:
+            if str(error).startswith(REFUSES_WRITES):
+                raise StoreUnavailable from error
+            raise
+
+    async def check_writable(self) -> None:
+        """Raise StoreUnavailable if Redis does not answer, or takes no more data."""
+        await self.call("write")
 
     async def find(self, verb: str, *arguments: str) -> StoredRecord:
         """Return the record that the verb `get` or `latest` finds.
@@ -96,13 +112,41 @@ class RedisStore:
             StoreUnavailable: Redis does not answer.
         """
         await self._evict()
-        match await self.call(verb, *arguments):
-            case b"unknown":
-                raise NotFound
-            case b"expired":
-                raise Expired
-            case found:
-                return stored_record(found)
+        while True:
+            match await self.call(verb, *arguments):
+                case b"unknown":
+                    raise NotFound
+                case b"expired":
+                    raise Expired
+                case [id_, *hashes]:
+                    stored = await self.read(id_, *hashes, caller=arguments[0])
+                    if stored is not None:
+                        return stored
+
+    async def read(
+        self,
+        id: bytes,  # noqa: A002
+        *hashes: Iterable[bytes],
+        caller: str = "",
+        whole: bool = False,
+    ) -> StoredRecord | None:
+        """Return the record in these hashes; None where it cannot be read, and is dropped.
+
+        Args:
+            id: Its id, which may be missing in the hashes.
+            hashes: As HGETALL gives them.
+            caller: Who has it, where that is known.
+            whole: Whether an unfinished record must have its source.
+        """
+        try:
+            stored = stored_record(*hashes)
+            if whole and stored.record.source is None:
+                raise UnreadableRecord("what to plan is missing")
+        except UnreadableRecord as error:
+            log_dropped(id.decode(errors="replace")[:80], error)
+            await self.call("drop", id, *([caller] if caller else []))
+            return None
+        return stored
 
     async def _evict(self) -> None:
         await self.call("make_way", *self._bounds)

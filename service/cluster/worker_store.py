@@ -25,6 +25,7 @@ from service.cluster.records import (
 )
 from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason
+from service.jobs.store import UnreadableRecord, log_dropped
 from service.search.improve import Progress
 
 _SECONDS = 2.0  # that one reply of Redis may take
@@ -58,12 +59,22 @@ class WorkerStore:
     def begin(self, id: str, known_lost: bool) -> StoredRecord | None:  # noqa: A002
         """Take a record for this worker and return it.
 
-        Returns None where the record is finished, or another worker runs it, unless that is known
-        to be lost.
+        Returns None where the record is finished, or cannot be read, which drops it, or another
+        worker runs it, unless that is known to be lost.
         """
         known = "lost" if known_lost else ""
         hashes = self._call_until_answered("begin", id, self._worker, LEASE, known)
-        return stored_record(*hashes) if hashes else None
+        if not hashes:
+            return None
+        try:
+            stored = stored_record(*hashes)
+            if stored.record.source is None:
+                raise UnreadableRecord("what to plan is missing")
+        except UnreadableRecord as error:
+            log_dropped(id, error)
+            self._call_until_answered("drop", id)
+            return None
+        return stored
 
     def stop_reason(self, id: str) -> StopReason | type[TakenOver] | None:  # noqa: A002
         """Renew the lease of a record, and return why it is to be stopped, if it is."""

@@ -6,45 +6,43 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from time import time
 from typing import TypeVar
 
 from service.errors import Expired, IdempotencyMismatch, NotFound
 from service.jobs.record import Record
-from service.jobs.store import COLUMNS, record_columns, record_from
+from service.jobs.sqlite_schema import IN_MEMORY, UNFINISHED, open_file
+from service.jobs.store import (
+    COLUMNS,
+    STORE_BYTES,
+    UnreadableRecord,
+    log_dropped,
+    record_columns,
+    record_from,
+    record_size,
+)
+
+__all__ = ["IN_MEMORY", "SqliteStore"]
 
 T = TypeVar("T")
-IN_MEMORY = ":memory:"
 _COLUMNS = ", ".join(COLUMNS)
-_UNFINISHED = "status IN ('queued', 'running')"
-_SCHEMA = f"""
-PRAGMA locking_mode = EXCLUSIVE;
-PRAGMA journal_mode = WAL;
-PRAGMA synchronous = NORMAL;
-CREATE TABLE IF NOT EXISTS front (number INTEGER PRIMARY KEY, kept REAL, {_COLUMNS});
-CREATE UNIQUE INDEX IF NOT EXISTS by_id ON front (id);
-CREATE UNIQUE INDEX IF NOT EXISTS by_key ON front (caller, key) WHERE key IS NOT NULL;
-CREATE INDEX IF NOT EXISTS by_caller ON front (caller, number);
-CREATE INDEX IF NOT EXISTS finished ON front (number, kept) WHERE NOT {_UNFINISHED};
-CREATE TABLE IF NOT EXISTS gone (number INTEGER PRIMARY KEY, id, caller);
-CREATE INDEX IF NOT EXISTS gone_by_id ON gone (id);
-"""
-_EVICTABLE = f"""
-SELECT id, caller FROM front WHERE NOT {_UNFINISHED} AND (kept < ? OR number <= (
-    SELECT number FROM front WHERE NOT {_UNFINISHED} ORDER BY number DESC LIMIT 1 OFFSET ?
-))
+_FINISHED = f"NOT {UNFINISHED}"
+_SUMS = f"SELECT count(*), total(size) FROM front WHERE {_FINISHED}"
+# The oldest record of the caller that has most; of those with one alone where nobody has two.
+_NEXT_OUT = f"""
+SELECT min(number) FROM front WHERE {_FINISHED} GROUP BY caller
+ORDER BY count(*) > 1 DESC, {{most}} DESC, min(number) LIMIT 1
 """
 
 
 class SqliteStore:
-    """Keeps at most `entries` finished records, none older than `max_age` seconds.
+    """Keeps at most `entries` finished records of `max_bytes`, none older than `max_age` seconds.
 
     Of those that were dropped it remembers the last `tombstones` ids. The file belongs to one
     process at a time.
 
     Raises:
-        ValueError: The file cannot be opened, or another process has it.
+        ValueError: The file cannot be opened, another process has it, or it is of a later release.
     """
 
     def __init__(
@@ -53,18 +51,20 @@ class SqliteStore:
         *,
         entries: int,
         max_age: float,
+        max_bytes: int = STORE_BYTES,
         tombstones: int = 10_000,
         clock: Callable[[], float] = time,
     ) -> None:
         self._entries = entries
         self._max_age = max_age
+        self._max_bytes = max_bytes
         self._tombstones = tombstones
         self._clock = clock
         # All calls that touch the file are made in this thread, in their order.
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="store")
         try:
-            self._database = _open(path)
-        except (OSError, sqlite3.Error) as error:
+            self._database = open_file(path)
+        except (OSError, ValueError, sqlite3.Error) as error:
             raise ValueError(
                 f"the store must be a file of its own, {path} is not: {error}"
             ) from error
@@ -79,11 +79,11 @@ class SqliteStore:
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
         """Return the caller's record with this id."""
-        return await self._in_thread(self._newest, "caller = ? AND id = ?", caller, id)
+        return await self._found("caller = ? AND id = ?", caller, id)
 
     async def latest(self, caller: str) -> Record:
         """Return the caller's record that was finished last."""
-        return await self._in_thread(self._newest, f"caller = ? AND NOT {_UNFINISHED}", caller)
+        return await self._found(f"caller = ? AND {_FINISHED}", caller)
 
     async def delete(self, record: Record) -> None:
         """Delete a record, and leave no trace of it."""
@@ -91,13 +91,19 @@ class SqliteStore:
 
     async def unfinished(self) -> list[Record]:
         """Return all unfinished records with their sources, the oldest first."""
-        return await self._in_thread(self._select, _UNFINISHED)
+        return await self._in_thread(self._unfinished)
 
     async def close(self) -> None:
         """Close the file."""
         loop = asyncio.get_running_loop()
         await loop.run_in_executor(self._thread, self._database.close)
         self._thread.shutdown()
+
+    async def _found(self, where: str, caller: str, *values: str) -> Record:
+        found = await self._in_thread(self._newest, where, caller, *values)
+        if isinstance(found, Record):
+            return found
+        raise found
 
     async def _in_thread(self, act: Callable[..., T], *arguments: object) -> T:
         loop = asyncio.get_running_loop()
@@ -111,10 +117,10 @@ class SqliteStore:
 
     def _put(self, record: Record) -> None:
         self._delete(record.id)
-        values = record_columns(record).values()
-        places = ", ".join("?" * (len(values) + 1))
-        insert = f"INSERT INTO front (kept, {_COLUMNS}) VALUES ({places})"
-        self._database.execute(insert, (self._clock(), *values))
+        columns = record_columns(record)
+        places = ", ".join("?" * (len(columns) + 2))
+        insert = f"INSERT INTO front (kept, size, {_COLUMNS}) VALUES ({places})"
+        self._database.execute(insert, (self._clock(), record_size(columns), *columns.values()))
         self._evict()
 
     def _admit(self, record: Record) -> Record:
@@ -129,36 +135,59 @@ class SqliteStore:
         self._put(record)
         return record
 
-    def _newest(self, where: str, caller: str, *values: str) -> Record:
+    def _newest(self, where: str, caller: str, *values: str) -> Record | type[LookupError]:
+        """Return the newest record, or the error to raise once the transaction is done."""
         self._evict()
-        for record in self._select(f"{where} ORDER BY number DESC LIMIT 1", caller, *values):
-            return record
+        newest = f"{where} ORDER BY number DESC LIMIT 1"
+        count = "SELECT count(*) FROM front WHERE " + where
+        while self._database.execute(count, (caller, *values)).fetchone() != (0,):
+            for record in self._select(newest, caller, *values):
+                return record
         gone = "SELECT 1 FROM gone WHERE caller = ?" + (" AND id = ?" if values else "")
         known = self._database.execute(gone, (caller, *values)).fetchone()
-        raise Expired if known else NotFound
+        return Expired if known else NotFound
+
+    def _unfinished(self) -> list[Record]:
+        return self._select(f"{UNFINISHED} ORDER BY number")
 
     def _select(self, where: str, *values: str) -> list[Record]:
-        rows = self._database.execute(f"SELECT {_COLUMNS} FROM front WHERE {where}", values)
-        return [record_from(dict(zip(COLUMNS, row, strict=True))) for row in rows]
+        """Return the records that can be read; the others are dropped."""
+        query = f"SELECT number, {_COLUMNS} FROM front WHERE {where}"
+        rows = self._database.execute(query, values).fetchall()
+        found = (self._read(number, dict(zip(COLUMNS, row, strict=True))) for number, *row in rows)
+        return [record for record in found if record is not None]
+
+    def _read(self, number: int, columns: dict[str, object]) -> Record | None:
+        try:
+            record = record_from(columns)
+            if not record.finished and record.source is None:
+                raise UnreadableRecord("it is unfinished, and what to plan is missing")
+        except UnreadableRecord as error:
+            log_dropped(str(columns["id"])[:80], error)
+            self._drop("number = ?", number)
+            return None
+        return record
 
     def _delete(self, id: str) -> None:  # noqa: A002
         self._database.execute("DELETE FROM front WHERE id = ?", (id,))
 
     def _evict(self) -> None:
         oldest = self._clock() - self._max_age
-        evicted = self._database.execute(_EVICTABLE, (oldest, self._entries)).fetchall()
-        if not evicted:
-            return
-        for id_, caller in evicted:
-            self._database.execute("INSERT INTO gone (id, caller) VALUES (?, ?)", (id_, caller))
-            self._delete(id_)
-        forget = "DELETE FROM gone WHERE number <= (SELECT max(number) FROM gone) - ?"
-        self._database.execute(forget, (self._tombstones,))
+        self._drop(f"{_FINISHED} AND (kept < ? OR size > ?)", oldest, self._max_bytes)
+        while (most := self._most_over()) is not None:
+            self._drop(f"number = ({_NEXT_OUT.format(most=most)})")
 
+    def _most_over(self) -> str | None:
+        """Return what there is too much of in the store, as an expression for each caller."""
+        entries, size = self._database.execute(_SUMS).fetchone()
+        if entries > self._entries:
+            return "count(*)"
+        return "sum(size)" if size > self._max_bytes else None
 
-def _open(path: str) -> sqlite3.Connection:
-    if path != IN_MEMORY:
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-    database = sqlite3.connect(path, check_same_thread=False, timeout=1)
-    database.executescript(_SCHEMA)
-    return database
+    def _drop(self, where: str, *values: float) -> None:
+        """Delete records, but remember that they were there."""
+        bury = f"INSERT INTO gone (id, caller) SELECT id, caller FROM front WHERE {where}"
+        if self._database.execute(bury, values).rowcount:
+            self._database.execute(f"DELETE FROM front WHERE {where}", values)
+            forget = "DELETE FROM gone WHERE number <= (SELECT max(number) FROM gone) - ?"
+            self._database.execute(forget, (self._tombstones,))

@@ -4,19 +4,29 @@ The names of the columns are read by other releases and stay as they are.
 """
 
 import json
+import logging
 import zlib
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any, Protocol, get_args
 
+import numpy as np
 from pydantic_core import to_json
 
 from service.jobs.front_document import FrontDocument
-from service.jobs.record import Record
-from service.requests.task import TaskSource
+from service.jobs.record import Record, Status
+from service.requests.task import TaskKind, TaskSource
+
+
+class UnreadableRecord(Exception):
+    """A stored record that cannot be decoded."""
 
 
 class Store(Protocol):
-    """Keeps records. Unfinished ones are never dropped."""
+    """Keeps records. Unfinished ones are never dropped, but where they cannot be decoded.
+
+    When finished ones are too many, or take too many bytes, the oldest of the caller that has
+    most makes way: a caller's last one only where nobody has two, or where no store could hold it.
+    """
 
     async def put(self, record: Record) -> None:
         """Store a record, in place of an earlier one with its id."""
@@ -35,7 +45,7 @@ class Store(Protocol):
 
         Raises:
             NotFound: The caller never had one, or it was deleted.
-            Expired: It was dropped.
+            Expired: It was dropped, or cannot be decoded and is dropped now.
         """
 
     async def latest(self, caller: str) -> Record:
@@ -56,6 +66,7 @@ class Store(Protocol):
         """Close the file or the connections."""
 
 
+STORE_BYTES = 2**28  # of finished records, by default
 FRONT_COLUMNS = ("members", "tours", "ends", "angles")
 SOURCE_COLUMNS = ("kind", "body", "upload")
 COLUMNS = (
@@ -94,10 +105,36 @@ def front_columns(front: FrontDocument) -> dict[str, bytes]:
     }
 
 
+def record_size(columns: Mapping[str, Any]) -> int:
+    """Return the bytes that a record takes, given its columns."""
+    return sum(
+        len(value.encode() if isinstance(value, str) else value)
+        for value in columns.values()
+        if value is not None
+    )
+
+
 def record_from(columns: Mapping[str, Any]) -> Record:
-    """Return the record in these columns, of which those that are None may be missing."""
+    """Return the record in these columns, of which those that are None may be missing.
+
+    Raises:
+        UnreadableRecord: They are damaged, or of another program.
+    """
+    try:
+        return _decode(columns)
+    # Whatever parsers of bytes that anything may have damaged raise.
+    except Exception as error:
+        raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error
+
+
+def log_dropped(id: str, error: UnreadableRecord) -> None:  # noqa: A002
+    """Log that a record was dropped because it cannot be decoded."""
+    logging.getLogger("paretour").warning("front %s cannot be read and is dropped: %s", id, error)
+
+
+def _decode(columns: Mapping[str, Any]) -> Record:
     kind = columns.get("kind")
-    return Record(
+    record = Record(
         id=columns["id"],
         caller=columns["caller"],
         request_id=columns["request_id"],
@@ -113,3 +150,24 @@ def record_from(columns: Mapping[str, Any]) -> Record:
         ),
         source=TaskSource(kind, columns["body"], columns.get("upload")) if kind else None,
     )
+    _check(record)
+    return record
+
+
+def _check(record: Record) -> None:
+    """Raise ValueError where a record would fail whoever uses it."""
+    front, source = record.front, record.source
+    texts = (record.id, record.caller, record.request_id, record.status, record.digest)
+    if not all(isinstance(text, str) for text in texts):
+        raise ValueError("id, caller, request_id, status and digest are not texts")
+    ends = np.frombuffer(front.ends, np.int64)
+    if record.status not in get_args(Status):
+        raise ValueError(f"status is {record.status!r}")
+    if source is not None and source.kind not in get_args(TaskKind):
+        raise ValueError(f"kind is {source.kind!r}")
+    if not isinstance(record.problem, dict | None):
+        raise ValueError("problem is no object")
+    if len(front.angles) != len(front.ends):
+        raise ValueError("angles and ends differ in number")
+    if (int(ends[-1]) if len(ends) else 0) != len(front.tours) or (np.diff(ends) < 1).any():
+        raise ValueError("ends are not those of the tours")

@@ -5,15 +5,18 @@ import json
 from pathlib import Path
 
 import pytest
+import redis as redis_client
 from redis.asyncio import Redis as AsyncRedis
 
+from service.cluster.redis_engine import connect
 from service.cluster.redis_store import RedisStore
-from service.errors import StoreUnavailable
+from service.cluster.worker_store import WorkerStore
+from service.errors import Expired, StoreUnavailable
 from service.requests.task import TaskSource
 from service.search.improve import Progress
 from tests.helpers.redis_server import Redis, redis_server
 from tests.helpers.released_records import ANSWERS, REDIS_HASHES, REDIS_SETS
-from tests.helpers.stores import redis_store
+from tests.helpers.stores import job, record, redis_store
 
 
 def test_a_store_that_does_not_answer_is_unavailable(tmp_path: Path) -> None:
@@ -47,5 +50,126 @@ def test_records_of_the_last_release_are_read(redis: Redis) -> None:
         assert json.loads(waiting.json()) == json.loads(ANSWERS["waiting"])
         assert waiting.source == TaskSource("coverage", b'{"cell_size": 1}', b"\x89PNG")
         await store.close()
+
+    asyncio.run(test())
+
+
+DAMAGE = [
+    {"members": b"{"},
+    {"members": b"[]"},
+    {"tours": b"?"},
+    {"ends": b"?"},
+    {"problem": b"\xff"},
+    {"request_id": b"\xff"},
+    {"status": b"lost"},
+    {"kept": b"yesterday"},
+    {"gained": b"much"},
+    {"attempts": b"few"},
+    {"progress": b"[1]"},
+    {"size": b"large", "members": b""},
+]
+
+
+@pytest.mark.parametrize("damage", DAMAGE, ids=str)
+def test_a_record_that_cannot_be_read_is_dropped_and_logged_once(
+    redis: Redis, damage: dict[str, bytes], caplog: pytest.LogCaptureFixture
+) -> None:
+    async def test() -> None:
+        async with redis_store(redis.url, entries=9, max_age=60) as store:
+            for each in (record("a"), record("b"), job("c"), job("d", key="k", digest="1")):
+                await store.put(each)
+            connection = AsyncRedis.from_url(redis.url)
+            for id_ in "bd":
+                await connection.hset(f"paretour:front:{id_}", mapping=damage)
+            await connection.aclose()
+            assert [each.id for each in await store.unfinished()] == ["c"]
+            assert (await store.latest("us")).id == "a"
+            for _ in range(2):
+                for id_ in "bd":
+                    with pytest.raises(Expired):
+                        await store.get("us", id_)
+            assert (await store.admit(job("e", key="k", digest="1"))).id == "e"
+
+    asyncio.run(test())
+    said = [entry.getMessage() for entry in caplog.records]
+    # One that is older than any clock is as gone as the others.
+    dropped = {line[:37] for line in said}
+    assert dropped <= {f"front {id_} cannot be read and is dropped" for id_ in "bd"}
+    assert "front d cannot be read and is dropped" in dropped or damage == {"status": b"lost"}
+    assert len(said) == len(dropped)
+
+
+def test_a_worker_drops_a_record_that_it_cannot_read_and_whoever_waits_is_told(
+    redis: Redis, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def put() -> None:
+        async with redis_store(redis.url, entries=9, max_age=60) as store:
+            await store.put(job("a"))
+            await store.put(job("b", source=None))
+
+    asyncio.run(put())
+    connection = redis_client.Redis.from_url(redis.url)
+    connection.hset("paretour:front:a", "members", b"{")
+    with connection.pubsub() as channel:
+        channel.subscribe("paretour:told")
+        channel.get_message(timeout=1)
+        worker = WorkerStore(redis.url, "host:1:aa")
+        for id_ in "ab":
+            assert worker.begin(id_, known_lost=False) is None
+            assert worker.begin(id_, known_lost=True) is None
+        told = [channel.get_message(timeout=1)["data"] for _ in range(4)]
+    assert told == [b"a:running", b"a:failed", b"b:running", b"b:failed"]
+    assert connection.zcard("paretour:unfinished") == 0
+    assert len(caplog.records) == 2
+    connection.close()
+
+
+def test_what_replicas_of_the_last_release_store_is_counted(redis: Redis) -> None:
+    async def test() -> None:
+        connection = AsyncRedis.from_url(redis.url)
+        await connection.flushall()
+        for number in range(20):
+            caller = "us" if number == 0 else "them"
+            hash_ = REDIS_HASHES[b"paretour:front:done"] | {
+                b"id": b"%d" % number,
+                b"caller": caller.encode(),
+                b"number": b"%d" % number,
+                b"key": b"%d" % number,
+            }
+            await connection.hset(f"paretour:front:{number}", mapping=hash_)
+            await connection.zadd("paretour:finished", {str(number): number})
+            await connection.zadd(f"paretour:caller:{caller}", {str(number): number})
+        bounds = {"max_age": 60, "clock": lambda: 1001.0}
+        by_entries = RedisStore(connection, entries=10, **bounds)
+        assert (await by_entries.latest("us")).id == "0"
+        by_bytes = RedisStore(connection, entries=99, max_bytes=3_000, **bounds)
+        assert (await by_bytes.latest("us")).id == "0"
+        assert await connection.zcard("paretour:finished") < 10
+        assert int(await connection.get("paretour:total")) <= 3_000
+        await by_bytes.close()
+
+    asyncio.run(test())
+
+
+def test_a_redis_that_takes_no_more_is_unavailable(tmp_path: Path) -> None:
+    async def test() -> None:
+        with redis_server(tmp_path) as redis:
+            store, engine = connect(redis.url, entries=9, max_age=60, queue=1, seconds=60)
+            await store.put(record("a"))
+            connection = redis_client.Redis.from_url(redis.url)
+            for refuse, accept in (
+                (("maxmemory", 1), ("maxmemory", 0)),
+                (("min-replicas-to-write", 1), ("min-replicas-to-write", 0)),
+            ):
+                connection.config_set(*refuse)
+                with pytest.raises(StoreUnavailable):
+                    await engine.check_ready()
+                connection.config_set(*accept)
+                await engine.check_ready()
+            connection.replicaof("127.0.0.1", 1)
+            with pytest.raises(StoreUnavailable):
+                await engine.check_ready()
+            connection.close()
+            await store.close()
 
     asyncio.run(test())

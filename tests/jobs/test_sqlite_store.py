@@ -3,10 +3,12 @@
 import asyncio
 import json
 import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
+from service.errors import Expired
 from service.jobs.sqlite_store import SqliteStore
 from service.requests.task import TaskSource
 from tests.helpers.released_records import ANSWERS, SQLITE_ROWS, SQLITE_SCHEMA
@@ -55,6 +57,64 @@ def test_a_file_of_the_last_release_is_read(tmp_path: Path) -> None:
             assert json.loads(stored.json()) == json.loads(ANSWERS[id_])
         [waiting] = await store.unfinished()
         assert waiting.source == TaskSource("coverage", b'{"cell_size": 1}', b"\x89PNG")
+        await store.close()
+
+    asyncio.run(test())
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        "members = '{'",
+        "members = '[]'",
+        "tours = x'00'",
+        "ends = x'00'",
+        "angles = x''",
+        "problem = x'ff'",
+        "status = 'lost'",
+        "kind = 'front', body = NULL, members = NULL",
+        "caller = 'us', digest = 7",
+        "request_id = CAST(x'ff' AS TEXT), members = ''",
+    ],
+)
+def test_a_record_that_cannot_be_read_is_dropped_and_logged_once(
+    tmp_path: Path, damage: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    path = str(tmp_path / "fronts.sqlite")
+
+    async def test() -> None:
+        store = SqliteStore(path, entries=9, max_age=60)
+        for each in (record("a"), record("b"), job("c"), job("d", key="k", digest="1")):
+            await store.put(each)
+        await store.close()
+        with closing(sqlite3.connect(path)) as database:
+            database.execute(f"UPDATE front SET {damage} WHERE id IN ('b', 'd')")
+            database.commit()
+        again = SqliteStore(path, entries=9, max_age=60)
+        assert [each.id for each in await again.unfinished()] == ["c"]
+        assert (await again.latest("us")).id == "a"
+        for _ in range(2):
+            for id_ in "bd":
+                with pytest.raises(Expired):
+                    await again.get("us", id_)
+        assert (await again.admit(job("e", key="k", digest="1"))).id == "e"
+        await again.close()
+
+    asyncio.run(test())
+    said = sorted(entry.getMessage() for entry in caplog.records)
+    assert [line[:37] for line in said] == [
+        f"front {id_} cannot be read and is dropped" for id_ in "bd"
+    ]
+
+
+def test_unfinished_work_without_a_body_is_dropped(tmp_path: Path) -> None:
+    path = str(tmp_path / "fronts.sqlite")
+
+    async def test() -> None:
+        store = SqliteStore(path, entries=9, max_age=60)
+        await store.put(job("a"))
+        await store.put(job("b", source=None))
+        assert [each.id for each in await store.unfinished()] == ["a"]
         await store.close()
 
     asyncio.run(test())

@@ -1,7 +1,8 @@
 """Stores of either kind: what is stored, found, dropped and deleted."""
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -9,11 +10,16 @@ from typing import Any
 import pytest
 
 from service.errors import Expired, IdempotencyMismatch, NotFound
+from service.jobs.record import Record
 from service.jobs.store import Store
 from service.requests.task import TaskSource
 from tests.helpers.stores import job, record, redis_store, sqlite_store
 
 Run = Callable[..., None]
+
+
+def large(id_: str, size: int = 10_000, **more: Any) -> Record:
+    return record(id_, problem={"detail": "x" * size}, **more)
 
 
 class Clock:
@@ -72,7 +78,7 @@ def test_a_caller_sees_its_own_alone(run: Run) -> None:
         assert (await store.latest("us")).id == "a"
         with pytest.raises(NotFound):
             await store.get("them", "a")
-        await store.put(record("c", caller="them"))
+        await store.put(record("c", caller="us"))
         # It has made way, which is nobody else's business.
         with pytest.raises(Expired):
             await store.get("us", "a")
@@ -91,6 +97,81 @@ def test_the_oldest_makes_way_when_the_store_is_full(run: Run) -> None:
         assert [(await store.get("us", id_)).id for id_ in "bc"] == ["b", "c"]
 
     run(test)
+
+
+async def kept(store: Store, caller: str, ids: Iterable[str]) -> list[str]:
+    found = []
+    for id_ in ids:
+        with suppress(Expired):
+            found.append((await store.get(caller, id_)).id)
+    return found
+
+
+def test_many_records_of_one_caller_leave_those_of_another(run: Run) -> None:
+    async def test(store: Store) -> None:
+        await store.admit(record("a", key="k", digest="1"))
+        for id_ in map(str, range(300)):
+            await store.put(record(id_, caller="them"))
+        assert (await store.get("us", "a")).id == (await store.latest("us")).id == "a"
+        assert (await store.admit(job("b", key="k", digest="1"))).id == "a"
+        assert await kept(store, "them", map(str, range(300))) == ["297", "298", "299"]
+        for id_ in "bcd":
+            await store.put(record(id_))
+        # Of those with as many, the one with the oldest makes way.
+        assert await kept(store, "us", "abcd") == ["c", "d"]
+        assert await kept(store, "them", ("298", "299")) == ["298", "299"]
+
+    run(test, entries=4)
+
+
+def test_large_records_of_one_caller_leave_those_of_another(run: Run) -> None:
+    async def test(store: Store) -> None:
+        for id_ in "abc":
+            await store.put(record(id_))
+        for id_ in "defg":
+            await store.put(large(id_, caller="them"))
+        assert await kept(store, "us", "abc") == ["a", "b", "c"]
+        assert await kept(store, "them", "defg") == ["f", "g"]
+
+    run(test, entries=100, max_bytes=25_000)
+
+
+def test_the_last_record_of_a_caller_is_kept_while_others_have_two(run: Run) -> None:
+    async def test(store: Store) -> None:
+        await store.put(large("a"))
+        for id_ in "bcd":
+            await store.put(large(id_, 2_000, caller="them"))
+        assert await kept(store, "us", "a") == ["a"]
+        assert await kept(store, "them", "bcd") == ["d"]
+        await store.put(large("e", 9_000, caller="others"))
+        # All have one: the largest goes.
+        assert await kept(store, "us", "a") == []
+        assert await kept(store, "them", "d") == ["d"]
+
+    run(test, entries=100, max_bytes=14_000)
+
+
+def test_a_record_that_no_store_could_hold_moves_no_other(run: Run) -> None:
+    async def test(store: Store) -> None:
+        await store.put(record("a"))
+        await store.put(large("b", 30_000, caller="them"))
+        with pytest.raises(Expired):
+            await store.get("them", "b")
+        assert await kept(store, "us", "a") == ["a"]
+
+    run(test, entries=100, max_bytes=25_000)
+
+
+def test_what_is_deleted_or_stored_anew_is_counted_no_longer(run: Run) -> None:
+    async def test(store: Store) -> None:
+        for _ in range(9):
+            await store.put(large("a"))
+            await store.put(large("b"))
+            await store.delete(record("b"))
+        await store.put(large("c"))
+        assert await kept(store, "us", "ac") == ["a", "c"]
+
+    run(test, entries=100, max_bytes=25_000)
 
 
 def test_asking_for_a_front_does_not_keep_it_longer(run: Run) -> None:

@@ -1,0 +1,168 @@
+-- How records are stored, found by their callers, counted, and dropped. records.lua follows.
+
+local P = 'paretour:'
+local NUMBER, LOST = P .. 'number', P .. 'lost'
+local UNFINISHED, FINISHED, GONE = P .. 'unfinished', P .. 'finished', P .. 'gone'
+local WORKERS, TOLD = P .. 'workers', P .. 'told'
+-- Of finished records: how many each caller has and of how many bytes, the bytes of all, and
+-- whether this was counted lately.
+local ENTRIES, BYTES = P .. 'entries', P .. 'bytes'
+local TOTAL, COUNTED = P .. 'total', P .. 'counted'
+
+local function front_of(id) return P .. 'front:' .. id end
+local function work_of(id) return P .. 'work:' .. id end
+local function all_of(caller) return P .. 'caller:' .. caller end
+local function gone_of(caller) return P .. 'gone:' .. caller end
+local function key_of(caller, key) return P .. 'key:' .. caller .. ':' .. key end
+
+local function is_finished(status) return status ~= 'queued' and status ~= 'running' end
+
+-- Count what a caller has more, or less.
+local function count(caller, entries, size)
+  redis.call('INCRBY', TOTAL, size)
+  redis.call('ZINCRBY', BYTES, size, caller)
+  if tonumber(redis.call('ZINCRBY', ENTRIES, entries, caller)) <= 0 then
+    redis.call('ZREM', BYTES, caller)
+    redis.call('ZREM', ENTRIES, caller)
+  end
+end
+
+-- The caller is named where the record may be damaged.
+local function forget(id, known)
+  local caller, key, size = unpack(redis.call('HMGET', front_of(id), 'caller', 'key', 'size'))
+  caller, size = known or caller, tonumber(size)
+  redis.call('DEL', front_of(id), work_of(id))
+  redis.call('ZREM', UNFINISHED, id)
+  local finished = redis.call('ZREM', FINISHED, id) == 1
+  if caller then redis.call('ZREM', all_of(caller), id) end
+  if finished and caller and size then count(caller, -1, -size) end
+  if key and redis.call('GET', key_of(caller, key)) == id then
+    redis.call('DEL', key_of(caller, key))
+  end
+end
+
+-- The bytes of values, without the names that stand before each.
+local function size_of(fields)
+  local size = 0
+  for index = 2, #fields, 2 do size = size + #fields[index] end
+  return size
+end
+
+local function put(now, id, fields)
+  forget(id)
+  local number = redis.call('INCR', NUMBER)
+  redis.call('HSET', front_of(id), 'number', number, 'kept', now, unpack(fields))
+  local status, caller, key =
+    unpack(redis.call('HMGET', front_of(id), 'status', 'caller', 'key'))
+  if is_finished(status) then
+    redis.call('ZADD', FINISHED, number, id)
+    redis.call('ZADD', all_of(caller), number, id)
+    local size = size_of(fields)
+    redis.call('HSET', front_of(id), 'size', size)
+    count(caller, 1, size)
+  else
+    redis.call('ZADD', UNFINISHED, number, id)
+  end
+  if key then redis.call('SET', key_of(caller, key), id) end
+end
+
+local function keep_work(id, fields)
+  if #fields > 0 then redis.call('HSET', work_of(id), unpack(fields)) end
+end
+
+-- Remember that a record was there, and forget all else of it.
+local function drop(id, known)
+  local caller = known or redis.call('HGET', front_of(id), 'caller')
+  forget(id, caller)
+  if caller then
+    redis.call('ZADD', GONE, redis.call('INCR', NUMBER), caller .. ':' .. id)
+    redis.call('SADD', gone_of(caller), id)
+  end
+end
+
+-- Count everything anew, once a minute: replicas of earlier releases do not count.
+local function count_again()
+  if redis.call('EXISTS', COUNTED) == 1 then return end
+  redis.call('DEL', ENTRIES, BYTES, TOTAL)
+  for _, id in ipairs(redis.call('ZRANGE', FINISHED, 0, -1)) do
+    local caller, size = unpack(redis.call('HMGET', front_of(id), 'caller', 'size'))
+    size = tonumber(size)
+    if caller and not size then
+      size = size_of(redis.call('HGETALL', front_of(id)))
+      redis.call('HSET', front_of(id), 'size', size)
+    end
+    if caller then count(caller, 1, size) end
+  end
+  redis.call('SET', COUNTED, 1, 'EX', 60)
+end
+
+local function oldest_of(caller) return redis.call('ZRANGE', all_of(caller), 0, 0, 'WITHSCORES') end
+
+-- The oldest record of the caller with most entries; of several such, the oldest of all.
+local function next_of_most_entries()
+  local most = redis.call('ZREVRANGE', ENTRIES, 0, 0, 'WITHSCORES')[2]
+  local found, owner, least
+  for _, caller in ipairs(
+    most and redis.call('ZRANGEBYSCORE', ENTRIES, most, most, 'LIMIT', 0, 100) or {}
+  ) do
+    local id, number = unpack(oldest_of(caller))
+    number = tonumber(number)
+    if id and (not least or number < least) then found, owner, least = id, caller, number end
+  end
+  return found, owner
+end
+
+-- The oldest record of the caller with most bytes; of those with one alone where nobody has two.
+local function next_of_most_bytes()
+  local most = tonumber(redis.call('ZREVRANGE', ENTRIES, 0, 0, 'WITHSCORES')[2] or 0)
+  for _, caller in ipairs(redis.call('ZREVRANGE', BYTES, 0, 99)) do
+    if most <= 1 or redis.call('ZCARD', all_of(caller)) > 1 then
+      return oldest_of(caller)[1], caller
+    end
+  end
+  return next_of_most_entries()
+end
+
+local function total() return tonumber(redis.call('GET', TOTAL) or 0) end
+
+-- Drop records that no store of so many bytes could hold.
+local function drop_too_large(bytes)
+  for _, caller in ipairs(redis.call('ZREVRANGEBYSCORE', BYTES, '+inf', '(' .. bytes)) do
+    for _, id in ipairs(redis.call('ZRANGE', all_of(caller), 0, -1)) do
+      if (tonumber(redis.call('HGET', front_of(id), 'size')) or 0) > bytes then
+        drop(id, caller)
+      end
+    end
+  end
+end
+
+local function make_way(now, max_age, entries, tombstones, bytes)
+  local function oldest() return redis.call('ZRANGE', FINISHED, 0, 0)[1] end
+  local old = oldest()
+  while old do
+    local kept = tonumber(redis.call('HGET', front_of(old), 'kept'))
+    if kept and kept >= now - max_age then break end
+    drop(old)
+    old = oldest()
+  end
+  count_again()
+  drop_too_large(bytes)
+  old = oldest()
+  while old do
+    local id, caller
+    if redis.call('ZCARD', FINISHED) > entries then
+      id, caller = next_of_most_entries()
+    elseif total() > bytes then
+      id, caller = next_of_most_bytes()
+    else
+      break
+    end
+    -- Where the counts are wrong there may be none.
+    drop(id or old, id and caller)
+    old = oldest()
+  end
+  while redis.call('ZCARD', GONE) > tombstones do
+    local caller, id = string.match(redis.call('ZPOPMIN', GONE)[1], '^(.*):(.*)$')
+    if caller then redis.call('SREM', gone_of(caller), id) end
+  end
+end

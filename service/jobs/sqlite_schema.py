@@ -1,0 +1,110 @@
+"""The schema of the store's SQLite file: its version, and the steps from each to the next.
+
+To change the schema, add a step to `STEPS` and change nothing in the earlier ones: files that they
+made are in use. The version of a file is its `PRAGMA user_version`.
+"""
+
+import os
+import sqlite3
+import stat
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from service.jobs.store import COLUMNS
+
+IN_MEMORY = ":memory:"
+UNFINISHED = "status IN ('queued', 'running')"
+_PRIVATE = stat.S_IRUSR | stat.S_IWUSR  # requests are nobody else's business
+_LENGTHS = " + ".join(f"ifnull(length(CAST({name} AS BLOB)), 0)" for name in COLUMNS)
+
+STEPS = (
+    # From version 0, an empty file or one of the releases that wrote no version.
+    f"""
+    CREATE TABLE IF NOT EXISTS front (number INTEGER PRIMARY KEY, kept REAL, {", ".join(COLUMNS)});
+    CREATE UNIQUE INDEX IF NOT EXISTS by_id ON front (id);
+    CREATE UNIQUE INDEX IF NOT EXISTS by_key ON front (caller, key) WHERE key IS NOT NULL;
+    CREATE INDEX IF NOT EXISTS by_caller ON front (caller, number);
+    CREATE TABLE IF NOT EXISTS gone (number INTEGER PRIMARY KEY, id, caller);
+    CREATE INDEX IF NOT EXISTS gone_by_id ON gone (id);
+    ALTER TABLE front ADD COLUMN size INTEGER NOT NULL DEFAULT 0;
+    UPDATE front SET size = {_LENGTHS};
+    DROP INDEX IF EXISTS finished;
+    CREATE INDEX finished ON front (caller, number, kept, size) WHERE NOT {UNFINISHED};
+    """,
+)
+
+
+def open_file(path: str) -> sqlite3.Connection:
+    """Open the store's file, which only its owner may read, in the present version.
+
+    Raises:
+        OSError: The file cannot be made or opened.
+        sqlite3.Error: It is no file of SQLite, or another process has it.
+        ValueError: It is another program's, of a later release, or damaged.
+    """
+    if path != IN_MEMORY:
+        _create(Path(path))
+    database = sqlite3.connect(path, check_same_thread=False, timeout=1)
+    # A damaged text must not keep the rest from being read.
+    database.text_factory = partial(str, encoding="utf-8", errors="replace")
+    try:
+        database.execute("PRAGMA locking_mode = EXCLUSIVE")
+        _check(database, len(STEPS))
+        if path != IN_MEMORY:
+            _make_private(path)
+        database.execute("PRAGMA journal_mode = WAL")
+        database.execute("PRAGMA synchronous = NORMAL")
+        migrate(database, STEPS)
+    except BaseException:
+        database.close()
+        raise
+    return database
+
+
+def migrate(database: sqlite3.Connection, steps: Sequence[str]) -> None:
+    """Take a database through the steps that it has not had, all of them or none."""
+    outstanding = "".join(steps[_version(database) :])
+    try:
+        database.executescript(
+            f"BEGIN IMMEDIATE; {outstanding} PRAGMA user_version = {len(steps)}; COMMIT;"
+        )
+    except BaseException:
+        database.rollback()
+        raise
+
+
+def _version(database: sqlite3.Connection) -> int:
+    [version] = database.execute("PRAGMA user_version").fetchone()
+    return int(version)
+
+
+def _check(database: sqlite3.Connection, latest: int) -> None:
+    """Raise ValueError if a file is damaged, not the store's, or of a version not known yet."""
+    version = _version(database)
+    if version > latest:
+        raise ValueError(
+            f"it is of version {version}, of a later release, and this one reads {latest} at most;"
+            " start that release, or name another file"
+        )
+    [[found]] = database.execute("PRAGMA quick_check(1)")
+    if found != "ok":
+        raise ValueError(f"it is damaged: {found}")
+    tables = {name for (name,) in database.execute("SELECT name FROM sqlite_master")}
+    if tables and "front" not in tables:
+        raise ValueError("it is another program's")
+
+
+def _create(path: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not path.exists():
+        # SQLite gives the files beside it the same mode.
+        os.close(os.open(path, os.O_RDWR | os.O_CREAT, _PRIVATE))
+    elif not path.is_file():
+        raise ValueError("it is no regular file")
+
+
+def _make_private(path: str) -> None:
+    for file in (path, f"{path}-wal", f"{path}-shm", f"{path}-journal"):
+        if Path(file).exists():
+            Path(file).chmod(_PRIVATE)
