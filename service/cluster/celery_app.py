@@ -1,9 +1,12 @@
 """The Celery application: its messages are ids of records to plan, in a list of Redis."""
 
+import ssl
+
 from celery import Celery
 from kombu.exceptions import OperationalError
 
 from service.cluster.records import UNAVAILABLE
+from service.cluster.transport import TRANSPORT
 from service.errors import StoreUnavailable
 
 QUEUE = "paretour"
@@ -20,6 +23,10 @@ _LOADING = 300.0  # seconds that a process may take to load, or to compile
 def make_celery(redis_url: str, seconds: float) -> Celery:
     """Return the application at this Redis, whose tasks take no more than so many seconds."""
     celery = Celery("paretour", broker=redis_url, set_as_current=False)
+    celery.conf.broker_transport = TRANSPORT
+    if redis_url.startswith("rediss:"):
+        # As kombu does where the transport is its own. What the address says goes before it.
+        celery.conf.broker_use_ssl = {"ssl_cert_reqs": ssl.CERT_REQUIRED}
     celery.conf.update(
         task_default_queue=QUEUE,
         task_ignore_result=True,
