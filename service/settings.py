@@ -4,6 +4,9 @@ Nothing else in the service reads the environment. The documentation lists every
 """
 
 import os
+import re
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated
 
@@ -118,3 +121,29 @@ class Settings(BaseSettings):
             size=self.max_size,
             seconds=self.max_time_limit,
         )
+
+
+PREFIX = "PARETOUR_"
+# Of the command line, and what Kubernetes and Docker set for services beside ours.
+_OTHERS = re.compile(
+    r"PARETOUR_(API_KEY|(\w+_)?SERVICE_(HOST|PORT(_\w+)?)|(\w+_)?PORT_\d+_(TCP|UDP|SCTP)(_\w+)?)"
+)
+_LINK = re.compile(r"(tcp|udp|sctp)://")
+
+
+def variable_of(name: str) -> str:
+    """Return the environment variable of a field, or the alias that it is."""
+    return f"{PREFIX}{name.upper()}" if name in Settings.model_fields else name
+
+
+def unknown_variables(environment: Mapping[str, str]) -> Iterable[str]:
+    """Yield a sentence for each variable that begins as a setting and is none."""
+    known = {variable_of(name) for name in Settings.model_fields}
+    for name, value in sorted(environment.items()):
+        upper = name.upper()
+        if not upper.startswith(PREFIX) or upper in known or _OTHERS.fullmatch(upper):
+            continue
+        if upper.endswith("_PORT") and _LINK.match(value):
+            continue
+        nearest = get_close_matches(upper, known, 1)
+        yield f"{name} is no setting" + (f"; did you mean {nearest[0]}?" if nearest else "")

@@ -44,13 +44,16 @@ def test_the_command_names_the_setting_that_is_wrong(
     with pytest.raises(SystemExit) as stopped:
         main(["serve"])
     assert stopped.value.code == 2
-    assert "queue: Input should be greater than or equal to 0, got '-1'" in capsys.readouterr().err
+    assert (
+        "PARETOUR_QUEUE: Input should be greater than or equal to 0, got '-1'"
+        in capsys.readouterr().err
+    )
 
 
 def test_an_option_of_the_command_is_a_setting(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["serve", "--workers", "0"])
-    assert "workers: Input should be greater than or equal to 1" in capsys.readouterr().err
+    assert "--workers: Input should be greater than or equal to 1" in capsys.readouterr().err
 
 
 def test_the_command_needs_an_actor(

@@ -1,12 +1,13 @@
 """Load the settings, and what they name, with a UsageError where that fails."""
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
 from service.cli.errors import UsageError
-from service.settings import Settings
+from service.settings import Settings, unknown_variables, variable_of
 
 T = TypeVar("T")
 
@@ -15,12 +16,14 @@ def load_settings(**options: Any) -> Settings:
     """Return the settings, with those options in place that are not None.
 
     Raises:
-        UsageError: A setting has a wrong value.
+        UsageError: A setting has a wrong value, or a variable is no setting.
     """
+    if unknown := list(unknown_variables(os.environ)):
+        raise UsageError("; ".join(unknown))
     try:
         return Settings(**{name: value for name, value in options.items() if value is not None})
     except ValidationError as error:
-        raise UsageError(_sentence(error)) from None
+        raise UsageError(_sentence(error, options)) from None
 
 
 def load_with(load: Callable[[Settings], T], settings: Settings) -> T:
@@ -35,8 +38,16 @@ def load_with(load: Callable[[Settings], T], settings: Settings) -> T:
         raise UsageError(str(error)) from None
 
 
-def _sentence(error: ValidationError) -> str:
+def _sentence(error: ValidationError, options: Mapping[str, Any]) -> str:
+    """Return what is wrong, with options and variables named as the operator wrote them."""
     return "; ".join(
-        f"{'.'.join(str(part) for part in fault['loc'])}: {fault['msg']}, got {fault['input']!r}"
+        f"{_written(fault['loc'], options)}: {fault['msg']}, got {fault['input']!r}"
         for fault in error.errors()
     )
+
+
+def _written(location: tuple[int | str, ...], options: Mapping[str, Any]) -> str:
+    name, *within = map(str, location)
+    if options.get(name) is not None:
+        return f"--{name}"
+    return variable_of(name) + "".join(f", entry {int(each) + 1}" for each in within)

@@ -18,7 +18,7 @@ def test_options_stand_over_variables_where_they_are_given(monkeypatch: pytest.M
 
 def test_a_wrong_value_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PARETOUR_QUEUE", "some")
-    with pytest.raises(UsageError, match=r"queue: .*got 'some'"):
+    with pytest.raises(UsageError, match=r"^PARETOUR_QUEUE: .*got 'some'"):
         load_settings()
 
 
@@ -28,3 +28,43 @@ def test_files_that_are_missing_are_named(tmp_path: Path) -> None:
 
     with pytest.raises(UsageError, match=r"none\.onnx"):
         load_with(load, load_settings(actors=tmp_path))
+
+
+def test_an_entry_of_a_list_is_named_by_its_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PARETOUR_API_KEYS", f"us:{'0' * 64},them")
+    with pytest.raises(UsageError, match=r"^PARETOUR_API_KEYS, entry 2: "):
+        load_settings()
+
+
+@pytest.mark.parametrize(
+    ("variable", "sentence"),
+    [
+        ("PARETOUR_WORKER", "PARETOUR_WORKER is no setting; did you mean PARETOUR_WORKERS?"),
+        ("PARETOUR_APIKEYS", "PARETOUR_APIKEYS is no setting; did you mean PARETOUR_API_KEYS?"),
+        ("Paretour_Quue", "Paretour_Quue is no setting; did you mean PARETOUR_QUEUE?"),
+        ("PARETOUR_", "PARETOUR_ is no setting"),
+        ("PARETOUR_XYZZY", "PARETOUR_XYZZY is no setting"),
+    ],
+)
+def test_a_misspelled_variable_is_named_with_the_nearest_setting(
+    monkeypatch: pytest.MonkeyPatch, variable: str, sentence: str
+) -> None:
+    monkeypatch.setenv(variable, "1")
+    with pytest.raises(UsageError) as raised:
+        load_settings()
+    assert str(raised.value).startswith(sentence)
+
+
+def test_variables_of_the_command_and_of_orchestrators_pass(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for name, value in (
+        ("PARETOUR_API_KEY", "secret"),
+        ("paretour_queue", "3"),
+        ("PARETOUR_SERVICE_HOST", "10.0.0.1"),
+        ("PARETOUR_SERVICE_PORT_HTTP", "80"),
+        ("PARETOUR_REDIS_PORT", "tcp://10.0.0.2:6379"),
+        ("PARETOUR_REDIS_PORT_6379_TCP_ADDR", "10.0.0.2"),
+    ):
+        monkeypatch.setenv(name, value)
+    assert load_settings().queue == 3
