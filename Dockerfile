@@ -8,7 +8,7 @@ COPY service ./service
 COPY models ./models
 COPY export ./export
 RUN python -m venv /opt/paretour \
-    && /opt/paretour/bin/pip install --no-cache-dir '.[cluster,tracing]' \
+    && /opt/paretour/bin/pip install --no-cache-dir -c service/deploy/constraints.txt '.[cluster,tracing]' \
     && mkdir /var/lib/paretour
 # Compile the search now, outside the source, where the installed package would be shadowed.
 WORKDIR /opt/paretour

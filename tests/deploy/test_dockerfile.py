@@ -73,7 +73,16 @@ def test_the_volume_of_fronts_belongs_to_the_user() -> None:
 
 def test_nothing_of_the_factory_is_installed() -> None:
     [install] = [argument for name, argument in INSTRUCTIONS if "pip install" in argument]
-    assert "pip install --no-cache-dir '.[cluster,tracing]' " in install
+    assert " '.[cluster,tracing]' " in install
+
+
+def test_versions_are_those_of_the_constraints() -> None:
+    [install] = [argument for name, argument in INSTRUCTIONS if "pip install" in argument]
+    constraints = re.search(r"pip install --no-cache-dir -c (\S+) '", install)
+    assert constraints is not None
+    assert (ROOT / constraints[1]).exists()
+    assert ("COPY", "service ./service") in INSTRUCTIONS
+    assert constraints[1].startswith("service/")
 
 
 def test_the_user_is_a_number_and_not_root() -> None:
