@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
+import kubernetes_validate
 import pytest
 import redis
 
@@ -71,7 +72,33 @@ def test_workers_are_scaled_by_the_messages_that_wait() -> None:
     assert int(port) == service["spec"]["ports"][0]["port"]
     access = AUTOSCALING.named("TriggerAuthentication")[trigger["authenticationRef"]["name"]]
     [secret] = access["spec"]["secretTargetRef"]
-    assert secret["key"] in CLUSTER.named("Secret")[secret["name"]]["stringData"]
+    [redis_pod] = CLUSTER.pods["paretour-redis"]["spec"]["containers"]
+    sources = [each.get("valueFrom", {}).get("secretKeyRef") for each in redis_pod["env"]]
+    assert {"name": secret["name"], "key": secret["key"]} in sources
+    [policy] = AUTOSCALING.named("NetworkPolicy").values()
+    kubernetes_validate.validate(policy, kubernetes_validate.latest_version(), strict=True)
+    assert policy["spec"]["podSelector"] == service_pods("paretour-redis")
+
+
+def service_pods(name: str) -> dict[str, Any]:
+    return {"matchLabels": CLUSTER.named("Service")[name]["spec"]["selector"]}
+
+
+def test_redis_is_reached_by_replicas_and_workers_alone() -> None:
+    spec = CLUSTER.named("NetworkPolicy")["paretour-redis"]["spec"]
+    assert spec["podSelector"] == service_pods("paretour-redis")
+    [rule] = spec["ingress"]
+    [source] = rule["from"]
+    [expression] = source["podSelector"]["matchExpressions"]
+    names = {pod["metadata"]["labels"][expression["key"]] for pod in CLUSTER.pods.values()}
+    assert set(expression["values"]) == names - {"paretour-redis"}
+    assert rule["ports"] == [{"protocol": "TCP", "port": "redis"}]
+
+
+def test_nobody_calls_a_worker() -> None:
+    spec = CLUSTER.named("NetworkPolicy")["paretour-worker"]["spec"]
+    assert spec["policyTypes"] == ["Ingress"]
+    assert "ingress" not in spec
 
 
 def redis_commands() -> dict[str, list[str]]:

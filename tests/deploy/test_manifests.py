@@ -193,3 +193,25 @@ def selected(manifest: Manifest, labels: dict[str, str]) -> list[dict[str, Any]]
     return [
         pod for pod in manifest.pods.values() if labels.items() <= pod["metadata"]["labels"].items()
     ]
+
+
+@of_each_manifest
+def test_no_pod_is_without_a_policy_of_who_may_call_it(manifest: Manifest) -> None:
+    policies = manifest.named("NetworkPolicy").values()
+    governed = [selected(manifest, each["spec"]["podSelector"]["matchLabels"]) for each in policies]
+    assert len(governed) == len(manifest.pods)
+    assert all(any(pods == [pod] for pods in governed) for pod in manifest.pods.values())
+    api = manifest.named("NetworkPolicy")["paretour"]["spec"]
+    assert api["ingress"] == [{"ports": [{"protocol": "TCP", "port": "http"}]}]
+
+
+@of_each_manifest
+def test_no_secret_has_a_value_that_everybody_knows(manifest: Manifest) -> None:
+    assert manifest.named("Secret") == {}
+    [container] = manifest.pods["paretour"]["spec"]["containers"]
+    [keys] = [each for each in container["env"] if each["name"] == "PARETOUR_API_KEYS"]
+    # Without the secret Kubernetes starts no pod.
+    assert keys["valueFrom"] == {"secretKeyRef": {"name": "paretour", "key": "api-keys"}}
+    assert (
+        "secret generic paretour --from-literal=api-keys=" in (DEPLOY / manifest.name).read_text()
+    )
