@@ -4,18 +4,25 @@ import hashlib
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 from typing import Any, get_args
 
 import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
-from service.instance import Instance, Kind
+from service.errors import Cancelled
+from service.instance import PLANE, Instance, Kind
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
+Indices = NDArray[np.intp]
 _METADATA = ("name", "config", "commit", "sizes", "angles", "figures", "inputs")
+_FATAL = 4  # the severity from which on ONNX Runtime writes to stderr
 _FEW = 100  # cities or preferences, up to which a session keeps less than 20 MB
+_MIN_PLACES = 3  # of fewer there is one tour, and no network was trained on them
+_RESOLUTION = 2.0**20  # of a plane: cities whose coordinates round to the same are at one place
+_LEAST_PREFERENCE = 1e-3  # for an objective: else all cities that coincide in the other are alike
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,18 +65,14 @@ class OnnxActor:
     """An ONNX file in an inference session of so many threads.
 
     Raises:
-        ValueError: The file lacks metadata, or reads neither coordinates nor matrices.
+        ValueError: The file is not ONNX, lacks metadata, or reads neither coordinates nor matrices.
     """
 
     def __init__(self, path: Path, threads: int) -> None:
         content = path.read_bytes()
-        self._session = onnxruntime.InferenceSession(
-            content, _options(threads), providers=["CPUExecutionProvider"]
-        )
-        self._shrinking = onnxruntime.RunOptions()
-        # Else memory that the largest instance needed is never freed (microsoft/onnxruntime#11627).
-        shrink = ("memory.enable_memory_arena_shrinkage", "cpu:0")
-        self._shrinking.add_run_config_entry(*shrink)
+        self._session = _open_session(content, path, threads)
+        self._lock = Lock()
+        self._running = onnxruntime.RunOptions()
         metadata = self._session.get_modelmeta().custom_metadata_map
         if missing := [name for name in _METADATA if name not in metadata]:
             raise ValueError(f"the metadata of {path} must have {', '.join(missing)}")
@@ -83,21 +86,61 @@ class OnnxActor:
     def tours(self, instance: Instance, preferences: Array) -> Tours:
         """Return tours, shape (k, n), one for each preference, shape (k, 2), by one inference.
 
+        Cities at one place are one city to the network, and follow one another in the tours.
+
         Raises:
             RuntimeError: A tour is not a permutation, which is a fault of the file.
+            Cancelled: `terminate` was called.
         """
-        inputs = {**self._inputs(instance), "preferences": preferences.astype(np.float32)}
-        # To free a little memory and to allocate it again takes 2 % of a call at 40 cities.
-        few = max(instance.n, len(preferences)) <= _FEW
-        (tours,) = self._session.run(["tours"], inputs, None if few else self._shrinking)
-        if not (np.sort(tours, axis=1) == np.arange(instance.n)).all():
-            raise RuntimeError(f"{self.info.name} built a tour that is not a permutation")
-        return tours
-
-    def _inputs(self, instance: Instance) -> dict[str, NDArray[np.float32]]:
+        options = self._begin(max(instance.n, len(preferences)))
         if self.info.inputs == "matrices":
-            return {"matrices": instance.scaled_matrices.astype(np.float32)}
-        return {"cities": instance.scaled_coordinates.astype(np.float32)}
+            matrices = _without_zero_matrix(instance.scaled_matrices.astype(np.float32))
+            first, place = _places_by_matrices(matrices)
+            inputs = {"matrices": matrices[:, first[:, np.newaxis], first]}
+        else:
+            cities = _without_zero_plane(instance.scaled_coordinates.astype(np.float32))
+            first, place = _places_by_coordinates(cities)
+            inputs = {"cities": cities[first]}
+        if len(first) < _MIN_PLACES:
+            return np.tile(np.argsort(place, kind="stable"), (len(preferences), 1))
+        inputs["preferences"] = preferences.clip(_LEAST_PREFERENCE).astype(np.float32)
+        tours = self._run(inputs, options)
+        if not (np.sort(tours, axis=1) == np.arange(len(first))).all():
+            raise RuntimeError(f"{self.info.name} built a tour that is not a permutation")
+        if len(first) == instance.n:
+            return tours
+        return np.argsort(np.argsort(tours, axis=1)[:, place], axis=1, kind="stable")
+
+    def terminate(self) -> None:
+        """End the call of `tours` that is under way, if there is one, within some ms.
+
+        For any thread, and any number of times. A call that begins later is not affected.
+        """
+        with self._lock:
+            self._running.terminate = True
+
+    def _begin(self, size: int) -> onnxruntime.RunOptions:
+        """Return the options of a call of so many cities or preferences, which `terminate` ends."""
+        options = onnxruntime.RunOptions()
+        options.log_severity_level = _FATAL  # to be terminated is no error
+        if size > _FEW:
+            # Else memory that the largest instance needed is never freed (onnxruntime#11627). To
+            # free a little and to allocate it again takes 2 % of a call at 40 cities.
+            options.add_run_config_entry("memory.enable_memory_arena_shrinkage", "cpu:0")
+        with self._lock:
+            self._running = options
+        return options
+
+    def _run(
+        self, inputs: dict[str, NDArray[np.float32]], options: onnxruntime.RunOptions
+    ) -> Tours:
+        try:
+            tours: Tours = self._session.run(["tours"], inputs, options)[0]
+        except Exception:
+            if options.terminate:
+                raise Cancelled from None
+            raise
+        return tours
 
 
 def load_actors(
@@ -108,7 +151,7 @@ def load_actors(
     Each has an inference session of so many threads.
 
     Raises:
-        ValueError: There is no file in a directory, or two actors have the same name.
+        ValueError: There is no file in a directory, one is not an actor, or two actors have the same name.
     """
     actors: dict[str, OnnxActor] = {}
     files: dict[str, Path] = {}
@@ -130,6 +173,54 @@ def _onnx_files(directory: Path) -> list[Path]:
     if not found:
         raise ValueError(f"{directory} must hold ONNX files, got none")
     return found
+
+
+def _places_by_coordinates(cities: NDArray[np.float32]) -> tuple[Indices, Indices]:
+    """Return the first city of each place, and the place of each city, of cities (n, 4)."""
+    return _places(np.rint(cities * np.float32(_RESOLUTION)))
+
+
+def _places_by_matrices(matrices: NDArray[np.float32]) -> tuple[Indices, Indices]:
+    """Return the same of matrices, shape (2, n, n): at one place, all costs are the same."""
+    n = matrices.shape[1]
+    if np.count_nonzero((matrices == 0).all(axis=0)) <= n:  # the diagonal alone: all are apart
+        return np.arange(n), np.arange(n)
+    return _places(np.concatenate((*matrices, *matrices.transpose(0, 2, 1)), axis=1) + 0.0)
+
+
+def _places(rows: NDArray[np.float32]) -> tuple[Indices, Indices]:
+    """Return the first of each group of equal rows, and the group of each row."""
+    numbers: dict[bytes, int] = {}
+    place = np.array([numbers.setdefault(row.tobytes(), len(numbers)) for row in rows])
+    return np.unique(place, return_index=True)[1], place
+
+
+def _without_zero_plane(cities: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return cities, shape (n, 4), with the other plane where they all coincide in one.
+
+    Tours then differ in the other objective alone, whatever the preference.
+    """
+    planes = [cities[:, :PLANE], cities[:, PLANE:]]
+    apart = [plane if plane.any() else other for plane, other in (planes, planes[::-1])]
+    return np.concatenate(apart, axis=1)
+
+
+def _without_zero_matrix(matrices: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return the same of matrices, shape (2, n, n), with the other where one is all zero."""
+    first, second = bool(matrices[0].any()), bool(matrices[1].any())
+    if first and second:
+        return matrices
+    return matrices[[0, 0] if first else [1, 1]]
+
+
+def _open_session(content: bytes, path: Path, threads: int) -> onnxruntime.InferenceSession:
+    try:
+        return onnxruntime.InferenceSession(
+            content, _options(threads), providers=["CPUExecutionProvider"]
+        )
+    except Exception as error:  # ONNX Runtime has a class for each of its codes, and no common one
+        reason = str(error).strip().partition("\n")[0]
+        raise ValueError(f"{path} must be an ONNX file that can be read: {reason}") from error
 
 
 def _kind(inputs: str, path: Path) -> Kind:

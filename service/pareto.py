@@ -5,6 +5,8 @@ of points is the share of the box between the origin and a reference point that 
 number from 0 to 1, without a unit.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -53,14 +55,16 @@ def hypervolume(points: Array, reference_point: Array) -> float:
     """
     if not (reference_point > 0).all():
         raise ValueError(f"the reference point must be positive, got {reference_point.tolist()}")
-    shares = points / reference_point
+    shares = _shares(points, reference_point)
     inside = shares[(shares < 1).all(axis=1)]
     front = inside[nondominated(inside)]
     heights = np.concatenate(([1.0], front[:-1, 1])) - front[:, 1]
     return float(((1 - front[:, 0]) * heights).sum())
 
 
-def best_subset(points: Array, size: int, reference_point: Array) -> Indices:
+def best_subset(
+    points: Array, size: int, reference_point: Array, stop: Callable[[], bool] = lambda: False
+) -> Indices:
     """Return the ascending indices of the `size` points with the largest joint hypervolume.
 
     Exact (Bringmann, Friedrich and Klitzke, 2014). If there are no more points than that, all are
@@ -71,6 +75,8 @@ def best_subset(points: Array, size: int, reference_point: Array) -> Indices:
         points: Shape (m, 2), in any order.
         size: How many points to choose, at least 1.
         reference_point: Shape (2,), positive, in the unit of the points.
+        stop: Called for each point chosen; once it returns True, points that are evenly spread
+            over the front are returned instead.
 
     Raises:
         ValueError: The size is not positive.
@@ -84,11 +90,11 @@ def best_subset(points: Array, size: int, reference_point: Array) -> Indices:
     if len(points) <= size:
         return np.arange(len(points))
     front = nondominated(points)
-    shares = points[front] / reference_point
+    shares = _shares(points[front], reference_point)
     inside = (shares < 1).all(axis=1)
     useful = front[inside]
     if len(useful) > size:
-        return np.sort(useful[_best_of_front(np.ascontiguousarray(shares[inside]), size)])
+        return np.sort(useful[_best_of_front(np.ascontiguousarray(shares[inside]), size, stop)])
     spare = np.setdiff1d(front, useful)
     if len(useful) + len(spare) < size:
         useful = front
@@ -98,8 +104,14 @@ def best_subset(points: Array, size: int, reference_point: Array) -> Indices:
     return np.sort(np.concatenate((useful, spare[places])))
 
 
-@allocating
-def _best_of_front(shares: Array, size: int) -> Indices:
+def _shares(points: Array, reference_point: Array) -> Array:
+    """Return points in units of a reference point; infinite where that is too small a unit."""
+    with np.errstate(over="ignore"):
+        shares: Array = points / reference_point
+    return shares
+
+
+def _best_of_front(shares: Array, size: int, stop: Callable[[], bool]) -> Indices:
     """Return the indices of the best `size` of more than so many points of a front.
 
     The points are scaled so that the reference point is (1, 1), and all lie below it. With x
@@ -113,8 +125,10 @@ def _best_of_front(shares: Array, size: int) -> Indices:
     value = (1 - shares[:, 0]) * (1 - shares[:, 1])
     hull = np.empty(m, np.int32)
     for j in range(1, size):
+        if stop():
+            return np.linspace(0, m - 1, size).astype(np.intp)
         value = _one_point_more(shares, value, before[j], hull, j)
-    last = np.argmax(value[size - 1 :]) + size - 1
+    last = int(np.argmax(value[size - 1 :])) + size - 1
     chosen = np.empty(size, np.intp)
     for j in range(size - 1, -1, -1):
         chosen[j] = last

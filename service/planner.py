@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from service.errors import Cancelled
 from service.instance import Instance, symmetries, tour_lengths
 from service.pareto import best_subset, hypervolume, nondominated
 from service.preferences import angles, from_angles
@@ -29,7 +30,11 @@ class Constructor(Protocol):
     """A builder of tours from nothing but an instance and preferences."""
 
     def tours(self, instance: Instance, preferences: Array) -> Tours:
-        """Return tours, shape (k, n), one for each preference, shape (k, 2)."""
+        """Return tours, shape (k, n), one for each preference, shape (k, 2).
+
+        Raises:
+            Cancelled: The constructor was told to stop.
+        """
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -132,6 +137,9 @@ def plan(
         stop: Called every millisecond or two; True ends the planning with what was found so far.
         report: Called about ten times a second with the progress of the search, and with a function
             that gives the best front so far of at most so many tours.
+
+    Raises:
+        Cancelled: The constructor was told to stop before it had a tour.
     """
     clock = _Clock()
     reference_point = _reference_point(instance, options)
@@ -142,9 +150,9 @@ def plan(
     clock.ends("improvement")
     searched = options.time_limit > 0
     gained = _gained(instance, first, points, reference_point) if searched else None
-    chosen = best_subset(points, options.size, reference_point)
+    chosen = best_subset(points, options.size, reference_point, stop)
     clock.ends("selection")
-    bound = _bound(instance, reference_point) if options.bound and not stop() else None
+    bound = _bound(instance, reference_point, stop) if options.bound and not stop() else None
     clock.ends("bound")
     return Front(
         tours=_starting_at(options.start, tours[chosen]),
@@ -184,7 +192,12 @@ def _constructed(
     tours = []
     for call, image in enumerate(symmetries(instance, options.augment)):
         angles = _shifted(options.angles, call / options.augment)
-        tours.append(constructor.tours(image, from_angles(angles)))
+        try:
+            tours.append(constructor.tours(image, from_angles(angles)))
+        except Cancelled:
+            if not tours:
+                raise
+            break
         if stop():
             break
     return np.concatenate(tours)
@@ -248,8 +261,8 @@ def _gained(instance: Instance, first: Tours, points: Array, reference_point: Ar
     return hypervolume(points, reference_point) - before
 
 
-def _bound(instance: Instance, reference_point: Array) -> float:
-    return hypervolume_bound(instance, reference_point, time.monotonic() + BOUND_SECONDS)
+def _bound(instance: Instance, reference_point: Array, stop: Callable[[], bool]) -> float:
+    return hypervolume_bound(instance, reference_point, time.monotonic() + BOUND_SECONDS, stop)
 
 
 def _starting_at(start: int, tours: NDArray[np.integer]) -> NDArray[np.integer]:

@@ -1,12 +1,15 @@
 """The released network, as the service runs it."""
 
 import hashlib
+import time
 from pathlib import Path
+from threading import Timer
 
 import numpy as np
 import pytest
 
 from service.actor import OnnxActor, load_actors
+from service.errors import Cancelled
 from service.instance import Instance
 from service.preferences import fan, from_angles
 from service.settings import Settings
@@ -103,3 +106,71 @@ def test_actors_are_loaded_by_name(tmp_path: Path) -> None:
     always_city_0(tmp_path / "same.onnx", METADATA)
     with pytest.raises(ValueError, match="different names"):
         load_actors(tmp_path, threads=1)
+
+
+def test_two_files_of_one_actor_are_named(tmp_path: Path) -> None:
+    for file in ("a.onnx", "b.onnx"):
+        always_city_0(tmp_path / file, METADATA)
+    with pytest.raises(ValueError, match=r"broken is the name of a\.onnx, b\.onnx"):
+        load_actors(tmp_path, threads=1)
+
+
+@pytest.mark.parametrize("content", [b"", b"no network", RELEASED.read_bytes()[:5000]])
+def test_a_file_that_is_no_network_is_named(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "torn.onnx").write_bytes(content)
+    with pytest.raises(ValueError, match=r"torn\.onnx must be an ONNX file that can be read"):
+        load_actors(tmp_path, threads=1)
+
+
+CITIES = np.random.default_rng(4).random((30, 4))
+DEGENERATE = {
+    "one place": np.ones((30, 4)),
+    "two places": CITIES[np.arange(30) % 2],
+    "half at one place": np.where(np.arange(30)[:, None] < 15, 0.5, CITIES),
+    "one place in plane 1": CITIES * [0, 0, 1, 1],
+    "one place in plane 2": CITIES * [1, 1, 0, 0],
+    "hardly apart": np.concatenate((CITIES[:1], 0.5 + 1e-300 * CITIES[1:])),
+}
+
+
+@pytest.mark.parametrize("name", ["pa-one", "pa-one-matrix", "pa-ad", "pa-at", "pa-ean"])
+@pytest.mark.parametrize("cities", DEGENERATE.values(), ids=DEGENERATE)
+@pytest.mark.parametrize("kind", ["coordinates", "matrices"])
+def test_zero_costs_are_planned_like_any_others(name: str, cities: np.ndarray, kind: str) -> None:
+    actor = OnnxActor(RELEASED.with_name(f"{name}.onnx"), threads=1)
+    instance = Instance(coordinates=cities)
+    if kind == "matrices":
+        instance = Instance(matrices=instance.scaled_matrices)
+    if not actor.info.serves(instance.kind):
+        return
+    tours = actor.tours(instance, from_angles(np.array([0.0, 45.0, 90.0])))
+    np.testing.assert_array_equal(np.sort(tours, axis=1), np.tile(np.arange(30), (3, 1)))
+
+
+def test_cities_at_one_place_are_visited_in_a_run(actor: OnnxActor) -> None:
+    places = np.random.default_rng(5).random((9, 4))
+    number = np.random.default_rng(6).integers(0, 9, 60)
+    preferences = from_angles(fan(5))
+    tours = actor.tours(Instance(coordinates=places[number]), preferences)
+    np.testing.assert_array_equal(np.sort(tours, axis=1), np.tile(np.arange(60), (5, 1)))
+    changes = (number[tours] != np.roll(number[tours], 1, axis=1)).sum(axis=1)
+    assert changes.tolist() == [9] * 5
+
+
+def test_many_cities_at_one_place_take_no_longer_than_few(actor: OnnxActor) -> None:
+    cities = np.random.default_rng(7).random((400, 4))
+    cities[50:] = 0.5
+    used = time.process_time()
+    actor.tours(Instance(coordinates=cities), from_angles(fan(50)))
+    assert time.process_time() - used < 1
+
+
+def test_a_call_under_way_is_terminated_and_the_next_is_not(actor: OnnxActor) -> None:
+    instance = Instance(coordinates=np.random.default_rng(8).random((1000, 4)))
+    actor.terminate()
+    Timer(0.2, actor.terminate).start()
+    began = time.monotonic()
+    with pytest.raises(Cancelled):
+        actor.tours(instance, from_angles(fan(200)))
+    assert time.monotonic() - began < 1
+    assert actor.tours(Instance(coordinates=np.eye(4)), from_angles(fan(2))).shape == (2, 4)

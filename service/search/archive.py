@@ -22,7 +22,7 @@ class Archive(NamedTuple):
     touched before it is needed, and rows that become free are reused first.
     """
 
-    points: Array  # (capacity, 2), scaled by cost_factors()
+    points: Array  # (capacity, 2), in the unit of make_costs()
     slots: Cities  # (capacity,)
     tours: Cities  # (capacity, n)
     free: Cities  # (capacity,), a stack of unused rows

@@ -6,7 +6,7 @@ these half-planes.
 """
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from service.instance import MAX_ENUMERATED, Instance, all_tours, tour_lengths
 from service.pareto import hypervolume
 from service.search.assignment import augment, make_assignment, price_bound
-from service.search.costs import Costs, cost_factors, make_costs
+from service.search.costs import Costs, make_costs, scaled_reference
 from service.search.one_tree import ascend, make_ascent
 from service.search.schedule import bisection_order
 
@@ -27,11 +27,14 @@ SLACK = 1e-9  # share by which a lower bound is lowered, far above what rounding
 
 
 def hypervolume_bound(
-    instance: Instance, reference_point: Array, deadline: float | None = None
+    instance: Instance,
+    reference_point: Array,
+    deadline: float | None = None,
+    stop: Callable[[], bool] = lambda: False,
 ) -> float:
     """Return an upper bound on the hypervolume of any front of the instance, 0 to 1.
 
-    Exact up to seven cities. It is valid however early it stops, and tightens with time. By the
+    Exact up to eight cities. It is valid however early it stops, and tightens with time. By the
     Held-Karp bound where costs are symmetric, else by the assignment bound; either takes O(n^2)
     for each step under each weight.
 
@@ -39,20 +42,22 @@ def hypervolume_bound(
         instance: The instance.
         reference_point: Shape (2,), positive, in the instance's own units.
         deadline: Time to stop, by time.monotonic(); None sets no limit.
+        stop: Called at least every few ms; True ends the tightening at once.
     """
     if instance.n <= MAX_ENUMERATED:
         points = tour_lengths(instance, all_tours(instance.n))
         return hypervolume(points, reference_point)
     share = np.linspace(0.0, 1.0, WEIGHTS)
-    weights = np.stack([share, 1 - share], axis=1) / instance.scale
+    scale = np.ldexp(instance.scale, instance.shifts)
+    weights = np.stack([share, 1 - share], axis=1) / scale
     costs = make_costs(instance)
     bound = one_tree_bounds if instance.symmetric else assignment_bounds
     lowest = np.zeros(WEIGHTS)
-    for k, value in bound(costs, weights / cost_factors(instance)):
+    for k, value in bound(costs, weights):
         lowest[k] = max(lowest[k], value * (1 - SLACK))
-        if deadline is not None and time.monotonic() >= deadline:
+        if stop() or (deadline is not None and time.monotonic() >= deadline):
             break
-    return area_above(weights * reference_point, lowest)
+    return area_above(weights * scaled_reference(instance, reference_point), lowest)
 
 
 def one_tree_bounds(costs: Costs, weights: Array) -> Iterator[tuple[int, float]]:

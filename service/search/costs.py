@@ -14,6 +14,9 @@ Array = NDArray[np.float64]
 # second-level cache, and memory stays linear in the number of cities.
 DENSE_BELOW = 600
 
+# Of a reference point, in units in which costs are below 2: products of two are finite, not 0.
+LEAST_REFERENCE, LARGEST_REFERENCE = 2.0**-500, 2.0**500
+
 
 class Costs(NamedTuple):
     """The scaled costs of an instance: a matrix, or coordinates where that is empty."""
@@ -24,19 +27,18 @@ class Costs(NamedTuple):
 
 
 def make_costs(instance: Instance) -> Costs:
-    """Return an instance's costs, multiplied by its cost_factors().
+    """Return an instance's costs, multiplied by the powers of two that are its shifts.
 
     A power of two rounds nothing, so sums of whole-numbered costs stay exact, and neither huge
     nor tiny units overflow or underflow in a product of two lengths.
     """
-    factors = cost_factors(instance)
     if instance.coordinates is None:
         assert instance.matrices is not None
-        planes = instance.matrices * factors[:, None, None]
+        planes = np.ldexp(instance.matrices, instance.shifts[:, None, None])
         matrix = np.ascontiguousarray(planes.transpose(1, 2, 0))
         return Costs(np.zeros((instance.n, 4)), matrix, instance.symmetric)
     corner = instance.coordinates.min(axis=0)
-    cities = (instance.coordinates - corner) * factors.repeat(2)
+    cities = np.ldexp(instance.coordinates - corner, instance.shifts.repeat(2))
     sparse = Costs(cities, np.zeros((0, 0, 2)), True)
     if instance.n >= DENSE_BELOW:
         return sparse
@@ -45,9 +47,13 @@ def make_costs(instance: Instance) -> Costs:
     return Costs(cities, matrix, True)
 
 
-def cost_factors(instance: Instance) -> Array:
-    """Return a power of two for each objective, shape (2,), that brings its scale into [1, 2)."""
-    return np.ldexp(1.0, 1 - np.frexp(instance.scale)[1])
+def scaled_reference(instance: Instance, reference_point: Array) -> Array:
+    """Return a reference point in the unit of make_costs(), shape (2,).
+
+    Where it is too far from the costs for areas to be finite, and not 0, it is brought nearer.
+    """
+    with np.errstate(over="ignore"):
+        return np.ldexp(reference_point, instance.shifts).clip(LEAST_REFERENCE, LARGEST_REFERENCE)
 
 
 @inlined

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from service.instance import MAX_ENUMERATED, Instance, all_tours, tour_lengths
 from service.pareto import best_subset, nondominated
+from service.search.archive import MAX_POINTS
 from service.search.bound import hypervolume_bound
 from service.search.schedule import Search
 
@@ -55,10 +56,11 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
     stop: Callable[[], bool] | None = None,
     report: Report | None = None,
     reference_point: Array | None = None,
+    capacity: int = MAX_POINTS,
 ) -> SearchResult:
     """Return the front that a search finds; it dominates or equals each of the given tours.
 
-    Up to seven cities that is the exact front, by enumeration.
+    Up to eight cities that is the exact front, by enumeration.
 
     Args:
         instance: The instance.
@@ -72,12 +74,14 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
             the best so many tours found so far, which may be called until the report returns.
         reference_point: Shape (2,), of the hypervolume, in the instance's units; by default n
             times the scale. The search works where this hypervolume grows fastest.
+        capacity: The most tours that the search keeps, at least 16; the result has more only where
+            it was given more.
     """
     if instance.n <= MAX_ENUMERATED:
         return _front(instance, all_tours(instance.n), "converged")
     if reference_point is None:
         reference_point = instance.n * instance.scale
-    search = Search(instance, seed, reference_point)
+    search = Search(instance, seed, reference_point, capacity)
     search.add(tours)
     terminated = _run(search, deadline, iterations, stop, report)
     if not search.size:
@@ -117,7 +121,7 @@ def _run(
 def _best_found(search: Search, size: int) -> SearchResult:
     """Return the best subset of a size of the front that a search has found so far."""
     points = search.points()
-    indices = best_subset(points, size, search.corner / search.cost_factors)
+    indices = best_subset(points, size, search.reference_point)
     return SearchResult(search.tours(indices), points[indices], None)
 
 

@@ -11,7 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
-from service.search.archive import accepts, best_point, dominated_area, insert, make_archive
+from service.pareto import hypervolume
+from service.search.archive import (
+    MAX_POINTS,
+    accepts,
+    best_point,
+    dominated_area,
+    insert,
+    make_archive,
+)
 from service.search.candidates import (
     CANDIDATES_PER_CITY,
     POOL_WEIGHTS,
@@ -20,7 +28,7 @@ from service.search.candidates import (
     make_candidate_pool,
     rank_candidates,
 )
-from service.search.costs import cost_factors, lengths, make_costs
+from service.search.costs import lengths, make_costs, scaled_reference
 from service.search.local_search import (
     LEAST_GAIN,
     descend,
@@ -69,21 +77,25 @@ class Search:
         instance: The instance.
         seed: Of all random choices.
         reference_point: Shape (2,), positive, in the instance's units.
+        capacity: The most tours that the archive holds.
     """
 
-    def __init__(self, instance: Instance, seed: int, reference_point: Array) -> None:
+    def __init__(
+        self, instance: Instance, seed: int, reference_point: Array, capacity: int = MAX_POINTS
+    ) -> None:
         self.n = instance.n
-        self.cost_factors = cost_factors(instance)
-        self.corner = reference_point * self.cost_factors
+        self.shifts = instance.shifts
+        self.reference_point = reference_point
+        self.corner = scaled_reference(instance, reference_point)
         share = np.linspace(0.0, 1.0, WEIGHTS).clip(LEAST_SHARE, 1 - LEAST_SHARE)
-        weights = np.stack([share, 1 - share], axis=1) / (instance.scale * self.cost_factors)
+        weights = np.stack([share, 1 - share], axis=1) / np.ldexp(instance.scale, self.shifts)
         weights /= weights.sum(axis=1, keepdims=True)
         self.weights = weights
         candidates = np.zeros((WEIGHTS, self.n, min(CANDIDATES_PER_CITY, self.n - 1)), np.int32)
         self.state = SearchState(
             make_costs(instance),
             WeightedCandidates(weights, candidates, np.zeros(candidates.shape)),
-            make_archive(self.n),
+            make_archive(self.n, capacity),
             make_working_tour(self.n),
             np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
         )
@@ -91,7 +103,7 @@ class Search:
     @property
     def hypervolume(self) -> float:
         """The hypervolume of the front found so far, 0 to 1."""
-        return self._area / float(self.corner.prod())
+        return hypervolume(self.points(), self.reference_point)
 
     @property
     def size(self) -> int:
@@ -106,7 +118,7 @@ class Search:
 
     def points(self) -> Array:
         """Return the points of the front, shape (p, 2), in the instance's units."""
-        return self.state.archive.points[: self.size] / self.cost_factors
+        return np.ldexp(self.state.archive.points[: self.size], -self.shifts)
 
     def not_covered(self, tours: NDArray[np.integer]) -> NDArray[np.integer]:
         """Return the tours that the front neither dominates nor equals.

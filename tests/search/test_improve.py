@@ -29,7 +29,7 @@ def covers(points: NDArray[np.float64], given: NDArray[np.float64]) -> bool:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("n", range(1, 8))
+@pytest.mark.parametrize("n", range(1, 9))
 def test_a_few_cities_give_the_exact_front(kind: str, n: int) -> None:
     instance = small_integers(kind, n, seed=n)
     found = improve(instance, no_tours(n))
@@ -39,7 +39,7 @@ def test_a_few_cities_give_the_exact_front(kind: str, n: int) -> None:
 
 
 @settings(max_examples=40)
-@given(kind=st.sampled_from(KINDS), n=st.integers(8, 30), m=st.integers(0, 5), seed=st.integers(0))
+@given(kind=st.sampled_from(KINDS), n=st.integers(9, 30), m=st.integers(0, 5), seed=st.integers(0))
 def test_every_given_tour_is_dominated_or_equalled(kind: str, n: int, m: int, seed: int) -> None:
     instance = small_integers(kind, n, seed % 1000)
     tours = random_tours(n, m, seed % 1000)
@@ -49,13 +49,27 @@ def test_every_given_tour_is_dominated_or_equalled(kind: str, n: int, m: int, se
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_eight_cities_come_close_to_the_exact_front(kind: str) -> None:
+def test_nine_cities_come_close_to_the_exact_front(kind: str) -> None:
     for seed in range(5):
-        instance = small_integers(kind, 8, seed)
-        best = tour_lengths(instance, all_tours(8))
+        instance = small_integers(kind, 9, seed)
+        best = tour_lengths(instance, all_tours(9))
         corner = best.max(axis=0) + 1
-        found = improve(instance, no_tours(8), iterations=20_000)
+        found = improve(instance, no_tours(9), iterations=20_000)
         assert hypervolume(found.points, corner) >= 0.99 * hypervolume(best, corner)
+
+
+def test_more_given_tours_than_the_search_can_keep_are_all_dominated_or_equalled() -> None:
+    # A tour that keeps to the order for k steps has the lengths (40 - k, k).
+    in_order = np.roll(np.eye(40), 1, axis=1)
+    instance = Instance(matrices=np.stack((1 - in_order, in_order)))
+    order = np.arange(40)
+    tours = np.stack([np.concatenate((order[:k], order[k:][::-1])) for k in range(40)])
+    points = tour_lengths(instance, tours)
+    assert len(nondominated(points)) > 16
+    found = improve(instance, tours, iterations=1, capacity=16)
+    assert len(found.tours) > 16
+    assert is_front(instance, found)
+    assert covers(found.points, points)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -12,7 +12,7 @@ def test_whole_numbered_matrices_stay_exact() -> None:
     search = Search(instance, 0, 60 * instance.scale)
     for _, _ in zip(range(200), search.run(), strict=False):
         pass
-    points = search.state.archive.points[: search.size] / search.cost_factors
+    points = search.state.archive.points[: search.size] * 2.0**-search.shifts
     assert np.array_equal(points, tour_lengths(instance, search.tours()))
 
 
