@@ -188,7 +188,7 @@ def _places_by_matrices(matrices: NDArray[np.float32]) -> tuple[Indices, Indices
     return _places(np.concatenate((*matrices, *matrices.transpose(0, 2, 1)), axis=1) + 0.0)
 
 
-def _places(rows: NDArray[np.float32]) -> tuple[Indices, Indices]:
+def _places(rows: NDArray[np.floating[Any]]) -> tuple[Indices, Indices]:
     """Return the first of each group of equal rows, and the group of each row."""
     numbers: dict[bytes, int] = {}
     place = np.array([numbers.setdefault(row.tobytes(), len(numbers)) for row in rows])

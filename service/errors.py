@@ -17,8 +17,7 @@
         ├── NotFound              the store has no front with this id
         └── Expired               the store had one, and dropped it
 
-`PROBLEMS` is the one table of codes; exception handlers, the HTTP reference and the guide are made
-from it. A code is stable, its sentence is not.
+`PROBLEMS` is the one table of codes. A code is stable, its sentence is not.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -75,6 +74,9 @@ PROBLEMS: Mapping[str, Problem] = {
     "invalid-parts": Problem(422, "{reason}", _PLANS),
     "invalid-request": Problem(422, "{detail}", (*_PLANS, *_TOUR)),
     "no-actor": Problem(422, "{kind} need an actor that reads them, and none is loaded", _PLANS),
+    "paths-too-long": Problem(
+        422, "paths must have at most {limit} cells, got {actual}: {advice}", ("POST /coverage",)
+    ),
     "over-limit": Problem(422, "{name} must be at most {limit:g}, got {actual:g}", _PLANS),
     "unfit-actor": Problem(
         422, "actor must read {kind}, as {among}; {name} reads {inputs} alone", _PLANS

@@ -30,11 +30,7 @@ class Constructor(Protocol):
     """A builder of tours from nothing but an instance and preferences."""
 
     def tours(self, instance: Instance, preferences: Array) -> Tours:
-        """Return tours, shape (k, n), one for each preference, shape (k, 2).
-
-        Raises:
-            Cancelled: The constructor was told to stop.
-        """
+        """Return tours, shape (k, n), one for each preference (k, 2), or raise Cancelled."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -152,7 +148,10 @@ def plan(
     gained = _gained(instance, first, points, reference_point) if searched else None
     chosen = best_subset(points, options.size, reference_point, stop)
     clock.ends("selection")
-    bound = _bound(instance, reference_point, stop) if options.bound and not stop() else None
+    bound = None
+    if options.bound and not stop():
+        deadline = time.monotonic() + BOUND_SECONDS
+        bound = hypervolume_bound(instance, reference_point, deadline, stop)
     clock.ends("bound")
     return Front(
         tours=_starting_at(options.start, tours[chosen]),
@@ -259,10 +258,6 @@ def _gained(instance: Instance, first: Tours, points: Array, reference_point: Ar
     """Return the hypervolume that the search added to that of the first tours."""
     before = hypervolume(tour_lengths(instance, first), reference_point)
     return hypervolume(points, reference_point) - before
-
-
-def _bound(instance: Instance, reference_point: Array, stop: Callable[[], bool]) -> float:
-    return hypervolume_bound(instance, reference_point, time.monotonic() + BOUND_SECONDS, stop)
 
 
 def _starting_at(start: int, tours: NDArray[np.integer]) -> NDArray[np.integer]:

@@ -67,6 +67,7 @@ class Settings(BaseSettings):
     max_body_bytes: int = Field(2**24, ge=1, description="the longest request body")
     max_cities: int = Field(1000, ge=1, description="the most cities of an instance")
     max_cells: int = Field(2**20, ge=1, description="the most cells of a map")
+    max_path_cells: int = Field(2**21, ge=1, description="the most cells of all paths of an answer")
     max_preferences: int = Field(200, ge=1, description="the most preferences of a request")
     max_size: int = Field(1000, ge=1, description="the most tours that a request may ask for")
     max_time_limit: float = Field(60.0, ge=0, description="the most seconds of improvement")
@@ -117,6 +118,7 @@ class Settings(BaseSettings):
             body_bytes=self.max_body_bytes,
             cities=self.max_cities,
             cells=self.max_cells,
+            path_cells=self.max_path_cells,
             preferences=self.max_preferences,
             size=self.max_size,
             seconds=self.max_time_limit,

@@ -7,6 +7,7 @@ from scipy import ndimage
 Mask = NDArray[np.bool_]
 Cells = NDArray[np.int64]
 
+_LONGEST = 2.0**30  # cells of a side, beyond any grid, and its square is finite
 _SLACK = 1e-9  # relative: a distance and a radius that differ by less count as equal
 
 
@@ -55,7 +56,7 @@ def covering_places(region: Mask, spacing: float) -> Cells:
         region: The cells to cover, shape (rows, columns).
         spacing: The side of a square in cells; below 1 it counts as 1.
     """
-    spacing = max(spacing, 1.0)
+    spacing = min(max(spacing, 1.0), _LONGEST)
     cells = np.argwhere(region)
     # Cell centres, from the corner of the region's bounding box.
     centres = cells - cells.min(axis=0) + 0.5

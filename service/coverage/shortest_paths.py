@@ -73,13 +73,16 @@ def trace_path(grid: Grid, tree: PathTree, cell: int) -> Cells:
     return np.stack(np.divmod(np.array(path[::-1]), grid.width), axis=1) - 1
 
 
-def pairwise_paths(grid: Grid, cells: Cells, stop: Callable[[], bool]) -> tuple[Array, Array]:
+def pairwise_paths(
+    grid: Grid, cells: Cells, stop: Callable[[], bool], steps: NDArray[np.int32] | None = None
+) -> tuple[Array, Array]:
     """Return lengths and costs of the shortest paths between all pairs of cells.
 
     Args:
         grid: The grid.
         cells: Numbers of cells in the grid, shape (n,).
         stop: Called before each of n - 1 searches; once it returns True, the rest is left out.
+        steps: Of zeros, shape (n, n), to be filled in with the number of steps of each path.
 
     Returns:
         Lengths in cells, and costs by the layer, both symmetric, shape (n, n). Where there is no
@@ -93,7 +96,17 @@ def pairwise_paths(grid: Grid, cells: Cells, stop: Callable[[], bool]) -> tuple[
         tree = find_paths(grid, cells[i], cells[i + 1 :])
         lengths[i, i + 1 :] = lengths[i + 1 :, i] = tree.length[cells[i + 1 :]]
         costs[i, i + 1 :] = costs[i + 1 :, i] = tree.cost[cells[i + 1 :]]
+        if steps is not None:
+            steps[i, i + 1 :] = steps[i + 1 :, i] = count_steps(tree, cells[i + 1 :])
     return lengths, costs
+
+
+def count_steps(tree: PathTree, cells: Cells) -> NDArray[np.int32]:
+    """Return the number of steps of the paths to cells, shape (n,); 0 where there is no path."""
+    length, diagonals = tree.length[cells], tree.diagonals[cells]
+    reached = np.isfinite(length)
+    straight = np.rint(np.where(reached, length, 0.0) - diagonals * DIAGONAL)
+    return np.where(reached, straight + diagonals, 0.0).astype(np.int32)
 
 
 def warm_up() -> None:

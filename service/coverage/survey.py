@@ -23,7 +23,7 @@ from service.coverage.shortest_paths import (
     pairwise_paths,
     trace_path,
 )
-from service.errors import Cancelled, InvalidCoverage, TooManyPlaces
+from service.errors import Cancelled, InvalidCoverage, Refusal, TooManyPlaces
 from service.instance import Instance
 
 Array = NDArray[np.float64]
@@ -104,25 +104,48 @@ class CoveragePath:
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """Places, rows and columns, shape (n, 2), and the instance of the costs between them."""
+    """Places, rows and columns, shape (n, 2), and the instance of the costs between them.
+
+    `steps`, shape (n, n), are the numbers of steps of the paths between places.
+    """
 
     places: Cells
     instance: Instance
     grid: Grid
+    steps: NDArray[np.int32]
 
-    def paths(self, tours: NDArray[np.integer]) -> Iterator[CoveragePath]:
-        """Yield the path of each of the tours, shape (k, n)."""
+    def paths(
+        self,
+        tours: NDArray[np.integer],
+        most_cells: int | None = None,
+        stop: Callable[[], bool] = lambda: False,
+    ) -> Iterator[CoveragePath]:
+        """Yield the path of each of the tours, shape (k, n).
+
+        Args:
+            tours: One tour a row.
+            most_cells: Of all paths together; None sets no limit. It is checked before any is made.
+            stop: Called for each leg and each path; True ends the tracing.
+
+        Raises:
+            Refusal: The paths have more cells than that.
+            Cancelled: `stop` returned True.
+        """
         following = np.roll(tours, -1, axis=1)
+        cells = self.steps[tours, following].sum(axis=1, dtype=np.int64) + 1
+        if most_cells is not None and cells.sum() > most_cells:
+            raise _paths_too_long(most_cells, cells)
         steps = np.unique(np.sort(np.stack((tours.ravel(), following.ravel()), axis=1)), axis=0)
-        paths = dict(self._paths_of_steps(steps.tolist()))
+        paths = dict(self._paths_of_steps(steps.tolist(), stop))
         assert self.instance.matrices is not None
         for tour, successors in zip(tours.tolist(), following.tolist(), strict=True):
+            _check(stop)
             legs = [paths[step] for step in zip(tour, successors, strict=True)]
             cells = np.concatenate([legs[0], *(leg[1:] for leg in legs[1:])])
             yield CoveragePath(cells, float(self.instance.matrices[0, tour, successors].sum()))
 
     def _paths_of_steps(
-        self, steps: list[tuple[int, int]]
+        self, steps: list[tuple[int, int]], stop: Callable[[], bool]
     ) -> Iterator[tuple[tuple[int, int], Cells]]:
         """Yield each step between two places with its cells, in both directions.
 
@@ -133,6 +156,7 @@ class Survey:
             ends = [end for _, end in group]
             tree = find_paths(self.grid, numbers[origin], numbers[ends])
             for end in ends:
+                _check(stop)
                 path = trace_path(self.grid, tree, numbers[end])
                 yield (origin, end), path
                 yield (end, origin), path[::-1]
@@ -144,7 +168,7 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
     Args:
         coverage: The task.
         max_places: The greatest number of places that a spacing may give.
-        stop: Called once for each place; True ends the survey.
+        stop: Called once for each place, and before and after; True ends the survey.
 
     Raises:
         InvalidCoverage: No cell is free, a place is not free or cannot be reached, or the second
@@ -154,17 +178,19 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
         Cancelled: `stop` returned True.
     """
     free = free_cells(coverage.blocked, coverage.cell_size, coverage.robot_radius)
+    _check(stop)
     if not free.any():
         raise InvalidCoverage(
             ("grid", f"must have a free cell {_far_enough(coverage)}, and there is none")
         )
     places = _places(coverage, free, max_places)
     grid = make_grid(free, coverage.cost_layer)
-    lengths, costs = pairwise_paths(grid, cell_numbers(grid, places), stop)
-    if stop():
-        raise Cancelled
+    _check(stop)
+    steps = np.zeros((len(places), len(places)), np.int32)
+    lengths, costs = pairwise_paths(grid, cell_numbers(grid, places), stop, steps)
+    _check(stop)
     matrices = np.stack((coverage.cell_size * lengths, _second_objective(coverage, costs)))
-    return Survey(places, Instance(matrices=matrices), grid)
+    return Survey(places, Instance(matrices=matrices), grid, steps)
 
 
 def _places(coverage: Coverage, free: Mask, max_places: int) -> Cells:
@@ -223,6 +249,19 @@ def _second_objective(coverage: Coverage, costs: Array) -> Array:
         steps = coverage.second_coordinates[:, np.newaxis] - coverage.second_coordinates
         return np.hypot(steps[..., 0], steps[..., 1])
     return coverage.cell_size * costs
+
+
+def _check(stop: Callable[[], bool]) -> None:
+    if stop():
+        raise Cancelled
+
+
+def _paths_too_long(most: int, cells: Cells) -> Refusal:
+    """Return the refusal of paths of so many cells, shape (k,), with how many tours would fit."""
+    fitting = most // int(cells.max())
+    advice = f"ask for a size of {fitting}" if fitting else "ask without paths"
+    actual = int(cells.sum())
+    return Refusal("paths-too-long", pointer="/paths", limit=most, actual=actual, advice=advice)
 
 
 def _far_enough(coverage: Coverage) -> str:

@@ -8,7 +8,8 @@ from typing import Protocol
 
 from service.actor import ActorInfo, load_actors
 from service.coverage import shortest_paths
-from service.coverage.survey import Coverage, survey
+from service.coverage.survey import Coverage, CoveragePath, Survey, survey
+from service.errors import Cancelled
 from service.instance import Instance
 from service.jobs.front_document import FrontDocument, encode_front
 from service.planner import Constructor, Front, plan
@@ -90,14 +91,22 @@ class TaskRunner:
         places = surveyed.places.tolist()
         front = self._plan(task, surveyed.instance, stop, report, places)
         began = time.perf_counter()
-        # Tracing paths takes a while, for which a stopped task does not wait.
-        paths = list(surveyed.paths(front.tours)) if task.paths and not stop() else None
+        paths = self._paths(surveyed, front, stop) if task.paths else None
         timings = {
             "survey": 1000 * survey_seconds,
             **front.timings,
             "paths": 1000 * (time.perf_counter() - began),
         }
         return encode_front(replace(front, timings=timings), self._identity(task), places, paths)
+
+    def _paths(
+        self, surveyed: Survey, front: Front, stop: Callable[[], bool]
+    ) -> list[CoveragePath] | None:
+        """Return the path of each tour; None where the task is stopped, which waits for none."""
+        try:
+            return list(surveyed.paths(front.tours, self.limits.path_cells, stop))
+        except Cancelled:
+            return None
 
     def _plan(
         self,

@@ -19,6 +19,7 @@ class Limits:
         body_bytes: Bytes of a body.
         cities: Cities of an instance, or places on a map.
         cells: Cells of a map.
+        path_cells: Cells of all paths of an answer.
         preferences: Preferences of a front.
         size: Tours to return, or to bring as initial tours.
         seconds: The time limit of a search.
@@ -30,6 +31,7 @@ class Limits:
     preferences: int
     size: int
     seconds: float
+    path_cells: int = 2**21
 
 
 def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:

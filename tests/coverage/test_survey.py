@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from service.coverage.survey import Coverage, survey
-from service.errors import Cancelled, InvalidCoverage, TooManyPlaces
+from service.errors import Cancelled, InvalidCoverage, Refusal, TooManyPlaces
 from service.instance import tour_lengths
 
 ROOT2 = np.sqrt(2)
@@ -98,6 +98,27 @@ def test_paths_go_from_place_to_place_and_are_as_long_as_they_say() -> None:
         assert 0.5 * np.hypot(*steps.T).sum() == pytest.approx(path.metres)
         visited = [path.cells.tolist().index(place) for place in PLACES[tour].tolist()]
         assert visited == sorted(visited)
+
+
+def test_paths_of_too_many_cells_are_refused_before_any_is_traced(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found = survey(room(), 10, never)
+    tours = np.array([[0, 1, 2], [2, 1, 0]])
+    cells = sum(len(path.cells) for path in found.paths(tours))
+    assert len(list(found.paths(tours, cells))) == 2
+    monkeypatch.setattr("service.coverage.survey.find_paths", None)
+    with pytest.raises(Refusal, match="ask for a size of 1") as raised:
+        list(found.paths(tours, cells - 1))
+    assert (raised.value.limit, raised.value.actual) == (cells - 1, cells)
+    with pytest.raises(Refusal, match="ask without paths"):
+        list(found.paths(tours, 3))
+
+
+def test_tracing_ends_when_told_to() -> None:
+    found = survey(room(), 10, never)
+    with pytest.raises(Cancelled):
+        list(found.paths(np.array([[0, 1, 2]]), stop=lambda: True))
 
 
 def test_the_path_of_a_tour_of_one_place_is_that_place() -> None:
