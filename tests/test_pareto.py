@@ -99,3 +99,10 @@ def test_a_hundred_of_ten_thousand_are_chosen_within_fifty_milliseconds() -> Non
     chosen = best_subset(points, 100, np.full(2, 1.1))
     assert time.process_time() - used < 0.05
     assert len(chosen) == 100
+
+
+def test_a_best_subset_that_is_told_to_stop_is_spread_over_the_front() -> None:
+    x = np.linspace(0, 1, 101)
+    points = np.stack((x, 1 - x), axis=1)
+    chosen = best_subset(points, 5, np.full(2, 1.5), lambda: True)
+    assert chosen.tolist() == [0, 25, 50, 75, 100]

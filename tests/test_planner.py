@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from service.actor import OnnxActor
+from service.errors import Cancelled
 from service.instance import Instance, symmetries, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.planner import Front, PlanOptions, plan
@@ -163,3 +164,18 @@ def test_a_plan_that_is_stopped_looks_at_no_further_symmetry(actor: OnnxActor) -
     stopped = plan(actor, random_instance(40), demand, stop=lambda: True)
     at_once = plan(actor, random_instance(40), replace(demand, augment=1))
     np.testing.assert_array_equal(stopped.points, at_once.points)
+
+
+def test_a_network_that_is_ended_leaves_the_tours_of_its_earlier_calls() -> None:
+    class Ended:
+        calls = 0
+
+        def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
+            self.calls += 1
+            if self.calls > 1:
+                raise Cancelled
+            return np.tile(np.arange(instance.n), (len(preferences), 1))
+
+    instance = Instance(coordinates=np.random.default_rng(1).random((9, 4)))
+    options = PlanOptions(angles=fan(2), size=5, augment=3)
+    assert plan(Ended(), instance, options).tours.tolist() == [list(range(9))]

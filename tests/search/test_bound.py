@@ -108,3 +108,13 @@ def test_the_area_above_known_lines_is_known() -> None:
     assert area_above(weights, np.array([0.25, 0.0, 0.5])) == pytest.approx(0.75 * 0.5)
     assert area_above(weights, np.array([0.0, 0.5, 0.0])) == pytest.approx(0.5)
     assert area_above(weights, np.array([0.0, 0.0, 3.0])) == 0
+
+
+def test_a_bound_that_is_told_to_stop_is_loose_yet_valid() -> None:
+    instance = drawn(7, 60, True, planar=True)
+    corner = 60 * instance.scale
+    answers = iter([False, True])
+    hasty = hypervolume_bound(instance, corner, stop=lambda: next(answers))
+    with pytest.raises(StopIteration):
+        next(answers)
+    assert hypervolume_bound(instance, corner) <= hasty <= 1
