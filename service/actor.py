@@ -151,7 +151,7 @@ def load_actors(
     Each has an inference session of so many threads.
 
     Raises:
-        ValueError: There is no file in a directory, one is not an actor, or two actors have the same name.
+        ValueError: There is no file in a directory, one is no actor, or two have the same name.
     """
     actors: dict[str, OnnxActor] = {}
     files: dict[str, Path] = {}
