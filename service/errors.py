@@ -5,7 +5,9 @@
     │   ├── InvalidInstance       the cities cannot be planned (also a ValueError)
     │   │   └── InvalidCoverage   the map, or its places, cannot be covered
     │   │       └── TooManyPlaces a spacing lays out too many places
+    │   ├── NoWorker              no worker process can be started
     │   ├── QueueFull             no place is left for another task
+    │   │   └── ShareFull         none is left for another task of this client
     │   ├── ShuttingDown          no more tasks are taken
     │   ├── WarmingUp             the search is still being compiled
     │   ├── WorkerLost            two workers died over a task
@@ -87,8 +89,16 @@ PROBLEMS: Mapping[str, Problem] = {
         429, "requests must be at most {rate}, and {caller} made more: wait {wait} s"
     ),
     "internal-error": Problem(500, "this is a fault of the service, not of the request", _NONE),
+    "no-worker": Problem(
+        503, "a worker must be running, and none can be started yet", ("GET /health/ready",)
+    ),
     "queue-full": Problem(
         503, "the queue must have a free place, and all are taken: ask again", _PLANS
+    ),
+    "share-full": Problem(
+        503,
+        "a caller may have {limit} fronts waiting or being planned, and has as many: ask again",
+        _PLANS,
     ),
     "shutting-down": Problem(503, "the server is shutting down"),
     "stopped": Problem(503, "the work was stopped before there was a front", _PLANS),
@@ -213,10 +223,25 @@ class _Plain(Refusal):
         super().__init__(type(self).code)
 
 
+class NoWorker(_Plain):
+    """No worker process runs, and none can be started; it is tried again."""
+
+    code = "no-worker"
+
+
 class QueueFull(_Plain):
     """No place is left for another task."""
 
     code = "queue-full"
+
+
+class ShareFull(QueueFull):
+    """No place is left for another task of this client, as it holds its share of them."""
+
+    code = "share-full"
+
+    def __init__(self, limit: int) -> None:
+        Refusal.__init__(self, type(self).code, limit=limit, actual=limit)
 
 
 class ShuttingDown(_Plain):

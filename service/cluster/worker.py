@@ -1,7 +1,8 @@
 """A worker of the cluster: Celery with a pool of processes, each planning one record at a time.
 
-In each process a `RecordWorker` plans. A thread beside it checks whether the record is wanted still
-and, if planning does not stop in time, kills the process, which Celery replaces.
+In each process a `RecordWorker` plans. A thread beside it checks whether the record is wanted still.
+If planning does not stop at once, the thread stores the best front so far; if it does not stop for
+seconds, the thread kills the process, which Celery replaces.
 """
 
 import ctypes
@@ -29,10 +30,11 @@ from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason, as_ended, as_failed
 from service.jobs.runner import MakeRunner, Reporter, Runner
 from service.jobs.submission import MOST_ATTEMPTS
-from service.jobs.worker_pool import GRACE
+from service.jobs.worker_pool import GRACE, STOP_SECONDS
 from service.search.improve import Progress
 
 _CHECK_EVERY = 0.05  # seconds between two checks whether a record is still wanted
+_TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin a call
 _HEARTBEAT_EVERY = 1.0  # seconds between two signs of life
 
 IsDraining = Callable[[], bool]
@@ -71,7 +73,8 @@ class RecordWorker:
             self._store.finish(as_failed(stored.record, WorkerLost(), stored.record.front))
             return
         deadline = time.monotonic() + self._seconds
-        supervisor = _Supervisor(stored, self._store, deadline, self._is_draining)
+        terminate = getattr(self._runner, "terminate", None) or (lambda: None)
+        supervisor = _Supervisor(stored, self._store, deadline, self._is_draining, terminate)
         result = self._result(stored, supervisor)
         supervisor.end()
         if supervisor.reason is Draining:
@@ -102,7 +105,12 @@ class _Supervisor:
     """Checks in a thread whether a record is still wanted, and ends its planning if it is not."""
 
     def __init__(
-        self, stored: StoredRecord, store: WorkerStore, deadline: float, is_draining: IsDraining
+        self,
+        stored: StoredRecord,
+        store: WorkerStore,
+        deadline: float,
+        is_draining: IsDraining,
+        terminate: Callable[[], None],
     ) -> None:
         self.stop = Event()
         self.reason: StopReason | type[TakenOver | Draining] | None = None
@@ -111,6 +119,7 @@ class _Supervisor:
         self._store = store
         self._deadline = deadline
         self._is_draining = is_draining
+        self._terminate = terminate
         self._over = Event()
         self._thread = Thread(target=self._check_often, name="supervisor", daemon=True)
         self._thread.start()
@@ -136,21 +145,36 @@ class _Supervisor:
             self.reason = self._current_reason()
             if self.reason is not None:
                 self.stop.set()
-                if not self._over.wait(GRACE):
-                    self._end_process()
+                self._wait_or_kill()
+
+    def _wait_or_kill(self) -> None:
+        """Wait until planning has stopped; kill this process if it does not."""
+        if self._is_over_within(GRACE):
+            return
+        self._let_go()
+        if not self._is_over_within(STOP_SECONDS):
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    def _is_over_within(self, seconds: float) -> bool:
+        """Terminate what the runner calls, again and again, and return whether planning is over."""
+        deadline = time.monotonic() + seconds
+        while time.monotonic() < deadline:
+            self._terminate()
+            if self._over.wait(_TERMINATE_EVERY):
+                return True
+        return False
 
     def _current_reason(self) -> StopReason | type[TakenOver | Draining] | None:
         if time.monotonic() > self._deadline:
             return DeadlineExceeded
         return Draining if self._is_draining() else self._store.stop_reason(self._stored.record.id)
 
-    def _end_process(self) -> None:
-        """Store what is known of the record and kill this process, which has not stopped."""
+    def _let_go(self) -> None:
+        """Store what is known of the record, which is given up though planning goes on."""
         if self.reason is Draining:
             self._store.hand_back(self._stored.record.id)
         elif self.reason is not TakenOver:
             self._store.finish(self.ended(self.front))
-        os.kill(os.getpid(), signal.SIGKILL)
 
 
 def make_record_worker(

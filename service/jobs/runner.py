@@ -82,6 +82,13 @@ class TaskRunner:
         front = self._plan(task, task.subject, stop, report)
         return encode_front(front, self._identity(task))
 
+    def terminate(self) -> None:
+        """End the running call of a network, if one runs; from any thread."""
+        for actor in self.actors.values():
+            terminate = getattr(actor, "terminate", None)
+            if terminate is not None:
+                terminate()
+
     def _cover(
         self, task: Task, coverage: Coverage, stop: Callable[[], bool], report: Report
     ) -> FrontDocument:

@@ -22,14 +22,21 @@ class Submission:
         source: What the task is parsed from.
         on_change: Called when a worker begins, and with each progress.
         patient: Whether its time limit counts from the start of planning, not from submission.
+        client: Whose turn it takes in the queue, and whose share of the places.
     """
 
     def __init__(
-        self, number: int, source: TaskSource, on_change: Callable[[], None], patient: bool
+        self,
+        number: int,
+        source: TaskSource,
+        on_change: Callable[[], None],
+        patient: bool,
+        client: str = "",
     ) -> None:
         self.number = number
         self.source = source
         self.patient = patient
+        self.client = client
         self.attempts = 0
         self.stop_reason: StopReason | None = None
         self.progress: Progress | None = None
@@ -64,19 +71,25 @@ class Submission:
         self._on_change()
 
     def report(self, progress: Progress, front: FrontDocument) -> None:
-        """Take the worker's report."""
+        """Take the worker's report, unless it has ended."""
+        if self.ended:
+            return
         self.progress = progress
         self.best_front = front
         self._on_change()
 
     def finish(self, front: FrontDocument) -> None:
-        """End with a front."""
+        """End with a front, unless it has ended."""
+        if self.ended:
+            return
         self._cancel_timer()
         seconds = perf_counter() - self._submitted
         self._future.set_result(front.ended(seconds, late=self.stop_reason is DeadlineExceeded))
 
     def fail(self, error: Exception) -> None:
-        """End with an error."""
+        """End with an error, unless it has ended."""
+        if self.ended:
+            return
         self._cancel_timer()
         self._future.set_exception(error)
         # Read once, so that asyncio does not warn where nobody waits any more.

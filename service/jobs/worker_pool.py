@@ -1,45 +1,26 @@
-"""A pool of worker processes with a queue: replaces those that die, and stops what takes too long.
+"""A pool of worker processes with a queue: gives them tasks, and stops what takes too long.
 
-The first process compiles the search, and the others load what it has compiled. Until then all of
-them run tasks that need the network alone.
+To stop a task is not to end its process: whoever waits is answered, and the process takes no more
+work until it has noticed. Only one that does not notice for seconds is killed. Until the search is
+compiled, processes run tasks that need the network alone.
 """
 
 import asyncio
-import logging
-from collections import deque
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from itertools import count
 
-from service.errors import (
-    Cancelled,
-    DeadlineExceeded,
-    QueueFull,
-    ShuttingDown,
-    WarmingUp,
-    WorkerLost,
-)
+from service.errors import Cancelled, DeadlineExceeded, ShuttingDown, WarmingUp, WorkerLost
+from service.jobs.fair_queue import FairQueue, check_place, places_of_client
 from service.jobs.front_document import FrontDocument
-from service.jobs.messages import Do, Done, Failed, Found, Started, Stop, Warm, WarmUp
+from service.jobs.messages import Do, Done, Failed, Found, Stop
 from service.jobs.record import StopReason
 from service.jobs.runner import MakeRunner
 from service.jobs.submission import MOST_ATTEMPTS, Submission
-from service.jobs.worker_process import WorkerProcess
+from service.jobs.worker_set import Worker, WorkerSet
 from service.requests.task import TaskSource
 
-GRACE = 0.15  # seconds for a task to stop by itself before its process is killed
-_PAUSE = 1.0  # seconds before a process that could not even start is replaced
-
-
-@dataclass(eq=False)
-class _Worker:
-    """A worker process, its stage, and the submission that it runs."""
-
-    process: WorkerProcess
-    started: bool = False
-    warming: bool = False
-    warm: bool = False
-    submission: Submission | None = None
+GRACE = 0.15  # seconds for a stopped task to give its front; then its last report is the answer
+STOP_SECONDS = 5.0  # seconds for a stopped task to notice before its process is killed
 
 
 class WorkerPool:
@@ -49,32 +30,34 @@ class WorkerPool:
         make_runner: Called in each process; it must be picklable.
         workers: How many processes there are.
         queue: How many submissions may wait while all of these are busy.
+        share: The share of all places, of workers and queue, that one client may hold. It may
+            always hold one more than there are workers.
         seconds: The time limit of a submission.
+        stop_seconds: How long a stopped task may go on until its process is killed.
         on_front: Called with every front as the worker wrote it.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913  all but the first are keyword-only
         self,
         make_runner: MakeRunner,
         *,
         workers: int,
         queue: int,
+        share: float = 1.0,
         seconds: float = 90.0,
+        stop_seconds: float = STOP_SECONDS,
         on_front: Callable[[FrontDocument], None] = lambda _: None,
     ) -> None:
-        self._make_runner = make_runner
-        self._count = workers
+        self._workers = WorkerSet(make_runner, workers, self._handle, self._requeue_from)
         self._places = workers + queue
+        self._places_of_client = places_of_client(workers, queue, share)
         self._seconds = seconds
+        self._stop_seconds = stop_seconds
         self._on_front = on_front
-        self._workers: list[_Worker] = []
-        self._queue: deque[Submission] = deque()
+        self._queue = FairQueue()
+        self._reserved: set[Submission] = set()
         self._numbers = count()
-        self._keepers: list[asyncio.Task[None]] = []
-        self._was_warm = False
         self._closed = False
-        self._lost = 0
-        self._log = logging.getLogger("paretour")
 
     @property
     def waiting(self) -> int:
@@ -83,13 +66,13 @@ class WorkerPool:
 
     @property
     def working(self) -> int:
-        """The number of submissions that are being run."""
-        return len(self.running)
+        """The number of submissions that are being run, and are not stopped."""
+        return len(self._working)
 
     @property
     def lost(self) -> int:
         """The number of processes that were lost and replaced."""
-        return self._lost
+        return self._workers.lost
 
     @property
     def pids(self) -> list[int | None]:
@@ -98,63 +81,88 @@ class WorkerPool:
 
     @property
     def running(self) -> Mapping[Submission, int | None]:
-        """The submissions that are being run, and the id of the process of each."""
+        """The submissions that processes run, stopped ones too, and the id of each process."""
         return {each.submission: each.process.pid for each in self._workers if each.submission}
+
+    @property
+    def _working(self) -> list[Submission]:
+        return [submission for submission in self.running if not submission.ended]
 
     async def start(self) -> None:
         """Start the processes, and return before they are ready."""
-        self._keepers = [asyncio.create_task(self._keep_worker()) for _ in range(self._count)]
+        await self._workers.start()
 
     async def close(self) -> None:
         """Take no more submissions, fail those that are unfinished, and kill the processes."""
         self._closed = True
-        for submission in [*self._queue, *self.running]:
+        for submission in [*self._reserved, *self._queue, *self.running]:
             submission.fail(ShuttingDown())
-        self._queue.clear()
-        for keeper in self._keepers:
-            keeper.cancel()
-        await asyncio.gather(*self._keepers, return_exceptions=True)
+        self._queue = FairQueue()
+        await self._workers.close()
 
     def check_open(self) -> None:
         """Raise ShuttingDown when the pool is closed."""
         if self._closed:
             raise ShuttingDown
 
-    def check_place(self) -> None:
-        """Raise QueueFull when the queue is full."""
-        if self.waiting + self.working >= self._places:
-            raise QueueFull
+    def check_place(self, client: str = "") -> None:
+        """Raise QueueFull or ShareFull when no place is left for one more task of a client."""
+        held = (*self._reserved, *self._queue, *self._working)
+        check_place(held, client, self._places, self._places_of_client)
 
     def check_warm(self) -> None:
         """Raise WarmingUp until one process has compiled the search: others will soon load it."""
-        if not self._was_warm:
+        if not self._workers.was_warm:
             raise WarmingUp
 
     def check_ready(self) -> None:
-        """Raise ShuttingDown when closed, WarmingUp while no process has the compiled search."""
+        """Raise ShuttingDown when closed, NoWorker or WarmingUp while no process is warm."""
         self.check_open()
-        if not any(worker.warm for worker in self._workers):
-            raise WarmingUp
+        self._workers.check_ready()
+
+    def reserve(
+        self,
+        source: TaskSource,
+        on_change: Callable[[], None] = lambda: None,
+        patient: bool = False,
+        client: str = "",
+    ) -> Submission:
+        """Take a place for a task and return its submission. The arguments are those of Submission.
+
+        Raises:
+            QueueFull: No place is left.
+            ShareFull: The client holds as many as it may.
+            ShuttingDown: The pool is closed.
+        """
+        self.check_open()
+        self.check_place(client)
+        submission = Submission(next(self._numbers), source, on_change, patient, client)
+        self._reserved.add(submission)
+        return submission
+
+    def queue(self, submission: Submission) -> None:
+        """Queue a submission that has a place, unless it was stopped there."""
+        self._reserved.discard(submission)
+        if not submission.ended:
+            if not submission.patient:
+                self._start_timer(submission)
+            self._queue.append(submission)
+            self._assign()
+
+    def give_back(self, submission: Submission) -> None:
+        """Give a reserved place back."""
+        self._reserved.discard(submission)
 
     def submit(
         self,
         source: TaskSource,
         on_change: Callable[[], None] = lambda: None,
         patient: bool = False,
+        client: str = "",
     ) -> Submission:
-        """Queue a task. The arguments are those of Submission.
-
-        Raises:
-            QueueFull: The queue is full.
-            ShuttingDown: The pool is closed.
-        """
-        self.check_open()
-        self.check_place()
-        submission = Submission(next(self._numbers), source, on_change, patient)
-        if not patient:
-            self._start_timer(submission)
-        self._queue.append(submission)
-        self._assign()
+        """Reserve a place for a task and queue it there; arguments and errors are of reserve."""
+        submission = self.reserve(source, on_change, patient, client)
+        self.queue(submission)
         return submission
 
     def stop(self, submission: Submission, reason: StopReason = Cancelled) -> None:
@@ -166,12 +174,13 @@ class WorkerPool:
             if worker.submission is submission:
                 worker.process.send(Stop(submission.number))
                 loop = asyncio.get_running_loop()
-                loop.call_later(GRACE, self._kill_if_still_running, worker, submission)
+                loop.call_later(GRACE, submission.cut_short)
+                loop.call_later(self._stop_seconds, self._kill_if_still_running, worker, submission)
                 return
         self._queue.remove(submission)
         submission.cut_short()
 
-    def _kill_if_still_running(self, worker: _Worker, submission: Submission) -> None:
+    def _kill_if_still_running(self, worker: Worker, submission: Submission) -> None:
         if worker.submission is submission:
             worker.process.kill()
 
@@ -182,25 +191,7 @@ class WorkerPool:
                 self._seconds, self.stop, submission, DeadlineExceeded
             )
 
-    async def _keep_worker(self) -> None:
-        """Keep one process running: when it dies, start another."""
-        while True:
-            worker = _Worker(await WorkerProcess.start(self._make_runner))
-            self._workers.append(worker)
-            try:
-                async for message in worker.process.messages():
-                    self._handle(worker, message)
-                self._lost += 1
-                self._log.warning("worker %s was lost and is replaced", worker.process.pid)
-            finally:
-                worker.process.kill()
-                self._workers.remove(worker)
-                self._requeue_from(worker)
-                await worker.process.join()
-            if not worker.started:
-                await asyncio.sleep(_PAUSE)
-
-    def _requeue_from(self, worker: _Worker) -> None:
+    def _requeue_from(self, worker: Worker) -> None:
         """Queue the submission of a lost worker once more, or end it."""
         submission = worker.submission
         if submission is not None and not submission.ended:
@@ -209,50 +200,45 @@ class WorkerPool:
             elif submission.attempts >= MOST_ATTEMPTS:
                 submission.fail(WorkerLost())
             else:
-                self._queue.appendleft(submission)
-        self._warm_up()
+                self._queue.put_first(submission)
         self._assign()
 
-    def _handle(self, worker: _Worker, message: object) -> None:
+    def _handle(self, worker: Worker, message: object) -> None:
         submission = worker.submission
         match message:
-            case Started():
-                worker.started = True
-            case Warm():
-                worker.warm = self._was_warm = True
             case Found() if submission is not None:
                 submission.report(message.progress, message.front)
                 return
-            case Done(front=front) if submission is not None:
-                submission.finish(front)
-                self._on_front(front)
+            case Done() | Failed() if submission is not None:
                 worker.submission = None
-            case Failed() if submission is not None and submission.stop_reason:
-                submission.cut_short()
-                worker.submission = None
-            case Failed(error=error) if submission is not None:
-                submission.fail(error)
-                worker.submission = None
-        self._warm_up()
+                self._end(submission, message)
         self._assign()
 
-    def _warm_up(self) -> None:
-        """Let one process compile the search, and once it has, the others load it."""
-        for worker in self._workers:
-            first = not any(other.warming for other in self._workers)
-            if worker.started and not worker.warming and (self._was_warm or first):
-                worker.warming = True
-                worker.process.send(WarmUp())
+    def _end(self, submission: Submission, message: Done | Failed) -> None:
+        """End a submission with the worker's answer, unless it has ended before."""
+        if submission.ended:
+            return
+        if isinstance(message, Done):
+            submission.finish(message.front)
+            self._on_front(message.front)
+        elif submission.stop_reason:
+            submission.cut_short()
+        else:
+            submission.fail(message.error)
 
     def _assign(self) -> None:
         """Send queued submissions to idle processes."""
         for worker in self._workers:
             # Before the first is warm, no task that needs compiled code is admitted.
-            able = worker.warm if self._was_warm else worker.started
+            able = worker.warm if self._workers.was_warm else worker.started
             if able and worker.submission is None and self._queue:
-                submission = self._queue.popleft()
+                submission = self._queue.take()
                 worker.submission = submission
                 submission.begin()
                 self._start_timer(submission)
                 source = submission.source
-                worker.process.send(Do(submission.number, source.task or source))
+                try:
+                    worker.process.send(Do(submission.number, source.task or source))
+                except Exception as error:
+                    worker.submission = None
+                    submission.fail(error)

@@ -5,12 +5,13 @@ import multiprocessing
 import os
 import pickle
 import signal
+import time
 import traceback
 from asyncio import StreamReader, StreamWriter
 from collections.abc import AsyncIterator
 from contextlib import suppress
 from multiprocessing.context import SpawnProcess
-from select import POLLIN, poll
+from queue import SimpleQueue
 from socket import socket, socketpair
 from threading import Lock, Thread
 from typing import Any
@@ -32,6 +33,7 @@ from service.jobs.runner import MakeRunner, Reporter, Runner
 from service.requests.task import Task, TaskSource
 
 NICENESS = 5  # of a worker: the event loop comes first, and needs little
+_TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin a call
 
 # A fork would copy the threads' locks but not the threads, and onnxruntime does not survive it.
 _CONTEXT = multiprocessing.get_context("spawn")
@@ -43,59 +45,74 @@ def run_worker(connection: socket, make_runner: MakeRunner) -> None:
     # An interrupt from a terminal goes to all processes; the service tells its workers to end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.nice(NICENESS)
-    loop = _WorkerLoop(connection, make_runner())
-    Thread(target=_exit_with_service, args=[connection], name="guard", daemon=True).start()
-    with suppress(EOFError, OSError):
-        loop.run()
-
-
-def _exit_with_service(connection: socket) -> None:
-    """Exit at once when the service is gone, even in the middle of a task."""
-    hung_up = poll()
-    hung_up.register(connection, 0)
-    hung_up.poll()
-    os._exit(0)
+    with suppress(OSError):
+        _WorkerLoop(connection, make_runner()).run()
 
 
 class _WorkerLoop:
-    """Runs tasks in one thread and warms up in another."""
+    """Runs tasks in one thread, reads messages in another, and warms up in a third."""
 
     def __init__(self, connection: socket, runner: Runner) -> None:
         self._connection = connection
         self._runner = runner
         self._sending = Lock()
+        self._tasks: SimpleQueue[Do] = SimpleQueue()
+        self._changing = Lock()  # held while `_running` changes, and while its call is terminated
+        self._running: int | None = None
         self._stopped: int | None = None
-        self._readable = poll()
-        self._readable.register(connection, POLLIN)
 
     def run(self) -> None:
-        """Handle messages, one after another."""
+        """Run tasks, one after another, until the service closes the connection."""
+        Thread(target=self._read, name="reader", daemon=True).start()
         self._send(Started())
         while True:
-            self._handle(receive_blocking(self._connection))
+            task = self._tasks.get()
+            result = self._result(task.number, task.task)
+            self._set_running(None)
+            self._send(result)
+
+    def _read(self) -> None:
+        """Handle messages; exit at once when the service is gone, even in the middle of a task."""
+        try:
+            while True:
+                self._handle(receive_blocking(self._connection))
+        except (EOFError, OSError):
+            os._exit(0)
+        except BaseException:
+            traceback.print_exc()
+            os._exit(1)
 
     def _handle(self, message: object) -> None:
         match message:
             case Do():
-                self._send(self._result(message.number, message.task))
+                self._set_running(message.number)
+                self._tasks.put(message)
             case Stop():
                 self._stopped = message.number
+                Thread(target=self._terminate, args=[message.number], daemon=True).start()
             case WarmUp():
                 Thread(target=self._warm_up, name="warm-up", daemon=True).start()
+
+    def _terminate(self, number: int) -> None:
+        """Terminate the calls of the runner, if it can, until the task of this number has ended."""
+        terminate = getattr(self._runner, "terminate", None)
+        while terminate is not None:
+            with self._changing:
+                if self._running != number:
+                    return
+                terminate()
+            time.sleep(_TERMINATE_EVERY)
+
+    def _set_running(self, number: int | None) -> None:
+        with self._changing:
+            self._running = number
 
     def _result(self, number: int, task: TaskSource | Task) -> Done | Failed:
         report = Reporter(lambda progress, front: self._send(Found(number, progress, front)))
         try:
-            return Done(number, self._runner.run(task, lambda: self._is_stopped(number), report))
+            return Done(number, self._runner.run(task, lambda: self._stopped == number, report))
         except Exception as error:
             return Failed(number, _picklable(error))
-
-    def _is_stopped(self, number: int) -> bool:
-        """Read what has been received, and return whether the running task is to stop."""
-        # A busy worker is sent no other task, so that none is begun in here.
-        while self._stopped != number and self._readable.poll(0):
-            self._handle(receive_blocking(self._connection))
-        return self._stopped == number
 
     def _warm_up(self) -> None:
         self._runner.warm_up()
@@ -131,14 +148,22 @@ class WorkerProcess:
 
     @classmethod
     async def start(cls, make_runner: MakeRunner) -> "WorkerProcess":
-        """Start a process, which sends Started once its networks are loaded."""
+        """Start a process, which sends Started once its networks are loaded.
+
+        Raises:
+            OSError: There are no descriptors or processes left.
+        """
         ours, theirs = socketpair()
-        with theirs:
-            process = _CONTEXT.Process(
-                target=run_worker, args=(theirs, make_runner), name="planner", daemon=True
-            )
-            process.start()
-        return cls(process, *await asyncio.open_connection(sock=ours, limit=_BUFFER))
+        try:
+            with theirs:
+                process = _CONTEXT.Process(
+                    target=run_worker, args=(theirs, make_runner), name="planner", daemon=True
+                )
+                process.start()
+            return cls(process, *await asyncio.open_connection(sock=ours, limit=_BUFFER))
+        except BaseException:
+            ours.close()  # with which the process ends, if there is one
+            raise
 
     @property
     def pid(self) -> int | None:

@@ -8,6 +8,8 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from threading import Event
+from typing import Any
 
 import numpy as np
 
@@ -18,10 +20,12 @@ from service.planner import Front
 from service.requests.task import TaskSource
 from service.search.improve import Progress
 
+_TERMINATED = Event()  # of the process that runs
+
 
 @dataclass(frozen=True)
 class ScriptedRunner:
-    """A runner that fails, dies, waits, hangs or reports, as the body says.
+    """A runner that fails, dies, waits, hangs, calls or reports, as the body says.
 
     Each death takes one byte from the file `lives`; where none is left it plans instead. With
     `warm`, the path of a file, its warm-up lasts until the file exists.
@@ -35,17 +39,23 @@ class ScriptedRunner:
         while self.warm is not None and not self.warm.exists():
             time.sleep(0.01)
 
-    def run(self, source: TaskSource, stop: Callable[[], bool], report: Report) -> FrontDocument:
+    def run(  # noqa: C901
+        self, source: TaskSource, stop: Callable[[], bool], report: Report
+    ) -> FrontDocument:
         """Return a front of one tour, after what the body names."""
         match source.body:
             case b"fail":
                 raise KeyError("city")
             case b"die":
                 self._die_once_more()
-            case b"wait":
+            case b"wait" | b"stop slowly":
                 while not stop():
                     time.sleep(0.001)
+                time.sleep(source.body == b"stop slowly")
                 return document("cancelled")
+            case b"call":
+                _TERMINATED.wait()
+                raise RuntimeError("terminated")
             case b"hang":
                 time.sleep(600)
             case b"report and hang":
@@ -55,6 +65,10 @@ class ScriptedRunner:
                     report(Progress(seconds, 0.5, 7), lambda _: document(None))
                     time.sleep(0.01)
         return document("converged")
+
+    def terminate(self) -> None:
+        """End a call."""
+        _TERMINATED.set()
 
     def _die_once_more(self) -> None:
         if left := self.lives.read_bytes():
@@ -88,11 +102,11 @@ def _same(runner: ScriptedRunner) -> ScriptedRunner:
 
 @asynccontextmanager
 async def worker_pool(
-    runner: ScriptedRunner | None = None, workers: int = 1, queue: int = 0, seconds: float = 60.0
+    runner: ScriptedRunner | None = None, workers: int = 1, queue: int = 0, **options: Any
 ) -> AsyncIterator[WorkerPool]:
     """Run a pool of processes with such a runner until the block ends."""
     make_runner = partial(_same, runner or ScriptedRunner())
-    pool = WorkerPool(make_runner, workers=workers, queue=queue, seconds=seconds)
+    pool = WorkerPool(make_runner, workers=workers, queue=queue, **options)
     await pool.start()
     try:
         yield pool

@@ -2,7 +2,9 @@
 
 import asyncio
 import os
+import resource
 import signal
+import time
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from pathlib import Path
@@ -13,6 +15,7 @@ import pytest
 from service.errors import (
     Cancelled,
     DeadlineExceeded,
+    NoWorker,
     QueueFull,
     ShuttingDown,
     WarmingUp,
@@ -94,10 +97,76 @@ def test_work_that_does_not_listen_is_ended_and_its_process_replaced() -> None:
         workers.stop(submission)
         with pytest.raises(Cancelled):
             await submission.front()
+        assert workers.lost == 0
         assert (await front(workers)).terminated == "converged"
         assert workers.lost == 1
 
+    run(test, stop_seconds=1.0)
+
+
+@pytest.mark.parametrize("body", [b"wait", b"stop slowly", b"call"])
+def test_to_stop_work_ends_no_process(body: bytes) -> None:
+    async def test(workers: WorkerPool) -> None:
+        await front(workers)
+        before = list(workers.pids)
+        for _ in range(3):
+            submission = workers.submit(source(body))
+            await until(lambda: workers.working == 1)
+            began = time.monotonic()
+            workers.stop(submission)
+            with suppress(Cancelled):
+                await submission.front()
+            assert time.monotonic() - began < 0.8
+            assert workers.working == 0
+        assert (await front(workers)).terminated == "converged"
+        assert (workers.pids, workers.lost) == (before, 0)
+
     run(test)
+
+
+def test_a_process_takes_no_work_until_what_was_stopped_has_ended() -> None:
+    async def test(workers: WorkerPool) -> None:
+        submission = workers.submit(source(b"stop slowly"))
+        await until(lambda: workers.working == 1)
+        workers.stop(submission)
+        with pytest.raises(Cancelled):
+            await submission.front()
+        following = workers.submit(source())
+        assert (workers.working, workers.waiting) == (0, 1)
+        assert (await following.front()).terminated == "converged"
+
+    run(test)
+
+
+def test_processes_that_cannot_be_started_are_tried_again(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def test(workers: WorkerPool) -> None:
+        await front(workers)
+        await until(lambda: is_ready(workers))
+        soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (0, hard))
+        try:
+            for pid in workers.pids:
+                os.kill(pid or 0, signal.SIGKILL)
+            await until(lambda: not workers.pids)
+            await asyncio.sleep(2)
+            with pytest.raises(NoWorker):
+                workers.check_ready()
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+        assert (await front(workers)).terminated == "converged"
+        await until(lambda: is_ready(workers) and len(workers.pids) == 2)
+        assert sum("cannot run" in record.message for record in caplog.records) == 1
+
+    run(test, workers=2)
+
+
+def is_ready(workers: WorkerPool) -> bool:
+    with suppress(WarmingUp, NoWorker):
+        workers.check_ready()
+        return True
+    return False
 
 
 @pytest.mark.parametrize("patient", [True, False])

@@ -1,0 +1,87 @@
+"""A queue that takes submissions in turn by client, and the places that a client may hold."""
+
+import math
+from collections import deque
+from collections.abc import Iterable, Iterator
+from itertools import chain
+
+from service.errors import QueueFull, ShareFull
+from service.jobs.submission import Submission
+
+
+def places_of_client(workers: int, queue: int, share: float) -> int:
+    """Return how many places one client may hold: its share, but more than there are workers.
+
+    >>> places_of_client(2, 16, 0.5), places_of_client(4, 2, 0.5), places_of_client(1, 0, 0.5)
+    (9, 5, 2)
+    """
+    return max(math.ceil(share * (workers + queue)), workers + 1)
+
+
+class FairQueue:
+    """Submissions that wait: the next is that of the client whose turn is longest ago."""
+
+    def __init__(self) -> None:
+        self._first: deque[Submission] = deque()
+        self._by_client: dict[str, deque[Submission]] = {}  # in the order of their turns
+
+    def __len__(self) -> int:
+        """Return how many wait."""
+        return len(self._first) + sum(map(len, self._by_client.values()))
+
+    def __iter__(self) -> Iterator[Submission]:
+        """Iterate over those that wait, client by client."""
+        return chain(self._first, *self._by_client.values())
+
+    def append(self, submission: Submission) -> None:
+        """Add a submission behind those of the same client."""
+        self._by_client.setdefault(submission.client, deque()).append(submission)
+
+    def put_first(self, submission: Submission) -> None:
+        """Add a submission before all others."""
+        self._first.appendleft(submission)
+
+    def take(self) -> Submission:
+        """Remove the next submission and return it.
+
+        Raises:
+            IndexError: None waits.
+        """
+        if self._first or not self._by_client:
+            return self._first.popleft()
+        client = next(iter(self._by_client))
+        waiting = self._by_client.pop(client)
+        submission = waiting.popleft()
+        if waiting:
+            self._by_client[client] = waiting
+        return submission
+
+    def remove(self, submission: Submission) -> None:
+        """Remove a submission, if it waits."""
+        if submission in self._first:
+            self._first.remove(submission)
+        waiting = self._by_client.get(submission.client, deque())
+        if submission in waiting:
+            waiting.remove(submission)
+            if not waiting:
+                del self._by_client[submission.client]
+
+
+def check_place(held: Iterable[Submission], client: str, places: int, of_client: int) -> None:
+    """Raise a refusal where no place is left for one more submission of a client.
+
+    Args:
+        held: The submissions that hold a place.
+        client: For whom there is one more.
+        places: How many may be held in all.
+        of_client: How many the client may hold.
+
+    Raises:
+        QueueFull: All places are held.
+        ShareFull: The client holds as many as it may.
+    """
+    clients = [submission.client for submission in held]
+    if len(clients) >= places:
+        raise QueueFull
+    if clients.count(client) >= of_client:
+        raise ShareFull(of_client)

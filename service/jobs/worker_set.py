@@ -1,0 +1,137 @@
+"""A set of worker processes: each is started, warmed up, and replaced when it is lost.
+
+The first process compiles the search, and the others load what it has compiled.
+"""
+
+import asyncio
+import logging
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from service.errors import NoWorker, WarmingUp
+from service.jobs.growing_pause import GrowingPause
+from service.jobs.messages import Started, Warm, WarmUp
+from service.jobs.runner import MakeRunner
+from service.jobs.submission import Submission
+from service.jobs.worker_process import WorkerProcess
+
+_SHORTEST_PAUSE = 0.5  # seconds until a process that could not even start is tried again
+_LONGEST_PAUSE = 15.0
+_LOG = logging.getLogger("paretour")
+
+
+@dataclass(eq=False)
+class Worker:
+    """A worker process, its stage, and the submission that it runs."""
+
+    process: WorkerProcess
+    started: bool = False
+    warming: bool = False
+    warm: bool = False
+    submission: Submission | None = None
+
+
+class WorkerSet:
+    """So many worker processes, until the set is closed.
+
+    Args:
+        make_runner: Called in each process; it must be picklable.
+        size: How many processes there are.
+        on_message: Called with each message of a worker.
+        on_lost: Called with each worker that is lost, once it is out of the set.
+
+    Attributes:
+        lost: The number of processes that were lost and replaced.
+        was_warm: Whether a process has compiled the search.
+    """
+
+    def __init__(
+        self,
+        make_runner: MakeRunner,
+        size: int,
+        on_message: Callable[[Worker, object], None],
+        on_lost: Callable[[Worker], None],
+    ) -> None:
+        self._make_runner = make_runner
+        self._size = size
+        self._on_message = on_message
+        self._on_lost = on_lost
+        self._workers: list[Worker] = []
+        self._keepers: list[asyncio.Task[None]] = []
+        self._failing = False
+        self.lost = 0
+        self.was_warm = False
+
+    def __iter__(self) -> Iterator[Worker]:
+        """Iterate over the workers that there are."""
+        return iter(self._workers)
+
+    async def start(self) -> None:
+        """Start the processes, and return before they are ready."""
+        self._keepers = [asyncio.create_task(self._keep_worker()) for _ in range(self._size)]
+
+    async def close(self) -> None:
+        """Kill the processes."""
+        for keeper in self._keepers:
+            keeper.cancel()
+        await asyncio.gather(*self._keepers, return_exceptions=True)
+
+    def check_ready(self) -> None:
+        """Raise NoWorker while none can be started, WarmingUp while none has the search."""
+        if self._failing and not any(worker.started for worker in self._workers):
+            raise NoWorker
+        if not any(worker.warm for worker in self._workers):
+            raise WarmingUp
+
+    async def _keep_worker(self) -> None:
+        """Keep one process running until the set is closed, whatever fails."""
+        pause = GrowingPause(_SHORTEST_PAUSE, _LONGEST_PAUSE)
+        while True:
+            try:
+                if await self._run_worker():
+                    pause.reset()
+                    continue
+            except Exception as error:
+                self._log_failure(error)
+            await pause.wait()
+
+    async def _run_worker(self) -> bool:
+        """Start a process, handle its messages until it is lost, and return whether it started."""
+        worker = Worker(await WorkerProcess.start(self._make_runner))
+        self._workers.append(worker)
+        try:
+            async for message in worker.process.messages():
+                self._handle(worker, message)
+            self.lost += 1
+            _LOG.warning("worker %s was lost and is replaced", worker.process.pid)
+        finally:
+            worker.process.kill()
+            self._workers.remove(worker)
+            self._warm_up()
+            self._on_lost(worker)
+            await worker.process.join()
+        return worker.started
+
+    def _log_failure(self, error: Exception) -> None:
+        """Log that a process cannot run, once until one has started again."""
+        if not self._failing:
+            _LOG.error("a worker cannot run, and is tried again", exc_info=error)
+        self._failing = True
+
+    def _handle(self, worker: Worker, message: object) -> None:
+        match message:
+            case Started():
+                worker.started = True
+                self._failing = False
+            case Warm():
+                worker.warm = self.was_warm = True
+        self._warm_up()
+        self._on_message(worker, message)
+
+    def _warm_up(self) -> None:
+        """Let one process compile the search, and once it has, the others load it."""
+        for worker in self._workers:
+            first = not any(other.warming for other in self._workers)
+            if worker.started and not worker.warming and (self.was_warm or first):
+                worker.warming = True
+                worker.process.send(WarmUp())
