@@ -128,6 +128,7 @@ def _local_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
         _make_runner(settings),
         workers=settings.workers,
         queue=settings.queue,
+        share=settings.caller_share,
         seconds=settings.request_seconds,
         on_front=metrics.planned,
     )
@@ -151,6 +152,7 @@ def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
         max_age=settings.store_seconds,
         max_bytes=settings.store_bytes,
         queue=settings.queue,
+        share=settings.caller_share,
         seconds=settings.request_seconds,
         on_front=metrics.planned,
     )

@@ -105,7 +105,7 @@ def create_app(
         docs_url=None,
         redoc_url=None,
     )
-    app.include_router(PlanRoutes(actors, store, engine, limits).router(), **edge.guard)
+    app.include_router(PlanRoutes(actors, engine, limits).router(), **edge.guard)
     app.include_router(StoredFrontRoutes(store, engine).router(), **edge.guard)
     app.include_router(_actor_router(actors), **edge.guard)
     app.include_router(edge.metrics.router(), **edge.guard)

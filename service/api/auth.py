@@ -14,6 +14,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib.util import find_spec
+from ipaddress import ip_network
 from typing import Self
 
 from fastapi import Depends, Security
@@ -25,6 +26,7 @@ from limits.aio.strategies import MovingWindowRateLimiter
 from limits.errors import StorageError
 from starlette.requests import Request
 
+from service.api.middleware import ANONYMOUS
 from service.errors import Refusal
 
 _REDIS_SECONDS = 0.5  # that a request waits for Redis at most
@@ -101,6 +103,20 @@ class Rates:
 def caller_of(request: Request) -> str:
     """Return the name of the caller; all callers without a key are one."""
     return str(request.scope["caller"])
+
+
+def client_of(request: Request) -> str:
+    """Return for whom places in the queue are counted: the caller, without keys its address.
+
+    Of an IPv6 address it is the network of 64 bits, which one client may have to itself.
+    """
+    if request.scope["caller"] != ANONYMOUS:
+        return caller_of(request)
+    host = request.client.host if request.client else ""
+    try:
+        return str(ip_network(f"{host}/64", strict=False)) if ":" in host else host
+    except ValueError:
+        return host
 
 
 class Access:

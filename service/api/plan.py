@@ -12,7 +12,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from service.actor import ActorInfo
-from service.api.auth import caller_of
+from service.api.auth import caller_of, client_of
 from service.api.body import TaskParser, receive_source
 from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async
 from service.api.responses import (
@@ -27,7 +27,6 @@ from service.api.responses import (
 from service.jobs.engine import Engine, final_record
 from service.jobs.front_document import empty_front
 from service.jobs.record import Record
-from service.jobs.store import Store
 from service.requests.coverage import coverage_schema
 from service.requests.front import front_schema
 from service.requests.limits import Limits
@@ -47,12 +46,10 @@ class PlanRoutes:
     def __init__(
         self,
         actors: Mapping[str, ActorInfo],
-        store: Store,
         engine: Engine,
         limits: Limits,
     ) -> None:
         self._actors = actors
-        self._store = store
         self._engine = engine
         self._limits = limits
         self._parser = TaskParser(limits, actors)
@@ -106,10 +103,10 @@ class PlanRoutes:
         source = replace(source, task=await self._parser.parse(source))
         record = await self._new_record(request, source)
         if prefers_async(request):
-            first = await self._begin(record)
+            first = await self._engine.submit(record)
             return _accepted_response(self._engine.state(first).record)
         if record.key is not None:
-            first = await self._begin(record)
+            first = await self._engine.submit(record)
             return _finished_response(request, await final_record(self._engine, first))
         return _finished_response(request, await self._run(request, record))
 
@@ -118,7 +115,7 @@ class PlanRoutes:
         await self._engine.check_open()
         # A repeat may need no place.
         if idempotency_key(request) is None:
-            await self._engine.check_place()
+            await self._engine.check_place(client_of(request))
 
     async def _new_record(self, request: Request, source: TaskSource) -> Record:
         assert source.task is not None
@@ -134,18 +131,8 @@ class PlanRoutes:
             source=source,
             key=key,
             digest=await asyncio.to_thread(_digest, source) if key else "",
+            client=client_of(request),
         )
-
-    async def _begin(self, record: Record) -> Record:
-        """Begin to plan, and return the record, or the earlier one that it is a repeat of."""
-        first = await self._store.admit(record)
-        if first.id == record.id:
-            try:
-                await self._engine.submit(record)
-            except Exception:
-                await self._store.delete(record)
-                raise
-        return first
 
     async def _run(self, request: Request, record: Record) -> Record:
         disconnect = asyncio.ensure_future(_disconnect(request))

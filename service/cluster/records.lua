@@ -21,20 +21,32 @@ function verbs.put(now)
   keep_work(id, work)
 end
 
-function verbs.admit(now)
-  local id, caller, key, digest = unpack(ARGV, 3, 6)
-  local fields, work = split(7)
+-- The reply to a repeat; nil for a record that is none, or repeats one that failed.
+local function repeated(caller, key, digest)
   local earlier = key ~= '' and redis.call('GET', key_of(caller, key))
-  if earlier then
-    local same, status = unpack(redis.call('HMGET', front_of(earlier), 'digest', 'status'))
-    if same ~= digest then return 'mismatch' end
-    if status ~= 'failed' then return {earlier, redis.call('HGETALL', front_of(earlier))} end
-    redis.call('HDEL', front_of(earlier), 'key')
-  end
+  if not earlier then return nil end
+  local same, status = unpack(redis.call('HMGET', front_of(earlier), 'digest', 'status'))
+  if same ~= digest then return 'mismatch' end
+  if status ~= 'failed' then return {earlier, redis.call('HGETALL', front_of(earlier))} end
+end
+
+function verbs.repeated(_)
+  return repeated(unpack(ARGV, 3, 5)) or 'new'
+end
+
+local function admit(now, first)
+  local id, caller, key, digest = unpack(ARGV, first, first + 3)
+  local fields, work = split(first + 4)
+  local reply = repeated(caller, key, digest)
+  if reply then return reply end
+  local failed = key ~= '' and redis.call('GET', key_of(caller, key))
+  if failed then redis.call('HDEL', front_of(failed), 'key') end
   put(now, id, fields)
   keep_work(id, work)
   return 'new'
 end
+
+function verbs.admit(now) return admit(now, 3) end
 
 function verbs.get(_)
   local caller, id = unpack(ARGV, 3, 4)
@@ -118,11 +130,29 @@ function verbs.standing(_)
   return {waiting, working, tonumber(redis.call('GET', LOST) or 0)}
 end
 
--- Whether a record, or one more, is among those that may wait or be worked on.
-function verbs.has_place(now)
-  local queue, id = tonumber(ARGV[3]), ARGV[4]
-  local before = id and redis.call('ZRANK', UNFINISHED, id) or redis.call('ZCARD', UNFINISHED)
-  return before < workers_at(now) + queue and 1 or 0
+-- The refusal of one more record of a client, where it has no place: 'full', or how many it may have.
+local function refusal(now)
+  local queue, share, client = tonumber(ARGV[3]), tonumber(ARGV[4]), ARGV[5]
+  local workers, held = workers_at(now), 0
+  local unfinished = redis.call('ZRANGE', UNFINISHED, 0, -1)
+  if #unfinished >= workers + queue then return 'full' end
+  for _, id in ipairs(unfinished) do
+    local its, caller = unpack(redis.call('HMGET', front_of(id), 'client', 'caller'))
+    if (its or caller) == client then held = held + 1 end
+  end
+  local most = math.max(math.ceil(share * (workers + queue)), workers + 1)
+  if held >= most then return most end
+end
+
+function verbs.check_place(now) return refusal(now) or 'new' end
+
+-- Admission to the queue and to the records at once.
+function verbs.submit(now)
+  local reply = repeated(unpack(ARGV, 7, 9)) or refusal(now)
+  if reply then return reply end
+  reply = admit(now, 6)
+  redis.call('HSET', front_of(ARGV[6]), 'client', ARGV[5])
+  return reply
 end
 
 -- Nothing where the record is finished, or another worker is at it, unless that is known to be lost.

@@ -5,7 +5,6 @@ import logging
 from asyncio import Event, Future
 from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import suppress
-from dataclasses import replace
 from functools import partial
 from time import time
 
@@ -27,13 +26,12 @@ from service.errors import (
     DeadlineExceeded,
     Expired,
     NotFound,
-    QueueFull,
     ShuttingDown,
     StoreUnavailable,
 )
 from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.front_document import FrontDocument
-from service.jobs.record import Record, StopReason, as_ended
+from service.jobs.record import Record, StopReason, as_ended, as_failed
 from service.jobs.store import STORE_BYTES
 
 _POLL = 2.0  # seconds without a notification after which a record is read all the same
@@ -49,23 +47,27 @@ class RedisEngine:
         store: The store of all replicas.
         send: Called with the id of each record to plan, in a thread.
         queue: How many jobs may wait beside those that there are workers for.
+        share: The share of all of these that one client may hold. It may always hold one more than
+            there are workers.
         seconds: How long a client waits at most.
         on_front: Called with every front that was planned, in one of all replicas.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913  all but the first three are keyword-only
         self,
         redis: Redis,
         store: RedisStore,
         send: Callable[[str], None],
         *,
         queue: int,
+        share: float = 1.0,
         seconds: float,
         on_front: Callable[[FrontDocument], None] = lambda _: None,
     ) -> None:
         self._store = store
         self._send = send
         self._queue = queue
+        self._share = share
         self._seconds = seconds
         self._on_front = on_front
         self._subscriptions = Subscriptions(redis, self._on_finished)
@@ -98,10 +100,9 @@ class RedisEngine:
         if self._closed:
             raise ShuttingDown
 
-    async def check_place(self) -> None:
-        """Raise QueueFull when no place is left for one more job."""
-        if not await self._store.call("has_place", self._queue):
-            raise QueueFull
+    async def check_place(self, client: str) -> None:
+        """Raise QueueFull or ShareFull when no place is left for one more job of a client."""
+        await self._store.check_place(client, self._queue, self._share)
 
     async def check_warm(self) -> None:
         """Raise nothing: jobs wait in the queue until a worker has the compiled search."""
@@ -113,12 +114,7 @@ class RedisEngine:
 
     async def run(self, record: Record, disconnected: Future[None]) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it."""
-        await self._store.admit(record)
-        try:
-            await self.submit(record)
-        except Exception:
-            await self._store.delete(record)
-            raise
+        await self.submit(record)
         ending = asyncio.ensure_future(final_record(self, record))
         try:
             await asyncio.wait(
@@ -134,12 +130,17 @@ class RedisEngine:
             await self._store.delete(record)
         return record
 
-    async def submit(self, record: Record) -> None:
-        """Begin a job that is in the store, and return at once."""
+    async def submit(self, record: Record) -> Record:
+        """Store and begin a job at once, or return the earlier one that it is a repeat of."""
         await self.check_open()
-        if not await self._store.call("has_place", self._queue, record.id):
-            raise QueueFull
-        await self._send_id(record.id)
+        first = await self._store.submit(record, self._queue, self._share)
+        if first.id == record.id:
+            try:
+                await self._send_id(record.id)
+            except Exception:
+                await self._store.delete(record)
+                raise
+        return first
 
     def state(self, record: Record) -> JobState:
         """Return the present state of a job, given its record in the store."""
@@ -167,11 +168,11 @@ class RedisEngine:
         return await final_record(self, record)
 
     async def _stored(self, record: Record) -> StoredRecord:
-        """Return the record in Redis; if it was deleted there, a cancelled one."""
+        """Return the record in Redis; if it was deleted there, a failed one."""
         try:
             return await self._store.find("get", record.caller, record.id)
         except (NotFound, Expired):
-            deleted = replace(record, status="cancelled", source=None)
+            deleted = as_failed(record, Cancelled(), record.front)
             return StoredRecord(record=deleted, requested_at=0, attempts=0, progress=None)
 
     async def _stop(self, record: Record, reason: StopReason) -> None:
@@ -239,6 +240,7 @@ def connect(  # noqa: PLR0913  a setting each
     max_age: float,
     max_bytes: int = STORE_BYTES,
     queue: int,
+    share: float = 1.0,
     seconds: float,
     on_front: Callable[[FrontDocument], None] = lambda _: None,
 ) -> tuple[RedisStore, RedisEngine]:
@@ -249,4 +251,6 @@ def connect(  # noqa: PLR0913  a setting each
     )
     store = RedisStore(redis, entries=entries, max_age=max_age, max_bytes=max_bytes)
     send = partial(send_record, make_celery(redis_url, seconds))
-    return store, RedisEngine(redis, store, send, queue=queue, seconds=seconds, on_front=on_front)
+    return store, RedisEngine(
+        redis, store, send, queue=queue, share=share, seconds=seconds, on_front=on_front
+    )

@@ -16,7 +16,14 @@ from service.cluster.records import (
     record_arguments,
     stored_record,
 )
-from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
+from service.errors import (
+    Expired,
+    IdempotencyMismatch,
+    NotFound,
+    QueueFull,
+    ShareFull,
+    StoreUnavailable,
+)
 from service.jobs.record import Record
 from service.jobs.store import STORE_BYTES, UnreadableRecord, log_dropped
 
@@ -51,17 +58,35 @@ class RedisStore:
     async def admit(self, record: Record) -> Record:
         """Store a new record and return it, or return the one that has its idempotency key."""
         await self._evict()
-        identity = (record.id, record.caller, record.key or "", record.digest)
-        while True:
-            match await self.call("admit", *identity, *record_arguments(record)):
-                case b"new":
-                    return record
-                case b"mismatch":
-                    raise IdempotencyMismatch
-                case [id_, *hashes]:
-                    earlier = await self.read(id_, *hashes, caller=record.caller)
-                    if earlier is not None:
-                        return earlier.record
+        arguments = (*_identity(record), *record_arguments(record))
+        return await self._earlier(record.caller, "admit", *arguments) or record
+
+    async def repeated(self, record: Record) -> Record | None:
+        """Return the record that has the idempotency key of this one, if one has and succeeded."""
+        return await self._earlier(record.caller, "repeated", *_identity(record)[1:])
+
+    async def submit(self, record: Record, queue: int, share: float) -> Record:
+        """Admit a record, if there is a place for it, which is no use to a repeat.
+
+        Args:
+            record: The record.
+            queue: How many records may be unfinished beside those that there are workers for.
+            share: Of all of these, the share of one client.
+
+        Raises:
+            QueueFull: No place is left.
+            ShareFull: The client holds as many as it may.
+            IdempotencyMismatch: The caller used the key for another body.
+            StoreUnavailable: Redis does not answer.
+        """
+        await self._evict()
+        place = (queue, share, record.client or record.caller)
+        arguments = (*place, *_identity(record), *record_arguments(record))
+        return await self._earlier(record.caller, "submit", *arguments) or record
+
+    async def check_place(self, client: str, queue: int, share: float) -> None:
+        """Raise QueueFull or ShareFull when no place is left for one more record of a client."""
+        _check_reply(await self.call("check_place", queue, share, client))
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
         """Return the caller's record with this id."""
@@ -148,5 +173,37 @@ class RedisStore:
             return None
         return stored
 
+    async def _earlier(self, caller: str, verb: str, *arguments: Argument) -> Record | None:
+        """Return the earlier record that an admission finds, if there is one that can be read."""
+        while True:
+            reply = await self.call(verb, *arguments)
+            if reply == b"new":
+                return None
+            _check_reply(reply)
+            id_, *hashes = reply
+            if (stored := await self.read(id_, *hashes, caller=caller)) is not None:
+                return stored.record
+
     async def _evict(self) -> None:
         await self.call("make_way", *self._bounds)
+
+
+def _identity(record: Record) -> tuple[str, str, str, str]:
+    return record.id, record.caller, record.key or "", record.digest
+
+
+def _check_reply(reply: Any) -> None:
+    """Raise the refusal that the reply to an admission is, if it is one.
+
+    Raises:
+        IdempotencyMismatch: The key is of another body.
+        QueueFull: No place is left.
+        ShareFull: The client holds as many as it may.
+    """
+    match reply:
+        case b"mismatch":
+            raise IdempotencyMismatch
+        case b"full":
+            raise QueueFull
+        case int(places):
+            raise ShareFull(places)

@@ -1,8 +1,8 @@
 """A worker of the cluster: Celery with a pool of processes, each planning one record at a time.
 
-In each process a `RecordWorker` plans. A thread beside it checks whether the record is wanted still.
-If planning does not stop at once, the thread stores the best front so far; if it does not stop for
-seconds, the thread kills the process, which Celery replaces.
+In each process a `RecordWorker` plans. A thread beside it checks whether the record is wanted
+still. If planning does not stop at once, the thread stores the best front so far; if it does not
+stop for seconds, the thread kills the process, which Celery replaces.
 """
 
 import ctypes

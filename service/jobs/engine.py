@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from typing import Protocol
 
+from service.errors import ShuttingDown
 from service.jobs.record import Record
 from service.search.improve import Progress
 
@@ -41,29 +42,36 @@ class Engine(Protocol):
     async def check_open(self) -> None:
         """Raise ShuttingDown when no more jobs are taken."""
 
-    async def check_place(self) -> None:
-        """Raise QueueFull when no place is left for one more job."""
+    async def check_place(self, client: str) -> None:
+        """Raise QueueFull or ShareFull when no place is left for one more job of a client."""
 
     async def check_warm(self) -> None:
         """Raise WarmingUp until the search is compiled."""
 
     async def check_ready(self) -> None:
-        """Raise ShuttingDown or WarmingUp when some task would be refused at the moment."""
+        """Raise a refusal when some task would be refused at the moment."""
 
     async def run(self, record: Record, disconnected: Future[None]) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it.
 
         Raises:
             QueueFull: No place is left.
+            ShareFull: The client holds as many as it may.
             ShuttingDown: No more jobs are taken.
+            StoreUnavailable: The store takes no more fronts.
         """
 
-    async def submit(self, record: Record) -> None:
-        """Begin a job that is in the store, and return at once.
+    async def submit(self, record: Record) -> Record:
+        """Store and begin a job, and return its record; or that of which it is a repeat.
+
+        Either both happens or nothing: nobody sees a record that was not begun.
 
         Raises:
             QueueFull: No place is left.
+            ShareFull: The client holds as many as it may.
             ShuttingDown: No more jobs are taken.
+            StoreUnavailable: The store takes no more fronts.
+            IdempotencyMismatch: The caller used the key for another body.
         """
 
     def state(self, record: Record) -> JobState:
@@ -77,7 +85,13 @@ class Engine(Protocol):
 
 
 async def final_record(engine: Engine, record: Record) -> Record:
-    """Wait until a job is finished and return its record."""
+    """Wait until a job is finished and return its record.
+
+    Raises:
+        ShuttingDown: It is left unfinished for the next start.
+    """
     async for state in engine.watch(record):
         record = state.record
+    if not record.finished:
+        raise ShuttingDown
     return record

@@ -106,6 +106,10 @@ class FrontDocument:
         begin = int(ends[index - 1]) + 1 if index else 0
         return self.tours[begin : int(ends[index])]
 
+    def without_tours(self) -> Self:
+        """Return the front with none of its tours."""
+        return replace(self, tours=b"", ends=b"", angles=b"")
+
     def ended(self, seconds: float, *, late: bool) -> Self:
         """Return the front as it ended, so many seconds after the request.
 

@@ -1,73 +1,55 @@
 """The engine of a single machine: jobs run in the worker processes of this service."""
 
 import asyncio
+import logging
 from asyncio import Future
 from collections.abc import AsyncIterator, Coroutine
+from contextlib import suppress
 from dataclasses import replace
 
-from service.errors import Cancelled, Expired, NotFound, QueueFull, ShuttingDown, WarmingUp
+from service.errors import (
+    Cancelled,
+    Expired,
+    NotFound,
+    QueueFull,
+    Refusal,
+    ShuttingDown,
+    StoreUnavailable,
+    WarmingUp,
+)
 from service.jobs.engine import EngineStats, JobState, final_record
-from service.jobs.record import Record, Status, as_cancelled, as_failed, as_finished
+from service.jobs.record import Record, as_cancelled, as_failed, as_finished
+from service.jobs.running_job import RunningJob
 from service.jobs.store import Store
-from service.jobs.submission import Submission
+from service.jobs.unsaved import UnsavedRecords
 from service.jobs.worker_pool import WorkerPool
 
 _PAUSE = 0.5  # seconds between two tries to resume the job of an earlier process
-
-
-class _Job:
-    """A record with its submission, and an event for those who watch it."""
-
-    def __init__(self, record: Record, workers: WorkerPool) -> None:
-        assert record.source is not None
-        self._record = record
-        self._changed = asyncio.Event()
-        self.ended = False
-        self.submission: Submission = workers.submit(record.source, self._notify, patient=True)
-
-    @property
-    def state(self) -> JobState:
-        """The present state."""
-        if self._record.finished:
-            return JobState(self._record)
-        status: Status = "running" if self.submission.attempts else "queued"
-        front = self.submission.best_front or self._record.front
-        return JobState(replace(self._record, status=status, front=front), self.submission.progress)
-
-    @property
-    def changed(self) -> asyncio.Event:
-        """An event that is set at the next change."""
-        return self._changed
-
-    def end(self, record: Record) -> None:
-        """Take the final record."""
-        self._record = record
-        self.ended = True
-        self._notify()
-
-    def _notify(self) -> None:
-        changed, self._changed = self._changed, asyncio.Event()
-        changed.set()
+_LOG = logging.getLogger("paretour")
 
 
 class LocalEngine:
     """Runs jobs in a pool of worker processes.
 
     Jobs that are unfinished when the service ends stay in the store; the next service with that
-    store resumes them.
+    store resumes them. Where the store does not take a finished record, its front is told all the
+    same and stored later; until it is, no new job is taken.
     """
 
     def __init__(self, workers: WorkerPool, store: Store) -> None:
         self._workers = workers
         self._store = store
-        self._jobs: dict[str, _Job] = {}
+        self._unsaved = UnsavedRecords(store)
+        self._jobs: dict[str, RunningJob] = {}
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def start(self) -> None:
         """Start the workers, and resume the jobs that an earlier process left unfinished."""
         await self._workers.start()
-        if unfinished := await self._store.unfinished():
-            self._spawn(self._resume(unfinished))
+        resumed = [RunningJob(record) for record in await self._store.unfinished()]
+        self._jobs.update({job.id: job for job in resumed})
+        if resumed:
+            self._spawn(self._resume(resumed))
 
     async def close(self) -> None:
         """Close the workers. Unfinished jobs stay in the store."""
@@ -85,34 +67,59 @@ class LocalEngine:
         """Raise ShuttingDown when no more jobs are taken."""
         self._workers.check_open()
 
-    async def check_place(self) -> None:
-        """Raise QueueFull when no place is left for one more job."""
-        self._workers.check_place()
+    async def check_place(self, client: str) -> None:
+        """Raise QueueFull or ShareFull when no place is left, StoreUnavailable when it is full."""
+        self._unsaved.check_none()
+        self._workers.check_place(client)
 
     async def check_warm(self) -> None:
         """Raise WarmingUp until the search is compiled."""
         self._workers.check_warm()
 
     async def check_ready(self) -> None:
-        """Raise ShuttingDown or WarmingUp when some task would be refused at the moment."""
+        """Raise a refusal when some task would be refused at the moment."""
         self._workers.check_ready()
+        self._unsaved.check_none()
 
     async def run(self, record: Record, disconnected: Future[None]) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it."""
         assert record.source is not None
-        submission = self._workers.submit(record.source)
+        self._unsaved.check_none()
+        submission = self._workers.submit(record.source, client=record.client)
         try:
             await submission.wait(disconnected)
         finally:
             self._workers.stop(submission)
         record = replace(record, status="done", front=await submission.front(), source=None)
-        await self._store.put(record)
+        try:
+            await self._store.put(record)
+        except Exception as error:
+            self._spawn(self._unsaved.save(record, error))
         return record
 
-    async def submit(self, record: Record) -> None:
-        """Begin a job that is in the store, and return at once."""
-        job = self._jobs[record.id] = _Job(record, self._workers)
-        self._spawn(self._store_result(record, job))
+    async def submit(self, record: Record) -> Record:
+        """Store and begin a job at once, or return the earlier one that it is a repeat of."""
+        job = RunningJob(record)
+        try:
+            self._unsaved.check_none()
+            job.reserve(self._workers)
+        except (QueueFull, StoreUnavailable):
+            # A repeat needs no place.
+            if earlier := await self._store.repeated(record):
+                return earlier
+            raise
+        # Before it is stored, so that it is found here by whoever finds it there.
+        self._jobs[job.id] = job
+        try:
+            first = await self._admit(record)
+        except BaseException:
+            self._drop(job)
+            raise
+        if first.id == job.id:
+            self._begin(job)
+        else:
+            self._drop(job)
+        return first
 
     def state(self, record: Record) -> JobState:
         """Return the present state of a job, given its record in the store."""
@@ -131,44 +138,91 @@ class LocalEngine:
     async def cancel(self, record: Record) -> Record:
         """End a job at once, with what was found so far, and return its final record."""
         if job := self._jobs.get(record.id):
-            self._workers.stop(job.submission)
+            if job.submission is None:
+                await self._end(job, as_cancelled(job.record))
+            else:
+                self._workers.stop(job.submission)
         return await final_record(self, record)
 
     async def _stored(self, record: Record) -> Record:
-        """Return the record in the store; if it was deleted there, a cancelled one."""
+        """Return the record in the store; if it was deleted there, a failed one."""
         if record.finished:
             return record
         try:
             return await self._store.get(record.caller, record.id)
         except (NotFound, Expired):
-            return as_cancelled(record)
+            return as_failed(record, Cancelled(), record.front)
+
+    async def _admit(self, record: Record) -> Record:
+        """Store a new record and return it, or return the one that has its idempotency key."""
+        try:
+            return await self._store.admit(record)
+        except Refusal:
+            raise
+        except Exception as error:
+            _LOG.error("front %s cannot be stored", record.id, exc_info=error)
+            raise StoreUnavailable from error
+
+    def _begin(self, job: RunningJob) -> None:
+        assert job.submission is not None
+        self._workers.queue(job.submission)
+        self._spawn(self._follow(job))
+
+    def _drop(self, job: RunningJob) -> None:
+        """Give up a job that was not admitted."""
+        del self._jobs[job.id]
+        if job.submission is not None:
+            self._workers.give_back(job.submission)
 
     def _spawn(self, coroutine: Coroutine[None, None, None]) -> None:
         task = asyncio.create_task(coroutine)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    async def _resume(self, unfinished: list[Record]) -> None:
-        for record in unfinished:
-            while True:
-                try:
-                    self._workers.check_warm()
-                    await self.submit(record)
-                    break
-                except (QueueFull, WarmingUp):
+    async def _resume(self, jobs: list[RunningJob]) -> None:
+        """Begin jobs of an earlier process, whichever of them are not cancelled meanwhile."""
+        for job in jobs:
+            try:
+                while not job.ended and not await self._is_resumed(job):
                     await asyncio.sleep(_PAUSE)
+            except Exception as error:
+                await self._end(job, as_failed(job.record, error, job.record.front))
 
-    async def _store_result(self, record: Record, job: _Job) -> None:
+    async def _is_resumed(self, job: RunningJob) -> bool:
+        """Begin a job, and return whether there was a place for it."""
+        with suppress(QueueFull, WarmingUp, ShuttingDown):
+            self._workers.check_warm()
+            job.reserve(self._workers)
+            self._begin(job)
+        return job.submission is not None
+
+    async def _follow(self, job: RunningJob) -> None:
+        """Wait for the front of a job, and end it."""
         try:
-            ended = await self._result(record, job.submission)
-            await self._store.put(ended)
-            job.end(ended)
+            await self._end(job, await self._result(job))
         except ShuttingDown:
-            job.end(record)
+            _LOG.info("front %s is left for the next start", job.id)
         finally:
-            del self._jobs[record.id]
+            if not job.ended:
+                job.end(job.record)
+            self._jobs.pop(job.id, None)
 
-    async def _result(self, record: Record, submission: Submission) -> Record:
+    async def _end(self, job: RunningJob, ended: Record) -> None:
+        """Store the final record of a job, then tell it; where it cannot be stored, tell it first.
+
+        Until it is stored, the job remains, with its final record.
+        """
+        try:
+            await self._store.put(ended)
+        except Exception as error:
+            job.end(ended)
+            await self._unsaved.save(ended, error)
+        job.end(ended)
+        self._jobs.pop(job.id, None)
+
+    async def _result(self, job: RunningJob) -> Record:
+        submission, record = job.submission, job.record
+        assert submission is not None
         try:
             return as_finished(record, await submission.front(), submission.stop_reason)
         except Cancelled:

@@ -27,6 +27,8 @@ class Record:
         key: The Idempotency-Key, if the request had one.
         digest: SHA-256 of the body, which tells a repeat from a key used twice.
         problem: The problem document of a job that failed.
+        client: Whose share of the places it takes: the caller, or an address where there are no
+            keys. It is not stored.
     """
 
     id: str
@@ -38,6 +40,7 @@ class Record:
     key: str | None = None
     digest: str = ""
     problem: dict[str, Any] | None = None
+    client: str = ""
 
     @property
     def finished(self) -> bool:

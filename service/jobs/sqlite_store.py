@@ -77,6 +77,10 @@ class SqliteStore:
         """Store a new record and return it, or return the one that has its idempotency key."""
         return await self._in_thread(self._admit, record)
 
+    async def repeated(self, record: Record) -> Record | None:
+        """Return the record that has the idempotency key of this one, if one has and succeeded."""
+        return await self._in_thread(self._repeated, record)
+
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
         """Return the caller's record with this id."""
         return await self._found("caller = ? AND id = ?", caller, id)
@@ -125,15 +129,25 @@ class SqliteStore:
 
     def _admit(self, record: Record) -> Record:
         self._evict()
-        if record.key is not None:
-            for earlier in self._select("caller = ? AND key = ?", record.caller, record.key):
-                if earlier.digest != record.digest:
-                    raise IdempotencyMismatch
-                if earlier.status != "failed":
-                    return earlier
-                self._put(replace(earlier, key=None))
+        if earlier := self._repeated(record):
+            return earlier
+        for failed in self._with_key_of(record):
+            self._put(replace(failed, key=None))
         self._put(record)
         return record
+
+    def _repeated(self, record: Record) -> Record | None:
+        for earlier in self._with_key_of(record):
+            if earlier.digest != record.digest:
+                raise IdempotencyMismatch
+            if earlier.status != "failed":
+                return earlier
+        return None
+
+    def _with_key_of(self, record: Record) -> list[Record]:
+        if record.key is None:
+            return []
+        return self._select("caller = ? AND key = ?", record.caller, record.key)
 
     def _newest(self, where: str, caller: str, *values: str) -> Record | type[LookupError]:
         """Return the newest record, or the error to raise once the transaction is done."""

@@ -40,6 +40,13 @@ class Store(Protocol):
             IdempotencyMismatch: The caller used the key for another body.
         """
 
+    async def repeated(self, record: Record) -> Record | None:
+        """Return the record that has the idempotency key of this one, if one has and succeeded.
+
+        Raises:
+            IdempotencyMismatch: The caller used the key for another body.
+        """
+
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
         """Return the caller's record with this id.
 

@@ -64,10 +64,11 @@ class Embedded:
         queue: int = 8,
         folder: Path | None = None,
         edge: Edge | None = None,
+        share: float = 1.0,
     ) -> Iterator[Served]:
         """A service with its workers. What it keeps in a folder outlives it."""
         make_runner = runner_of(*actors, limits=PATIENT)
-        workers = workers_of(make_runner, self.workers, queue, SECONDS)
+        workers = workers_of(make_runner, self.workers, queue, SECONDS, share)
         path = IN_MEMORY if folder is None else str(folder / "fronts.sqlite")
         store = SqliteStore(path, entries=100, max_age=SECONDS)
         app = app_of(*actors, limits=PATIENT, store=store, workers=workers, edge=edge)
@@ -93,6 +94,7 @@ class Clustered:
         folder: Path | None = None,
         edge: Edge | None = None,
         seconds: float = SECONDS,
+        share: float = 1.0,
     ) -> Iterator[Served]:
         """A replica, and a worker that goes on for the next with these actors."""
         url = self._url(actors)
@@ -105,7 +107,9 @@ class Clustered:
         state = ClusterState(url)
         while not state.workers():
             time.sleep(0.02)
-        store, engine = connect(url, entries=100, max_age=SECONDS, queue=queue, seconds=seconds)
+        store, engine = connect(
+            url, entries=100, max_age=SECONDS, queue=queue, share=share, seconds=seconds
+        )
         app = engine_app(store, engine, *actors, limits=PATIENT, edge=edge)
         with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:
             yield Served(client, state.planning, state.searching, url)

@@ -58,10 +58,11 @@ def workers_of(
     workers: int = 1,
     queue: int = 8,
     seconds: float = 60.0,
+    share: float = 1.0,
 ) -> WorkerPool:
     """Return a pool of one process with a queue of eight, unless others are asked for."""
     make_runner = make_runner or runner_of()
-    return WorkerPool(make_runner, workers=workers, queue=queue, seconds=seconds)
+    return WorkerPool(make_runner, workers=workers, queue=queue, seconds=seconds, share=share)
 
 
 def app_of(

@@ -244,6 +244,68 @@ def test_jobs_are_in_the_queue_like_everybody_else(engine: Engine, gated: Shuffl
         assert client.post("/front", json=SHORT, headers=other).status_code == 202
 
 
+@pytest.mark.parametrize("headers", [{}, LATER])
+def test_repeats_on_a_full_queue_are_all_refused(
+    engine: Engine, gated: Shuffler, headers: dict[str, str]
+) -> None:
+    with engine.serve(gated, queue=0) as served, ThreadPoolExecutor(20) as clients:
+        client = served.client
+        path = later(client)
+        headers = {**headers, "Idempotency-Key": f"full {len(headers)}"}
+        posts = [
+            clients.submit(client.post, "/front", json=SHORT, headers=headers) for _ in range(40)
+        ]
+        for post in posts:
+            problem(post.result(), 503, "queue-full")
+        gated.open()
+        ended(client, path)
+        assert client.post("/front", json=SHORT, headers=headers).status_code in (200, 202)
+
+
+@pytest.mark.parametrize("headers", [{}, LATER])
+def test_repeats_while_the_queue_fills_are_one_job_or_refused(
+    engine: Engine, gated: Shuffler, headers: dict[str, str]
+) -> None:
+    with engine.serve(gated, queue=0) as served, ThreadPoolExecutor(40) as clients:
+        client = served.client
+        headers = {**headers, "Idempotency-Key": f"one place {len(headers)}"}
+        posts = [
+            clients.submit(client.post, "/front", json=SHORT, headers=headers) for _ in range(40)
+        ]
+        time.sleep(1)
+        gated.open()
+        answers = [post.result() for post in posts]
+        taken = [answer.json() for answer in answers if answer.status_code != 503]
+        assert len({answer["id"] for answer in taken}) == 1
+        found = ended(client, f"/front/{taken[0]['id']}")
+        assert found["status"] == "done"
+        for answer in answers:
+            if answer.status_code == 503:
+                problem(answer, 503, "queue-full")
+            elif answer.status_code == 200:
+                assert answer.json() == found
+
+
+def test_a_caller_holds_no_more_than_its_share(engine: Engine, gated: Shuffler) -> None:
+    (our_key, ours), (their_key, theirs) = new_key(), new_key()
+    hashes = [KeyHash(caller="us", digest=ours), KeyHash(caller="them", digest=theirs)]
+    edge = Edge(access=Access(hashes))
+    with engine.serve(gated, queue=5, edge=edge, share=0.5) as served:
+        client = served.client
+        us, them = ({"Authorization": f"Bearer {key}"} for key in (our_key, their_key))
+        paths = [later(client, SHORT, **us) for _ in range(3)]
+        for more in ({}, LATER, {"Idempotency-Key": "k"}):
+            refused = client.post("/front", json=SHORT, headers={**us, **more})
+            assert problem(refused, 503, "share-full")["limit"] == 3
+            assert int(refused.headers["retry-after"]) > 0
+        assert later(client, SHORT, **them)
+        gated.open()
+        for path in paths:
+            while client.get(path, headers=us).json()["status"] != "done":
+                time.sleep(0.02)
+        assert later(client, SHORT, **us)
+
+
 def test_what_was_unfinished_when_the_service_ended_is_done_for_the_next(
     engine: Engine, gated: Shuffler, tmp_path: Path
 ) -> None:

@@ -1,18 +1,20 @@
 """Watching a job of the local engine: its end is seen, whenever it comes."""
 
 import asyncio
-from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
-from service.errors import NotFound
+from service.errors import NotFound, StoreUnavailable
 from service.jobs.front_document import FrontDocument, Timings
 from service.jobs.local_engine import LocalEngine
-from service.jobs.record import Record
+from service.jobs.record import Record, as_finished
 from service.jobs.submission import Submission
+from service.jobs.unsaved import UnsavedRecords
 from service.jobs.worker_pool import WorkerPool
 from service.requests.task import TaskSource
 from tests.helpers.actors import Shuffler
+from tests.helpers.scripted_runner import document
 
 FRONT = FrontDocument(
     cities=3,
@@ -31,46 +33,74 @@ class NoProcesses(WorkerPool):
     """Workers without processes: the test does the work."""
 
     def __init__(self) -> None:
-        super().__init__(Shuffler, workers=1, queue=1)  # type: ignore[arg-type]
+        super().__init__(Shuffler, workers=1, queue=2)  # type: ignore[arg-type]
+        self.submissions: list[Submission] = []
 
-    def submit(
-        self,
-        source: TaskSource,
-        on_change: Callable[[], None] = lambda: None,
-        patient: bool = False,
-    ) -> Submission:
-        self.given = Submission(0, source, on_change, patient)
-        return self.given
+    async def start(self) -> None:
+        pass
+
+    def queue(self, submission: Submission) -> None:
+        self.given = submission
+        self.submissions.append(submission)
+        super().queue(submission)
+
+    def check_ready(self) -> None:
+        self.check_open()
+
+
+class Warm(NoProcesses):
+    """Workers that have compiled the search."""
+
+    def check_warm(self) -> None:
+        pass
 
 
 class Immediate:
-    """A store of one record, whose answer waits for no other thread."""
+    """A store whose answer waits for no other thread. It may be full, or admit nothing."""
 
     def __init__(self) -> None:
-        self._records: list[Record] = []
+        self.records: dict[str, Record] = {}
+        self.full = False
 
     async def put(self, record: Record) -> None:
-        self._records = [record]
+        if self.full:
+            raise OSError("database or disk is full")
+        self.records[record.id] = record
+
+    async def admit(self, record: Record) -> Record:
+        await self.put(record)
+        return record
+
+    async def repeated(self, record: Record) -> Record | None:
+        del record
+        return None
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
-        for record in self._records:
+        for record in self.records.values():
             if (record.caller, record.id) == (caller, id):
                 return record
         raise NotFound
 
+    async def unfinished(self) -> list[Record]:
+        return [record for record in self.records.values() if not record.finished]
 
-async def followed(steps: int) -> list[str]:
-    """The statuses that are told to who begins to follow so many steps of the loop into the end."""
-    workers = NoProcesses()
-    jobs = LocalEngine(workers, Immediate())
-    record = Record(
-        id="0" * 32,
+
+def new_record(id_: str = "0" * 32) -> Record:
+    return Record(
+        id=id_,
         caller="me",
         request_id="",
         status="queued",
         front=FRONT,
         source=TaskSource("front", b""),
     )
+
+
+async def followed(steps: int) -> list[str]:
+    """The statuses that are told to who begins to follow so many steps of the loop into the end."""
+    workers = NoProcesses()
+    jobs = LocalEngine(workers, Immediate())
+    record = new_record()
     await jobs.submit(record)
     await asyncio.sleep(0)  # so that the job waits for its front
     workers.given.finish(FRONT)
@@ -88,3 +118,91 @@ async def _statuses(jobs: LocalEngine, record: Record) -> list[str]:
 @pytest.mark.parametrize("steps", range(12))
 def test_the_end_is_told_whenever_it_comes(steps: int) -> None:
     assert asyncio.run(followed(steps))[-1] == "done"
+
+
+async def full_store() -> None:
+    """The store is full as a job ends, and after a while it is not."""
+    workers, store = NoProcesses(), Immediate()
+    engine = LocalEngine(workers, store)
+    first, second = new_record(), new_record("1" * 32)
+    await engine.submit(first)
+    following = asyncio.ensure_future(_statuses(engine, first))
+    running = asyncio.ensure_future(engine.run(second, asyncio.Future()))
+    await asyncio.sleep(0)
+    alone = workers.given
+    store.full = True
+    for submission in list(workers.submissions):
+        submission.finish(FRONT)
+    async with asyncio.timeout(1):
+        assert (await following)[-1] == "done"
+        assert (await running).status == "done"
+    assert alone.ended
+    assert engine.state(await store.get("me", first.id)).record.status == "done"
+    for refused in (
+        engine.check_ready(),
+        engine.check_place("me"),
+        engine.submit(new_record("2" * 32)),
+        engine.run(new_record("3" * 32), asyncio.Future()),
+    ):
+        with pytest.raises(StoreUnavailable):
+            await refused
+    store.full = False
+    async with asyncio.timeout(5):
+        while store.records[first.id].status != "done" or second.id not in store.records:
+            await asyncio.sleep(0.01)
+        await asyncio.sleep(0.01)
+    await engine.check_ready()
+    assert await _statuses(engine, first) == ["done"]
+    await engine.submit(new_record("4" * 32))
+
+
+def test_who_follows_a_job_that_cannot_be_stored_is_told_and_it_is_stored_later() -> None:
+    asyncio.run(full_store())
+
+
+def test_a_record_that_the_store_never_takes_gives_up_its_front() -> None:
+    class Picky(Immediate):
+        async def put(self, record: Record) -> None:
+            if record.front.tours:
+                raise ValueError("too long")
+            await super().put(record)
+
+    async def test() -> None:
+        store = Picky()
+        unsaved = UnsavedRecords(store, patience=0.1)  # type: ignore[arg-type]
+        found = as_finished(new_record(), document("converged"), None)
+        await unsaved.save(found, ValueError("too long"))
+        unsaved.check_none()
+        stored = store.records[found.id]
+        assert stored.status == "failed"
+        assert (stored.problem or {})["code"] == "store-unavailable"
+
+    asyncio.run(test())
+
+
+def test_a_job_that_cannot_be_resumed_ends() -> None:
+    async def test() -> None:
+        store = Immediate()
+        await store.put(replace(new_record(), source=None))
+        engine = LocalEngine(Warm(), store)
+        following = replace(new_record(), source=None)
+        await engine.start()
+        async with asyncio.timeout(2):
+            assert (await _statuses(engine, following))[-1] == "failed"
+        await engine.close()
+
+    asyncio.run(test())
+
+
+def test_a_job_may_be_cancelled_before_it_is_resumed() -> None:
+    async def test() -> None:
+        store = Immediate()
+        await store.put(new_record())
+        engine = LocalEngine(NoProcesses(), store)
+        await engine.start()
+        async with asyncio.timeout(2):
+            assert (await engine.cancel(new_record())).status == "cancelled"
+        assert store.records["0" * 32].status == "cancelled"
+        await engine.close()
+
+    asyncio.run(test())

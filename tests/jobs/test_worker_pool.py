@@ -7,6 +7,7 @@ import signal
 import time
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from service.errors import (
     DeadlineExceeded,
     NoWorker,
     QueueFull,
+    ShareFull,
     ShuttingDown,
     WarmingUp,
     WorkerLost,
@@ -136,6 +138,27 @@ def test_a_process_takes_no_work_until_what_was_stopped_has_ended() -> None:
         assert (await following.front()).terminated == "converged"
 
     run(test)
+
+
+def test_clients_take_turns_and_none_holds_more_than_its_share() -> None:
+    async def test(workers: WorkerPool) -> None:
+        begun: list[str] = []
+        first = workers.submit(source(b"wait"), client="many")
+        submissions = []
+        for name, client in (("m1", "many"), ("m2", "many"), ("o1", "one"), ("m3", "many")):
+            began = partial(begun.append, name)
+            submissions.append(workers.submit(source(), began, client=client))
+        with pytest.raises(ShareFull) as refused:
+            workers.check_place("many")
+        assert refused.value.limit == 4
+        workers.check_place("one")
+        workers.stop(first)
+        for submission in submissions:
+            await submission.front()
+        assert begun == ["m1", "o1", "m2", "m3"]
+        workers.check_place("many")
+
+    run(test, queue=7, share=0.5)
 
 
 def test_processes_that_cannot_be_started_are_tried_again(

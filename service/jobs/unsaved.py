@@ -1,0 +1,60 @@
+"""Finished records that the store has not taken yet, as its disk is full; it is tried again."""
+
+import logging
+from time import monotonic
+
+from service.errors import StoreUnavailable
+from service.jobs.growing_pause import GrowingPause
+from service.jobs.record import Record, as_failed
+from service.jobs.store import Store
+
+_PATIENCE = 600.0  # seconds for which a front is kept for the store
+_SHORTEST_PAUSE = 0.25  # seconds between two tries
+_LONGEST_PAUSE = 5.0
+_LOG = logging.getLogger("paretour")
+
+
+class UnsavedRecords:
+    """Saves records that the store did not take at first."""
+
+    def __init__(self, store: Store, patience: float = _PATIENCE) -> None:
+        self._store = store
+        self._patience = patience
+        self._ids: set[str] = set()
+
+    def check_none(self) -> None:
+        """Raise StoreUnavailable while there is a record that the store has not taken."""
+        if self._ids:
+            raise StoreUnavailable
+
+    async def save(self, record: Record, error: Exception) -> None:
+        """Try to store a finished record until the store has taken it.
+
+        After minutes the front is given up, and what is stored is that it could not be.
+
+        Args:
+            record: The record.
+            error: What the store raised at first.
+        """
+        self._ids.add(record.id)
+        _LOG.error("front %s cannot be stored, and is tried again", record.id, exc_info=error)
+        pause, deadline = (
+            GrowingPause(_SHORTEST_PAUSE, _LONGEST_PAUSE),
+            monotonic() + self._patience,
+        )
+        try:
+            while not await self._is_saved(record):
+                if monotonic() > deadline and record.front.tours:
+                    empty = record.front.without_tours()
+                    record = as_failed(record, StoreUnavailable(), empty)
+                await pause.wait()
+        finally:
+            self._ids.discard(record.id)
+        _LOG.info("front %s is stored", record.id)
+
+    async def _is_saved(self, record: Record) -> bool:
+        try:
+            await self._store.put(record)
+        except Exception:
+            return False
+        return True
