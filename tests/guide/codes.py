@@ -1,6 +1,6 @@
-"""The table of refusals in `errors.md`, made of `service.errors.PROBLEMS`."""
+"""The table of refusals in `errors.md`, made of `service.problems.PROBLEMS`."""
 
-from service.errors import PROBLEMS, Problem
+from service.problems import PROBLEMS, Problem
 from tests.guide.pages import GUIDE
 
 PAGE = GUIDE / "errors.md"
