@@ -37,7 +37,7 @@ def test_every_code_of_the_table_is_raised_and_every_code_raised_is_in_it() -> N
 def test_no_code_is_raised_that_is_not_written_out() -> None:
     """The test above sees literal codes alone."""
     for path in SERVICE.rglob("*.py"):
-        if path.name == "errors.py" or path.name == "openapi.py" or "client" in path.parts:
+        if path.parent.name == "errors" or path.name == "openapi.py" or "client" in path.parts:
             continue
         for node in ast.walk(ast.parse(path.read_text())):
             match node:

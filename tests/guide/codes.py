@@ -1,6 +1,6 @@
-"""The table of refusals in `errors.md`, made of `service.problems.PROBLEMS`."""
+"""The table of refusals in `errors.md`, made of `service.errors.problems.PROBLEMS`."""
 
-from service.problems import PROBLEMS, Problem
+from service.errors.problems import PROBLEMS, Problem
 from tests.guide.pages import GUIDE
 
 PAGE = GUIDE / "errors.md"

@@ -1,4 +1,4 @@
-"""Every refusal and exception of the service, with its status, code and sentence.
+"""The exceptions of the service. Most are refusals, which are answered as problem documents.
 
     Exception
     ├── Refusal                   a request that is not served, answered as a problem document
@@ -19,7 +19,7 @@
         ├── NotFound              the store has no front with this id
         └── Expired               the store had one, and dropped it
 
-The codes stand in one table, `PROBLEMS` of `service.problems`.
+Their statuses and sentences stand by code in `problems.py`.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -27,7 +27,7 @@ from dataclasses import asdict, dataclass
 from http import HTTPStatus
 from typing import Any
 
-from service.problems import PROBLEMS as PROBLEMS
+from service.errors.problems import PROBLEMS
 
 MOST_FAULTS = 20  # that one problem document lists
 

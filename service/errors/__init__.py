@@ -1,0 +1,45 @@
+"""Every refusal and exception of the service, and the one table of their codes."""
+
+from service.errors.exceptions import (
+    MOST_FAULTS,
+    Cancelled,
+    DeadlineExceeded,
+    Expired,
+    Fault,
+    IdempotencyMismatch,
+    InvalidCoverage,
+    InvalidInstance,
+    NotFound,
+    NoWorker,
+    QueueFull,
+    Refusal,
+    ShareFull,
+    ShuttingDown,
+    StoreUnavailable,
+    TooManyPlaces,
+    WarmingUp,
+    WorkerLost,
+)
+from service.errors.problems import PROBLEMS
+
+__all__ = [
+    "MOST_FAULTS",
+    "PROBLEMS",
+    "Cancelled",
+    "DeadlineExceeded",
+    "Expired",
+    "Fault",
+    "IdempotencyMismatch",
+    "InvalidCoverage",
+    "InvalidInstance",
+    "NoWorker",
+    "NotFound",
+    "QueueFull",
+    "Refusal",
+    "ShareFull",
+    "ShuttingDown",
+    "StoreUnavailable",
+    "TooManyPlaces",
+    "WarmingUp",
+    "WorkerLost",
+]
