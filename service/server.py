@@ -1,23 +1,28 @@
 """Build and run the service, or a worker of the cluster, as the settings say."""
 
 import gc
+import logging
 import logging.config
 import multiprocessing
 import signal
 import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
 from functools import partial
 from types import FrameType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import uvicorn
 from fastapi import FastAPI
+from uvicorn.config import STARTUP_FAILURE
 
 from service import installed_version
 from service.actor import load_actors
 from service.api.app import Edge, create_app
 from service.api.auth import Access, Rates
+from service.api.connections import ConnectionLimits, Connections
+from service.api.listener import ACCEPTED_AT_ONCE, bound_sockets, most_connections
 from service.api.metrics import Metrics
 from service.cluster import check_cluster
 from service.jobs.engine import Engine
@@ -69,16 +74,37 @@ def serve(app: FastAPI, settings: Settings) -> None:
     # Loaded modules stay; a collection that goes through them blocks the event loop for 40 ms.
     gc.collect()
     gc.freeze()
-    uvicorn.run(
+    most = most_connections(settings.connections, settings.workers)
+    connections = Connections(
+        ConnectionLimits(connections=most, head_seconds=settings.head_seconds)
+    )
+    config = uvicorn_config(
+        app, connections, settings.drain_seconds, logging_config(plain=sys.stderr.isatty())
+    )
+    try:
+        sockets = bound_sockets(settings.host, settings.port, connections.make_room)
+    except OSError as error:
+        logging.getLogger("paretour").error("cannot listen: %s", error)
+        sys.exit(STARTUP_FAILURE)
+    with suppress(KeyboardInterrupt):
+        uvicorn.Server(config).run(sockets)
+
+
+def uvicorn_config(
+    app: FastAPI, connections: Connections, drain_seconds: int, log_config: dict[str, Any] | None
+) -> uvicorn.Config:
+    """Return the configuration of uvicorn: HTTP/1.1 alone, over these connections."""
+    return uvicorn.Config(
         app,
-        host=settings.host,
-        port=settings.port,
+        http=connections.protocol,  # type: ignore[arg-type]  # called as a class would be
+        ws="none",
         # Not uvloop: 1 % more answers, but it does not shut down while Redis is connected.
         loop="asyncio",
+        backlog=ACCEPTED_AT_ONCE,
         server_header=False,
-        log_config=logging_config(plain=sys.stderr.isatty()),
+        log_config=log_config,
         access_log=False,
-        timeout_graceful_shutdown=settings.drain_seconds,
+        timeout_graceful_shutdown=drain_seconds,
     )
 
 

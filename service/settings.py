@@ -66,6 +66,14 @@ class Settings(BaseSettings):
         0.5, gt=0, le=1, description="share of the workers and the queue that one caller may fill"
     )
 
+    # Connections.
+    connections: int = Field(
+        1000, ge=1, description="open connections; fewer where descriptors (`ulimit -n`) are few"
+    )
+    head_seconds: float = Field(
+        10.0, gt=0, description="how long a request's head may take, and a connection be silent"
+    )
+
     # Limits of a request.
     max_body_bytes: int = Field(2**24, ge=1, description="the longest request body")
     max_cities: int = Field(1000, ge=1, description="the most cities of an instance")

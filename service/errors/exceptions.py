@@ -31,6 +31,97 @@ from service.errors.problems import PROBLEMS
 
 MOST_FAULTS = 20  # that one problem document lists
 
+<<<<<<< HEAD:service/errors/exceptions.py
+=======
+_ALL = ("*",)
+_NONE = ()  # no operation is at fault, but the path, the method or the service
+_PLANS = ("POST /front", "POST /coverage")
+_TOUR = ("GET /tour",)
+
+
+class Problem(NamedTuple):
+    """The status of a code, its sentence with fields to fill in, and the operations that use it."""
+
+    status: int
+    sentence: str
+    operations: tuple[str, ...] = _ALL
+
+    def concerns(self, operation: str) -> bool:
+        """Return whether an operation, as "POST /front", may answer with this code."""
+        return self.operations == _ALL or operation in self.operations
+
+
+PROBLEMS: Mapping[str, Problem] = {
+    "malformed-http": Problem(400, "the request must be HTTP/1.1: {reason}", _NONE),
+    "malformed-json": Problem(400, "the body must be JSON: {reason}", _PLANS),
+    "malformed-multipart": Problem(400, "the body must be multipart/form-data: {reason}", _PLANS),
+    "unauthorized": Problem(401, "Authorization must be {demand}"),
+    "no-front": Problem(404, "a tour is of a front: plan one with POST /front first", _TOUR),
+    "no-such-path": Problem(404, "there is nothing at {path}; /docs says what is", _NONE),
+    "no-tour": Problem(404, "front {front} must have a tour, and has none yet", _TOUR),
+    "unknown-front": Problem(404, "there is no front {front}"),
+    "method-not-allowed": Problem(405, "{path} must be asked with {allowed}, got {came}", _NONE),
+    "body-too-slow": Problem(408, "the body must arrive within {limit:g} s, and has not"),
+    "head-too-slow": Problem(
+        408, "the head of a request must arrive within {limit:g} s, and has not", _NONE
+    ),
+    "front-expired": Problem(
+        410, "front {front} was kept for a while and is no more: plan it again"
+    ),
+    "body-too-long": Problem(413, "the body must have at most {limit} bytes, got {came}"),
+    "too-many-cells": Problem(
+        413, "grid must have at most {limit} cells, got {came}", ("POST /coverage",)
+    ),
+    "too-many-cities": Problem(413, "{detail}"),
+    "not-json": Problem(
+        415, "Content-Type must be application/json or multipart/form-data, got {came}"
+    ),
+    "not-plain": Problem(415, "Content-Encoding must be identity, got {came}"),
+    "unsatisfiable-range": Problem(416, "the range must be within the file", _NONE),
+    "idempotency-mismatch": Problem(
+        422, "an Idempotency-Key must be of one body, got another", _PLANS
+    ),
+    "invalid-instance": Problem(422, "{reason}", _PLANS),
+    "invalid-parts": Problem(422, "{reason}", _PLANS),
+    "invalid-request": Problem(422, "{detail}", (*_PLANS, *_TOUR)),
+    "no-actor": Problem(422, "{kind} need an actor that reads them, and none is loaded", _PLANS),
+    "paths-too-long": Problem(
+        422, "paths must have at most {limit} cells, got {actual}: {advice}", ("POST /coverage",)
+    ),
+    "over-limit": Problem(422, "{name} must be at most {limit:g}, got {actual:g}", _PLANS),
+    "unfit-actor": Problem(
+        422, "actor must read {kind}, as {among}; {name} reads {inputs} alone", _PLANS
+    ),
+    "unknown-actor": Problem(422, "actor must be {among}, got {came}", _PLANS),
+    "preflight-refused": Problem(
+        400, "a page may call from an allowed origin, with its method and headers: {reason}", _NONE
+    ),
+    "refused": Problem(400, "{detail}", _NONE),
+    "rate-limited": Problem(
+        429, "requests must be at most {rate}, and {caller} made more: wait {wait} s"
+    ),
+    "internal-error": Problem(500, "this is a fault of the service, not of the request", _NONE),
+    "queue-full": Problem(
+        503, "the queue must have a free place, and all are taken: ask again", _PLANS
+    ),
+    "shutting-down": Problem(503, "the server is shutting down"),
+    "stopped": Problem(503, "the work was stopped before there was a front", _PLANS),
+    "store-unavailable": Problem(503, "what fronts are kept in must answer, and does not"),
+    "too-many-connections": Problem(
+        503, "there must be a free connection, and all are busy: ask again", _NONE
+    ),
+    "warming-up": Problem(
+        503,
+        "the search is being compiled, once: ask again, or for the network alone with time_limit 0",
+        (*_PLANS, "GET /health/ready"),
+    ),
+    "worker-lost": Problem(
+        503, "the work must leave its worker alive, and two were lost over it", _PLANS
+    ),
+    "overdue": Problem(504, "the work must end in time, and there was no front yet", _PLANS),
+}
+
+>>>>>>> 7c7dd28 (Bound connections, deadlines for heads, refusals that arrive while a body is sent):service/errors.py
 
 @dataclass(frozen=True)
 class Fault:

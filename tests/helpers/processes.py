@@ -24,17 +24,22 @@ class ServeProcess:
 
 
 @contextmanager
-def serve_process(settings: Mapping[str, str], ready: bool = False) -> Iterator[ServeProcess]:
+def serve_process(
+    settings: Mapping[str, str], ready: bool = False, descriptors: int | None = None
+) -> Iterator[ServeProcess]:
     """Run `paretour serve` with these environment variables until the block ends.
 
     Args:
         settings: environment variables beside the test's own.
         ready: whether to wait until its workers are warm, and not only until it answers. Without,
             the search is interpreted, because compiled code would not be used.
+        descriptors: how many files and sockets it may have open, as by `ulimit -n`.
     """
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     command = [sys.executable, "-m", "service", "serve", "--port", str(port)]
+    if descriptors is not None:
+        command = ["bash", "-c", f'ulimit -n {descriptors}; exec "$@"', "bash", *command]
     environment = {**os.environ, "NUMBA_DISABLE_JIT": "0" if ready else "1", **settings}
     with (
         tempfile.TemporaryFile() as log,

@@ -15,6 +15,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from service.api.app import Edge, create_app
+from service.api.connections import ConnectionLimits, Connections
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
 from service.jobs.runner import MakeRunner, NamedActor, TaskRunner
@@ -22,7 +23,7 @@ from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
 from service.jobs.worker_pool import WorkerPool
 from service.requests.limits import Limits
-from service.server import build
+from service.server import build, uvicorn_config
 from service.settings import Settings
 from tests.helpers.actors import Shuffler, info_of
 
@@ -91,16 +92,23 @@ def engine_app(
 
 
 @contextmanager
-def serving(app: FastAPI, drain: int = 5, warm: bool = True) -> Iterator[str]:
+def serving(
+    app: FastAPI,
+    drain: int = 5,
+    warm: bool = True,
+    connections: ConnectionLimits = ConnectionLimits(),  # noqa: B008  # it is frozen
+) -> Iterator[str]:
     """Serve an application in a thread until the block ends, and yield its address.
 
     Args:
         app: the application.
         drain: seconds that open requests have when it is told to stop.
         warm: whether to wait until its workers are warm.
+        connections: the limits of its connections.
     """
     listening = socket.create_server(("127.0.0.1", 0))
-    server = uvicorn.Server(uvicorn.Config(app, log_config=None, timeout_graceful_shutdown=drain))
+    config = uvicorn_config(app, Connections(connections), drain, log_config=None)
+    server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, args=[[listening]])
     thread.start()
     url = f"http://127.0.0.1:{listening.getsockname()[1]}"
