@@ -26,6 +26,7 @@ class Problem(NamedTuple):
 
 
 PROBLEMS: Mapping[str, Problem] = {
+    "malformed-http": Problem(400, "the request must be HTTP/1.1: {reason}", _NONE),
     "malformed-json": Problem(400, "the body must be JSON: {reason}", _PLANS),
     "malformed-multipart": Problem(400, "the body must be multipart/form-data: {reason}", _PLANS),
     "unauthorized": Problem(401, "Authorization must be {demand}"),
@@ -35,6 +36,9 @@ PROBLEMS: Mapping[str, Problem] = {
     "unknown-front": Problem(404, "there is no front {front}"),
     "method-not-allowed": Problem(405, "{path} must be asked with {allowed}, got {came}", _NONE),
     "body-too-slow": Problem(408, "the body must arrive within {limit:g} s, and has not"),
+    "head-too-slow": Problem(
+        408, "the head of a request must arrive within {limit:g} s, and has not", _NONE
+    ),
     "front-expired": Problem(
         410, "front {front} was kept for a while and is no more: plan it again"
     ),
@@ -47,6 +51,7 @@ PROBLEMS: Mapping[str, Problem] = {
         415, "Content-Type must be application/json or multipart/form-data, got {came}"
     ),
     "not-plain": Problem(415, "Content-Encoding must be identity, got {came}"),
+    "unsatisfiable-range": Problem(416, "the range must be within the file", _NONE),
     "idempotency-mismatch": Problem(
         422, "an Idempotency-Key must be of one body, got another", _PLANS
     ),
@@ -62,6 +67,9 @@ PROBLEMS: Mapping[str, Problem] = {
         422, "actor must read {kind}, as {among}; {name} reads {inputs} alone", _PLANS
     ),
     "unknown-actor": Problem(422, "actor must be {among}, got {came}", _PLANS),
+    "preflight-refused": Problem(
+        400, "a page may call from an allowed origin, with its method and headers: {reason}", _NONE
+    ),
     "refused": Problem(400, "{detail}", _NONE),
     "rate-limited": Problem(
         429, "requests must be at most {rate}, and {caller} made more: wait {wait} s"
@@ -81,6 +89,9 @@ PROBLEMS: Mapping[str, Problem] = {
     "shutting-down": Problem(503, "the server is shutting down"),
     "stopped": Problem(503, "the work was stopped before there was a front", _PLANS),
     "store-unavailable": Problem(503, "what fronts are kept in must answer, and does not"),
+    "too-many-connections": Problem(
+        503, "there must be a free connection, and all are busy: ask again", _NONE
+    ),
     "warming-up": Problem(
         503,
         "the search is being compiled, once: ask again, or for the network alone with time_limit 0",
