@@ -58,6 +58,7 @@ def build(settings: Settings) -> FastAPI:
             metrics=metrics,
             origins=settings.origins,
             body_seconds=settings.body_seconds,
+            request_seconds=settings.request_seconds,
         ),
     )
     if settings.traces:

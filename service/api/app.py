@@ -40,12 +40,14 @@ class Edge:
         metrics: The metrics that requests are counted in.
         origins: Other origins whose pages may call (CORS); by default none.
         body_seconds: The time that a body may take to arrive.
+        request_seconds: The time after which a request is answered with the best front so far.
     """
 
     access: Access = field(default_factory=Access)
     metrics: Metrics = field(default_factory=Metrics)
     origins: Sequence[str] = ()
     body_seconds: float = 30.0
+    request_seconds: float = 90.0
 
     @property
     def guard(self) -> dict[str, Any]:
@@ -105,7 +107,8 @@ def create_app(
         docs_url=None,
         redoc_url=None,
     )
-    app.include_router(PlanRoutes(actors, engine, limits).router(), **edge.guard)
+    plan_routes = PlanRoutes(actors, engine, limits, edge.request_seconds)
+    app.include_router(plan_routes.router(), **edge.guard)
     app.include_router(StoredFrontRoutes(store, engine).router(), **edge.guard)
     app.include_router(_actor_router(actors), **edge.guard)
     app.include_router(edge.metrics.router(), **edge.guard)

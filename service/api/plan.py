@@ -24,7 +24,7 @@ from service.api.responses import (
     problem_bytes,
     problem_responses,
 )
-from service.jobs.engine import Engine, final_record
+from service.jobs.engine import Engine, record_in_time
 from service.jobs.front_document import empty_front
 from service.jobs.record import Record
 from service.requests.coverage import coverage_schema
@@ -40,7 +40,8 @@ class PlanRoutes:
     """Parses a request for a front, has the engine plan it, and answers at once or when it is done.
 
     A request without an idempotency key ends when its client goes away. With one the client is
-    expected to come back, so the planning goes on.
+    expected to come back, so the planning goes on, also after the request was answered with the
+    best front so far because its `seconds` were over.
     """
 
     def __init__(
@@ -48,10 +49,12 @@ class PlanRoutes:
         actors: Mapping[str, ActorInfo],
         engine: Engine,
         limits: Limits,
+        seconds: float,
     ) -> None:
         self._actors = actors
         self._engine = engine
         self._limits = limits
+        self._seconds = seconds
         self._parser = TaskParser(limits, actors)
 
     def router(self) -> APIRouter:
@@ -107,7 +110,8 @@ class PlanRoutes:
             return _accepted_response(self._engine.state(first).record)
         if record.key is not None:
             first = await self._engine.submit(record)
-            return _finished_response(request, await final_record(self._engine, first))
+            record = await record_in_time(self._engine, first, self._seconds)
+            return _finished_response(request, record)
         return _finished_response(request, await self._run(request, record))
 
     async def _check_place(self, request: Request) -> None:

@@ -1,11 +1,13 @@
 """The interface of engines, which run jobs: in this process's workers, or on many machines."""
 
+import asyncio
 from asyncio import Future
 from collections.abc import AsyncIterator
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Protocol
 
-from service.errors import ShuttingDown
+from service.errors import DeadlineExceeded, ShuttingDown
 from service.jobs.record import Record
 from service.search.improve import Progress
 
@@ -82,6 +84,24 @@ class Engine(Protocol):
 
     async def cancel(self, record: Record) -> Record:
         """End a job at once, with what was found so far, and return its final record."""
+
+
+_GRACE = 0.5  # seconds for a job that ends at the same time limit
+
+
+async def record_in_time(engine: Engine, record: Record, seconds: float) -> Record:
+    """Return the record of a job once it is finished, or after so many seconds as it is then.
+
+    Raises:
+        DeadlineExceeded: Nothing was found in these seconds. The job goes on.
+    """
+    with suppress(TimeoutError):
+        async with asyncio.timeout(seconds + _GRACE):
+            async for state in engine.watch(record):
+                record = state.record
+    if not record.finished and not record.front.tours:
+        raise DeadlineExceeded
+    return record
 
 
 async def final_record(engine: Engine, record: Record) -> Record:

@@ -339,3 +339,32 @@ def test_a_caller_sees_its_own_jobs_alone(engine: Engine) -> None:
         ids = {later(client, SHORT, **who, **with_key) for who in (us, them)}
         assert len(ids) == 2
         assert client.get(path, headers=us).status_code == 200
+
+
+def test_a_keyed_request_is_answered_in_time_and_its_job_goes_on(engine: Engine) -> None:
+    key = {"Idempotency-Key": "in time"}
+    with engine.serve(edge=Edge(request_seconds=1.0)) as served:
+        client = served.client
+        for _ in range(2):
+            began = time.monotonic()
+            answer = client.post("/front", json=LONG, headers=key)
+            assert time.monotonic() < began + 4
+            assert (answer.status_code, answer.json()["status"]) == (200, "running")
+            assert answer.json()["terminated"] is None
+            check(answer.json())
+        path = f"/front/{answer.json()['id']}"
+        assert client.delete(path).json()["status"] == "cancelled"
+        assert client.post("/front", json=LONG, headers=key).json()["status"] == "cancelled"
+
+
+def test_a_keyed_request_that_found_nothing_in_time_is_504_and_its_job_goes_on(
+    engine: Engine, gated: Shuffler
+) -> None:
+    key = {"Idempotency-Key": "nothing in time"}
+    with engine.serve(gated, edge=Edge(request_seconds=0.5)) as served:
+        client = served.client
+        problem(client.post("/front", json=SHORT, headers=key), 504, "overdue")
+        gated.open()
+        path = later(client, SHORT, **key)
+        assert ended(client, path)["status"] == "done"
+        assert client.post("/front", json=SHORT, headers=key).json()["status"] == "done"
