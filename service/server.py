@@ -2,7 +2,6 @@
 
 import gc
 import logging
-import logging.config
 import multiprocessing
 import signal
 import sys
@@ -11,7 +10,7 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from functools import partial
 from types import FrameType
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import uvicorn
 from fastapi import FastAPI
@@ -32,7 +31,7 @@ from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.worker_pool import WorkerPool
 from service.settings import Settings
-from service.telemetry import log_loading, logging_config, trace
+from service.telemetry import configure_logging, log_loading, logged, trace
 
 
 def build(settings: Settings) -> FastAPI:
@@ -79,9 +78,8 @@ def serve(app: FastAPI, settings: Settings) -> None:
     connections = Connections(
         ConnectionLimits(connections=most, head_seconds=settings.head_seconds)
     )
-    config = uvicorn_config(
-        app, connections, settings.drain_seconds, logging_config(plain=sys.stderr.isatty())
-    )
+    configure_logging(plain=sys.stderr.isatty())
+    config = uvicorn_config(app, connections, settings.drain_seconds)
     try:
         sockets = bound_sockets(settings.host, settings.port, connections.make_room)
     except OSError as error:
@@ -91,9 +89,7 @@ def serve(app: FastAPI, settings: Settings) -> None:
         uvicorn.Server(config).run(sockets)
 
 
-def uvicorn_config(
-    app: FastAPI, connections: Connections, drain_seconds: int, log_config: dict[str, Any] | None
-) -> uvicorn.Config:
+def uvicorn_config(app: FastAPI, connections: Connections, drain_seconds: int) -> uvicorn.Config:
     """Return the configuration of uvicorn: HTTP/1.1 alone, over these connections."""
     return uvicorn.Config(
         app,
@@ -103,7 +99,7 @@ def uvicorn_config(
         loop="asyncio",
         backlog=ACCEPTED_AT_ONCE,
         server_header=False,
-        log_config=log_config,
+        log_config=None,
         access_log=False,
         timeout_graceful_shutdown=drain_seconds,
     )
@@ -120,7 +116,7 @@ def build_worker(settings: Settings) -> Callable[[], int]:
     from service.cluster.worker import CeleryWorker, make_record_worker
 
     _check_actors(settings)
-    logging.config.dictConfig(logging_config())
+    configure_logging()
     seconds = settings.request_seconds
     worker = CeleryWorker(
         celery=make_celery(redis_url, seconds),
@@ -186,9 +182,10 @@ def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
 
 
 def _make_runner(settings: Settings) -> MakeRunner:
-    return partial(
+    load = partial(
         load_runner, settings.actors, settings.threads, settings.limits, settings.own_actors
     )
+    return partial(logged, load)
 
 
 def _redis_url(settings: Settings) -> str:

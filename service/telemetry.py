@@ -2,15 +2,16 @@
 
 import asyncio
 import logging
+import logging.config
+import sys
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
-from typing import Any
-
-from fastapi import FastAPI
+from typing import Any, TypeVar
 
 from service.errors import Refusal
 
+T = TypeVar("T")
 _POLL_SECONDS = 0.2  # between two questions whether the search is loaded
 _SAY_SECONDS = 10.0  # between two lines on how long it has taken so far
 _KNOWN = frozenset(vars(logging.makeLogRecord({}))) | {"message", "asctime", "color_message"}
@@ -62,7 +63,7 @@ def logging_config(level: str = "INFO", plain: bool = False) -> dict[str, Any]:
     }
 
 
-def log_loading(app: FastAPI, check_ready: Callable[[], Awaitable[None]]) -> None:
+def log_loading(app: Any, check_ready: Callable[[], Awaitable[None]]) -> None:
     """Have an application log how the loading of its search goes, from its start on."""
     lifespan: Callable[[Any], AbstractAsyncContextManager[Any]] = app.router.lifespan_context
 
@@ -95,9 +96,22 @@ async def _log_until_ready(check_ready: Callable[[], Awaitable[None]]) -> None:
             return
 
 
-def trace(app: FastAPI) -> None:
+def configure_logging(plain: bool = False) -> None:
+    """Write logs from now on, as JSON unless plain, and warnings as logs of `py.warnings`."""
+    logging.config.dictConfig(logging_config(plain=plain))
+    logging.captureWarnings(True)
+
+
+def logged(load: Callable[[], T]) -> T:
+    """Configure logging in a process that was just started, and return what it is to load."""
+    configure_logging(plain=sys.stderr.isatty())
+    return load()
+
+
+def trace(app: Any) -> None:
     """Send a span for each request to the collector at OTEL_EXPORTER_OTLP_ENDPOINT.
 
+    The application is typed Any: worker processes import this module, and shall not load FastAPI.
     OpenTelemetry reads that variable, and all its others, by itself.
 
     Raises:

@@ -2,6 +2,7 @@
 
 import json
 import logging
+import subprocess
 import sys
 import threading
 from collections.abc import Iterator
@@ -29,6 +30,24 @@ def test_every_line_of_the_log_is_an_object_and_each_request_has_one() -> None:
     assert line["caller"] == "anonymous"
     assert 0 < line["seconds"] < 10
     assert b"secret" not in service.log
+
+
+def test_a_warning_of_python_is_a_line_of_the_log_in_worker_processes_too() -> None:
+    load = "lambda: warnings.warn('overflow\\nof a request', RuntimeWarning)"
+    code = f"import warnings; from service.telemetry import logged; logged({load})"
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
+    [line] = [json.loads(line) for line in process.stderr.splitlines()]
+    assert (line["logger"], line["level"]) == ("py.warnings", "WARNING")
+    assert "overflow\nof a request" in line["message"]
+
+
+def test_the_runner_of_every_worker_is_loaded_with_the_log_as_objects() -> None:
+    code = (
+        "import logging; from service.settings import Settings; from service import server;"
+        "server._make_runner(Settings())(); logging.getLogger('x').warning('a line')"
+    )
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
+    assert json.loads(process.stderr)["message"] == "a line"
 
 
 @contextmanager

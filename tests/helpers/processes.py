@@ -13,6 +13,8 @@ from dataclasses import dataclass
 
 import httpx
 
+UNLIMITED = "1000000/second"  # for tests and benchmarks, which all call from one address
+
 
 @dataclass
 class ServeProcess:
@@ -30,7 +32,7 @@ def serve_process(
     """Run `paretour serve` with these environment variables until the block ends.
 
     Args:
-        settings: environment variables beside the test's own.
+        settings: environment variables beside the test's own; by default there is no rate.
         ready: whether to wait until its workers are warm, and not only until it answers. Without,
             the search is interpreted, because compiled code would not be used.
         descriptors: how many files and sockets it may have open, as by `ulimit -n`.
@@ -40,7 +42,8 @@ def serve_process(
     command = [sys.executable, "-m", "service", "serve", "--port", str(port)]
     if descriptors is not None:
         command = ["bash", "-c", f'ulimit -n {descriptors}; exec "$@"', "bash", *command]
-    environment = {**os.environ, "NUMBA_DISABLE_JIT": "0" if ready else "1", **settings}
+    defaults = {"NUMBA_DISABLE_JIT": "0" if ready else "1", "PARETOUR_RATE": UNLIMITED}
+    environment = {**os.environ, **defaults, **settings}
     with (
         tempfile.TemporaryFile() as log,
         subprocess.Popen(command, env=environment, stderr=log) as process,

@@ -26,6 +26,7 @@ from service.requests.limits import Limits
 from service.server import build, uvicorn_config
 from service.settings import Settings
 from tests.helpers.actors import Shuffler, info_of
+from tests.helpers.processes import UNLIMITED
 
 LIMITS = Limits(body_bytes=100_000, cities=50, cells=900, preferences=20, size=30, seconds=0.2)
 ACTORS = (Shuffler(), Shuffler(info=info_of("pa-one-matrix", "matrices")))
@@ -107,7 +108,7 @@ def serving(
         connections: the limits of its connections.
     """
     listening = socket.create_server(("127.0.0.1", 0))
-    config = uvicorn_config(app, Connections(connections), drain, log_config=None)
+    config = uvicorn_config(app, Connections(connections), drain)
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, args=[[listening]])
     thread.start()
@@ -128,7 +129,7 @@ def serving_released() -> Iterator[str]:
 
     The fixture `released` of tests/conftest.py is such a server for a whole session.
     """
-    with serving(build(Settings(workers=1))) as address:
+    with serving(build(Settings(workers=1, rate=UNLIMITED))) as address:
         yield address
 
 
