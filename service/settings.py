@@ -110,7 +110,9 @@ class Settings(BaseSettings):
     api_keys: KeyHashes = Field(
         (), description="who may call, as CALLER:HASH with commas between; none lets everybody in"
     )
-    rate: Rate = Field("1000/minute", description="requests that each caller with a key may make")
+    rate: Rate = Field(
+        "1000/minute", description="requests that each key may make; without keys, each address"
+    )
     origins: Words = Field(
         (), description="origins whose pages may call (CORS), with commas between; or *"
     )

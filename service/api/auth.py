@@ -1,7 +1,8 @@
 """Authentication by API keys, and a rate limit for each caller.
 
 A key is 256 random bits. The settings hold its SHA-256 alone, which needs no salt: nobody guesses
-256 bits. Without keys everybody may call, as one caller.
+256 bits. Without keys everybody may call: as one caller, whose fronts all can see, while each
+address has a rate of its own.
 """
 
 import hashlib
@@ -14,7 +15,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib.util import find_spec
-from ipaddress import ip_network
+from ipaddress import IPv6Address, ip_address, ip_network
 from typing import Self
 
 from fastapi import Depends, Security
@@ -22,7 +23,7 @@ from fastapi.params import Depends as Dependency
 from fastapi.security import HTTPBearer
 from limits import RateLimitItem, parse
 from limits.aio.storage import MemoryStorage, RedisStorage
-from limits.aio.strategies import MovingWindowRateLimiter
+from limits.aio.strategies import MovingWindowRateLimiter, SlidingWindowCounterRateLimiter
 from limits.errors import StorageError
 from starlette.requests import Request
 
@@ -74,18 +75,34 @@ class Rates:
 
     def __init__(self, rate: str, redis_url: str | None = None) -> None:
         self._rate: RateLimitItem = parse(rate)
-        self._limiter = MovingWindowRateLimiter(_storage(redis_url))
+        storage = _storage(redis_url)
+        self._callers = MovingWindowRateLimiter(storage)
+        # Two numbers for each address: there may be very many.
+        self._addresses = SlidingWindowCounterRateLimiter(storage)
 
     async def check(self, caller: str) -> None:
-        """Count a request of a caller, and raise a refusal where there were too many.
+        """Count a request of a caller with a key, and raise a refusal where there were too many.
 
         Raises:
             Refusal: The caller is over its rate.
         """
+        await self._check(self._callers, caller)
+
+    async def check_address(self, address: str) -> None:
+        """Count a request from an address, and raise a refusal where there were too many.
+
+        Raises:
+            Refusal: The address is over its rate.
+        """
+        await self._check(self._addresses, _network(address))
+
+    async def _check(
+        self, limiter: MovingWindowRateLimiter | SlidingWindowCounterRateLimiter, caller: str
+    ) -> None:
         try:
-            if await self._limiter.hit(self._rate, caller):
+            if await limiter.hit(self._rate, caller):
                 return
-            window = await self._limiter.get_window_stats(self._rate, caller)
+            window = await limiter.get_window_stats(self._rate, caller)
         except StorageError:
             _LOG.warning("rates are not counted: Redis does not answer")
             return
@@ -129,7 +146,18 @@ class Access:
     @property
     def dependencies(self) -> list[Dependency]:
         """The dependencies of a guarded router; with keys, its OpenAPI document asks for one."""
-        return [Depends(self.authenticate), Security(_BEARER)] if self._keys else []
+        if self._keys:
+            return [Depends(self.authenticate), Security(_BEARER)]
+        return [Depends(self.count_address)] if self._rates is not None else []
+
+    async def count_address(self, request: Request) -> None:
+        """Hold the address of the client to its rate; behind a proxy, the one that it names.
+
+        Raises:
+            Refusal: The address is over the rate.
+        """
+        if self._rates is not None:
+            await self._rates.check_address(request.client.host if request.client else "unknown")
 
     async def authenticate(self, request: Request) -> None:
         """Write the caller into the request's scope.
@@ -151,6 +179,19 @@ class Access:
         if not matches:
             raise _unauthorized("an API key of this service; this is none")
         return matches[0]
+
+
+def _network(address: str) -> str:
+    """Return an IPv4 address as it is, and of an IPv6 address the 64 bits that a client has."""
+    try:
+        parsed = ip_address(address)
+    except ValueError:  # what a proxy wrote, which need not be an address
+        return address[:64]
+    if not isinstance(parsed, IPv6Address):
+        return address
+    if parsed.ipv4_mapped is not None:
+        return str(parsed.ipv4_mapped)
+    return str(ip_network((parsed.packed, 64), strict=False))
 
 
 def _storage(redis_url: str | None) -> MemoryStorage | RedisStorage:

@@ -102,10 +102,49 @@ def test_a_caller_over_its_rate_is_told_when_to_come_back_and_others_are_not(lim
     assert httpx.get(f"{limited}/health/live").status_code == 200
 
 
-def test_without_keys_nobody_is_held_up() -> None:
-    edge = Edge(access=Access((), Rates("1/hour")))
+def test_without_keys_each_address_has_a_rate_and_fronts_are_everybodys() -> None:
+    edge = Edge(access=Access((), Rates("2/hour")))
+    with serving(app_of(edge=edge)) as url:
+        # uvicorn trusts the header where the proxy is at 127.0.0.1.
+        one, other = ({"X-Forwarded-For": f"203.0.113.{last}"} for last in (1, 2))
+        assert httpx.post(f"{url}/front", json=FRONT, headers=one).status_code == 200
+        assert httpx.get(f"{url}/actors", headers=one).status_code == 200
+        refused = httpx.get(f"{url}/actors", headers=one)
+        assert "203.0.113.1" in problem(refused, 429, "rate-limited")["detail"]
+        assert 0 < int(refused.headers["retry-after"]) <= 7200
+        assert httpx.get(f"{url}/tour?angle=30", headers=other).status_code == 200
+        assert httpx.get(f"{url}/health/live", headers=one).status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("addresses", "allowed"),
+    [
+        (["2001:db8::1", "2001:db8::2", "2001:db8::3"], [200, 200, 429]),
+        (["2001:db8:0:1::1", "2001:db8:0:2::1", "2001:db8:0:3::1"], [200, 200, 200]),
+        (["not an address"] * 3, [200, 200, 429]),
+    ],
+    ids=["one network", "three networks", "no address"],
+)
+def test_an_address_of_ipv6_is_the_network_that_a_client_has(
+    addresses: list[str], allowed: list[int]
+) -> None:
+    edge = Edge(access=Access((), Rates("2/hour")))
     with serving(app_of(edge=edge), warm=False) as url:
-        assert [httpx.get(f"{url}/actors").status_code for _ in range(3)] == [200] * 3
+        answers = [
+            httpx.get(f"{url}/actors", headers={"X-Forwarded-For": address})
+            for address in addresses
+        ]
+    assert [answer.status_code for answer in answers] == allowed
+
+
+def test_the_header_of_a_proxy_that_is_not_trusted_counts_for_nothing() -> None:
+    settings = {"PARETOUR_RATE": "2/hour", "FORWARDED_ALLOW_IPS": "192.0.2.1"}
+    with serve_process(settings) as service:
+        answers = [
+            httpx.get(f"{service.url}/actors", headers={"X-Forwarded-For": f"203.0.113.{last}"})
+            for last in range(3)
+        ]
+    assert [answer.status_code for answer in answers] == [200, 200, 429]
 
 
 @pytest.mark.parametrize(
