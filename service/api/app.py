@@ -16,6 +16,7 @@ from service.api.exception_handlers import HANDLED, answer_refusal
 from service.api.metrics import Metrics
 from service.api.middleware import (
     BodyTimeoutMiddleware,
+    ProblemMiddleware,
     RequestIdMiddleware,
     RequestLogMiddleware,
     SecurityHeadersMiddleware,
@@ -63,6 +64,7 @@ class Edge:
             Middleware(SecurityHeadersMiddleware),
             Middleware(RequestIdMiddleware),
             Middleware(RequestLogMiddleware, observers),
+            Middleware(ProblemMiddleware),
             *cors,
             Middleware(BodyTimeoutMiddleware, self.body_seconds),
         ]
@@ -158,4 +160,12 @@ def _health_router(engine: Engine) -> APIRouter:
         await engine.check_ready()
         return json_response({"status": "ready"})
 
+    # Some probes ask for the status alone.
+    router.head("/health/live", response_class=Response, openapi_extra=public)(live)
+    router.head(
+        "/health/ready",
+        response_class=Response,
+        responses={503: {"description": "Service Unavailable"}},
+        openapi_extra=public,
+    )(ready)
     return router

@@ -1,4 +1,4 @@
-"""Middleware: security headers, request ids, the request log, and a time limit for bodies."""
+"""Middleware: security headers, request ids, the log, problem documents, deadlines of bodies."""
 
 import asyncio
 import logging
@@ -7,12 +7,13 @@ import time
 import uuid
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from http import HTTPStatus
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from service.api.responses import problem_response
+from service.api.responses import PROBLEM_JSON, problem_response
 from service.errors import Refusal, ShuttingDown
 
 # Everything comes from the service itself; maps of robots are drawn into images (data:).
@@ -159,6 +160,60 @@ class RequestLogMiddleware:
 def log_request(answered: AnsweredRequest) -> None:
     """Write one line to the log for a request."""
     logging.getLogger("paretour.requests").info("request", extra=vars(answered))
+
+
+class ProblemMiddleware:
+    """Turns errors that the framework answers as plain text into problem documents.
+
+    These are refused preflights (CORS), and ranges that a file does not have.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on one request."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        start: Message | None = None
+        text = b""
+
+        async def send_problem(message: Message) -> None:
+            nonlocal start, text
+            if message["type"] == "http.response.start" and _is_plain_error(message):
+                start = message
+                return
+            if start is None:
+                await send(message)
+                return
+            text += message.get("body", b"")
+            if not message.get("more_body", False):
+                refusal = _framework_refusal(scope["method"], start, text.decode(errors="replace"))
+                await problem_response(refusal, scope["request_id"])(scope, receive, send)
+
+        await self._app(scope, receive, send_problem)
+
+
+def _is_plain_error(message: Message) -> bool:
+    media_type = Headers(raw=message["headers"]).get("content-type", "")
+    return bool(message["status"] >= HTTPStatus.BAD_REQUEST and media_type != PROBLEM_JSON)
+
+
+def _framework_refusal(method: str, start: Message, text: str) -> Refusal:
+    """Return the refusal that says what the framework said, with its headers."""
+    status = start["status"]
+    if method == "OPTIONS":
+        refusal = Refusal("preflight-refused", reason=text)
+    elif status == HTTPStatus.REQUESTED_RANGE_NOT_SATISFIABLE:
+        refusal = Refusal("unsatisfiable-range")
+    else:
+        refusal = Refusal("refused", detail=text or HTTPStatus(status).phrase)
+    refusal.status = status
+    of_the_text = ("content-type", "content-length")
+    headers = Headers(raw=start["headers"]).items()
+    refusal.headers = {name: value for name, value in headers if name not in of_the_text}
+    return refusal
 
 
 class BodyTimeoutMiddleware:

@@ -38,3 +38,20 @@ def test_files_are_served_and_asked_for_anew_each_time(
 @pytest.mark.parametrize("path", ["/page/none.js", "/page/../settings.py", "/examples/none.json"])
 def test_what_is_no_file_of_the_page_is_404(client: httpx.Client, path: str) -> None:
     problem(client.get(path), 404, "no-such-path")
+
+
+@pytest.mark.parametrize(
+    ("asked", "status", "code"),
+    [
+        ("bytes=99999999-", 416, "unsatisfiable-range"),
+        ("bytes=9-2", 400, "refused"),
+        ("lines=1-2", 400, "refused"),
+        ("nonsense", 400, "refused"),
+    ],
+)
+def test_a_range_that_a_file_does_not_have_is_a_problem(
+    client: httpx.Client, asked: str, status: int, code: str
+) -> None:
+    answer = client.get("/page/main.js", headers={"Range": asked})
+    problem(answer, status, code)
+    assert ("content-range" in answer.headers) == (status == 416)
