@@ -12,6 +12,7 @@ from typing import Any, cast
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
+from service.api.http_parser import StrictParser
 from service.api.responses import problem_response
 from service.errors import Refusal
 
@@ -91,38 +92,6 @@ class Connections:
             _LOG.warning(sentence, len(self._open))
 
 
-class _StrictParser(h11.Connection):
-    """A parser of requests that refuses two framings of one body, and keeps what it refused.
-
-    A proxy that believes the other of the two would take the end of the body for a request.
-    """
-
-    error: h11.RemoteProtocolError | None = None
-    method = b""
-
-    def next_event(self) -> Any:
-        """Return the next event, as h11.Connection does."""
-        try:
-            event = super().next_event()
-            if isinstance(event, h11.Request):
-                self.method = event.method
-                _check_framing(event)
-        except h11.RemoteProtocolError as error:
-            self.error = error
-            raise
-        return event
-
-
-def _check_framing(request: h11.Request) -> None:
-    names = [name for name, _ in request.headers]
-    if b"transfer-encoding" not in names:
-        return
-    if b"content-length" in names:
-        raise h11.RemoteProtocolError("Content-Length and Transfer-Encoding exclude each other")
-    if request.http_version < b"1.1":
-        raise h11.RemoteProtocolError("HTTP/1.0 has no Transfer-Encoding")
-
-
 class Connection(H11Protocol):
     """A connection of uvicorn with a deadline for each request's head, and an end in peace.
 
@@ -133,7 +102,7 @@ class Connection(H11Protocol):
 
     def __init__(self, connections: Connections, **arguments: Any) -> None:
         super().__init__(**arguments)
-        self.conn: _StrictParser = _StrictParser(h11.SERVER)
+        self.conn: StrictParser = StrictParser(h11.SERVER)
         self._connections = connections
         self._socket: Transport
         self._head_timer: TimerHandle | None = None
