@@ -228,15 +228,9 @@ class Connection(H11Protocol):
         headers = [*self.server_state.default_headers, *response.raw_headers]
         headers += [(b"connection", b"close"), (b"x-request-id", request_id.encode())]
         body = b"" if self.conn.method == b"HEAD" else bytes(response.body)
-        for event in (
-            h11.Response(
-                status_code=refusal.status,
-                headers=headers,
-                reason=HTTPStatus(refusal.status).phrase.encode(),
-            ),
-            h11.Data(data=body),
-            h11.EndOfMessage(),
-        ):
+        reason = HTTPStatus(refusal.status).phrase.encode()
+        head = h11.Response(status_code=refusal.status, headers=headers, reason=reason)
+        for event in (head, h11.Data(data=body), h11.EndOfMessage()):
             self._socket.write(self.conn.send(event) or b"")
 
     def _linger(self) -> None:
