@@ -74,7 +74,7 @@ def bound_sockets(host: str, port: int, exhausted: Callable[[], object]) -> list
     for listening in sockets:
         name, number = listening.getsockname()[:2]
         shown = f"[{name}]" if ":" in name else name
-        logging.getLogger("paretour").info("listening on http://%s:%d", shown, number)
+        logging.getLogger("paretour").info("running on http://%s:%d", shown, number)
     return [*sockets]
 
 
