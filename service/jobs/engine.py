@@ -3,7 +3,6 @@
 import asyncio
 from asyncio import Future
 from collections.abc import AsyncIterator
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -94,13 +93,18 @@ async def record_in_time(engine: Engine, record: Record, seconds: float) -> Reco
 
     Raises:
         DeadlineExceeded: Nothing was found in these seconds. The job goes on.
+        ShuttingDown: It is left unfinished for the next start.
     """
-    with suppress(TimeoutError):
+    try:
         async with asyncio.timeout(seconds + _GRACE):
             async for state in engine.watch(record):
                 record = state.record
-    if not record.finished and not record.front.tours:
-        raise DeadlineExceeded
+    except TimeoutError:
+        if not record.front.tours:
+            raise DeadlineExceeded from None
+        return record
+    if not record.finished:
+        raise ShuttingDown
     return record
 
 
