@@ -1,17 +1,15 @@
 """Request bodies: receive one within its limits, split it into parts, and parse it into a task."""
 
 import asyncio
-from collections.abc import Collection, Mapping
-from math import inf
+from collections.abc import Mapping
 
 from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
-from python_multipart.exceptions import FormParserError
-from python_multipart.multipart import Field, File, FormParser, parse_options_header
 from starlette.requests import Request
 
 from service.actor import ActorInfo
 from service.errors import Refusal, WorkerLost
 from service.requests.limits import Limits
+from service.requests.multipart import split_parts
 from service.requests.task import Task, TaskKind, TaskSource, parse_task
 
 _MULTIPART = "multipart/form-data"
@@ -35,7 +33,7 @@ async def receive_source(request: Request, kind: TaskKind, most_bytes: int) -> T
     if not content_type.lower().startswith(_MULTIPART):
         return TaskSource(kind, body)
     upload = _UPLOADS[kind]
-    # In a thread, beside the event loop: many megabytes take a while.
+    # In a thread, beside the event loop: of many megabytes it takes a tenth of a second.
     parts = await asyncio.to_thread(split_parts, content_type, body, ("request", upload))
     return TaskSource(kind, parts["request"], parts[upload])
 
@@ -69,64 +67,6 @@ async def _receive(request: Request, most_bytes: int) -> bytes:
 def _too_long(limit: int, actual: int | None = None) -> Refusal:
     came = "more" if actual is None else actual
     return Refusal("body-too-long", came=came, limit=limit, actual=actual)
-
-
-def split_parts(content_type: str, body: bytes, expected: Collection[str]) -> dict[str, bytes]:
-    """Return the content of each part of a multipart/form-data body by the part's name.
-
-    Raises:
-        Refusal: The body is malformed, or its parts are not those expected, once each.
-    """
-    parts = _Parts(expected)
-    _, options = parse_options_header(content_type)
-    try:
-        parser = FormParser(
-            _MULTIPART,
-            parts.add_field,
-            parts.add_file,
-            parts.end,
-            options.get(b"boundary"),
-            config={"MAX_MEMORY_FILE_SIZE": inf},
-        )
-        parser.write(body)
-        parser.finalize()
-    except FormParserError as error:
-        raise Refusal("malformed-multipart", reason=str(error)) from None
-    if not parts.ended:
-        raise Refusal("malformed-multipart", reason="it ends before its last boundary")
-    if missing := [name for name in expected if name not in parts.contents]:
-        raise Refusal("invalid-parts", reason=f"the part {missing[0]} is required")
-    return parts.contents
-
-
-class _Parts:
-    """The parts of a body as the parser finds them."""
-
-    def __init__(self, expected: Collection[str]) -> None:
-        self.contents: dict[str, bytes] = {}
-        self.ended = False
-        self._expected = expected
-
-    def add_field(self, part: Field) -> None:
-        """Add a part without a file name."""
-        self._add(part.field_name, part.value)
-
-    def add_file(self, part: File) -> None:
-        """Add a part with a file name."""
-        part.file_object.seek(0)
-        self._add(part.field_name, part.file_object.read())
-
-    def end(self) -> None:
-        """Take note of the last boundary."""
-        self.ended = True
-
-    def _add(self, name_bytes: bytes | None, content: bytes | None) -> None:
-        name = (name_bytes or b"").decode(errors="replace")
-        if name not in self._expected or name in self.contents:
-            among = " and ".join(self._expected)
-            reason = f"the parts must be {among}, once each, got {name[:80]!r}"
-            raise Refusal("invalid-parts", reason=reason)
-        self.contents[name] = content or b""
 
 
 class TaskParser:

@@ -10,8 +10,9 @@ from pydantic_core.core_schema import with_info_after_validator_function
 
 from service.coverage.survey import Coverage
 from service.instance import Kind
-from service.requests.arrays import Array, check_costs, read_png, rectangular_array, square_array
+from service.requests.arrays import Array, check_costs, rectangular_array, square_array
 from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
+from service.requests.png import read_png
 from service.requests.schemas import (
     LARGEST,
     ArrayRows,

@@ -12,8 +12,9 @@ from pydantic_core.core_schema import no_info_after_validator_function
 from service.errors import Refusal
 from service.instance import MAX_SYMMETRIES, OBJECTIVES, Instance, Kind
 from service.planner import PlanOptions
-from service.requests.arrays import check_costs, read_npy, stack_matrices
+from service.requests.arrays import check_costs, stack_matrices
 from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
+from service.requests.npy import read_npy
 from service.requests.schemas import LARGEST, ArrayRows, AsInteger, Number, PlanRequest
 from service.requests.validation import invalid, parse_json, too_many_cities
 

@@ -94,7 +94,13 @@ def multipart(*names: str, end: str = "--x--\r\n") -> str:
         (MULTIPART, multipart("request", "request"), 422, "once each, got 'request'"),
         (MULTIPART, multipart("request", "matrices", end=""), 400, "before its last boundary"),
         (MULTIPART, "{}", 400, "the body must be multipart/form-data"),
-        ("multipart/form-data", multipart("request"), 400, "the body must be multipart/form-data"),
+        ("multipart/form-data", multipart("request"), 400, "a boundary of 1 to 70 bytes, got 0"),
+        (f"{MULTIPART[:-1]}{71 * 'x'}", multipart("request"), 400, "of 1 to 70 bytes, got 71"),
+        (MULTIPART, "preamble\r\n" + multipart("request"), 400, "must begin with its boundary"),
+        (MULTIPART, "--x \r\n", 400, "a line break must follow each boundary"),
+        (MULTIPART, f"--x\r\n{5000 * ' '}", 400, "headers of at most 4096 bytes"),
+        (MULTIPART, "--x\r\n" + 5000 * "a: b\r\n", 400, "headers of at most 4096 bytes"),
+        (MULTIPART, "--x\r\nno: name\r\n\r\n\r\n--x--", 422, "once each, got ''"),
     ],
 )
 def test_parts_that_are_not_as_they_should_be_are_named(

@@ -1,0 +1,90 @@
+"""Split a multipart/form-data body into its parts, in time that is linear in its length.
+
+The body is all there, so that boundaries are searched for at the speed of memory. Everything
+beside the contents is bounded: the boundary, the headers of a part and the number of parts.
+"""
+
+from collections.abc import Collection, Iterator
+
+from python_multipart.multipart import parse_options_header
+
+from service.errors import Refusal
+from service.requests.validation import shorten
+
+_LONGEST_BOUNDARY = 70  # bytes (RFC 2046)
+_LONGEST_HEADERS = 4096  # bytes of all headers of one part
+_PIECE = 2**20  # bytes that are searched at once, which takes ten milliseconds at most
+_BREAK = b"\r\n"
+
+
+def split_parts(content_type: str, body: bytes, expected: Collection[str]) -> dict[str, bytes]:
+    """Return the content of each part of a multipart/form-data body by the part's name.
+
+    Raises:
+        Refusal: The body is malformed, or its parts are not those expected, once each.
+    """
+    contents: dict[str, bytes] = {}
+    for name, content in _parts(_delimiter(content_type), body):
+        if name not in expected or name in contents:
+            among = " and ".join(expected)
+            raise _invalid(f"the parts must be {among}, once each, got {shorten(name)!r}")
+        contents[name] = content
+    if missing := [name for name in expected if name not in contents]:
+        raise _invalid(f"the part {missing[0]} is required")
+    return contents
+
+
+def _delimiter(content_type: str) -> bytes:
+    _, options = parse_options_header(content_type)
+    boundary = options.get(b"boundary", b"")
+    if not 0 < len(boundary) <= _LONGEST_BOUNDARY:
+        demand = f"Content-Type must name a boundary of 1 to {_LONGEST_BOUNDARY} bytes"
+        raise _malformed(f"{demand}, got {len(boundary)}")
+    return b"--" + boundary
+
+
+def _parts(delimiter: bytes, body: bytes) -> Iterator[tuple[str, bytes]]:
+    """Yield the name and the content of each part, in order."""
+    at = body.startswith(_BREAK) * len(_BREAK)
+    if not body.startswith(delimiter, at):
+        raise _malformed("it must begin with its boundary")
+    at += len(delimiter)
+    while not body.startswith(b"--", at):
+        if not body.startswith(_BREAK, at):
+            raise _malformed("a line break must follow each boundary")
+        begin = at + len(_BREAK)
+        end = body.find(2 * _BREAK, begin, begin + _LONGEST_HEADERS)
+        if end < 0:
+            raise _malformed(f"a part must have headers of at most {_LONGEST_HEADERS} bytes")
+        name = _name(body[begin:end])
+        content = end + 2 * len(_BREAK)
+        next_one = _find(_BREAK + delimiter, body, content)
+        yield name, body[content:next_one]
+        at = next_one + len(_BREAK + delimiter)
+
+
+def _find(delimiter: bytes, body: bytes, start: int) -> int:
+    """Return where a delimiter is, searched piece by piece, so that other threads have turns."""
+    for begin in range(start, len(body), _PIECE):
+        found = body.find(delimiter, begin, begin + _PIECE + len(delimiter) - 1)
+        if found >= 0:
+            return found
+    raise _malformed("it ends before its last boundary")
+
+
+def _name(headers: bytes) -> str:
+    """Return the name of a part with these headers."""
+    for line in headers.split(_BREAK):
+        header, _, value = line.partition(b":")
+        if header.strip().lower() == b"content-disposition":
+            _, options = parse_options_header(value)
+            return options.get(b"name", b"").decode(errors="replace")
+    return ""
+
+
+def _malformed(reason: str) -> Refusal:
+    return Refusal("malformed-multipart", reason=reason)
+
+
+def _invalid(reason: str) -> Refusal:
+    return Refusal("invalid-parts", reason=reason)
