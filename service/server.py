@@ -23,6 +23,8 @@ from service.api.auth import Access, Rates
 from service.api.connections import ConnectionLimits, Connections
 from service.api.listener import ACCEPTED_AT_ONCE, bound_sockets, most_connections
 from service.api.metrics import Metrics
+from service.api.plan import BodyBounds
+from service.api.task_parser import ParserBounds
 from service.cluster import check_cluster
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
@@ -58,6 +60,10 @@ def build(settings: Settings) -> FastAPI:
             origins=settings.origins,
             body_seconds=settings.body_seconds,
             request_seconds=settings.request_seconds,
+            bodies=BodyBounds(
+                under_way=settings.bodies_bytes,
+                parser=ParserBounds(seconds=settings.parse_seconds, memory=settings.parse_bytes),
+            ),
         ),
     )
     if settings.traces:

@@ -76,6 +76,13 @@ class Settings(BaseSettings):
 
     # Limits of a request.
     max_body_bytes: int = Field(2**24, ge=1, description="the longest request body")
+    bodies_bytes: int = Field(
+        2**27, ge=2**20, description="bytes of all request bodies under way, together"
+    )
+    parse_seconds: float = Field(20.0, gt=0, description="how long a body may take to parse")
+    parse_bytes: int = Field(
+        2**29 + 2**28, ge=2**26, description="memory that parsing a body may take"
+    )
     max_cities: int = Field(1000, ge=1, description="the most cities of an instance")
     max_cells: int = Field(2**20, ge=1, description="the most cells of a map")
     max_path_cells: int = Field(2**21, ge=1, description="the most cells of all paths of an answer")

@@ -23,7 +23,7 @@ from service.api.middleware import (
     log_request,
 )
 from service.api.openapi import complete
-from service.api.plan import PlanRoutes
+from service.api.plan import BodyBounds, PlanRoutes
 from service.api.responses import ActorsAnswer, HealthAnswer, json_response, problem_responses
 from service.api.static import static_routes
 from service.api.stored_fronts import StoredFrontRoutes
@@ -42,6 +42,7 @@ class Edge:
         origins: Other origins whose pages may call (CORS); by default none.
         body_seconds: The time that a body may take to arrive.
         request_seconds: The time after which a request is answered with the best front so far.
+        bodies: What the bodies of all requests may take together.
     """
 
     access: Access = field(default_factory=Access)
@@ -49,6 +50,7 @@ class Edge:
     origins: Sequence[str] = ()
     body_seconds: float = 30.0
     request_seconds: float = 90.0
+    bodies: BodyBounds = field(default_factory=BodyBounds)
 
     @property
     def guard(self) -> dict[str, Any]:
@@ -109,8 +111,8 @@ def create_app(
         docs_url=None,
         redoc_url=None,
     )
-    plan_routes = PlanRoutes(actors, engine, limits, edge.request_seconds)
-    app.include_router(plan_routes.router(), **edge.guard)
+    plans = PlanRoutes(actors, engine, limits, edge.bodies, edge.request_seconds)
+    app.include_router(plans.router(), **edge.guard)
     app.include_router(StoredFrontRoutes(store, engine).router(), **edge.guard)
     app.include_router(_actor_router(actors), **edge.guard)
     app.include_router(edge.metrics.router(), **edge.guard)

@@ -4,7 +4,7 @@ import asyncio
 import hashlib
 import uuid
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from fastapi import APIRouter
@@ -13,7 +13,8 @@ from starlette.responses import Response
 
 from service.actor import ActorInfo
 from service.api.auth import caller_of, client_of
-from service.api.body import TaskParser, receive_source
+from service.api.body import receive_source
+from service.api.body_budget import DEFAULT_BUDGET, BodyAllowance, BodyBudget
 from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async
 from service.api.responses import (
     AcceptedAnswer,
@@ -24,6 +25,7 @@ from service.api.responses import (
     problem_bytes,
     problem_responses,
 )
+from service.api.task_parser import ParserBounds, TaskParser
 from service.jobs.engine import Engine, record_in_time
 from service.jobs.front_document import empty_front
 from service.jobs.record import Record
@@ -34,6 +36,19 @@ from service.requests.task import TaskKind, TaskSource
 
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
 _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyBounds:
+    """What the bodies of all requests may take together.
+
+    Args:
+        under_way: Bytes of all bodies under way.
+        parser: The bounds of a process that parses.
+    """
+
+    under_way: int = DEFAULT_BUDGET
+    parser: ParserBounds = field(default_factory=ParserBounds)
 
 
 class PlanRoutes:
@@ -49,13 +64,15 @@ class PlanRoutes:
         actors: Mapping[str, ActorInfo],
         engine: Engine,
         limits: Limits,
+        bodies: BodyBounds,
         seconds: float,
     ) -> None:
         self._actors = actors
         self._engine = engine
         self._limits = limits
         self._seconds = seconds
-        self._parser = TaskParser(limits, actors)
+        self._budget = BodyBudget(bodies.under_way)
+        self._parser = TaskParser(limits, actors, bodies.parser)
 
     def router(self) -> APIRouter:
         """Return the routes with their entries in the OpenAPI document."""
@@ -102,7 +119,14 @@ class PlanRoutes:
 
     async def _plan(self, request: Request, kind: TaskKind) -> Response:
         await self._check_place(request)
-        source = await receive_source(request, kind, self._limits.body_bytes)
+        # Until there is an answer: what waits for a worker, or is planned, has its body as well.
+        with self._budget.open() as allowance:
+            return await self._plan_within(request, kind, allowance)
+
+    async def _plan_within(
+        self, request: Request, kind: TaskKind, allowance: BodyAllowance
+    ) -> Response:
+        source = await receive_source(request, kind, self._limits.body_bytes, allowance)
         source = replace(source, task=await self._parser.parse(source))
         record = await self._new_record(request, source)
         if prefers_async(request):

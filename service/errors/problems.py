@@ -43,6 +43,7 @@ PROBLEMS: Mapping[str, Problem] = {
         410, "front {front} was kept for a while and is no more: plan it again"
     ),
     "body-too-long": Problem(413, "the body must have at most {limit} bytes, got {came}"),
+    "body-too-complex": Problem(413, "the body must {demand}", _PLANS),
     "too-many-cells": Problem(
         413, "grid must have at most {limit} cells, got {came}", ("POST /coverage",)
     ),
@@ -75,6 +76,7 @@ PROBLEMS: Mapping[str, Problem] = {
         429, "requests must be at most {rate}, and {caller} made more: wait {wait} s"
     ),
     "internal-error": Problem(500, "this is a fault of the service, not of the request", _NONE),
+    "bodies-full": Problem(503, "all bodies under way must fit {limit} bytes: ask again", _PLANS),
     "no-worker": Problem(
         503, "a worker must be running, and none can be started yet", ("GET /health/ready",)
     ),

@@ -34,6 +34,28 @@ class Limits:
     path_cells: int = 2**21
 
 
+def check_structure(body: bytes, limits: Limits) -> None:
+    """Raise a refusal where a body has more strings or arrays than any request under the limits.
+
+    A parser spends a hundred bytes and more on each. They are counted by their first characters,
+    before it sees any.
+
+    Raises:
+        Refusal: There are more.
+    """
+    strings = (body.count(b'"') + 1) // 2
+    arrays = body.count(b"[")
+    most_strings = 1000 + 8 * limits.cities
+    most_arrays = 1000 + 8 * limits.cities + 2 * limits.size + limits.cells // 8
+    for name, limit, actual in (
+        ("strings", most_strings, strings),
+        ("arrays", most_arrays, arrays),
+    ):
+        if actual > limit:
+            demand = f"have at most {limit} {name}, got {actual}"
+            raise Refusal("body-too-complex", demand=demand, limit=limit, actual=actual)
+
+
 def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
     """Raise a refusal where the fields of a request about n cities go beyond these or the limits.
 
@@ -52,7 +74,7 @@ def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
             _check_limit(name, limit, actual)
     _check_limit("initial_tours", limits.size, len(request.initial_tours))
     for index, tour in enumerate(request.initial_tours):
-        if sorted(tour) != list(range(n)):
+        if len(tour) != n or sorted(tour) != list(range(n)):
             demand = f"must visit each city, 0 to {n - 1}, once"
             raise invalid(f"initial_tours/{index}", demand)
 

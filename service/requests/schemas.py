@@ -62,7 +62,8 @@ class PlanRequest(BaseModel):
         description="of the hypervolume; by default the number of cities times the scale",
     )
     initial_tours: Annotated[
-        list[list[NonNegativeInteger]], Field(min_length=1, fail_fast=True)
+        list[Annotated[list[NonNegativeInteger], Field(fail_fast=True)]],
+        Field(min_length=1, fail_fast=True),
     ] = Field(default_factory=list, description="tours that the front shall dominate or equal")
     bound: bool = Field(
         default=False,

@@ -11,7 +11,7 @@ from service.instance import Instance, Kind
 from service.planner import PlanOptions
 from service.requests.coverage import parse_coverage_request
 from service.requests.front import parse_front_request
-from service.requests.limits import Limits
+from service.requests.limits import Limits, check_structure
 
 TaskKind = Literal["front", "coverage"]
 
@@ -62,6 +62,7 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
         Refusal: The body is malformed or over a limit, or no actor serves it.
         InvalidInstance: The cities or the map cannot be planned.
     """
+    check_structure(source.body, limits)
     if source.kind == "coverage":
         coverage_request = parse_coverage_request(source.body, limits, source.upload)
         return Task(

@@ -21,7 +21,7 @@ JSON = {"Content-Type": "application/json"}
 CITIES = np.random.default_rng(5).random((12, 4)).tolist()
 
 # Some tenths of a second of work for whoever reads it.
-WRONG = json.dumps({f"member {i}": i for i in range(100_000)}).encode()
+WRONG = b'{"matrices":[[[' + 4_000_000 * b"0," + b"0]],[[0]]]}"
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,150 @@
+"""Parse request bodies into tasks: short ones here, others in processes with bounds."""
+
+import asyncio
+import resource
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
+
+from service.actor import ActorInfo
+from service.errors import QueueFull, Refusal
+from service.requests.limits import Limits, check_structure
+from service.requests.task import Task, TaskSource, parse_task
+
+_SHORT = 2**17  # bytes that are parsed here, in a few milliseconds
+_FEW_QUOTES = 200  # no request has as many; a list of faults as long takes a while
+_MEDIUM = 2**20  # bytes that take a tenth of a second or two
+_ATTEMPTS = 2
+_MOST_WAITING = 16  # bodies for each process
+
+
+@dataclass(frozen=True, kw_only=True)
+class ParserBounds:
+    """The bounds of a process that parses.
+
+    Args:
+        seconds: The time for one body, and the time that one may wait for its turn.
+        memory: Bytes that a process may take beyond what it has when it is idle.
+    """
+
+    seconds: float = 20.0
+    memory: int = 2**29 + 2**28
+
+
+class _Lane:
+    """A process that parses one body at a time, and the line before it."""
+
+    def __init__(self) -> None:
+        self._turn = asyncio.Lock()
+        self._waiting = 0
+
+    async def enter(self, seconds: float) -> None:
+        """Wait for the turn.
+
+        Raises:
+            QueueFull: The line is too long, or takes too long.
+        """
+        if self._waiting >= _MOST_WAITING:
+            raise QueueFull
+        self._waiting += 1
+        try:
+            async with asyncio.timeout(seconds):
+                await self._turn.acquire()
+        except TimeoutError:
+            raise QueueFull from None
+        finally:
+            self._waiting -= 1
+
+    def leave(self) -> None:
+        """Let the next one have its turn."""
+        self._turn.release()
+
+
+class TaskParser:
+    """Parses bodies under these limits, for these actors: others than short ones in a process.
+
+    There are two processes, one for bodies of up to 1 MiB and one for longer ones, so that the
+    first need not wait for the second. Each is started for its first body, and again where it was
+    lost. A body that takes too long, or too much memory, ends its process.
+    """
+
+    def __init__(
+        self,
+        limits: Limits,
+        actors: Mapping[str, ActorInfo],
+        bounds: ParserBounds | None = None,
+    ) -> None:
+        self._limits = limits
+        self._actors = dict(actors)
+        self._bounds = bounds or ParserBounds()
+        self._medium, self._long = _Lane(), _Lane()
+        self._processes = CapacityLimiter(2)
+
+    async def parse(self, source: TaskSource) -> Task:
+        """Return the task in a body.
+
+        Raises:
+            Refusal: The body is malformed, too complex or over a limit, or no actor serves it.
+            InvalidInstance: The cities or the map cannot be planned.
+            QueueFull: Too many bodies wait to be parsed.
+        """
+        check_structure(source.body, self._limits)
+        length = len(source.body) + len(source.upload or b"")
+        if length <= _SHORT and source.upload is None and source.body.count(b'"') <= _FEW_QUOTES:
+            return parse_task(source, self._limits, self._actors)
+        lane = self._medium if length <= _MEDIUM else self._long
+        await lane.enter(self._bounds.seconds)
+        try:
+            return await self._parse_in_process(source)
+        finally:
+            lane.leave()
+
+    async def _parse_in_process(self, source: TaskSource) -> Task:
+        seconds = self._bounds.seconds
+        for _ in range(_ATTEMPTS):
+            # To join the body took a while, and to send it will: let other requests in between.
+            await asyncio.sleep(0)
+            try:
+                # At the end of its time the call is cancelled, which kills the process.
+                async with asyncio.timeout(seconds):
+                    return await to_process.run_sync(
+                        _parse_bounded,
+                        source,
+                        self._limits,
+                        self._actors,
+                        self._bounds.memory,
+                        cancellable=True,
+                        limiter=self._processes,
+                    )
+            except BrokenWorkerProcess:
+                continue
+            except TimeoutError:
+                raise _too_complex(f"within {seconds:g} s, and was not") from None
+        raise _too_complex("without the loss of its process, and two were lost")
+
+
+def _parse_bounded(
+    source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo], memory: int
+) -> Task:
+    """Parse a body in a process that may take so many bytes more than when it was idle."""
+    _bound_memory(memory)
+    try:
+        return parse_task(source, limits, actors)
+    except MemoryError:
+        raise _too_complex(f"in {memory} bytes of memory, and was not") from None
+
+
+def _bound_memory(memory: int) -> None:
+    """Bound the memory of this process, once."""
+    _, bound = resource.getrlimit(resource.RLIMIT_DATA)
+    if bound == resource.RLIM_INFINITY:
+        # Pages of data and stack, the sixth number (proc(5)).
+        pages = int(Path("/proc/self/statm").read_text().split()[5])
+        limit = pages * resource.getpagesize() + memory
+        resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+
+
+def _too_complex(demand: str) -> Refusal:
+    return Refusal("body-too-complex", demand=f"be parsed {demand}")

@@ -1,0 +1,92 @@
+"""The budget of all bodies under way: what is over it is refused, and all is given back."""
+
+import re
+import socket
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+
+import httpx
+import pytest
+
+from service.api.app import Edge
+from service.api.body_budget import BodyBudget
+from service.api.plan import BodyBounds
+from service.errors import Refusal
+from tests.helpers.serving import app_of, problem, serving
+
+BUDGET = 800_000
+JSON = {"Content-Type": "application/json"}
+REQUEST = b'{"coordinates":[[0,0,0,0],[1,2,3,4],[5,5,2,1]],"time_limit":0}'
+
+
+def test_an_allowance_gives_its_bytes_back() -> None:
+    budget = BodyBudget(BUDGET)
+    with budget.open() as allowance:
+        allowance.add(bytes(1000))
+        allowance.add(bytes(1000))
+        assert 2000 <= budget.used <= 2200
+    assert budget.used == 0
+
+
+def test_a_part_is_left_to_small_bodies() -> None:
+    budget = BodyBudget(BUDGET)
+    with budget.open() as long, budget.open() as small:
+        long.add(bytes(600_000))
+        long.check(10_000)
+        with pytest.raises(Refusal, match="all bodies under way must fit 800000 bytes"):
+            long.add(bytes(150_000))
+        small.add(bytes(100_000))
+        with pytest.raises(Refusal):
+            small.check(150_000)
+    assert budget.used == 0
+
+
+def test_many_small_chunks_are_counted_as_what_they_take() -> None:
+    budget = BodyBudget(BUDGET)
+    with budget.open() as allowance:
+        for _ in range(1000):
+            allowance.add(b"x")
+        assert budget.used > 30_000
+
+
+@pytest.fixture(scope="module")
+def url() -> Iterator[str]:
+    edge = Edge(bodies=BodyBounds(under_way=BUDGET), body_seconds=60)
+    with serving(app_of(edge=edge)) as address:
+        yield address
+
+
+def stalled(url: str, length: int) -> socket.socket:
+    """A connection on which all of a body but its last byte has been sent."""
+    host, port = re.findall(r"//(.*):(\d+)", url)[0]
+    connection = socket.create_connection((host, int(port)), timeout=10)
+    head = "POST /front HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
+    head += f"Content-Length: {length}\r\n\r\n"
+    connection.sendall(head.encode() + bytes(length - 1))
+    return connection
+
+
+def test_stalled_uploads_take_no_more_than_the_budget(url: str) -> None:
+    with ExitStack() as connections:
+        for _ in range(20):
+            connections.enter_context(stalled(url, 90_000))
+        deadline = time.monotonic() + 10
+        refused = None
+        while refused is None and time.monotonic() < deadline:
+            answer = httpx.post(f"{url}/front", content=95_000 * b" " + REQUEST, headers=JSON)
+            refused = answer if answer.status_code == 503 else None
+        assert refused is not None
+        problem(refused, 503, "bodies-full")
+        assert refused.headers["retry-after"] == "1"
+    while httpx.post(f"{url}/front", content=95_000 * b" " + REQUEST, headers=JSON).is_error:
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def test_small_bodies_pass_while_long_ones_stall(url: str) -> None:
+    with ExitStack() as connections:
+        for _ in range(8):
+            connections.enter_context(stalled(url, 80_000))
+        answer = httpx.post(f"{url}/front", content=REQUEST, headers=JSON, timeout=30)
+        assert answer.status_code == 200, answer.text

@@ -1,0 +1,107 @@
+"""Bodies are parsed within bounds of time, memory, number and waiting."""
+
+import asyncio
+import json
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from service.api.task_parser import ParserBounds, TaskParser
+from service.errors import QueueFull, Refusal
+from service.requests.task import Task, TaskSource
+from tests.helpers.serving import ACTORS, LIMITS
+
+LARGE = replace(LIMITS, cities=1000, cells=2**20, size=1000)
+INFO = {actor.info.name: actor.info for actor in ACTORS}
+NUMBERS = TaskSource("front", b'{"matrices":[[[' + 7_000_000 * b"0," + b"0]],[[0]]]}")
+COSTS = np.random.default_rng(0).random((2, 100, 100)).tolist()
+HONEST = TaskSource("front", json.dumps({"matrices": COSTS}).encode())
+
+
+def parser(seconds: float = 60, memory: int = 2**30) -> TaskParser:
+    return TaskParser(LARGE, INFO, ParserBounds(seconds=seconds, memory=memory))
+
+
+def refusal(source: TaskSource, parser: TaskParser) -> Refusal:
+    with pytest.raises(Refusal) as refused:
+        asyncio.run(parser.parse(source))
+    return refused.value
+
+
+@pytest.mark.parametrize(
+    ("body", "sentence"),
+    [
+        (
+            json.dumps({f"{i:x}": 0 for i in range(1_000_000)}).encode(),
+            "the body must have at most 9000 strings, got 1000000",
+        ),
+        (
+            b'{"grid":[' + 4_000_000 * b"[0]," + b"[0]]}",
+            "the body must have at most 142072 arrays, got 4000002",
+        ),
+        (b'{"coordinates":[' + 5_000_000 * b"[]," + b"[0]]}", "the body must have at most"),
+    ],
+)
+def test_a_body_of_too_many_things_is_refused_before_it_is_parsed(
+    body: bytes, sentence: str
+) -> None:
+    began = time.process_time()
+    refused = refusal(TaskSource("front", body), parser())
+    assert time.process_time() - began < 0.5
+    assert (refused.code, refused.status) == ("body-too-complex", 413)
+    assert refused.detail.startswith(sentence)
+
+
+def test_a_body_that_takes_too_long_ends_its_process() -> None:
+    began = time.monotonic()
+    refused = refusal(NUMBERS, parser(seconds=0.2))
+    assert time.monotonic() - began < 5
+    assert refused.detail == "the body must be parsed within 0.2 s, and was not"
+
+
+def test_a_body_that_takes_too_much_memory_is_refused() -> None:
+    refused = refusal(NUMBERS, parser(memory=2**26))
+    assert refused.code == "body-too-complex"
+
+
+def test_an_honest_body_does_not_wait_for_longer_ones() -> None:
+    async def scenario() -> tuple[float, Task]:
+        parsing = parser()
+        # By now there are both processes.
+        both = parsing.parse(HONEST), parsing.parse(NUMBERS)
+        await asyncio.gather(*both, return_exceptions=True)
+        crowd = [asyncio.create_task(parsing.parse(NUMBERS)) for _ in range(5)]
+        await asyncio.sleep(0.1)
+        began = time.monotonic()
+        task = await parsing.parse(HONEST)
+        waited = time.monotonic() - began
+        for each in crowd:
+            each.cancel()
+        await asyncio.gather(*crowd, return_exceptions=True)
+        return waited, task
+
+    waited, task = asyncio.run(scenario())
+    assert task.actor == "pa-one-matrix"
+    assert waited < 3
+
+
+def test_a_line_that_is_too_long_is_refused() -> None:
+    async def scenario() -> list[BaseException | Task]:
+        parsing = parser(seconds=1)
+        crowd = [parsing.parse(NUMBERS) for _ in range(30)]
+        return await asyncio.gather(*crowd, return_exceptions=True)
+
+    began = time.monotonic()
+    outcomes = asyncio.run(scenario())
+    assert time.monotonic() - began < 20
+    assert sum(isinstance(outcome, QueueFull) for outcome in outcomes) >= 13
+    assert all(isinstance(outcome, Refusal) for outcome in outcomes)
+
+
+def test_an_initial_tour_of_countless_faults_is_refused_at_the_first() -> None:
+    tour = 50_000 * b"-1," + b"0"
+    body = b'{"coordinates":[[0,0,0,0]],"initial_tours":[[' + tour + b"]]}"
+    refused = refusal(TaskSource("front", body), parser())
+    assert refused.detail == "initial_tours/0/0 must be at least 0, got -1"
