@@ -30,6 +30,7 @@ FOLDERS = {
     "models/checkpoints": "The weights of the released networks, each with its model card.",
     "tests": "Tests, in folders like those of the modules.",
     "tests/benchmarks": "The figures of the project: `python -m tests.benchmarks NAME`.",
+    "tests/fuzz": "Fuzzed bodies: `python -m tests.fuzz` for many of them.",
     "tests/guide": "Tests of these pages, and what makes their tree and tables.",
     "tests/helpers": "Live servers, stand-in actors, a browser and a Redis for the tests.",
     "tests/page": "The page, in a real browser.",

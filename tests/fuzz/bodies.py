@@ -1,0 +1,182 @@
+"""Bodies that no honest client sends, from a seed: broken files, JSON, parts, and extreme numbers.
+
+Each generator takes a number generator and returns the source of one request.
+"""
+
+import io
+import json
+import random
+import struct
+import zlib
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from service.errors import Refusal
+from service.requests.multipart import split_parts
+from service.requests.task import TaskSource
+
+Generator = Callable[[random.Random], TaskSource]
+
+_OPTIONS: dict[str, Any] = {"time_limit": 0, "preferences": 3}
+_SPACING = {**_OPTIONS, "cell_size": 1, "spacing": 2, "second_coordinates": [[0, 1]]}
+_HEADERS = [
+    *(
+        b"'",
+        b"''",
+        b"(",
+        b")",
+        b"{",
+        b"}",
+        b"[",
+        b":",
+        b",",
+        b"\\",
+        b"\n",
+        b"\t",
+        b"#",
+        b"0x",
+        b"L",
+    ),
+    *(b"-1", b"1e9", b"9" * 30, b"0x" + b"f" * 4000, b"(" * 300, b"-" * 3000, b"None", b"True"),
+    *(b"'<f8'", b"'|O'", b"'f'", b"'<f16'", b"'shape'", b"**", b"\x00", b"\xff", b"  " * 2000),
+]
+_CHUNKS = (b"IHDR", b"PLTE", b"IDAT", b"IEND", b"tRNS", b"iCCP", b"zTXt", b"acTL", b"fdAT", b"eXIf")
+_TOKENS = [
+    *(b"null", b"true", b'""', b'"\\ud800"', b"[]", b"[[]]", b"{}", b"-0.0", b"-1", b"1e308"),
+    *(b"1e309", b"5e-324", b"NaN", b"-Infinity", b"9" * 400, b"9" * 5000, b"[" * 300, b"{" * 300),
+    *(
+        b"[0," * 3,
+        b'"x":',
+        b",",
+        b":",
+        b"]",
+        b"}",
+        b"\x00",
+        b"\xff",
+        b'"' * 3,
+        b"1.5",
+        b"2147483648",
+    ),
+]
+_EXTREMES = (
+    0.0,
+    5e-324,
+    1e-310,
+    1e-300,
+    1e-160,
+    1e-150,
+    1e-8,
+    1.0,
+    1e8,
+    1e149,
+    1e150,
+    1e151,
+    1e308,
+)
+
+
+def npy(rng: random.Random) -> TaskSource:
+    """Return matrices in a .npy file with some bytes of its header, or beside it, mutated."""
+    n = rng.randint(1, 6)
+    stream = io.BytesIO()
+    kind = rng.choice(["<f8", ">f8", "<f4", "<f2", "<i4", "<u2", "|b1", "<c16"])
+    np.save(stream, np.full((2, n, n), rng.randint(0, 3)).astype(kind))
+    content = _mutated(rng, stream.getvalue(), _HEADERS, 120)
+    return TaskSource("front", json.dumps(_OPTIONS).encode(), content)
+
+
+def png(rng: random.Random) -> TaskSource:
+    """Return a map in a PNG file with chunks added, repeated, left out or mutated."""
+    stream = io.BytesIO()
+    size = rng.randint(1, 20), rng.randint(1, 20)
+    Image.new(rng.choice(["1", "L", "LA", "P", "RGB", "RGBA", "I;16"]), size).save(stream, "PNG")
+    content = stream.getvalue()
+    for _ in range(rng.randint(0, 2)):
+        sizes = (0, 1, 8, 13_300, 2**31 - 1, 2**32 - 1)
+        header = struct.pack(">II", rng.choice(sizes), rng.choice(sizes)) + b"\x08\0\0\0\0"
+        packed = zlib.compress(bytes(rng.choice((1, 1000, 2_000_000))))
+        inside = rng.choice([header, packed, b"", b"x\0\0" + packed, rng.randbytes(20)])
+        at = rng.choice([8, 33, len(content) - 12])
+        content = content[:at] + _chunk(rng.choice(_CHUNKS), inside) + content[at:]
+    if rng.random() < 0.6:
+        content = _mutated(rng, content, [b"", b"\0", b"\xff", b"IHDR", b"\0\0\0\r"], len(content))
+    return TaskSource("coverage", json.dumps(_SPACING).encode(), content)
+
+
+def json_body(rng: random.Random) -> TaskSource:
+    """Return JSON of a request with tokens put in, members repeated, or cut short."""
+    rows = [[rng.choice((0, 1, 2.5)) for _ in range(4)] for _ in range(rng.randint(1, 6))]
+    requests: list[tuple[Any, dict[str, Any]]] = [
+        ("front", {"coordinates": rows}),
+        ("front", {"matrices": [[[0, 1], [1, 0]]] * 2}),
+        ("coverage", {**_SPACING, "grid": [[0, 0, 1]] * 3}),
+        ("coverage", {**_SPACING, "grid": [[0, 0]] * 2, "cost_layer": [[1, 2]] * 2}),
+    ]
+    kind, request = rng.choice(requests)
+    options = {"seed": 1, "start": 0, "reference_point": [9, 9], "initial_tours": [[0, 1]]}
+    request = {**_OPTIONS, **request, **dict(rng.sample(sorted(options.items()), 2))}
+    body = json.dumps(request).encode()
+    return TaskSource(kind, _mutated(rng, body, _TOKENS, len(body)))
+
+
+def multipart(rng: random.Random) -> TaskSource | Refusal:
+    """Return what a mutated multipart body splits into, or its refusal."""
+    kind: Any = rng.choice(["front", "coverage"])
+    upload = "matrices" if kind == "front" else "map"
+    source = npy(rng) if kind == "front" else png(rng)
+    part = b'--x\r\nContent-Disposition: form-data; name="%s"\r\n\r\n%s\r\n'
+    body = part % (b"request", source.body) + part % (upload.encode(), source.upload or b"")
+    tokens = [b"--x", b"\r\n", b"--", b"\r\n--x\r\n", b"--x--", b'name="', b" " * 5000, b";" * 99]
+    body = _mutated(rng, body + b"--x--\r\n", tokens, 200)
+    types = ("x", "x", "x", '"x"', "", "x" * 80, "é", '"x')
+    try:
+        parts = split_parts(
+            f"multipart/form-data; boundary={rng.choice(types)}", body, ("request", upload)
+        )
+    except Refusal as refusal:
+        return refusal
+    return TaskSource(kind, parts["request"], parts[upload])
+
+
+def extreme(rng: random.Random) -> TaskSource:
+    """Return a request of numbers from 5e-324 to 1e308, of all scales or of one."""
+    n = rng.randint(1, 9)
+    scales = rng.choice([_EXTREMES, (0.0,), (rng.choice(_EXTREMES),)])
+
+    def numbers(count: int) -> list[float]:
+        return [rng.choice(scales) * rng.choice((1, rng.random())) for _ in range(count)]
+
+    request: dict[str, Any] = {"time_limit": rng.choice([0, 0.02]), "preferences": 5}
+    if rng.random() < 0.5:
+        request["coordinates"] = [numbers(4) for _ in range(n)]
+    else:
+        request["matrices"] = [[numbers(n) for _ in range(n)] for _ in range(2)]
+    if rng.random() < 0.3:
+        request["reference_point"] = numbers(2)
+    return TaskSource("front", json.dumps(request).encode())
+
+
+GENERATORS: Mapping[str, Callable[[random.Random], TaskSource | Refusal]] = {
+    "npy": npy,
+    "png": png,
+    "json": json_body,
+    "multipart": multipart,
+}
+
+
+def _mutated(rng: random.Random, content: bytes, tokens: list[bytes], within: int) -> bytes:
+    """Return the content with up to four changes in its first bytes, and sometimes cut short."""
+    for _ in range(rng.randint(0, 4)):
+        at = rng.randrange(min(within, len(content)) + 1)
+        removed = rng.choice((0, 0, 1, 1, 2, 10))
+        put = rng.choice([rng.choice(tokens), rng.choice(tokens), rng.randbytes(1)])
+        content = content[:at] + put + content[at + removed :]
+    return content[: rng.randrange(len(content) + 1)] if rng.random() < 0.15 else content
+
+
+def _chunk(kind: bytes, content: bytes) -> bytes:
+    checksum = zlib.crc32(kind + content)
+    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", checksum)
