@@ -108,6 +108,7 @@ def create_app(
         routes=static_routes(),
         exception_handlers=dict.fromkeys(HANDLED, answer_refusal),
         redirect_slashes=False,
+        generate_unique_id_function=lambda route: route.name,
         docs_url=None,
         redoc_url=None,
     )

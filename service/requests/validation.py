@@ -26,6 +26,7 @@ def parse_json(model: type[Model], body: bytes) -> Model:
         if errors[0]["type"] == "json_invalid":
             reason = errors[0]["ctx"]["error"]
             raise Refusal("malformed-json", reason=reason) from None
+        errors = [_with_exact_length(model, each) for each in errors]
         raise refusal_of(errors, fields=model.model_fields.keys()) from None
 
 
@@ -59,6 +60,19 @@ def shorten(text: str) -> str:
     return text if len(text) <= 80 else f"{text[:79]}…"
 
 
+def _with_exact_length(model: type[BaseModel], error: ErrorDetails) -> ErrorDetails:
+    """Return the error of a list of a wrong length; where one length is right, as that demand."""
+    if error["type"] not in ("too_short", "too_long"):
+        return error
+    schema = model.model_json_schema()
+    for part in error["loc"]:
+        at: Any = schema.get("items") if isinstance(part, int) else None
+        schema = at or schema.get("properties", {}).get(part, {})
+    if "minItems" not in schema or schema["minItems"] != schema.get("maxItems"):
+        return error
+    return {**error, "type": "exact_length", "ctx": {"length": schema["minItems"]}}
+
+
 def _fault(error: ErrorDetails, parameters: bool, fields: Collection[str]) -> Fault:
     # FastAPI puts "query" first; brackets mark a branch of a union, which the caller never wrote.
     parts = [str(part) for part in error["loc"] if not str(part).startswith("[")]
@@ -86,8 +100,12 @@ def _demand(error: ErrorDetails) -> str:
             return "is required"
         case "extra_forbidden":
             return "is not a field that this request has"
+        case "exact_length":
+            return f"must have {bounds['length']} items, got {len(error['input'])}"
         case "too_short":
-            return f"must have {bounds['min_length']} items or more, got {len(error['input'])}"
+            least = bounds["min_length"]
+            items = "item" if least == 1 else "items"
+            return f"must have {least} {items} or more, got {len(error['input'])}"
         case "too_long":
             return f"must have {bounds['max_length']} items or fewer, got {len(error['input'])}"
         case "greater_than_equal":

@@ -67,6 +67,13 @@ def test_a_schema_has_the_limits_of_the_service(operations: dict[str, Any]) -> N
     assert content["schema"]["properties"]["coordinates"]["maxItems"] == LIMITS.cities
 
 
+def test_operations_have_ids_that_read_well(operations: dict[str, Any]) -> None:
+    ids = {name: operation["operationId"] for name, operation in operations.items()}
+    assert ids["POST /front"] == "plan_front"
+    assert ids["POST /coverage"] == "plan_coverage"
+    assert len(set(ids.values())) == len(ids)
+
+
 @pytest.mark.parametrize("code", PROBLEMS)
 def test_every_code_has_an_example_for_the_guide(code: str) -> None:
     refusal = example_refusal(code)

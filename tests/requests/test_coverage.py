@@ -56,7 +56,7 @@ def test_a_request_becomes_a_coverage_task() -> None:
         ({"cell_size": None}, "/cell_size", "cell_size is required"),
         ({"cell_size": 0}, "/cell_size", "cell_size must be at least 1e-150, got 0"),
         ({"robot_radius": -1}, "/robot_radius", "robot_radius must be at least 0, got -1"),
-        ({"places": [[0, 0, 0]]}, "/places/0", "places/0 must have 2 items or fewer, got 3"),
+        ({"places": [[0, 0, 0]]}, "/places/0", "places/0 must have 2 items, got 3"),
         ({"places": [[0, 0.5]]}, "/places/0/1", "places/0/1 must be a valid integer, got 0.5"),
         ({"start": 5}, "/start", "start must be a city, 0 to 4, got 5"),
         (

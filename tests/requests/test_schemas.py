@@ -12,7 +12,7 @@ from service.requests.validation import parse_json
     ("member", "pointer", "sentence"),
     [
         ('"preferences": 0', "/preferences", "preferences must be at least 1, got 0"),
-        ('"preferences": []', "/preferences", "preferences must have 1 items or more, got 0"),
+        ('"preferences": []', "/preferences", "preferences must have 1 item or more, got 0"),
         ('"preferences": [0, -1]', "/preferences/1", "preferences/1 must be at least 0, got -1"),
         ('"preferences": [90.5]', "/preferences/0", "preferences/0 must be at most 90, got 90.5"),
         ('"preferences": [NaN]', "/preferences/0", "must be a finite number, got NaN"),
@@ -24,7 +24,7 @@ from service.requests.validation import parse_json
         ('"size": 0', "/size", "size must be at least 1, got 0"),
         ('"size": 1e10', "/size", "size must be at most 2147483647, got 10000000000"),
         ('"start": -1', "/start", "start must be at least 0, got -1"),
-        ('"reference_point": [1]', "/reference_point", "must have 2 items or more, got 1"),
+        ('"reference_point": [1]', "/reference_point", "must have 2 items, got 1"),
         ('"reference_point": [0, 1]', "/reference_point/0", "must be at least 1e-150, got 0"),
         ('"reference_point": null', "/reference_point", "must be a valid array, got null"),
         ('"actor": 1', "/actor", "actor must be a valid string, got 1"),

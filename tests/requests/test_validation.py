@@ -3,6 +3,7 @@
 import pytest
 
 from service.errors import MOST_FAULTS, Refusal
+from service.requests.front import FrontRequest
 from service.requests.schemas import PlanRequest
 from service.requests.validation import parse_json, shorten
 
@@ -62,3 +63,19 @@ def test_every_fault_is_told_up_to_a_number() -> None:
 def test_a_long_text_is_shown_shortened() -> None:
     assert shorten("x" * 80) == "x" * 80
     assert shorten("x" * 81) == "x" * 79 + "…"
+
+
+@pytest.mark.parametrize(
+    ("body", "sentence"),
+    [
+        (b'{"coordinates":[[0,1,2]]}', "coordinates/0 must have 4 items, got 3"),
+        (b'{"coordinates":[[0,1,2,3],[0,1,2,3,4]]}', "coordinates/1 must have 4 items, got 5"),
+        (b'{"matrices":[[[0]]]}', "matrices must have 2 items, got 1"),
+        (b'{"reference_point":[1,1,1]}', "reference_point must have 2 items, got 3"),
+        (b'{"coordinates":[]}', "coordinates must have 1 item or more, got 0"),
+    ],
+)
+def test_where_one_length_is_right_it_is_named(body: bytes, sentence: str) -> None:
+    with pytest.raises(Refusal) as refused:
+        parse_json(FrontRequest, body)
+    assert refused.value.detail == sentence
