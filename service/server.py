@@ -20,11 +20,11 @@ from service import installed_version
 from service.actor import load_actors
 from service.api.app import Edge, create_app
 from service.api.auth import Access, Rates
-from service.api.connections import ConnectionLimits, Connections
-from service.api.listener import ACCEPTED_AT_ONCE, bound_sockets, most_connections
 from service.api.metrics import Metrics
 from service.api.plan import BodyBounds
 from service.api.task_parser import ParserBounds
+from service.api.transport.connections import ConnectionLimits, Connections
+from service.api.transport.listener import ACCEPTED_AT_ONCE, bound_sockets, most_connections
 from service.cluster import check_cluster
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine

@@ -19,9 +19,9 @@ from service.errors import (
 )
 from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.record import Record, as_cancelled, as_failed, as_finished
+from service.jobs.retries import UnsavedRecords
 from service.jobs.running_job import RunningJob
 from service.jobs.store import Store
-from service.jobs.unsaved import UnsavedRecords
 from service.jobs.worker_pool import WorkerPool
 
 _PAUSE = 0.5  # seconds between two tries to resume the job of an earlier process

@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from service.errors import NoWorker, WarmingUp
-from service.jobs.growing_pause import GrowingPause
 from service.jobs.messages import Started, Warm, WarmUp
+from service.jobs.retries import GrowingPause
 from service.jobs.runner import MakeRunner
 from service.jobs.submission import Submission
 from service.jobs.worker_process import WorkerProcess

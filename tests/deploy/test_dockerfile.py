@@ -109,7 +109,8 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Where the wheel is installed: its own code alone, beside the packages of the tests."""
     prefix = tmp_path_factory.mktemp("image") / "opt"
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "-q"]
-    options = ["--no-deps", "--no-build-isolation", "--prefix", prefix]
+    # Without the second option pip takes away what is installed in the environment of the tests.
+    options = ["--no-deps", "--ignore-installed", "--no-build-isolation", "--prefix", prefix]
     subprocess.run([*pip, *options, ROOT], check=True)
     return prefix
 

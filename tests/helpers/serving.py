@@ -15,7 +15,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from service.api.app import Edge, create_app
-from service.api.connections import ConnectionLimits, Connections
+from service.api.transport.connections import ConnectionLimits, Connections
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
 from service.jobs.runner import MakeRunner, NamedActor, TaskRunner

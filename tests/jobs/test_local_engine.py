@@ -9,8 +9,8 @@ from service.errors import NotFound, StoreUnavailable
 from service.jobs.front_document import FrontDocument, Timings
 from service.jobs.local_engine import LocalEngine
 from service.jobs.record import Record, as_finished
+from service.jobs.retries import UnsavedRecords
 from service.jobs.submission import Submission
-from service.jobs.unsaved import UnsavedRecords
 from service.jobs.worker_pool import WorkerPool
 from service.requests.task import TaskSource
 from tests.helpers.actors import Shuffler

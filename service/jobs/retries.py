@@ -1,12 +1,31 @@
-"""Finished records that the store has not taken yet, as its disk is full; it is tried again."""
+"""Retries: pauses that grow, and finished records stored again until the store takes them."""
 
+import asyncio
 import logging
 from time import monotonic
 
 from service.errors import StoreUnavailable
-from service.jobs.growing_pause import GrowingPause
 from service.jobs.record import Record, as_failed
 from service.jobs.store import Store
+
+
+class GrowingPause:
+    """A pause of so many seconds at first, twice as long each time, up to the longest."""
+
+    def __init__(self, shortest: float, longest: float) -> None:
+        self._shortest = shortest
+        self._longest = longest
+        self._seconds = shortest
+
+    async def wait(self) -> None:
+        """Wait, the longer the more often."""
+        seconds, self._seconds = self._seconds, min(2 * self._seconds, self._longest)
+        await asyncio.sleep(seconds)
+
+    def reset(self) -> None:
+        """Begin with the shortest again."""
+        self._seconds = self._shortest
+
 
 _PATIENCE = 600.0  # seconds for which a front is kept for the store
 _SHORTEST_PAUSE = 0.25  # seconds between two tries

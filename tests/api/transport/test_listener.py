@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from service.api.listener import ListeningSocket, bound_sockets, most_connections
+from service.api.transport.listener import ListeningSocket, bound_sockets, most_connections
 
 
 def test_without_descriptors_a_line_a_second_is_logged_and_idle_connections_are_closed(

@@ -11,9 +11,9 @@ from urllib.parse import urlsplit
 import httpx
 import pytest
 
-from service.api import connections
 from service.api.app import Edge
-from service.api.connections import ConnectionLimits
+from service.api.transport import connections
+from service.api.transport.connections import ConnectionLimits
 from tests.helpers.processes import serve_process
 from tests.helpers.serving import app_of, serving
 

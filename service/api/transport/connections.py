@@ -12,8 +12,8 @@ from typing import Any, cast
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from service.api.http_parser import StrictParser
 from service.api.responses import problem_response
+from service.api.transport.http_parser import StrictParser
 from service.errors import Refusal
 
 _LINGER_SECONDS = 10.0  # that the rest of a refused body is read and dropped
