@@ -164,9 +164,12 @@ def _health_router(engine: Engine) -> APIRouter:
         return json_response({"status": "ready"})
 
     # Some probes ask for the status alone.
-    router.head("/health/live", response_class=Response, openapi_extra=public)(live)
+    router.head("/health/live", name="live_head", response_class=Response, openapi_extra=public)(
+        live
+    )
     router.head(
         "/health/ready",
+        name="ready_head",
         response_class=Response,
         responses={503: {"description": "Service Unavailable"}},
         openapi_extra=public,
