@@ -117,12 +117,16 @@ class OneActor(Actor):
         return walked(fragments)
 
     def round(
-        self, costs: Float[Tensor, "r n m"], fragments: Fragments, candidates: Candidates
+        self,
+        costs: Float[Tensor, "r n m"],
+        fragments: Fragments,
+        candidates: Candidates,
+        joinings: int = JOININGS,
     ) -> Fragments:
-        """Return the fragments after joining them along the best edges to candidates."""
+        """Return the fragments after joining them, so many times, by the best of these edges."""
         logits = self.edge_logits(costs, fragments, candidates)
         fragments = joined(fragments, mutual_best(fragments, candidates.positions, logits))
-        for _ in range(JOININGS - 1):
+        for _ in range(joinings - 1):
             logits = torch.where(possible(fragments, candidates.positions), logits, -NEVER)
             fragments = joined(fragments, mutual_best(fragments, candidates.positions, logits))
         return fragments

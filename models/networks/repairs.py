@@ -1,0 +1,160 @@
+"""Repair problems: cities cut out of finished tours, and tours from the fragments joined again.
+
+A cut city loses both its edges. What is left of a tour is a few cities alone and the paths between
+them, a small problem of the kind that PA-One knows. Only the ends at the cuts are part of it; one
+scatter then lays out the whole tour. All is written so that it can be exported.
+"""
+
+from typing import NamedTuple
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from models.networks.candidates import CANDIDATES
+from models.networks.fragments import NEVER, Fragments, cleared, joined
+
+_DOUBLINGS = 6  # of the edges that an end sees ahead: enough for 64 ends
+
+
+class Cuts(NamedTuple):
+    """Tours from which some cities have been cut out, each turned to begin at a cut city.
+
+    Places are those of the cut cities, ascending; gaps count the cities from each to the next.
+    """
+
+    tours: Int[Tensor, "r n"]
+    places: Int[Tensor, "r m"]
+    gaps: Int[Tensor, "r m"]
+
+
+def weighted_sums(
+    lengths: Float[Tensor, "2 r x"], weights: Float[Tensor, "r 2"]
+) -> Float[Tensor, "r x"]:
+    """Return the sum of both lengths under the weights of each row."""
+    return weights[:, :1] * lengths[0] + weights[:, 1:] * lengths[1]
+
+
+def cut(tours: Int[Tensor, "r n"], cities: Int[Tensor, "r m"]) -> Cuts:
+    """Return the tours without the edges of these cities."""
+    n = tours.shape[1]
+    index = torch.arange(n, device=tours.device).expand_as(tours)
+    places = torch.zeros_like(tours).scatter(1, tours, index).gather(1, cities).sort(dim=1).values
+    onwards = index + places[:, :1]
+    turned = tours.gather(1, torch.where(onwards < n, onwards, onwards - n))
+    places = places - places[:, :1]
+    beyond = torch.cat((places[:, 1:], torch.full_like(places[:, :1], n)), dim=1)
+    return Cuts(turned, places, beyond - places - 1)
+
+
+def repair_problem(
+    distances: Float[Tensor, "2 n w"], weights: Float[Tensor, "r 2"], cuts: Cuts
+) -> tuple[Float[Tensor, "r e f"], Fragments]:
+    """Return the costs between the ends that cuts have left, and the fragments they belong to.
+
+    There are three columns for a cut: the cut city, and the first and the last city of the path
+    from there to the next one. Of a path of one city the last is closed, of an empty one both.
+    """
+    tours, places, gaps = cuts
+    m = places.shape[1]
+    columns = torch.cat((places, places + 1, places + gaps), dim=1)
+    cities = tours.gather(1, columns.clamp(max=tours.shape[1] - 1))
+    index = torch.arange(3 * m, device=tours.device).expand_as(columns)
+    alone, first, last = index[:, :m], index[:, m : 2 * m], index[:, 2 * m :]
+    long = gaps > 1
+    across = torch.cat((alone, torch.where(long, last, first), torch.where(long, first, last)), 1)
+    no_links = torch.full_like(index, -1)
+    links = torch.where(across == index, -1, across)
+    links = torch.cat((links, no_links, no_links[:, :1]), dim=1)
+    open_ = torch.cat((gaps >= 0, gaps > 0, long), dim=1)
+    fragments = Fragments(index, across, open_, links, m + (gaps > 0).sum(dim=1))
+    return _costs_between(distances, weights, cities), fragments
+
+
+def _costs_between(
+    distances: Float[Tensor, "2 n w"], weights: Float[Tensor, "r 2"], cities: Int[Tensor, "r e"]
+) -> Float[Tensor, "r e f"]:
+    e = cities.shape[1]
+    pairs = cities[:, :, None] * distances.shape[2] + cities[:, None, :]
+    lengths = distances.flatten(1).index_select(1, pairs.flatten()).view(2, -1, e * e)
+    costs = weighted_sums(lengths, weights).unflatten(1, (e, e))
+    index = torch.arange(e, device=cities.device)
+    own = torch.where(index == index[:, None], NEVER, 0.0)
+    return nn.functional.pad(costs + own, (0, CANDIDATES), value=NEVER)
+
+
+def last_two_joined(costs: Float[Tensor, "r e f"], fragments: Fragments) -> Fragments:
+    """Return one fragment for each row: where two are left, join them the cheaper of two ways.
+
+    Open ends must come first.
+    """
+    ends, partners, open_, _, left = fragments
+    one = torch.zeros_like(partners[:, :1])  # a position
+    across = partners[:, :1]
+    index = torch.arange(ends.shape[1], device=ends.device)
+    beyond = (open_ & (index != one) & (index != across)).long().argmax(dim=1, keepdim=True)
+    others = torch.cat((beyond, partners.gather(1, beyond)), dim=1)
+
+    def cost(start: Int[Tensor, "r 1"], stop: Int[Tensor, "r 2"]) -> Float[Tensor, "r 2"]:
+        steps = ends.gather(1, start) * costs.shape[2] + ends.gather(1, stop)
+        return costs.flatten(1).gather(1, steps)
+
+    ways = cost(one, others) + cost(across, others.flip(1))
+    mate = others.gather(1, ways.argmin(dim=1, keepdim=True))
+    mates = torch.where(left[:, None] > 1, torch.cat((mate, one), dim=1), -1)
+    both = torch.full_like(partners, -1).scatter(1, torch.cat((one, mate), dim=1), mates)
+    return cleared(joined(fragments, both))[0]
+
+
+def laid_out(cuts: Cuts, fragments: Fragments) -> Int[Tensor, "r n"]:
+    """Return the tours, of three cities or more, of which each row has one fragment left.
+
+    Open ends must come first.
+    """
+    tours, places = cuts.tours, cuts.places
+    alone, first, last = _places(cuts, _neighbours(fragments)).tensor_split(3, dim=1)
+    turns = torch.where(last < first, -1, 1)
+    starts = torch.stack((alone - places, first - turns * (places + 1)), dim=2).flatten(1)
+    turns = torch.stack((torch.ones_like(turns), turns), dim=2).flatten(1)
+    # A cut city and the path behind it are parts of the tour; none to two begin at a place.
+    begins = torch.cat((places, places + 1), dim=1)
+    marks = torch.zeros_like(torch.cat((tours, tours[:, :1]), dim=1))
+    parts = marks.scatter_add(1, begins, torch.ones_like(begins))[:, :-1].cumsum(dim=1) - 1
+    index = torch.arange(tours.shape[1], device=tours.device)
+    new_places = starts.gather(1, parts) + turns.gather(1, parts) * index
+    return torch.zeros_like(tours).scatter(1, new_places, tours)
+
+
+def _neighbours(fragments: Fragments) -> Int[Tensor, "r e 2"]:
+    """Return both neighbours of each end, once the last two ends are joined to each other."""
+    links, last = fragments.links[:, :-1], fragments.ends[:, :2]
+    e = links.shape[1] // 2
+    links = links.scatter(1, last + e, last.flip(1))
+    index = torch.arange(e, device=links.device).expand_as(links[:, :e])
+    alone = torch.cat((index, index), dim=1)
+    return torch.where(links < 0, alone, links).unflatten(1, (2, e)).mT
+
+
+def _places(cuts: Cuts, neighbours: Int[Tensor, "r e 2"]) -> Int[Tensor, "r e"]:
+    """Return the place of each end in the new tour, which begins at the first cut city.
+
+    An end is left by its first neighbour or by its second. For each of these departures the
+    number of cities to the last one of the tour is found by pointer jumping: in every pass the
+    steps are twice as long.
+    """
+    r, e, _ = neighbours.shape
+    index = torch.arange(e, device=neighbours.device)[:, None].expand_as(neighbours)
+    is_first = neighbours[:, :, 0].gather(1, neighbours.flatten(1)).view_as(index) == index
+    onwards = (2 * neighbours + is_first.long()).flatten(1)  # departures
+    # The first neighbour of a path's end is its other end.
+    across = torch.cat((torch.ones_like(cuts.gaps), cuts.gaps - 1, cuts.gaps - 1), dim=1)
+    steps = torch.stack((across.clamp(min=1), torch.ones_like(across)), dim=2).flatten(1)
+    departures = torch.arange(2 * e, device=neighbours.device).expand_as(onwards)
+    is_last = onwards == 0
+    onwards = torch.where(is_last, departures, onwards)
+    steps = torch.where(is_last, 0, steps)
+    for _ in range(_DOUBLINGS):
+        steps = steps + steps.gather(1, onwards)
+        onwards = onwards.gather(1, onwards)
+    ahead = torch.where(is_last.gather(1, onwards), steps, 0)
+    return cuts.tours.shape[1] - 1 - ahead.view(r, e, 2).amax(dim=2)

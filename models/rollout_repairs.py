@@ -1,0 +1,171 @@
+"""Repaired tours of PA-One: a few cities of each tour are cut out and joined again, many times.
+
+All tours of a front are repaired at once, each at a place of its own, where its edges are long
+for what the edges to its cities' nearest neighbours would cost. PA-One joins what the cuts have
+left, and the new tour replaces the old one if it is shorter under its row's weights. Of the other
+tours that it visits, each row remembers one that no tour of the front dominates.
+"""
+
+from typing import NamedTuple
+
+import torch
+from jaxtyping import Bool, Float, Int
+from torch import Tensor
+
+from models.data.preferences import turned_outwards, weights
+from models.networks.candidates import (
+    Candidates,
+    cheapest_candidates,
+    first_candidates,
+    padded_distances,
+    weighted_costs,
+)
+from models.networks.pa_one import OneActor
+from models.networks.repairs import cut, laid_out, last_two_joined, repair_problem, weighted_sums
+
+CITIES = 8  # that a repair cuts out of a tour
+JOININGS = 4  # for one evaluation of the network: two evaluations do for nearly every repair
+_AFTER_A_CUT = 0.6  # of a city's freshness
+_ROUNDING = 2e-6  # of a length: what sums of float32 may be wrong by
+
+
+class RepairState(NamedTuple):
+    """The best tour of each row, another one that it visited, and the freshness of its cities.
+
+    Points are both lengths of each tour. A city's freshness falls each time that it is cut out,
+    so that others have their turn.
+    """
+
+    tours: Int[Tensor, "r n"]
+    points: Float[Tensor, "r 2"]
+    visited: Int[Tensor, "r n"]
+    visited_points: Float[Tensor, "r 2"]
+    freshness: Float[Tensor, "r n"]
+
+
+@torch.no_grad()
+def repaired_tours(
+    actor: OneActor,
+    instances: Float[Tensor, "b n 4"],
+    preferences: Float[Tensor, "k 2"],
+    repairs: int,
+) -> tuple[Int[Tensor, "b k n"], Int[Tensor, "b k n"]]:
+    """Return a tour of each instance for each preference after so many repairs, and one visited."""
+    rows = weights(turned_outwards(preferences))
+    built = actor.tours(instances, preferences)
+    states = [
+        _repaired(actor, padded_distances(cities), rows, tours, repairs)
+        for cities, tours in zip(instances, built, strict=True)
+    ]
+    tours = torch.stack([state.tours for state in states])
+    return tours, torch.stack([state.visited for state in states])
+
+
+def _repaired(
+    actor: OneActor,
+    distances: Float[Tensor, "2 n w"],
+    rows: Float[Tensor, "r 2"],
+    tours: Int[Tensor, "r n"],
+    repairs: int,
+) -> RepairState:
+    least = least_costs(first_candidates(weighted_costs(distances, rows)))
+    count = min(CITIES, tours.shape[1])
+    state = unrepaired(distances, tours)
+    for _ in range(repairs):
+        cities = cities_to_cut(distances, rows, least, state.tours, state.freshness, count)
+        cuts = cut(state.tours, cities)
+        costs, fragments = repair_problem(distances, rows, cuts)
+        fragments = fragments.trimmed()
+        while bool((fragments.left > 2).any()):
+            candidates = cheapest_candidates(costs, fragments)
+            fragments = actor.round(costs, fragments, candidates, JOININGS).trimmed()
+        new = laid_out(cuts, last_two_joined(costs, fragments))
+        state = state_after_repair(distances, rows, state, cities, new)
+    return state
+
+
+def least_costs(candidates: Candidates) -> Float[Tensor, "r n"]:
+    """Return the least that both edges of each city can cost, by its first candidates."""
+    return candidates.costs[..., :2].sum(dim=-1)
+
+
+def unrepaired(distances: Float[Tensor, "2 n w"], tours: Int[Tensor, "r n"]) -> RepairState:
+    """Return the state before the first repair, of tours as they were built."""
+    points = edge_lengths(distances, tours).sum(dim=2).T
+    return RepairState(tours, points, tours, points, torch.ones_like(tours, dtype=points.dtype))
+
+
+def edge_lengths(
+    distances: Float[Tensor, "2 n w"], tours: Int[Tensor, "r n"]
+) -> Float[Tensor, "2 r n"]:
+    """Return the length in each plane from each place of a tour to the next."""
+    pairs = tours * distances.shape[2] + tours.roll(-1, dims=1)
+    return distances.flatten(1).index_select(1, pairs.flatten()).unflatten(1, tours.shape)
+
+
+def cities_to_cut(
+    distances: Float[Tensor, "2 n w"],
+    weights: Float[Tensor, "r 2"],
+    least: Float[Tensor, "r n"],
+    tours: Int[Tensor, "r n"],
+    freshness: Float[Tensor, "r n"],
+    count: int,
+) -> Int[Tensor, "r m"]:
+    """Return the city of most regret in each row, and those nearest to it.
+
+    The regret of a city is what its edges cost above the least possible, times its freshness.
+    """
+    onwards = weighted_sums(edge_lengths(distances, tours), weights)
+    both = torch.zeros_like(least).scatter(1, tours, onwards + onwards.roll(1, dims=1))
+    centres = ((both - least) * freshness).argmax(dim=1)
+    costs = weighted_sums(distances.index_select(1, centres), weights)  # (r, w)
+    costs = costs.scatter(1, centres[:, None], -1.0)
+    return costs.topk(count, largest=False).indices
+
+
+def state_after_repair(
+    distances: Float[Tensor, "2 n w"],
+    weights: Float[Tensor, "r 2"],
+    state: RepairState,
+    cities: Int[Tensor, "r m"],
+    tours: Int[Tensor, "r n"],
+) -> RepairState:
+    """Return the state with the shorter tour of each row, after these cities were cut out."""
+    points = edge_lengths(distances, tours).sum(dim=2).T
+    before = (state.points * weights).sum(dim=1)
+    shorter = (before - (points * weights).sum(dim=1) > _ROUNDING * before)[:, None]
+    best = torch.where(shorter, points, state.points)
+    other = torch.where(shorter, state.points, points)
+    remember = _worth_remembering(weights, best, state.visited_points, other)[:, None]
+    others = torch.where(shorter, state.tours, tours)
+    freshness = _AFTER_A_CUT * state.freshness.gather(1, cities)
+    return RepairState(
+        torch.where(shorter, tours, state.tours),
+        best,
+        torch.where(remember, others, state.visited),
+        torch.where(remember, other, state.visited_points),
+        state.freshness.scatter(1, cities, freshness),
+    )
+
+
+def _worth_remembering(
+    weights: Float[Tensor, "r 2"],
+    best: Float[Tensor, "r 2"],
+    visited: Float[Tensor, "r 2"],
+    other: Float[Tensor, "r 2"],
+) -> Bool[Tensor, " r"]:
+    """Return whether each row's other tour should replace the one that it remembers."""
+    index = torch.arange(other.shape[0], device=other.device)
+    earlier = index < index[:, None]
+    repeated = _weakly_dominated(other, other) & earlier
+    useless = _weakly_dominated(other, best) | _weakly_dominated(other, visited) | repeated
+    shorter = (other * weights).sum(dim=1) < (visited * weights).sum(dim=1)
+    return ~useless.any(dim=1) & (shorter | _weakly_dominated(visited, best).any(dim=1))
+
+
+def _weakly_dominated(
+    points: Float[Tensor, "r 2"], by: Float[Tensor, "q 2"]
+) -> Bool[Tensor, "r q"]:
+    """Return whether each point is dominated or equalled, but for rounding, by each of others."""
+    low, lower = points[:, None] + _ROUNDING * points[:, None], by[None]
+    return (lower[..., 0] <= low[..., 0]) & (lower[..., 1] <= low[..., 1])
