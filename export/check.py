@@ -1,7 +1,6 @@
 """Comparison of an ONNX file with the actor in torch: their tours must be the same."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import onnxruntime
@@ -13,10 +12,14 @@ from torch import Generator, Tensor
 from models.data.instances import uniform_instances
 from models.data.preferences import fan_of_preferences
 from models.networks.actor import Actor, StepwiseActor
+from models.networks.pa_one import OneActor
 from models.rollout import log_likelihoods_by_city
+from models.rollout_repairs import repaired_tours
 
-CITIES = (3, 7, 40, 200, 1000)
+CITIES = (3, 7, 20, 40, 200, 1000)
 PREFERENCES = (1, 20, 100)
+REPAIRS = (0, 1, 10, 50)  # of tours of PA-One
+_MANY_CITIES = 200  # above which torch takes minutes for more than one repair
 # Logits this close are a tie: float32 sums of two orders differ by less, and either city may win.
 _TIE = 1e-3
 # PA-One joins by many comparisons at once; small changes to the cities show which were close.
@@ -35,11 +38,13 @@ def session(model: ModelProto) -> onnxruntime.InferenceSession:
 
 
 def onnx_tours(
-    running: onnxruntime.InferenceSession, instance: Tensor, preferences: Tensor
+    running: onnxruntime.InferenceSession, instance: Tensor, preferences: Tensor, repairs: int = 0
 ) -> NDArray[np.int64]:
     """Return the tours, shape (k, n), that the file builds of an instance, preferences (k, 2)."""
-    name = running.get_inputs()[0].name
-    inputs = {name: instance.numpy(), "preferences": preferences.numpy()}
+    names = [value.name for value in running.get_inputs()]
+    inputs = {names[0]: instance.numpy(), "preferences": preferences.numpy()}
+    if "repairs" in names:
+        inputs["repairs"] = np.array(repairs, dtype=np.int64)
     tours: NDArray[np.int64] = running.run(["tours"], inputs)[0]
     return tours
 
@@ -49,8 +54,12 @@ def compare(
     model: ModelProto,
     sizes: Sequence[int] = CITIES,
     counts: Sequence[int] = PREFERENCES,
+    repairs: Sequence[int] = REPAIRS,
 ) -> None:
     """Build tours both ways, for all these numbers of cities and of preferences.
+
+    Those of PA-One are repaired, for each of these numbers of repairs; above 200 cities once at
+    most.
 
     Raises:
         TourMismatch: some tour differs, and not only after a tie; or a dimension of the graph's
@@ -63,11 +72,37 @@ def compare(
         instance = uniform_instances(actor.reads, 1, n, generator, torch.device("cpu"))
         for k in counts:
             preferences = fan_of_preferences(k, torch.device("cpu"))
-            expected = actor.tours(instance, preferences)[0]
-            tours = torch.from_numpy(onnx_tours(running, instance[0], preferences))
-            if not torch.equal(tours, expected):
-                check_difference = _DIFFERENCE_CHECKS[actor.construction]
-                check_difference(actor, instance, preferences, (tours, expected))
+            for times in _numbers_of_repairs(actor, n, repairs):
+                _compare_tours(actor, running, instance, preferences, times)
+
+
+def _numbers_of_repairs(actor: Actor, n: int, repairs: Sequence[int]) -> Sequence[int]:
+    if not isinstance(actor, OneActor):
+        return (0,)
+    return [times for times in repairs if times <= 1 or n <= _MANY_CITIES]
+
+
+def _compare_tours(
+    actor: Actor,
+    running: onnxruntime.InferenceSession,
+    instance: Tensor,
+    preferences: Tensor,
+    repairs: int,
+) -> None:
+    expected = _torch_tours(actor, instance, preferences, repairs)
+    tours = torch.from_numpy(onnx_tours(running, instance[0], preferences, repairs))
+    if torch.equal(tours, expected):
+        return
+    if isinstance(actor, StepwiseActor):
+        _check_ties(actor, instance, preferences, (tours, expected))
+    else:
+        _check_rounding(actor, instance, preferences, repairs, (tours, expected))
+
+
+def _torch_tours(actor: Actor, instance: Tensor, preferences: Tensor, repairs: int) -> Tensor:
+    if isinstance(actor, OneActor):
+        return repaired_tours(actor, instance, preferences, repairs)[0][0]
+    return actor.tours(instance, preferences)[0]
 
 
 def _check_dimensions(model: ModelProto) -> None:
@@ -75,7 +110,9 @@ def _check_dimensions(model: ModelProto) -> None:
         "cities": ["n", 4],
         "matrices": [2, "n", "n"],
         "preferences": ["k", 2],
+        "repairs": [],
         "tours": ["k", "n"],
+        "visited": ["k", "n"],
     }
     for value in (*model.graph.input, *model.graph.output):
         shape = [d.dim_param or d.dim_value for d in value.type.tensor_type.shape.dim]
@@ -84,7 +121,11 @@ def _check_dimensions(model: ModelProto) -> None:
 
 
 def _check_rounding(
-    actor: Actor, instance: Tensor, preferences: Tensor, both: tuple[Tensor, Tensor]
+    actor: Actor,
+    instance: Tensor,
+    preferences: Tensor,
+    repairs: int,
+    both: tuple[Tensor, Tensor],
 ) -> None:
     """Raise TourMismatch unless the tours that differ do so in torch when cities are rounded."""
     tours, expected = both
@@ -92,7 +133,8 @@ def _check_rounding(
     generator = Generator().manual_seed(0)
     for _ in range(_ROUNDINGS):
         moved = instance * (1 + _ROUNDING * torch.randn(instance.shape, generator=generator))
-        robust &= (actor.tours(moved, preferences)[0] == expected).all(dim=1)
+        moved_tours = _torch_tours(actor, moved, preferences, repairs)
+        robust &= (moved_tours == expected).all(dim=1)
     differs = tours != expected
     for i in (differs.any(dim=1) & robust).nonzero().flatten().tolist():
         parting = int(differs[i].nonzero()[0])
@@ -126,10 +168,3 @@ def _check_ties(
                 f"tours of {differs.shape[1]} cities part at position {parting}, where "
                 f"log-likelihoods must differ by at most {_TIE}, got {gap:g}"
             )
-
-
-# By the construction of an actor's tours.
-_DIFFERENCE_CHECKS: dict[str, Callable[[Any, Tensor, Tensor, tuple[Tensor, Tensor]], None]] = {
-    "stepwise": _check_ties,
-    "fragments": _check_rounding,
-}

@@ -11,6 +11,9 @@ from torch import nn
 
 DOMAIN = "paretour"  # of functions that stand for parts until they are put in their places
 
+# A module, what to trace it with, and the names of its inputs and outputs.
+Part = tuple[nn.Module, tuple[Any, ...], list[str], list[str]]
+
 
 def exported(
     module: nn.Module,
@@ -43,8 +46,14 @@ def exported(
 
 
 def inlined(model: ModelProto, functions: Sequence[FunctionProto]) -> ModelProto:
-    """Return the model with each function inlined, and all weights in the outermost graph."""
+    """Return the model with each function inlined, and all weights in the outermost graph.
+
+    The lines of source that nodes come from are left out: they are four fifths of a file.
+    """
     model.functions.extend(functions)
+    for function in model.functions:
+        for node in function.node:
+            del node.metadata_props[:]
     model = inliner.inline_local_functions(model)
     model.graph.initializer.extend(_taken_out(model.graph))
     return model

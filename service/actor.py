@@ -71,6 +71,7 @@ class OnnxActor:
     def __init__(self, path: Path, threads: int) -> None:
         content = path.read_bytes()
         self._session = _open_session(content, path, threads)
+        self._repairs = any(value.name == "repairs" for value in self._session.get_inputs())
         self._lock = Lock()
         self._running = onnxruntime.RunOptions()
         metadata = self._session.get_modelmeta().custom_metadata_map
@@ -83,28 +84,36 @@ class OnnxActor:
             **{name: _decoded(metadata[name]) for name in ("sizes", "angles", "config", "figures")},
         )
 
-    def tours(self, instance: Instance, preferences: Array) -> Tours:
+    def tours(self, instance: Instance, preferences: Array, repairs: int = 0) -> Tours:
         """Return tours, shape (k, n), one for each preference, shape (k, 2), by one inference.
 
         Cities at one place are one city to the network, and follow one another in the tours.
+        With repairs, each tour is repaired so many times, and as many rows follow, shape (2k, n):
+        for each preference another tour that was visited on the way.
 
         Raises:
+            ValueError: Repairs are asked for, and the file has no input for them.
             RuntimeError: A tour is not a permutation, which is a fault of the file.
             Cancelled: `terminate` was called.
         """
+        if repairs > 0 and not self._repairs:
+            raise ValueError(f"{self.info.name} cannot repair tours, got repairs {repairs}")
+        outputs = ["tours", "visited"] if repairs > 0 else ["tours"]
         options = self._begin(max(instance.n, len(preferences)))
         if self.info.inputs == "matrices":
             matrices = _without_zero_matrix(instance.scaled_matrices.astype(np.float32))
             first, place = _places_by_matrices(matrices)
-            inputs = {"matrices": matrices[:, first[:, np.newaxis], first]}
+            inputs: dict[str, NDArray[Any]] = {"matrices": matrices[:, first[:, np.newaxis], first]}
         else:
             cities = _without_zero_plane(instance.scaled_coordinates.astype(np.float32))
             first, place = _places_by_coordinates(cities)
             inputs = {"cities": cities[first]}
         if len(first) < _MIN_PLACES:
-            return np.tile(np.argsort(place, kind="stable"), (len(preferences), 1))
+            return np.tile(np.argsort(place, kind="stable"), (len(outputs) * len(preferences), 1))
         inputs["preferences"] = preferences.clip(_LEAST_PREFERENCE).astype(np.float32)
-        tours = self._run(inputs, options)
+        if self._repairs:
+            inputs["repairs"] = np.array(repairs, dtype=np.int64)
+        tours = self._run(inputs, outputs, options)
         if not (np.sort(tours, axis=1) == np.arange(len(first))).all():
             raise RuntimeError(f"{self.info.name} built a tour that is not a permutation")
         if len(first) == instance.n:
@@ -132,10 +141,13 @@ class OnnxActor:
         return options
 
     def _run(
-        self, inputs: dict[str, NDArray[np.float32]], options: onnxruntime.RunOptions
+        self,
+        inputs: dict[str, NDArray[Any]],
+        outputs: list[str],
+        options: onnxruntime.RunOptions,
     ) -> Tours:
         try:
-            tours: Tours = self._session.run(["tours"], inputs, options)[0]
+            tours: Tours = np.concatenate(self._session.run(outputs, inputs, options))
         except Exception:
             if options.terminate:
                 raise Cancelled from None

@@ -32,6 +32,19 @@ def test_every_preference_gets_a_tour_of_all_cities(actor: OnnxActor, n: int, k:
     np.testing.assert_array_equal(np.sort(tours, axis=1), np.tile(np.arange(n), (k, 1)))
 
 
+def test_repairs_add_a_visited_tour_for_each_preference(actor: OnnxActor) -> None:
+    instance = Instance(coordinates=np.random.default_rng(0).random((30, 4)))
+    tours = actor.tours(instance, from_angles(fan(5)), repairs=3)
+    np.testing.assert_array_equal(np.sort(tours, axis=1), np.tile(np.arange(30), (10, 1)))
+    assert (tours[:5] != actor.tours(instance, from_angles(fan(5)))).any()
+
+
+def test_repairs_are_refused_where_the_file_has_no_input_for_them(tmp_path: Path) -> None:
+    actor = OnnxActor(by_row_sums(tmp_path / "sums.onnx"), threads=1)
+    with pytest.raises(ValueError, match="sums cannot repair tours, got repairs 1"):
+        actor.tours(Instance(coordinates=np.eye(4)), from_angles(fan(2)), repairs=1)
+
+
 def test_coincident_cities_are_fine(actor: OnnxActor) -> None:
     tours = actor.tours(Instance(coordinates=np.ones((5, 4))), from_angles(fan(3)))
     assert tours.shape == (3, 5)

@@ -180,6 +180,7 @@ def _loop(threads: int, seconds: float) -> tuple[int, float]:
         {
             "cities": Instance(coordinates=cities).scaled_coordinates.astype(np.float32),
             "preferences": preferences,
+            "repairs": np.array(0, dtype=np.int64),
         }
         for cities in paper_instances(CITIES)
     ]
