@@ -109,11 +109,12 @@ def cities_to_cut(
     least: Float[Tensor, "r n"],
     tours: Int[Tensor, "r n"],
     freshness: Float[Tensor, "r n"],
-    count: int,
+    count: int | torch.SymInt,
 ) -> Int[Tensor, "r m"]:
     """Return the city of most regret in each row, and those nearest to it.
 
     The regret of a city is what its edges cost above the least possible, times its freshness.
+    The count is symbolic while the graph is traced for its export.
     """
     onwards = weighted_sums(edge_lengths(distances, tours), weights)
     both = torch.zeros_like(least).scatter(1, tours, onwards + onwards.roll(1, dims=1))
