@@ -224,7 +224,7 @@ def test_extremes_of_floating_point_are_planned(client: httpx.Client, cities: An
 def test_ten_megabytes_of_brackets_are_refused(client: httpx.Client, opening: str) -> None:
     body = opening * (10 * 2**20 // len(opening))
     answer = client.post("/front", content=body, headers=JSON)
-    problem(answer, 400, "malformed-json")
+    problem(answer, 413, "body-too-complex")
 
 
 @pytest.mark.parametrize(

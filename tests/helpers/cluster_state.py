@@ -25,7 +25,7 @@ class ClusterState:
 
     def unfinished(self) -> dict[str, dict[bytes, bytes]]:
         """Return the fields of all unfinished records."""
-        records = [dict(zip(*[iter(fields)] * 2, strict=True)) for fields, _ in self._records()]
+        records = [dict(zip(*[iter(fields)] * 2, strict=True)) for _, fields, _ in self._records()]
         return {fields[b"id"].decode(): fields for fields in records}
 
     def planning(self, id: str) -> int | None:  # noqa: A002
