@@ -129,11 +129,7 @@ def client_of(request: Request) -> str:
     """
     if request.scope["caller"] != ANONYMOUS:
         return caller_of(request)
-    host = request.client.host if request.client else ""
-    try:
-        return str(ip_network(f"{host}/64", strict=False)) if ":" in host else host
-    except ValueError:
-        return host
+    return _network(request.client.host if request.client else "")
 
 
 class Access:
