@@ -18,9 +18,11 @@ settings.load_profile("project")
 
 
 def pytest_configure() -> None:
-    """Prepare what child processes inherit: the signal of Ctrl-C, and where certificates are."""
+    """Prepare what child processes inherit: the signal of Ctrl-C, threads, certificates."""
     # A shell starts background jobs, and nohup its command, with SIGINT ignored.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    # Tests run side by side; torch's threads spin while they wait, and take the cores from others.
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
     # No test calls https, and httpx takes 40 ms to load certificates at each httpx.get.
     os.environ.pop("SSL_CERT_FILE", None)
     os.environ["SSL_CERT_DIR"] = str(NO_CERTIFICATES)

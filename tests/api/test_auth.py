@@ -156,6 +156,7 @@ def test_the_header_of_a_proxy_that_is_not_trusted_counts_for_nothing() -> None:
         (f"two words:{DISPATCH_HASH}", "a caller must be named"),
         (f":{DISPATCH_HASH}", "a caller must be named"),
     ],
+    ids=["no hash", "the key itself", "65 digits", "a name with a space", "no name"],
 )
 def test_what_is_no_hash_is_refused(text: str, sentence: str) -> None:
     with pytest.raises(ValueError, match=sentence):
