@@ -25,7 +25,8 @@ from service.api.middleware import (
 from service.api.openapi import complete
 from service.api.plan import BodyBounds, PlanRoutes
 from service.api.responses import ActorsAnswer, HealthAnswer, json_response, problem_responses
-from service.api.static import static_routes
+from service.api.site.guide import guide_routes
+from service.api.site.static import static_routes
 from service.api.stored_fronts import StoredFrontRoutes
 from service.jobs.engine import Engine
 from service.jobs.store import Store
@@ -105,7 +106,7 @@ def create_app(
         version=version,
         lifespan=lifespan,
         middleware=edge.middleware,
-        routes=static_routes(),
+        routes=[*static_routes(), *guide_routes()],
         exception_handlers=dict.fromkeys(HANDLED, answer_refusal),
         redirect_slashes=False,
         generate_unique_id_function=lambda route: route.name,

@@ -3,7 +3,7 @@
 10 maps of 64 x 64 cells a size, of the kinds of PathBench, with 40, 100 and 200 places at random:
 the first costs are lengths of shortest paths, the second are distances of random points in a
 plane. Rows, seconds and reference point are those of `beside`; the paper names none. Prints a
-table and stores `results/coverage.json`. With `--plot` it draws `results/coverage.png` instead.
+table and stores `results/coverage.json`. With `--plot` it draws the guide's `coverage.png` instead.
 """
 
 import numpy as np

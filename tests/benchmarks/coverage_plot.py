@@ -11,7 +11,7 @@ from models.data.generators import drawn_map
 from service.coverage.grid import covering_places, free_cells, largest_region
 from service.coverage.survey import Coverage, Survey, survey
 from service.search.improve import improve
-from tests.benchmarks.provenance import RESULTS
+from tests.benchmarks.provenance import PICTURES
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ RISK = LinearSegmentedColormap.from_list("risk", ["#ffffff", "#fdd49e", "#f5884a
 
 
 def draw() -> None:
-    """Draws `results/coverage.png`."""
+    """Draws `service/guide/pictures/coverage.png`."""
     rng = np.random.default_rng(SEED)
     free = drawn_map(rng, "blocks", SIDE)
     risk = _risk(rng)
@@ -46,7 +46,7 @@ def draw() -> None:
         length, cost = front.points[index]
         panel.set_title(f"{name}: {length:.0f} m, risk {cost:.0f}")
     _draw_front(panels[2], front.points, marked)
-    figure.savefig(RESULTS / "coverage.png", dpi=130)
+    figure.savefig(PICTURES / "coverage.png", dpi=130)
 
 
 def _coverage(free: NDArray[np.bool_], risk: Array) -> Coverage:

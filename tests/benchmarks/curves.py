@@ -4,7 +4,7 @@ On the paper's instances: Paretour's search alone, without a network; OR-Tools a
 weighted sums; NSGA-II and MOEA/D. All see the same instances and reference points, on one thread,
 and seconds are those of the processor, which another program's load does not stretch.
 Stores `results/curves.json`, instance by instance, where what is stored is not measured again, so
-that a run may be broken off; and draws `results/curves.png`.
+that a run may be broken off; and draws `service/guide/pictures/curves.png`.
 """
 
 import argparse
@@ -24,7 +24,7 @@ from service.pareto import hypervolume
 from service.search.improve import improve, warm_up
 from service.search.schedule import bisection_order
 from tests.benchmarks.instances import check_tours, paper_instances, reference_points
-from tests.benchmarks.provenance import RESULTS, load, provenance, store
+from tests.benchmarks.provenance import PICTURES, load, provenance, store
 from tests.benchmarks.rivals import fast_tsp_weights, ortools_routing
 from tests.benchmarks.rivals.construction import distances, spread_weights
 from tests.benchmarks.rivals.evolutionary import Snapshots, moead, nsga2
@@ -173,7 +173,7 @@ def draw(results: dict[str, Any]) -> None:
         _draw_panel(panel, n, _of_size(results, n))
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
-    figure.savefig(RESULTS / "curves.png", dpi=130)
+    figure.savefig(PICTURES / "curves.png", dpi=130)
 
 
 def _draw_panel(panel: Axes, n: int, methods: dict[str, list[dict[str, Any]]]) -> None:

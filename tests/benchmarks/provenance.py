@@ -10,10 +10,14 @@ from typing import Any, NamedTuple
 
 RESULTS = Path(__file__).parent / "results"
 ROOT = Path(__file__).parents[2]
-
+PICTURES = ROOT / "service/guide/pictures"
 
 _EXTENTS = ("instances", "minutes", "visitors", "frames", "rounds")  # of how much was measured
-_MADE = (":!tests/benchmarks/results", ":!tests/benchmarks/RESULTS.md")  # by benchmarks themselves
+_MADE = (
+    ":!tests/benchmarks/results",
+    ":!tests/benchmarks/RESULTS.md",
+    ":!service/guide/pictures",
+)  # by benchmarks themselves
 
 
 class Unstored(NamedTuple):

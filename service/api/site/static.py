@@ -8,11 +8,11 @@ from starlette.responses import FileResponse, Response
 from starlette.routing import BaseRoute, Route
 from starlette.staticfiles import StaticFiles
 
-_SERVICE = Path(__file__).parents[1]
+_SERVICE = Path(__file__).parents[2]
 _PAGE = _SERVICE / "page"
 _REFERENCE = _SERVICE / "reference"
 _EXAMPLES = _SERVICE / "examples"
-_REVALIDATE = {"Cache-Control": "no-cache"}  # a browser asks each time, and gets 304 if unchanged
+REVALIDATE = {"Cache-Control": "no-cache"}  # a browser asks each time, and gets 304 if unchanged
 
 _Endpoint = Callable[[Request], Awaitable[Response]]
 
@@ -22,25 +22,26 @@ def static_routes() -> list[BaseRoute]:
     return [
         Route("/", _index(_PAGE)),
         Route("/docs", _index(_REFERENCE)),
-        Route("/page/{path:path}", _files(_PAGE)),
-        Route("/docs/{path:path}", _files(_REFERENCE)),
-        Route("/examples/{path}.json", _files(_EXAMPLES, ".json")),
+        Route("/page/{path:path}", files(_PAGE)),
+        Route("/docs/{path:path}", files(_REFERENCE)),
+        Route("/examples/{path}.json", files(_EXAMPLES, ".json")),
     ]
 
 
 def _index(folder: Path) -> _Endpoint:
     async def answer(_: Request) -> Response:
-        return FileResponse(folder / "index.html", headers=_REVALIDATE)
+        return FileResponse(folder / "index.html", headers=REVALIDATE)
 
     return answer
 
 
-def _files(folder: Path, suffix: str = "") -> _Endpoint:
-    files = StaticFiles(directory=folder)
+def files(folder: Path, suffix: str = "") -> _Endpoint:
+    """Return an endpoint that answers with the file of a folder named by `path` and the suffix."""
+    static = StaticFiles(directory=folder)
 
     async def answer(request: Request) -> Response:
-        response = await files.get_response(request.path_params["path"] + suffix, request.scope)
-        response.headers.update(_REVALIDATE)
+        response = await static.get_response(request.path_params["path"] + suffix, request.scope)
+        response.headers.update(REVALIDATE)
         return response
 
     return answer

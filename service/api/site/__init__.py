@@ -1,0 +1,1 @@
+"""The sites for browsers: the page, the HTTP reference and the guide."""

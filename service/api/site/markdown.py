@@ -1,0 +1,132 @@
+"""Pages of Markdown as HTML, with anchors at headings, and the sections that a search finds."""
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
+
+Resolve = Callable[[str], str | None]
+_RENDERER = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"])
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading and the text below it, down to the next heading.
+
+    Attributes:
+        anchor: Of the heading, as code hosts make them.
+        heading: Its text.
+        text: Everything below it, without marks.
+    """
+
+    anchor: str
+    heading: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page of Markdown.
+
+    Attributes:
+        title: Its first heading.
+        html: The page as HTML, with that heading.
+        sections: In their order.
+    """
+
+    title: str
+    html: str
+    sections: tuple[Section, ...]
+
+
+def render(text: str, resolve: Resolve) -> Page:
+    """Return a page of Markdown that begins with a heading as HTML.
+
+    Args:
+        text: The Markdown, which is trusted: HTML in it is kept.
+        resolve: Returns the address of the target of a link or picture, or None where there is
+            none; such a link becomes its text.
+    """
+    tokens = _RENDERER.parse(text)
+    anchors = _Anchors()
+    for at, token in enumerate(tokens):
+        if token.type == "heading_open":
+            token.attrSet("id", anchors.of(_text(tokens[at + 1])))
+        elif token.type == "inline" and token.children:
+            token.children = list(_resolved(token.children, resolve))
+        elif token.type in ("th_open", "td_open") and "style" in token.attrs:
+            # The service tells browsers to obey no style inside a document.
+            token.attrs = {"class": str(token.attrs["style"]).removeprefix("text-align:")}
+    sections = tuple(_sections(tokens))
+    html = _RENDERER.renderer.render(tokens, _RENDERER.options, {})
+    return Page(sections[0].heading, _with_scrolling_tables(html), sections)
+
+
+def slug(heading: str) -> str:
+    """Return the anchor of a heading as code hosts make it.
+
+    >>> slug("How is `POST /front` answered?")
+    'how-is-post-front-answered'
+    """
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+def _with_scrolling_tables(html: str) -> str:
+    """Return the HTML with each table in a block of its own, which scrolls on narrow screens."""
+    return html.replace("<table>", '<div class="wide"><table>').replace(
+        "</table>", "</table></div>"
+    )
+
+
+class _Anchors:
+    """The anchors of one page: where a heading comes again, a number follows."""
+
+    def __init__(self) -> None:
+        self._counts: dict[str, int] = {}
+
+    def of(self, heading: str) -> str:
+        anchor = slug(heading)
+        count = self._counts.get(anchor, 0)
+        self._counts[anchor] = count + 1
+        return f"{anchor}-{count}" if count else anchor
+
+
+def _resolved(tokens: list[Token], resolve: Resolve) -> Iterator[Token]:
+    """Yield inline tokens with resolved addresses, and without links that lead nowhere."""
+    dead = False
+    for token in tokens:
+        if token.type == "link_open":
+            address = resolve(str(token.attrs["href"]))
+            dead = address is None
+            token.attrs["href"] = address or ""
+        elif token.type == "image":
+            token.attrs["src"] = resolve(str(token.attrs["src"])) or ""
+        if not (dead and token.type in ("link_open", "link_close")):
+            yield token
+        if token.type == "link_close":
+            dead = False
+
+
+def _sections(tokens: list[Token]) -> Iterator[Section]:
+    anchor, heading, words = "", "", list[str]()
+    for at, token in enumerate(tokens):
+        if token.type == "heading_open":
+            if heading:
+                yield Section(anchor, heading, " ".join(words))
+            anchor, heading, words = str(token.attrs["id"]), _text(tokens[at + 1]), []
+        elif token.type in ("inline", "fence") and tokens[at - 1].type != "heading_open":
+            words += _text(token).split()
+    yield Section(anchor, heading, " ".join(words))
+
+
+def _text(token: Token) -> str:
+    """Return what a reader sees of a block of text or code."""
+    if token.children is None:
+        return token.content
+    return "".join(
+        " " if child.type in ("softbreak", "hardbreak") else child.content
+        for child in token.children
+        if child.type != "html_inline"
+    )

@@ -1,0 +1,64 @@
+"""The guide, against a live server."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import urljoin
+
+import httpx
+import pytest
+
+from tests.helpers.serving import app_of, problem, serving
+
+PAGES = sorted(path.stem for path in Path("service/guide").glob("*.md"))
+_LINK = re.compile(r'(?:href|src)="([^"]+)"')
+_ID = re.compile(r'id="([^"]+)"')
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[httpx.Client]:
+    with (
+        serving(app_of(), warm=False) as address,
+        httpx.Client(base_url=address, follow_redirects=True) as client,
+    ):
+        yield client
+
+
+def test_the_guide_begins_with_its_index(client: httpx.Client) -> None:
+    answer = client.get("/guide")
+    assert answer.url.path == "/guide/"
+    assert "<title>The guide of Paretour" in answer.text
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_every_link_of_a_page_leads_to_something(client: httpx.Client, name: str) -> None:
+    page = client.get(f"/guide/{name}")
+    assert page.headers["content-type"] == "text/html; charset=utf-8"
+    targets = {urljoin(str(page.url), link) for link in _LINK.findall(page.text)}
+    inside = {target for target in targets if target.startswith(str(client.base_url))}
+    assert len(inside) > len(PAGES)
+    for target in inside:
+        answer = client.get(target)
+        assert answer.status_code == 200, target
+        _, _, anchor = target.partition("#")
+        assert not anchor or anchor in _ID.findall(answer.text), target
+
+
+def test_every_page_lists_all_others(client: httpx.Client) -> None:
+    for name in PAGES:
+        navigation = client.get(f"/guide/{name}").text.partition("<main")[0]
+        listed = re.findall(r'^<a href="([a-z-]+)"', navigation, re.MULTILINE)
+        assert sorted(listed) == [page for page in PAGES if page != "index"]
+
+
+def test_a_search_finds_sections_by_an_address_that_leads_to_them(client: httpx.Client) -> None:
+    sections = client.get("/guide/search.json").json()
+    found = [each for each in sections if "Idempotency-Key" in each["text"]]
+    assert found
+    page, _, anchor = found[0]["address"].partition("#")
+    assert f'id="{anchor}"' in client.get(f"/guide/{page}").text
+
+
+@pytest.mark.parametrize("path", ["none", "INDEX", "index.md", "../settings", "site/none.js"])
+def test_what_is_no_page_is_404(client: httpx.Client, path: str) -> None:
+    problem(client.get(f"/guide/{path}"), 404, "no-such-path")
