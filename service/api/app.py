@@ -24,6 +24,7 @@ from service.api.middleware import (
 )
 from service.api.openapi import complete
 from service.api.plan import BodyBounds, PlanRoutes
+from service.api.request_bodies import request_schemas
 from service.api.responses import ActorsAnswer, HealthAnswer, json_response, problem_responses
 from service.api.site.guide import guide_routes
 from service.api.site.static import static_routes
@@ -101,6 +102,7 @@ def create_app(
         await store.close()
 
     app = _DocumentedApp(
+        request_schemas(limits, actors),
         title="Paretour",
         summary="Pareto fronts of tours under two objectives",
         version=version,
@@ -123,12 +125,21 @@ def create_app(
 
 
 class _DocumentedApp(FastAPI):
-    """A FastAPI application whose OpenAPI document is complete."""
+    """A FastAPI application whose OpenAPI document is complete.
+
+    Args:
+        schemas: The schemas that request bodies refer to, by name.
+        arguments: FastAPI's own.
+    """
+
+    def __init__(self, schemas: Mapping[str, Any], **arguments: Any) -> None:
+        super().__init__(**arguments)
+        self._schemas = schemas
 
     def openapi(self) -> dict[str, Any]:
         """Return the OpenAPI document, made once."""
         if self.openapi_schema is None:
-            complete(super().openapi())
+            complete(super().openapi(), self._schemas)
         return super().openapi()
 
 

@@ -7,7 +7,7 @@ code of a refusal the values that fill in its sentence, under the code, or under
 """
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +18,15 @@ _EXAMPLES = Path(__file__).parents[1] / "reference" / "examples.json"
 _REQUEST_ID = "2348e4bd4d8a4a028a885757e2b342af"
 
 
-def complete(document: dict[str, Any]) -> None:
-    """Add to FastAPI's document all that it does not know of the service."""
+def complete(document: dict[str, Any], schemas: Mapping[str, Any]) -> None:
+    """Add to FastAPI's document all that it does not know of the service.
+
+    Args:
+        document: The document.
+        schemas: The schemas that request bodies refer to, by name.
+    """
     components = document["components"]
+    components["schemas"].update(schemas)
     components["schemas"]["Problem"] = _problem_schema()
     components["securitySchemes"] = {"key": {"type": "http", "scheme": "bearer"}}
     document["security"] = [{}, {"key": []}]  # a key is needed where the settings hold any

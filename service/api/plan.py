@@ -15,6 +15,7 @@ from service.actor import ActorInfo
 from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
 from service.api.body_budget import DEFAULT_BUDGET, BodyAllowance, BodyBudget
+from service.api.request_bodies import COVERAGE_BODY, FRONT_BODY, openapi_body
 from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async
 from service.api.responses import (
     AcceptedAnswer,
@@ -29,8 +30,6 @@ from service.api.task_parser import ParserBounds, TaskParser
 from service.jobs.engine import Engine, record_in_time
 from service.jobs.front_document import empty_front
 from service.jobs.record import Record
-from service.requests.coverage import coverage_schema
-from service.requests.front import front_schema
 from service.requests.limits import Limits
 from service.requests.task import TaskKind, TaskSource
 
@@ -85,13 +84,13 @@ class PlanRoutes:
             "/front",
             response_model=FrontAnswer,
             responses=responses,
-            openapi_extra=_openapi_request(front_schema(self._limits, self._actors)),
+            openapi_extra=_openapi_request(FRONT_BODY),
         )(self.plan_front)
         router.post(
             "/coverage",
             response_model=CoverageAnswer,
             responses=responses,
-            openapi_extra=_openapi_request(coverage_schema(self._limits, self._actors)),
+            openapi_extra=_openapi_request(COVERAGE_BODY),
         )(self.plan_coverage)
         return router
 
@@ -200,8 +199,4 @@ def _digest(source: TaskSource) -> str:
 
 
 def _openapi_request(schema: dict[str, Any]) -> dict[str, Any]:
-    content = {"application/json": {"schema": schema}}
-    return {
-        "parameters": list(PARAMETERS),
-        "requestBody": {"required": True, "content": content},
-    }
+    return {"parameters": list(PARAMETERS), "requestBody": openapi_body(schema)}

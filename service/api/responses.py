@@ -16,6 +16,7 @@ from starlette.responses import Response
 from service.errors import Refusal
 from service.instance import OBJECTIVES
 from service.jobs.record import Status
+from service.requests.stop_fields import StopItem
 from service.search.improve import Termination
 
 PROBLEM_JSON = "application/problem+json"
@@ -50,6 +51,9 @@ class TourItem(BaseModel):
     angle: float = Field(description="direction of the scaled lengths, in degrees")
     lengths: Lengths
     tour: list[int]
+    stops: list[str] | SkipJsonSchema[None] = Field(
+        default=None, description="the ids of its stops, where the request has ids"
+    )
 
 
 class TourAnswer(TourItem):
@@ -63,6 +67,13 @@ class ActorName(BaseModel):
 
     name: str
     digest: str = Field(description="SHA-256 of its file")
+
+
+class ObjectiveName(BaseModel):
+    """An objective of a front."""
+
+    name: str
+    unit: str | None
 
 
 class FrontAnswer(BaseModel):
@@ -79,12 +90,18 @@ class FrontAnswer(BaseModel):
         description="what no front of this instance exceeds, where `bound` asked for it"
     )
     reference_point: Lengths | None = Field(
-        description="null while the places on a map are looked for, as is the scale"
+        description="null while costs are still to be measured, as is the scale"
     )
     scale: Lengths | None
     actor: ActorName
     timings_ms: dict[str, float]
     terminated: Termination | None = Field(description="null while the planning goes on")
+    objectives: list[ObjectiveName] | SkipJsonSchema[None] = Field(
+        default=None, description="as the request names them"
+    )
+    stops: list[StopItem] | SkipJsonSchema[None] = Field(
+        default=None, description="as the request has them"
+    )
 
 
 class AcceptedAnswer(BaseModel):

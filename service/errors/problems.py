@@ -60,6 +60,9 @@ PROBLEMS: Mapping[str, Problem] = {
     "invalid-parts": Problem(422, "{reason}", _PLANS),
     "invalid-request": Problem(422, "{detail}", (*_PLANS, *_TOUR)),
     "no-actor": Problem(422, "{kind} need an actor that reads them, and none is loaded", _PLANS),
+    "no-router": Problem(
+        422, "{name} {measure} needs a routing engine, and none is configured", ("POST /front",)
+    ),
     "paths-too-long": Problem(
         422, "paths must have at most {limit} cells, got {actual}: {advice}", ("POST /coverage",)
     ),

@@ -5,8 +5,8 @@ To add a member to the answer, add a field to `FrontDocument` and fill it in `en
 the documents stored by earlier releases needs a default.
 """
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
@@ -15,6 +15,7 @@ from pydantic_core import to_json
 from service.coverage.survey import CoveragePath
 from service.instance import Instance
 from service.planner import Front
+from service.requests.stops import Labels, UnmeasuredStops
 from service.requests.task import Task
 from service.search.improve import Termination
 
@@ -57,6 +58,8 @@ class FrontDocument:
         scale: The same.
         actor: Name and digest of the network.
         places: Row and column of each place of a coverage task.
+        objectives: Name and unit of each objective, where the caller named them.
+        stops: Id and location of each stop, where the caller named them.
         tours: The JSON of all tours, with commas between, without brackets.
         ends: Where each tour ends in `tours`, as m native integers of 8 bytes.
         angles: The direction of each tour in degrees, as m native floats of 8 bytes.
@@ -73,6 +76,8 @@ class FrontDocument:
     terminated: Termination | None
     actor: Mapping[str, str]
     places: list[list[int]] | None = None
+    objectives: list[dict[str, Any]] | None = None
+    stops: list[dict[str, Any]] | None = None
     tours: bytes = b""
     ends: bytes = b""
     angles: bytes = b""
@@ -135,10 +140,12 @@ def encode_front(
     actor: Mapping[str, str],
     places: list[list[int]] | None = None,
     paths: Iterable[CoveragePath] | None = None,
+    labels: Labels | None = None,
 ) -> FrontDocument:
-    """Write a front as JSON, with the path of each tour where paths are given."""
+    """Write a front as JSON: with paths the path of each tour, with labels the ids of its stops."""
     rows = zip(front.angles.tolist(), front.points.tolist(), front.tours.tolist(), strict=True)
-    encoded = [to_json({"angle": a, "lengths": ls, "tour": tour}) for a, ls, tour in rows]
+    ids = None if labels is None else [stop.id for stop in labels.stops]
+    encoded = [_encode_tour(angle, lengths, tour, ids) for angle, lengths, tour in rows]
     if paths is not None:
         encoded = [
             b"".join((tour[:-1], b',"path":', _encode_path(path), b"}"))
@@ -156,11 +163,26 @@ def encode_front(
         terminated=front.terminated,
         actor=actor,
         places=places,
+        **_named(labels),
         tours=b",".join(encoded),
         ends=ends.tobytes(),
         angles=front.angles.tobytes(),
         gained=front.gained,
     )
+
+
+def _encode_tour(
+    angle: float, lengths: list[float], tour: list[int], ids: Sequence[str] | None
+) -> bytes:
+    members: dict[str, object] = {"angle": angle, "lengths": lengths, "tour": tour}
+    if ids is not None:
+        members["stops"] = [ids[city] for city in tour]
+    return to_json(members)
+
+
+def _named(labels: Labels | None) -> dict[str, Any]:
+    """Return the members of a document that hold the caller's names."""
+    return {} if labels is None else asdict(labels)
 
 
 def _encode_path(path: CoveragePath) -> bytes:
@@ -178,6 +200,8 @@ def empty_front(task: Task, actor: Mapping[str, str]) -> FrontDocument:
         cities, scale, places = subject.n, subject.scale.tolist(), None
         if reference_point is None:
             reference_point = subject.n * subject.scale
+    elif isinstance(subject, UnmeasuredStops):
+        cities, scale, places = subject.n, None, None
     else:
         # A worker finds out what the places cost, and with a spacing where they are.
         places = [] if subject.places is None else subject.places.tolist()
@@ -193,4 +217,5 @@ def empty_front(task: Task, actor: Mapping[str, str]) -> FrontDocument:
         terminated=None,
         actor=actor,
         places=places,
+        **_named(task.labels),
     )

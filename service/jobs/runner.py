@@ -14,6 +14,7 @@ from service.instance import Instance
 from service.jobs.front_document import FrontDocument, encode_front
 from service.planner import Constructor, Front, plan
 from service.requests.limits import Limits
+from service.requests.stops import UnmeasuredStops, make_instance
 from service.requests.task import Task, TaskSource, parse_task
 from service.search import improve
 from service.search.improve import Progress
@@ -79,8 +80,10 @@ class TaskRunner:
             task = self.parse(task)
         if isinstance(task.subject, Coverage):
             return self._cover(task, task.subject, stop, report)
+        if isinstance(task.subject, UnmeasuredStops):
+            return self._plan_stops(task, task.subject, stop, report)
         front = self._plan(task, task.subject, stop, report)
-        return encode_front(front, self._identity(task))
+        return encode_front(front, self._identity(task), labels=task.labels)
 
     def terminate(self) -> None:
         """End the running call of a network, if one runs; from any thread."""
@@ -88,6 +91,16 @@ class TaskRunner:
             terminate = getattr(actor, "terminate", None)
             if terminate is not None:
                 terminate()
+
+    def _plan_stops(
+        self, task: Task, stops: UnmeasuredStops, stop: Callable[[], bool], report: Report
+    ) -> FrontDocument:
+        began = time.perf_counter()
+        instance = make_instance(stops)
+        timings = {"costs": 1000 * (time.perf_counter() - began)}
+        front = self._plan(task, instance, stop, report)
+        front = replace(front, timings=timings | front.timings)
+        return encode_front(front, self._identity(task), labels=task.labels)
 
     def _cover(
         self, task: Task, coverage: Coverage, stop: Callable[[], bool], report: Report
@@ -126,7 +139,10 @@ class TaskRunner:
         identity = self._identity(task)
 
         def report_encoded(progress: Progress, best: Callable[[int], Front]) -> None:
-            report(progress, lambda size: encode_front(best(size), identity, places))
+            report(
+                progress,
+                lambda size: encode_front(best(size), identity, places, labels=task.labels),
+            )
 
         return plan(self.actors[task.actor], instance, task.options, stop, report_encoded)
 

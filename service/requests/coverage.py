@@ -17,7 +17,7 @@ from service.requests.schemas import (
     LARGEST,
     ArrayRows,
     NonNegativeInteger,
-    Number,
+    PlanePoint,
     PlanRequest,
     PositiveNumber,
 )
@@ -41,7 +41,6 @@ Matrix = Annotated[
     GetPydanticSchema(lambda _, h: with_info_after_validator_function(_as_matrix, h(ArrayRows))),
 ]
 Cell = Annotated[list[NonNegativeInteger], Field(min_length=2, max_length=2, fail_fast=True)]
-PlanePoint = Annotated[list[Number], Field(min_length=2, max_length=2, fail_fast=True)]
 
 
 def _empty_array() -> Array:

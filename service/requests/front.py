@@ -1,24 +1,38 @@
-"""Requests of `POST /front`: their fields, their JSON schema and their parser."""
+"""Requests of `POST /front`: their fields, and what these mean for a plan."""
 
-from collections.abc import Iterable
 from dataclasses import replace
-from typing import Annotated, Any
+from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, GetPydanticSchema
 from pydantic_core.core_schema import no_info_after_validator_function
 
-from service.errors import Refusal
 from service.instance import MAX_SYMMETRIES, OBJECTIVES, Instance, Kind
 from service.planner import PlanOptions
-from service.requests.arrays import check_costs, stack_matrices
-from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
-from service.requests.npy import read_npy
-from service.requests.schemas import LARGEST, ArrayRows, AsInteger, Number, PlanRequest
-from service.requests.validation import invalid, parse_json, too_many_cities
+from service.requests.arrays import stack_matrices
+from service.requests.schemas import ArrayRows, AsInteger, Number, PlanRequest
+from service.requests.stop_fields import (
+    ObjectiveItem,
+    StopItem,
+    StopReference,
+    read_objectives,
+    read_stops,
+)
+from service.requests.stops import (
+    Labels,
+    Matrix,
+    Source,
+    Stop,
+    UnmeasuredStops,
+    locations_of,
+    make_instance,
+)
+from service.requests.validation import invalid
 
 _COLUMNS = 2 * OBJECTIVES  # x and y in the plane of each objective
+FORMS = ("coordinates", "matrices", "stops")  # of a request, each by the member that tells it
 City = Annotated[list[Number], Field(min_length=_COLUMNS, max_length=_COLUMNS, fail_fast=True)]
 _MatrixRows = Annotated[
     list[ArrayRows], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
@@ -32,7 +46,10 @@ Matrices = Annotated[
 
 
 class FrontRequest(PlanRequest):
-    """Cities under two objectives, by coordinates or matrices, and the options of their front."""
+    """Cities or stops under two objectives, and the options of their front.
+
+    Whatever its form, a request is checked by `parse_front_request`, and only then complete.
+    """
 
     # An empty default means that the field was not given: no caller can give an empty array.
     coordinates: Annotated[list[City], Field(min_length=1, fail_fast=True)] = Field(
@@ -44,6 +61,24 @@ class FrontRequest(PlanRequest):
         description="instead of coordinates, for each objective the costs from each city (row) to"
         " each (column); the diagonal is disregarded",
     )
+    stops: Annotated[list[StopItem], Field(min_length=1, fail_fast=True)] = Field(
+        default_factory=list, description="the cities, by ids that come back with every tour"
+    )
+    objectives: Annotated[
+        list[ObjectiveItem],
+        Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
+    ] = Field(default_factory=list, description="both, each with the costs between the stops")
+    # Once a request is checked these hold indexes alone, as those of every PlanRequest do.
+    start: StopReference = Field(  # type: ignore[assignment]
+        default=0, description="the city that every tour is reported from, by index or id"
+    )
+    initial_tours: Annotated[
+        list[Annotated[list[StopReference], Field(fail_fast=True)]],
+        Field(min_length=1, fail_fast=True),
+    ] = Field(  # type: ignore[assignment]
+        default_factory=list,
+        description="tours that the front shall dominate or equal, of indexes or ids",
+    )
     augment: Annotated[int, Field(ge=1, le=MAX_SYMMETRIES), AsInteger] = Field(
         default=1,
         description="how many times the network is called: each time it sees the coordinates under"
@@ -53,15 +88,33 @@ class FrontRequest(PlanRequest):
     @property
     def kind(self) -> Kind:
         """The kind of instance that an actor has to read."""
+        if self.stops:
+            return self.unmeasured.kind
         return "coordinates" if self.coordinates else "matrices"
 
     @property
     def n(self) -> int:
         """The number of cities."""
-        return len(self.coordinates) or self.matrices.shape[1]
+        return len(self.stops) or len(self.coordinates) or self.matrices.shape[1]
 
-    def instance(self) -> Instance:
-        """Return the cities as an instance."""
+    @cached_property
+    def labels(self) -> Labels | None:
+        """The names of stops and objectives; None where there are none."""
+        if not self.stops:
+            return None
+        return Labels(read_stops(self.stops), read_objectives(self.objectives))
+
+    @cached_property
+    def unmeasured(self) -> UnmeasuredStops:
+        """The stops of the long form."""
+        assert self.labels is not None
+        stops = self.labels.stops
+        return UnmeasuredStops(locations_of(stops), self._sources(stops))
+
+    def subject(self) -> Instance | UnmeasuredStops:
+        """Return the cities as an instance, or the stops whose costs are still to be measured."""
+        if self.stops:
+            return make_instance(self.unmeasured) if self.unmeasured.measured else self.unmeasured
         if self.kind == "matrices":
             return Instance(matrices=self.matrices)
         return Instance(coordinates=np.array(self.coordinates, dtype=np.float64))
@@ -70,46 +123,13 @@ class FrontRequest(PlanRequest):
         """Return the options for the planner."""
         return replace(super().options(), augment=self.augment)
 
-
-def front_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
-    """Return the JSON schema of a request under these limits, with these actors to choose from."""
-    schema = limited_schema(FrontRequest, limits, actors)
-    fields = schema["properties"]
-    schema["oneOf"] = [{"required": ["coordinates"]}, {"required": ["matrices"]}]
-    schema["dependentSchemas"] = {"matrices": {"properties": {"augment": {"const": 1}}}}
-    fields["coordinates"]["maxItems"] = limits.cities
-    rows = fields["matrices"]["items"]
-    rows["minItems"], rows["maxItems"] = 1, limits.cities
-    return schema
-
-
-def parse_front_request(body: bytes, limits: Limits, npy: bytes | None = None) -> FrontRequest:
-    """Return the request in a JSON body, with the matrices of a .npy file where one came with it.
-
-    Raises:
-        Refusal: The body is not JSON, misses the schema or is over a limit.
-    """
-    request = parse_json(FrontRequest, body)
-    if npy is not None:
-        if "matrices" in request.model_fields_set:
-            raise invalid("matrices", "must come once, got them as a part as well")
-        request = request.model_copy(update={"matrices": read_npy(npy, limits.cities)})
-    _check_cities(request, limits)
-    check_limits(request, request.n, limits)
-    return lower_defaults(request, limits)
-
-
-def _check_cities(request: FrontRequest, limits: Limits) -> None:
-    sources = {"coordinates", "matrices"} & request.model_fields_set
-    if len(sources) != 1:
-        came = "both" if sources else "neither"
-        sentence = f"either coordinates or matrices are required, got {came}"
-        raise Refusal("invalid-request", detail=sentence, pointer="/coordinates")
-    if request.kind == "matrices" and request.augment > 1:
-        demand = "must be 1 for matrices, which cannot be turned or mirrored"
-        raise invalid("augment", f"{demand}, got {request.augment}")
-    if request.n > limits.cities:
-        raise too_many_cities(request.kind, limits.cities, request.n)
-    if request.kind == "matrices":
-        for m, matrix in enumerate(request.matrices):
-            check_costs(matrix, f"matrices/{m}", LARGEST)
+    def _sources(self, stops: tuple[Stop, ...]) -> tuple[Source, ...]:
+        """Return the source of each objective, which is a matrix of the file where one came."""
+        if not self.matrices.size:
+            items = enumerate(self.objectives)
+            return tuple(item.source(f"objectives/{m}", stops) for m, item in items)
+        for m, item in enumerate(self.objectives):
+            if item.sources:
+                demand = "must have no source where the part matrices holds both, got"
+                raise invalid(f"objectives/{m}", f"{demand} {' and '.join(item.sources)}")
+        return tuple(Matrix(matrix) for matrix in self.matrices)

@@ -8,6 +8,7 @@ from service.errors import Refusal
 from service.requests.schemas import PlanRequest
 from service.requests.validation import invalid
 
+_TOURS_BY_ID = 100  # initial tours that may name every stop by its id
 AnyPlanRequest = TypeVar("AnyPlanRequest", bound=PlanRequest)
 
 
@@ -23,6 +24,7 @@ class Limits:
         preferences: Preferences of a front.
         size: Tours to return, or to bring as initial tours.
         seconds: The time limit of a search.
+        roads: Whether a routing engine is configured, so that costs may be those of roads.
     """
 
     body_bytes: int
@@ -32,6 +34,7 @@ class Limits:
     size: int
     seconds: float
     path_cells: int = 2**21
+    roads: bool = False
 
 
 def check_structure(body: bytes, limits: Limits) -> None:
@@ -45,7 +48,7 @@ def check_structure(body: bytes, limits: Limits) -> None:
     """
     strings = (body.count(b'"') + 1) // 2
     arrays = body.count(b"[")
-    most_strings = 1000 + 8 * limits.cities
+    most_strings = 1000 + (8 + _TOURS_BY_ID) * limits.cities
     most_arrays = 1000 + 8 * limits.cities + 2 * limits.size + limits.cells // 8
     for name, limit, actual in (
         ("strings", most_strings, strings),
@@ -103,20 +106,29 @@ def defaults(limits: Limits) -> dict[str, float]:
 def limited_schema(
     model: type[PlanRequest], limits: Limits, actors: Iterable[str]
 ) -> dict[str, Any]:
-    """Return the JSON schema of a request under these limits, with these actors to choose from."""
-    schema = model.model_json_schema()
+    """Return the JSON schema of a request under these limits, with these actors to choose from.
+
+    References in it are to components of an OpenAPI document.
+    """
+    schema = model.model_json_schema(ref_template=reference_to("{model}")["$ref"])
     fields = schema["properties"]
     count, angles = fields["preferences"]["oneOf"]
     count["maximum"] = angles["maxItems"] = limits.preferences
     fields["size"]["maximum"] = limits.size
     for name, default in defaults(limits).items():
         fields[name]["default"] = default
-    fields["start"]["maximum"] = limits.cities - 1
+    index, *_ = fields["start"].get("oneOf", [fields["start"]])
+    index["maximum"] = limits.cities - 1
     del fields["actor"]["default"]
     fields["actor"]["enum"] = sorted(actors)
     fields["time_limit"]["maximum"] = limits.seconds
     fields["initial_tours"]["maxItems"] = limits.size
     return schema
+
+
+def reference_to(name: str) -> dict[str, str]:
+    """Return the schema that refers to a component of an OpenAPI document."""
+    return {"$ref": f"#/components/schemas/{name}"}
 
 
 def _check_limit(name: str, limit: float, actual: float) -> None:

@@ -14,6 +14,9 @@ from service.preferences import fan
 LARGEST = 1e150
 SMALLEST = 1e-150
 _MOST_INTEGER = 2**31 - 1
+LONGEST_TEXT = 100  # characters of an id, a name or a unit
+# No controls, no ends of lines, nothing that turns the direction of the text around it, no BOM.
+PRINTABLE = r"^[^\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069\ufeff]+$"
 
 
 def _integer(value: object) -> object:
@@ -24,10 +27,12 @@ def _integer(value: object) -> object:
 Angle = Annotated[float, Field(ge=0, le=90, allow_inf_nan=False)]
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
 PositiveNumber = Annotated[float, Field(ge=SMALLEST, le=LARGEST, allow_inf_nan=False)]
+PlanePoint = Annotated[list[Number], Field(min_length=2, max_length=2, fail_fast=True)]
 AsInteger = BeforeValidator(_integer)
 # AsInteger comes last: before them, the bounds would be lost to the OpenAPI document.
 PositiveInteger = Annotated[int, Field(ge=1, le=_MOST_INTEGER), AsInteger]
 NonNegativeInteger = Annotated[int, Field(ge=0, le=_MOST_INTEGER), AsInteger]
+Text = Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT, pattern=PRINTABLE)]
 # Of the numbers only the type is checked here, and the rest once they are an array: half a million
 # are too many to check one by one.
 ArrayRows = Annotated[list[Annotated[list[float], Field(fail_fast=True)]], Field(fail_fast=True)]

@@ -10,8 +10,9 @@ from service.errors import Refusal
 from service.instance import Instance, Kind
 from service.planner import PlanOptions
 from service.requests.coverage import parse_coverage_request
-from service.requests.front import parse_front_request
+from service.requests.front_parser import parse_front_request
 from service.requests.limits import Limits, check_structure
+from service.requests.stops import Labels, UnmeasuredStops
 
 TaskKind = Literal["front", "coverage"]
 
@@ -21,16 +22,19 @@ class Task:
     """A front to plan, checked and ready for the planner.
 
     Args:
-        subject: The cities, or a map whose places become cities.
+        subject: The cities; or what becomes cities in the job: a map and its places, or stops
+            whose costs are to be measured.
         options: The options for the planner.
         actor: The name of the actor that builds the first tours.
         paths: Whether each tour comes with its path over the map.
+        labels: The caller's names of stops and objectives.
     """
 
-    subject: Instance | Coverage
+    subject: Instance | Coverage | UnmeasuredStops
     options: PlanOptions
     actor: str
     paths: bool = False
+    labels: Labels | None = None
 
     @property
     def needs_compiled_code(self) -> bool:
@@ -73,9 +77,10 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
         )
     request = parse_front_request(source.body, limits, source.upload)
     return Task(
-        subject=request.instance(),
+        subject=request.subject(),
         options=request.options(),
         actor=choose_actor(actors, request.kind, request.requested_actor),
+        labels=request.labels,
     )
 
 

@@ -1,8 +1,9 @@
 """Validate JSON against a pydantic model, and word each error as a refusal of this service."""
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
+from functools import cache
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
@@ -11,6 +12,7 @@ from pydantic_core import ErrorDetails, to_json
 from service.errors import MOST_FAULTS, Fault, Refusal
 
 Model = TypeVar("Model", bound=BaseModel)
+_ANYTHING: Mapping[str, Any] = {}
 
 
 def parse_json(model: type[Model], body: bytes) -> Model:
@@ -26,15 +28,16 @@ def parse_json(model: type[Model], body: bytes) -> Model:
         if errors[0]["type"] == "json_invalid":
             reason = errors[0]["ctx"]["error"]
             raise Refusal("malformed-json", reason=reason) from None
-        errors = [_with_exact_length(model, each) for each in errors]
-        raise refusal_of(errors, fields=model.model_fields.keys()) from None
+        raise refusal_of(errors, schema=_schema_of(model)) from None
 
 
 def refusal_of(
-    errors: Sequence[ErrorDetails], parameters: bool = False, fields: Collection[str] = ()
+    errors: Sequence[ErrorDetails],
+    parameters: bool = False,
+    schema: Mapping[str, Any] = _ANYTHING,
 ) -> Refusal:
-    """Return pydantic's errors in a body with these fields, or in query parameters."""
-    faults = [_fault(error, parameters, fields) for error in errors[:MOST_FAULTS]]
+    """Return pydantic's errors in a body of this JSON schema, or in query parameters."""
+    faults = [_fault(error, parameters, schema) for error in errors[:MOST_FAULTS]]
     more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
     return Refusal("invalid-request", detail=faults[0].detail + more, errors=faults)
 
@@ -60,63 +63,8 @@ def shorten(text: str) -> str:
     return text if len(text) <= 80 else f"{text[:79]}…"
 
 
-def _with_exact_length(model: type[BaseModel], error: ErrorDetails) -> ErrorDetails:
-    """Return the error of a list of a wrong length; where one length is right, as that demand."""
-    if error["type"] not in ("too_short", "too_long"):
-        return error
-    schema = model.model_json_schema()
-    for part in error["loc"]:
-        at: Any = schema.get("items") if isinstance(part, int) else None
-        schema = at or schema.get("properties", {}).get(part, {})
-    if "minItems" not in schema or schema["minItems"] != schema.get("maxItems"):
-        return error
-    return {**error, "type": "exact_length", "ctx": {"length": schema["minItems"]}}
-
-
-def _fault(error: ErrorDetails, parameters: bool, fields: Collection[str]) -> Fault:
-    # FastAPI puts "query" first; brackets mark a branch of a union, which the caller never wrote.
-    parts = [str(part) for part in error["loc"] if not str(part).startswith("[")]
-    if parameters:
-        name = shorten(".".join(parts[1:]))
-        return Fault(detail=f"{name} {_demand(error)}", parameter=name)
-    pointer = shorten("".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts))
-    hint = _hint(error, fields)
-    name = pointer.lstrip("/") or "the body"
-    return Fault(detail=f"{name} {_demand(error)}{hint}", pointer=pointer)
-
-
-def _hint(error: ErrorDetails, fields: Collection[str]) -> str:
-    """Return the field that an unknown one may be meant for, as the end of a sentence."""
-    if error["type"] != "extra_forbidden" or len(error["loc"]) != 1:
-        return ""
-    near = get_close_matches(shorten(str(error["loc"][0])), fields, n=1)
-    return f"; did you mean {near[0]}?" if near else ""
-
-
-def _demand(error: ErrorDetails) -> str:
-    bounds: Mapping[str, Any] = error.get("ctx", {})
-    match error["type"]:
-        case "missing":
-            return "is required"
-        case "extra_forbidden":
-            return "is not a field that this request has"
-        case "exact_length":
-            return f"must have {bounds['length']} items, got {len(error['input'])}"
-        case "too_short":
-            least = bounds["min_length"]
-            items = "item" if least == 1 else "items"
-            return f"must have {least} {items} or more, got {len(error['input'])}"
-        case "too_long":
-            return f"must have {bounds['max_length']} items or fewer, got {len(error['input'])}"
-        case "greater_than_equal":
-            return f"must be at least {bounds['ge']:.16g}, got {_show(error['input'])}"
-        case "less_than_equal":
-            return f"must be at most {bounds['le']:.16g}, got {_show(error['input'])}"
-    demand = re.sub(r"^Input should be", "must be", error["msg"])
-    return f"{demand}, got {_show(error['input'])}"
-
-
-def _show(value: object) -> str:
+def show(value: object) -> str:
+    """Return what came as a short text, to be shown in a sentence."""
     match value:
         case list():
             return f"a list of {len(value)}"
@@ -126,3 +74,97 @@ def _show(value: object) -> str:
             return "an integer of more than 40 digits"
         case _:
             return shorten(to_json(value, inf_nan_mode="constants").decode())
+
+
+@cache
+def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
+    return model.model_json_schema()
+
+
+def _fault(error: ErrorDetails, parameters: bool, schema: Mapping[str, Any]) -> Fault:
+    # FastAPI puts "query" first; brackets mark a branch of a union, which the caller never wrote.
+    parts = [str(part) for part in error["loc"] if not str(part).startswith("[")]
+    if parameters:
+        name = shorten(".".join(parts[1:]))
+        return Fault(detail=f"{name} {_demand(error)}", parameter=name)
+    pointer = shorten("".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts))
+    name = pointer.lstrip("/") or "the body"
+    sentence = f"{name} {_demand(_with_exact_length(error, schema))}{_hint(error, schema)}"
+    return Fault(detail=sentence, pointer=pointer)
+
+
+def _with_exact_length(error: ErrorDetails, schema: Mapping[str, Any]) -> ErrorDetails:
+    """Return the error of a list of a wrong length; where one length is right, as that demand."""
+    if error["type"] not in ("too_short", "too_long"):
+        return error
+    lengths = _schema_at(error["loc"], schema)
+    if "minItems" not in lengths or lengths["minItems"] != lengths.get("maxItems"):
+        return error
+    return {**error, "type": "exact_length", "ctx": {"length": lengths["minItems"]}}
+
+
+def _hint(error: ErrorDetails, schema: Mapping[str, Any]) -> str:
+    """Return the field that an unknown one may be meant for, as the end of a sentence."""
+    if error["type"] != "extra_forbidden":
+        return ""
+    *parents, unknown = error["loc"]
+    fields = _schema_at(parents, schema).get("properties", ())
+    near = get_close_matches(shorten(str(unknown)), fields, n=1)
+    return f"; did you mean {near[0]}?" if near else ""
+
+
+def _schema_at(loc: Iterable[int | str], schema: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the part of a JSON schema that is about a place in a body; empty where none is."""
+    at = schema
+    for part in loc:
+        at = (
+            at.get("items", {}) if isinstance(part, int) else at.get("properties", {}).get(part, {})
+        )
+        if "$ref" in at:
+            at = schema["$defs"][at["$ref"].removeprefix("#/$defs/")]
+    return at
+
+
+def _demand(error: ErrorDetails) -> str:
+    bounds: Mapping[str, Any] = error.get("ctx", {})
+    match error["type"]:
+        case "missing":
+            return "is required"
+        case "extra_forbidden":
+            return "is not a field that this request has"
+        case "exact_length" | "too_short" | "too_long":
+            return f"{_length_demand(error['type'], bounds)}, got {len(error['input'])}"
+        case "string_too_short" | "string_too_long":
+            return f"{_text_demand(error['type'], bounds)}, got {len(error['input'])}"
+    demand = _value_demand(error["type"], bounds) or error["msg"]
+    return f"{re.sub(r'^Input should be', 'must be', demand)}, got {show(error['input'])}"
+
+
+def _length_demand(kind: str, bounds: Mapping[str, Any]) -> str:
+    """Return what a list misses that has another length than it must have."""
+    if kind == "exact_length":
+        return f"must have {bounds['length']} items"
+    if kind == "too_long":
+        return f"must have {bounds['max_length']} items or fewer"
+    least = bounds["min_length"]
+    return f"must have {least} {'item' if least == 1 else 'items'} or more"
+
+
+def _text_demand(kind: str, bounds: Mapping[str, Any]) -> str:
+    """Return what a text misses that is too short or too long."""
+    if kind == "string_too_long":
+        return f"must have {bounds['max_length']} characters or fewer"
+    return f"must have {bounds['min_length']} character or more"
+
+
+def _value_demand(kind: str, bounds: Mapping[str, Any]) -> str:
+    """Return what a value misses that is out of bounds; nothing where pydantic says it well."""
+    match kind:
+        case "greater_than_equal":
+            return f"must be at least {bounds['ge']:.16g}"
+        case "less_than_equal":
+            return f"must be at most {bounds['le']:.16g}"
+        case "string_pattern_mismatch":
+            return "must be printable, in one line"
+        case _:
+            return ""

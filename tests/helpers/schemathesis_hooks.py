@@ -11,14 +11,17 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
     """Make a request that the schema allows one that the service accepts.
 
     The rules: a matrix is square; its costs are not negative but on the diagonal; some actors read
-    no matrices; a start is one of the cities; a tour visits each of them once; places are free
-    cells of a grid; an idempotency key belongs to one body.
+    no matrices; a start is one of the cities; a tour visits each of them once; stops have ids of
+    their own, and costs as many as they are; places are free cells of a grid; an idempotency key
+    belongs to one body.
     """
     if _is_key((case.headers or {}).get("Idempotency-Key")):
         case.headers["Idempotency-Key"] = uuid.uuid4().hex
     match case.body:
         case {"grid": _} as body if case.meta.generation.mode.is_positive:
             _make_coverable(body)
+        case {"stops": _, "objectives": _} as body if case.meta.generation.mode.is_positive:
+            _make_plannable(body)
         case {"coordinates": [_, *_] as rows}:
             _fit_to_cities(case.body, len(rows))
         case {"matrices": [[_, *_] as rows, _] as matrices} if _are_matrices(matrices):
@@ -41,6 +44,21 @@ def _make_coverable(body: dict[str, Any]) -> None:
         "second_coordinates": [[0.0, 1.0]] * n,
     }
     body |= {name: value for name, value in fit.items() if name in body}
+
+
+def _make_plannable(body: dict[str, Any]) -> None:
+    """Replace stops and objectives by such as can be planned, with the same fields."""
+    n = len(body["stops"])
+    located = {"location": [0.0, 0.0]}
+    body["stops"] = [{**stop, **located, "id": f"{i}"} for i, stop in enumerate(body["stops"])]
+    fit = {"matrix": [[1.0] * n] * n, "coordinates": [[0.0, 1.0]] * n, "from": "great_circle"}
+    body["objectives"] = [
+        {name: fit.get(name, f"{m}" if name == "name" else "m") for name in objective}
+        for m, objective in enumerate(body["objectives"])
+    ]
+    body |= {"start": "0", "augment": 1, "actor": "pa-one-matrix"}
+    if "initial_tours" in body:
+        body["initial_tours"] = [[f"{i}" for i in range(n)]]
 
 
 def _fit_to_cities(body: dict[str, Any], n: int) -> None:

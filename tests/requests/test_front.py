@@ -1,4 +1,4 @@
-"""Front requests: cities as coordinates or matrices, and every refusal of them."""
+"""Front requests with coordinates or matrices, and every refusal of them."""
 
 import io
 import json
@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from service.errors import Refusal
-from service.instance import tour_lengths
-from service.requests.front import front_schema, parse_front_request
+from service.instance import Instance, tour_lengths
+from service.requests.front import FrontRequest
+from service.requests.front_parser import parse_front_request
 from tests.helpers.serving import LIMITS
 
 COSTS = np.random.default_rng(6).random((2, 12, 12))
@@ -24,14 +25,20 @@ def refusal(body: str | dict[str, Any], npy: bytes | None = None) -> Refusal:
     return refused.value
 
 
+def instance_of(request: FrontRequest) -> Instance:
+    subject = request.subject()
+    assert isinstance(subject, Instance)
+    return subject
+
+
 @pytest.mark.parametrize(
     ("body", "pointer", "sentence"),
     [
-        ("{}", "/coordinates", "either coordinates or matrices are required, got neither"),
+        ("{}", "/coordinates", "one of coordinates, matrices and stops is required, got none"),
         (
             '{"coordinates": [[1, 2, 3, 4]], "matrices": [[[0]], [[0]]]}',
             "/coordinates",
-            "either coordinates or matrices are required, got both",
+            "one of coordinates, matrices and stops is required, got coordinates and matrices",
         ),
         ('{"coordinates": []}', "/coordinates", "coordinates must have 1 item or more, got 0"),
         (
@@ -129,7 +136,10 @@ def test_too_many_cities_are_refused(member: str, city: list[int] | None) -> Non
     ("request_", "sentence"),
     [
         ({"matrices": COSTS.tolist()}, "matrices must come once, got them as a part as well"),
-        ({"coordinates": ONE_CITY}, "either coordinates or matrices are required, got both"),
+        (
+            {"coordinates": ONE_CITY},
+            "one of coordinates, matrices and stops is required, got coordinates and matrices",
+        ),
     ],
 )
 def test_cities_may_not_come_beside_a_file(request_: dict[str, Any], sentence: str) -> None:
@@ -146,7 +156,7 @@ def test_coordinates_matrices_and_a_file_become_an_instance() -> None:
     for body, npy in (({"matrices": COSTS.tolist()}, None), ({}, stream.getvalue())):
         request = parse_front_request(json.dumps(body).encode(), LIMITS, npy)
         assert (request.kind, request.n) == ("matrices", 12)
-        matrices = request.instance().matrices
+        matrices = instance_of(request).matrices
         assert matrices is not None
         np.testing.assert_array_equal(matrices, COSTS * (1 - np.eye(12)))
 
@@ -157,13 +167,7 @@ def test_the_diagonal_is_disregarded() -> None:
     body = json.dumps({"matrices": odd.tolist()}).replace("1e+308", "NaN")
     tours = np.array([np.random.default_rng(0).permutation(12)])
     lengths = [
-        tour_lengths(parse_front_request(text.encode(), LIMITS).instance(), tours)
+        tour_lengths(instance_of(parse_front_request(text.encode(), LIMITS)), tours)
         for text in (body, json.dumps({"matrices": COSTS.tolist()}))
     ]
     np.testing.assert_array_equal(*lengths)
-
-
-def test_the_schema_asks_for_coordinates_or_matrices() -> None:
-    schema = front_schema(LIMITS, ["pa-one"])
-    assert schema["oneOf"] == [{"required": ["coordinates"]}, {"required": ["matrices"]}]
-    assert schema["properties"]["coordinates"]["maxItems"] == LIMITS.cities

@@ -1,0 +1,96 @@
+"""Parse and check the requests of `POST /front`, in each of their forms."""
+
+from collections.abc import Mapping, Sequence
+
+from service.errors import Refusal
+from service.requests.arrays import check_costs
+from service.requests.front import FORMS, FrontRequest
+from service.requests.limits import Limits, check_limits, lower_defaults
+from service.requests.npy import read_npy
+from service.requests.schemas import LARGEST
+from service.requests.stop_fields import find_index
+from service.requests.stops import ROAD_MEASURES, Measured, UnmeasuredStops
+from service.requests.validation import invalid, parse_json, too_many_cities
+
+
+def parse_front_request(body: bytes, limits: Limits, npy: bytes | None = None) -> FrontRequest:
+    """Return the request in a JSON body, with the matrices of a .npy file where one came with it.
+
+    Raises:
+        Refusal: The body is not JSON, misses the schema or is over a limit.
+    """
+    request = parse_json(FrontRequest, body)
+    _check_form(request, npy is not None)
+    if npy is not None:
+        request = request.model_copy(update={"matrices": read_npy(npy, limits.cities)})
+    _check_cities(request, limits)
+    request = _by_index(request)
+    check_limits(request, request.n, limits)
+    return lower_defaults(request, limits)
+
+
+def _check_form(request: FrontRequest, with_file: bool) -> None:
+    """Raise a refusal unless the cities come in one form; stops may have matrices in a file."""
+    given = request.model_fields_set
+    if with_file and "matrices" in given:
+        raise invalid("matrices", "must come once, got them as a part as well")
+    forms = [form for form in FORMS if form in given]
+    if with_file and "stops" not in forms:
+        forms.append("matrices")
+    if len(forms) != 1:
+        came = " and ".join(forms) or "none"
+        sentence = f"one of {', '.join(FORMS[:-1])} and {FORMS[-1]} is required, got {came}"
+        raise Refusal("invalid-request", detail=sentence, pointer=f"/{(forms or FORMS)[0]}")
+    if ("stops" in given) != ("objectives" in given):
+        missing, there = ("objectives", "stops") if "stops" in given else ("stops", "objectives")
+        raise invalid(missing, f"is required with {there}")
+
+
+def _check_cities(request: FrontRequest, limits: Limits) -> None:
+    form = "stops" if request.stops else request.kind
+    if request.n > limits.cities:
+        raise too_many_cities(form, limits.cities, request.n)
+    if request.matrices.size:
+        _check_matrices(request)
+    if request.stops:
+        _check_router(request.unmeasured, limits)
+    if request.kind == "matrices" and request.augment > 1:
+        demand = "must be 1 for matrices, which cannot be turned or mirrored"
+        raise invalid("augment", f"{demand}, got {request.augment}")
+
+
+def _check_matrices(request: FrontRequest) -> None:
+    rows = request.matrices.shape[1]
+    if request.stops and rows != request.n:
+        raise invalid("matrices", f"must have {request.n} rows, one for each stop, got {rows}")
+    for m, matrix in enumerate(request.matrices):
+        check_costs(matrix, f"matrices/{m}", LARGEST)
+
+
+def _check_router(stops: UnmeasuredStops, limits: Limits) -> None:
+    if limits.roads:
+        return
+    for m, source in enumerate(stops.sources):
+        if isinstance(source, Measured) and source.measure in ROAD_MEASURES:
+            part = f"objectives/{m}/from"
+            raise Refusal("no-router", name=part, measure=source.measure, pointer=f"/{part}")
+
+
+def _by_index(request: FrontRequest) -> FrontRequest:
+    """Return the request with the index of a stop in place of every id."""
+    stops = request.labels.stops if request.labels else ()
+    ids = {stop.id: index for index, stop in enumerate(stops)}
+    tours = [
+        _indexes(tour, ids, f"initial_tours/{number}")
+        for number, tour in enumerate(request.initial_tours)
+    ]
+    found = {"start": find_index(request.start, ids, "start"), "initial_tours": tours}
+    given = request.model_fields_set
+    return request.model_copy(update={name: found[name] for name in found if name in given})
+
+
+def _indexes(references: Sequence[int | str], ids: Mapping[str, int], part: str) -> list[int]:
+    return [
+        each if isinstance(each, int) else find_index(each, ids, f"{part}/{i}")
+        for i, each in enumerate(references)
+    ]

@@ -1,0 +1,116 @@
+"""The JSON schemas of requests to `POST /front`: one for each form, with a name of its own.
+
+A generator of clients makes a type of each. So a form has the members that it may have, and no
+rule about those that it may not.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from service.requests.front import FORMS, FrontRequest
+from service.requests.limits import Limits, limited_schema, reference_to
+from service.requests.stops import ROAD_MEASURES
+
+Schema = dict[str, Any]
+JSON_FORMS = ("CoordinatesRequest", "MatricesRequest", "StopsRequest")
+FILE_FORMS = ("MatricesFileRequest", "StopsFileRequest")  # beside a file of matrices
+_CITIES = (*FORMS, "objectives")
+_SOURCES = ("matrix", "coordinates", "from")
+
+
+def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
+    """Return the schemas of all forms by name, with those of the stops and objectives in them."""
+    whole = limited_schema(FrontRequest, limits, actors)
+    parts = whole.pop("$defs")
+    _limit_cities(whole["properties"], limits.cities)
+    cities = _by_index(whole)
+    stops = _with_objectives(whole, ["MatrixObjective", "PlaneObjective", "MeasuredObjective"])
+    file_stops = _unaugmented(_with_objectives(whole, ["NamedObjective"]))
+    forms = [
+        _form(cities, "CoordinatesRequest", "Cities in two planes", ["coordinates"]),
+        _form(_unaugmented(cities), "MatricesRequest", "Cities by their costs", ["matrices"]),
+        _form(stops, "StopsRequest", "Stops under two objectives", ["stops", "objectives"]),
+        _form(_unaugmented(cities), "MatricesFileRequest", "Cities by costs in a file", []),
+        _form(file_stops, "StopsFileRequest", "Stops by costs in a file", ["stops", "objectives"]),
+    ]
+    named = [parts["StopItem"], *_objectives(parts["ObjectiveItem"], limits), *forms]
+    return {schema["title"]: schema for schema in named}
+
+
+def one_of(names: Sequence[str]) -> Schema:
+    """Return the schema of what fits one of the components with these names."""
+    return {"oneOf": [reference_to(name) for name in names]}
+
+
+def _limit_cities(fields: Schema, most: int) -> None:
+    rows = fields["matrices"]["items"]
+    rows["minItems"], rows["maxItems"] = 1, most
+    fields["coordinates"]["maxItems"] = fields["stops"]["maxItems"] = most
+
+
+def _by_index(schema: Schema) -> Schema:
+    """Return the schema of a request whose cities have indexes alone, and no ids."""
+    fields = schema["properties"]
+    start, tours = fields["start"], fields["initial_tours"]
+    index, _ = start["oneOf"]
+    place, _ = tours["items"]["items"]["oneOf"]
+    start = {**{k: v for k, v in start.items() if k != "oneOf"}, **index}
+    tours = {**tours, "items": {**tours["items"], "items": place}}
+    return _with(schema, start=start, initial_tours=tours)
+
+
+def _unaugmented(schema: Schema) -> Schema:
+    """Return the schema of a request with matrices, which have no symmetries."""
+    return _with(schema, augment={**schema["properties"]["augment"], "maximum": 1})
+
+
+def _with_objectives(schema: Schema, names: Sequence[str]) -> Schema:
+    """Return the schema of a request whose objectives are of the kinds with these names."""
+    items = one_of(names) if len(names) > 1 else reference_to(names[0])
+    return _with(schema, objectives={**schema["properties"]["objectives"], "items": items})
+
+
+def _with(schema: Schema, **fields: Schema) -> Schema:
+    return {**schema, "properties": {**schema["properties"], **fields}}
+
+
+def _form(schema: Schema, name: str, cities: str, required: Sequence[str]) -> Schema:
+    description = f"{cities}, and the options of their front."
+    return _variant(schema, name, description, _CITIES, required)
+
+
+def _objectives(schema: Schema, limits: Limits) -> list[Schema]:
+    """Return the schema of an objective with each source, and of one without."""
+    if not limits.roads:
+        measures = schema["properties"]["from"]["enum"]
+        known = [measure for measure in measures if measure not in ROAD_MEASURES]
+        schema = _with(schema, **{"from": {**schema["properties"]["from"], "enum": known}})
+    kinds = {
+        "MatrixObjective": ("An objective whose costs are a matrix.", ["matrix"]),
+        "PlaneObjective": ("An objective whose costs are distances in a plane.", ["coordinates"]),
+        "MeasuredObjective": ("An objective that is measured between locations.", ["from"]),
+        "NamedObjective": ("An objective whose costs are a matrix in a file.", []),
+    }
+    return [
+        _variant(schema, name, description, _SOURCES, source)
+        for name, (description, source) in kinds.items()
+    ]
+
+
+def _variant(
+    schema: Schema, name: str, description: str, choices: Sequence[str], chosen: Sequence[str]
+) -> Schema:
+    """Return a schema with those of some optional members that are chosen, which it requires."""
+    fields = {
+        name: {k: v for k, v in field.items() if name not in chosen or k != "default"}
+        for name, field in schema["properties"].items()
+        if name in chosen or name not in choices
+    }
+    required = [*schema.get("required", []), *chosen]
+    return {
+        **schema,
+        "title": name,
+        "description": description,
+        "properties": fields,
+        "required": required,
+    }

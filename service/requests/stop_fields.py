@@ -1,0 +1,185 @@
+"""The fields of stops and objectives in requests, and the stops and sources that they become."""
+
+from collections.abc import Mapping, Sequence
+from itertools import takewhile
+from typing import Annotated
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+
+from service.errors import Refusal
+from service.requests.arrays import check_costs, square_array
+from service.requests.schemas import (
+    LARGEST,
+    ArrayRows,
+    NonNegativeInteger,
+    PlanePoint,
+    Text,
+)
+from service.requests.stops import UNITS, Matrix, Measure, Measured, Objective, Plane, Source, Stop
+from service.requests.validation import invalid, show
+
+_TYPO = 2  # neighbouring characters that are wrong, left out or added
+StopReference = Annotated[
+    Annotated[NonNegativeInteger, Tag("[index]")] | Annotated[Text, Tag("[id]")],
+    Discriminator(lambda value: "[id]" if isinstance(value, str) else "[index]"),
+]
+Longitude = Annotated[float, Field(ge=-180, le=180, allow_inf_nan=False)]
+Latitude = Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)]
+
+
+class StopItem(BaseModel):
+    """A stop by its id, and where it is on the earth."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+    id: Text = Field(description="comes back in every answer; no two stops share one")
+    location: tuple[Longitude, Latitude] | None = Field(
+        default=None, description="longitude and latitude in degrees, WGS84"
+    )
+
+
+class ObjectiveItem(BaseModel):
+    """An objective by its name, and the source of its costs."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+    name: Text = Field(description="of the objective, in answers and charts")
+    unit: Text | None = Field(default=None, description="of its costs, in answers and charts")
+    # An empty default means that the field was not given: no caller can give an empty array.
+    matrix: ArrayRows = Field(
+        default_factory=list,
+        description="the costs from each stop (row) to each (column); the diagonal is disregarded",
+    )
+    coordinates: Annotated[list[PlanePoint], Field(min_length=1, fail_fast=True)] = Field(
+        default_factory=list, description="x and y of each stop in a plane; its distances"
+    )
+    measure: Measure = Field(
+        default="great_circle",
+        alias="from",
+        description="what is measured between the locations of stops: metres along a great circle,"
+        " or seconds or metres by road",
+    )
+
+    @property
+    def sources(self) -> list[str]:
+        """The names of the members that are sources of costs."""
+        names = {"matrix": "matrix", "coordinates": "coordinates", "measure": "from"}
+        return [shown for name, shown in names.items() if name in self.model_fields_set]
+
+    def objective(self, part: str) -> Objective:
+        """Return the objective, in its measure's unit where it has one.
+
+        Raises:
+            Refusal: The unit is not that of the measure.
+        """
+        if "measure" not in self.model_fields_set:
+            return Objective(self.name, self.unit)
+        unit = UNITS[self.measure]
+        if self.unit not in (None, unit):
+            demand = f"must be {unit}, the unit of {self.measure}, got {show(self.unit)}"
+            raise invalid(f"{part}/unit", demand)
+        return Objective(self.name, unit)
+
+    def source(self, part: str, stops: Sequence[Stop]) -> Source:
+        """Return the source of the costs between these stops.
+
+        Raises:
+            Refusal: It is not one source, or does not fit the stops.
+        """
+        match self.sources:
+            case ["matrix"]:
+                return self._matrix(f"{part}/matrix", len(stops))
+            case ["coordinates"]:
+                _check_rows(f"{part}/coordinates", len(stops), len(self.coordinates))
+                return Plane(np.array(self.coordinates, dtype=np.float64))
+            case ["from"]:
+                _check_located(f"{part}/from", self.measure, stops)
+                return Measured(self.measure)
+            case sources:
+                came = " and ".join(sources) or "none"
+                raise invalid(part, f"must have one of matrix, coordinates and from, got {came}")
+
+    def _matrix(self, part: str, n: int) -> Matrix:
+        _check_rows(part, n, len(self.matrix))
+        matrix = square_array(self.matrix, part)
+        check_costs(matrix, part, LARGEST)
+        return Matrix(matrix)
+
+
+def read_stops(items: Sequence[StopItem]) -> tuple[Stop, ...]:
+    """Return the stops of a request.
+
+    Raises:
+        Refusal: Two have the same id.
+    """
+    first: dict[str, int] = {}
+    for index, item in enumerate(items):
+        if (other := first.setdefault(item.id, index)) != index:
+            demand = f"must not be that of stops/{other}, got {show(item.id)} twice"
+            raise invalid(f"stops/{index}/id", demand)
+    return tuple(Stop(item.id, item.location) for item in items)
+
+
+def read_objectives(items: Sequence[ObjectiveItem]) -> tuple[Objective, ...]:
+    """Return the objectives of a request.
+
+    Raises:
+        Refusal: Both have the same name, or one a unit that is not of its measure.
+    """
+    first, second = items
+    if first.name == second.name:
+        demand = f"must not be that of objectives/0, got {show(second.name)} twice"
+        raise invalid("objectives/1/name", demand)
+    return tuple(item.objective(f"objectives/{m}") for m, item in enumerate(items))
+
+
+def find_index(reference: int | str, ids: Mapping[str, int], part: str) -> int:
+    """Return the index of a stop that is named by its id, or by its index already.
+
+    Args:
+        reference: The id or the index, which is not checked.
+        ids: The index of each stop by its id; empty where the cities have no ids.
+        part: Where in the request it is, as initial_tours/0/2.
+
+    Raises:
+        Refusal: No stop has this id.
+    """
+    if isinstance(reference, int):
+        return reference
+    if reference in ids:
+        return ids[reference]
+    if not ids:
+        demand = "must be the index of a city, as there are no stops with ids"
+        raise invalid(part, f"{demand}, got {show(reference)}")
+    near = next((each for each in ids if _is_near(reference, each)), None)
+    hint = f"; did you mean {show(near)}?" if near else ""
+    raise invalid(part, f"must be the id of a stop, got {show(reference)}{hint}")
+
+
+def _is_near(text: str, other: str) -> bool:
+    """Return whether texts differ by one typing error. O(length): difflib takes its square."""
+    text, other = text.casefold(), other.casefold()
+    begin = _shared(text, other)
+    shared = begin + _shared(text[begin:][::-1], other[begin:][::-1])
+    return max(len(text), len(other)) - shared <= min(_TYPO, shared)
+
+
+def _shared(text: str, other: str) -> int:
+    """Return the number of characters that texts have in common at their beginning."""
+    pairs = zip(text, other, strict=False)
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
+
+
+def _check_rows(part: str, n: int, rows: int) -> None:
+    if rows != n:
+        raise invalid(part, f"must have {n} rows, one for each stop, got {rows}")
+
+
+def _check_located(part: str, measure: Measure, stops: Sequence[Stop]) -> None:
+    """Raise a refusal where a measure needs the location of a stop that has none."""
+    for index, stop in enumerate(stops):
+        if stop.location is None:
+            pointer = f"/stops/{index}/location"
+            sentence = f"stops/{index}/location is required by {part} {measure}"
+            raise Refusal("invalid-request", detail=sentence, pointer=pointer)

@@ -1,0 +1,140 @@
+"""Stops and objectives as a request names them, and the instance that is made of their costs."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.instance import OBJECTIVES, Instance, Kind
+from service.roads.great_circle import great_circle_matrix
+
+Array = NDArray[np.float64]
+Location = tuple[float, float]  # longitude and latitude in degrees, WGS84
+Measure = Literal["great_circle", "road_time", "road_distance"]
+RoadMeasure = Literal["road_time", "road_distance"]
+UNITS: Mapping[Measure, str] = {"great_circle": "m", "road_time": "s", "road_distance": "m"}
+ROAD_MEASURES: tuple[RoadMeasure, ...] = ("road_time", "road_distance")
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A stop, with the caller's id for it, and where it is on the earth if the caller said so."""
+
+    id: str
+    location: Location | None = None
+
+
+@dataclass(frozen=True)
+class Objective:
+    """The name of an objective, and its unit if the caller said so."""
+
+    name: str
+    unit: str | None = None
+
+
+@dataclass(frozen=True)
+class Labels:
+    """The caller's names of everything in a request: its n stops, in order, and both objectives."""
+
+    stops: tuple[Stop, ...]
+    objectives: tuple[Objective, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Matrix:
+    """A source of costs: a matrix of them, shape (n, n)."""
+
+    costs: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """A source of costs: the distances between points of a plane, shape (n, 2)."""
+
+    points: Array
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A source of costs: a measure of the way between the locations of stops."""
+
+    measure: Measure
+
+
+Source = Matrix | Plane | Measured
+
+
+@dataclass(frozen=True, eq=False)
+class UnmeasuredStops:
+    """Stops that become an instance once the costs between them are measured.
+
+    Args:
+        locations: Longitude and latitude of each stop in degrees, shape (n, 2); NaN where a stop
+            has none, which no measure allows.
+        sources: The source of the costs of each objective.
+    """
+
+    locations: Array
+    sources: Sequence[Source]
+
+    @property
+    def n(self) -> int:
+        """The number of stops."""
+        return len(self.locations)
+
+    @property
+    def kind(self) -> Kind:
+        """The kind of instance that they become."""
+        in_planes = all(isinstance(source, Plane) for source in self.sources)
+        return "coordinates" if in_planes else "matrices"
+
+    @property
+    def measured(self) -> bool:
+        """Whether nothing has to be measured any more."""
+        return not any(isinstance(source, Measured) for source in self.sources)
+
+    @property
+    def road_measures(self) -> frozenset[RoadMeasure]:
+        """The measures that a routing engine has to be asked for."""
+        measures = {source.measure for source in self.sources if isinstance(source, Measured)}
+        return frozenset(measure for measure in ROAD_MEASURES if measure in measures)
+
+
+def locations_of(stops: Sequence[Stop]) -> Array:
+    """Return longitude and latitude of each stop, shape (n, 2); NaN where a stop has none."""
+    return np.array([stop.location or (np.nan, np.nan) for stop in stops], dtype=np.float64)
+
+
+def make_instance(
+    stops: UnmeasuredStops, roads: Mapping[RoadMeasure, Array] | None = None
+) -> Instance:
+    """Return stops and the costs between them as an instance. O(n^2) unless both are planes.
+
+    Args:
+        stops: The stops, with the sources of their costs.
+        roads: A matrix, shape (n, n), for each of `stops.road_measures`.
+
+    Raises:
+        InvalidInstance: The costs are too large, or too far apart, to be planned.
+    """
+    planes = [source.points for source in stops.sources if isinstance(source, Plane)]
+    if len(planes) == OBJECTIVES:
+        return Instance(coordinates=np.concatenate(planes, axis=1))
+    costs = [_costs(source, stops.locations, roads or {}) for source in stops.sources]
+    return Instance(matrices=np.stack(costs))
+
+
+def _costs(source: Source, locations: Array, roads: Mapping[RoadMeasure, Array]) -> Array:
+    """Return the costs between all stops, shape (n, n)."""
+    match source:
+        case Matrix(costs):
+            return costs
+        case Plane(points):
+            steps = points[:, np.newaxis] - points
+            return np.hypot(steps[..., 0], steps[..., 1])
+        case Measured(measure):
+            if measure == "great_circle":
+                return great_circle_matrix(locations)
+            return roads[measure]

@@ -1,0 +1,137 @@
+"""POST /front with stops and objectives, against a live server: ids and names come back."""
+
+import io
+import json
+import logging
+import time
+import uuid
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+
+from service.instance import Instance, tour_lengths
+from service.roads.great_circle import great_circle_matrix
+from tests.helpers.serving import app_of, problem, serving
+
+IDS = ["depot", *(f"order-{i}" for i in range(1, 9))]
+LOCATIONS = np.random.default_rng(1).uniform((24.9, 60.15), (25.0, 60.2), (9, 2))
+COSTS = np.random.default_rng(2).random((9, 9))
+STOPS = [
+    {"id": name, "location": location}
+    for name, location in zip(IDS, LOCATIONS.tolist(), strict=True)
+]
+OBJECTIVES = [
+    {"name": "way", "from": "great_circle"},
+    {"name": "risk", "unit": "%", "matrix": COSTS.tolist()},
+]
+REQUEST: dict[str, Any] = {"stops": STOPS, "objectives": OBJECTIVES, "start": "order-3"}
+NAMES = [{"name": "way", "unit": "m"}, {"name": "risk", "unit": "%"}]
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[httpx.Client]:
+    with serving(app_of()) as address, httpx.Client(base_url=address, timeout=30) as client:
+        yield client
+
+
+def check(front: dict[str, Any]) -> None:
+    """Check the names in an answer, and its lengths by the costs of the request."""
+    assert (front["objectives"], front["stops"]) == (NAMES, STOPS)
+    assert front["front"]
+    tours = np.array([item["tour"] for item in front["front"]])
+    assert [item["stops"] for item in front["front"]] == [[IDS[i] for i in tour] for tour in tours]
+    assert {item["stops"][0] for item in front["front"]} == {"order-3"}
+    instance = Instance(matrices=np.stack((great_circle_matrix(LOCATIONS), COSTS)))
+    lengths = [item["lengths"] for item in front["front"]]
+    np.testing.assert_allclose(lengths, tour_lengths(instance, tours))
+    np.testing.assert_allclose(front["scale"], instance.scale)
+
+
+def ended(client: httpx.Client, path: str) -> dict[str, Any]:
+    """The front at a path, once its job has ended."""
+    while (front := client.get(path).json())["status"] in ("queued", "running"):
+        time.sleep(0.02)
+    return front
+
+
+def test_ids_names_and_units_come_back(client: httpx.Client) -> None:
+    answer = client.post("/front", json=REQUEST)
+    assert answer.status_code == 200, answer.text
+    check(answer.json())
+    assert answer.json()["timings_ms"]["costs"] > 0
+    check(client.get(f"/front/{answer.json()['id']}").json())
+
+
+def test_a_tour_has_the_ids_of_its_stops(client: httpx.Client) -> None:
+    front = client.post("/front", json=REQUEST).json()
+    tour = client.get("/tour", params={"angle": 45, "front": front["id"]}).json()
+    assert tour["stops"] == [IDS[city] for city in tour["tour"]]
+
+
+def test_short_forms_have_no_stops_and_no_objectives(client: httpx.Client) -> None:
+    answer = client.post("/front", json={"coordinates": [[0, 1, 2, 3], [1, 1, 0, 2]]}).json()
+    assert not {"stops", "objectives"} & answer.keys()
+    assert not {"stops"} & answer["front"][0].keys()
+
+
+def test_a_job_has_its_names_from_the_start_and_its_costs_at_the_end(client: httpx.Client) -> None:
+    accepted = client.post("/front", json=REQUEST, headers={"Prefer": "respond-async"})
+    assert accepted.status_code == 202
+    path = accepted.headers["location"]
+    first = client.get(path).json()
+    assert (first["objectives"], first["stops"]) == (NAMES, STOPS)
+    with client.stream("GET", f"{path}/events") as events:
+        text = "".join(events.iter_text())
+    assert '"status":"done"' in text
+    check(ended(client, path))
+
+
+def test_a_repeat_is_answered_with_the_first_front(client: httpx.Client) -> None:
+    key = {"Idempotency-Key": uuid.uuid4().hex}
+    first = client.post("/front", json=REQUEST, headers=key).json()
+    check(first)
+    assert client.post("/front", json=REQUEST, headers=key).json() == first
+    other = client.post("/front", json={**REQUEST, "start": "depot"}, headers=key)
+    problem(other, 422, "idempotency-mismatch")
+
+
+def test_matrices_come_as_a_file_beside_stops(client: httpx.Client) -> None:
+    file = io.BytesIO()
+    np.save(file, np.stack((COSTS, COSTS.T)))
+    names = [{"name": "time", "unit": "s"}, {"name": "risk"}]
+    request = json.dumps({"stops": STOPS, "objectives": names})
+    parts = {"request": (None, request), "matrices": ("costs.npy", file.getvalue())}
+    answer = client.post("/front", files=parts)
+    assert answer.status_code == 200, answer.text
+    assert answer.json()["objectives"] == [names[0], {"name": "risk", "unit": None}]
+
+
+def test_costs_that_only_the_worker_finds_wrong_are_refused(client: httpx.Client) -> None:
+    costs = COSTS.copy()
+    costs[0, 1], costs[1, 0] = 5e-324, 1e150
+    risk = {"name": "risk", "matrix": costs.tolist()}
+    answer = client.post("/front", json={**REQUEST, "objectives": [OBJECTIVES[0], risk]})
+    problem(answer, 422, "invalid-instance")
+
+
+def test_initial_tours_of_long_ids_are_parsed_too(client: httpx.Client) -> None:
+    stops = [{"id": f"{'x' * 90}{i}", "location": [i / 10, i / 20]} for i in range(50)]
+    way = [OBJECTIVES[0], {"name": "east", "coordinates": [[i, 0] for i in range(50)]}]
+    tours = [[stop["id"] for stop in stops]] * 10
+    answer = client.post("/front", json={"stops": stops, "objectives": way, "initial_tours": tours})
+    assert answer.status_code == 200, answer.text
+
+
+def test_nothing_of_the_stops_is_logged(
+    client: httpx.Client, caplog: pytest.LogCaptureFixture
+) -> None:
+    with caplog.at_level(logging.DEBUG):
+        client.post("/front", json=REQUEST)
+        client.post("/front", json={**REQUEST, "start": "order-99"})
+    logged = "\n".join(f"{record.getMessage()} {vars(record)}" for record in caplog.records)
+    assert "/front" in logged
+    assert "order-" not in logged
+    assert "24.9" not in logged

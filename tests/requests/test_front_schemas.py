@@ -1,0 +1,82 @@
+"""The schemas of front requests: one for each form, under the limits of the service."""
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from service.requests.front_schemas import FILE_FORMS, JSON_FORMS, front_schemas
+from tests.helpers.serving import LIMITS
+
+SCHEMAS = front_schemas(LIMITS, ["pa-one"])
+CITIES = ("coordinates", "matrices", "stops", "objectives")
+
+
+@pytest.mark.parametrize(
+    ("form", "members"),
+    [
+        ("CoordinatesRequest", ["coordinates"]),
+        ("MatricesRequest", ["matrices"]),
+        ("StopsRequest", ["stops", "objectives"]),
+        ("MatricesFileRequest", []),
+        ("StopsFileRequest", ["stops", "objectives"]),
+    ],
+)
+def test_a_form_requires_what_it_is_of_and_has_no_other(form: str, members: list[str]) -> None:
+    schema = SCHEMAS[form]
+    assert schema["title"] == form
+    assert schema["required"] == members
+    assert [name for name in CITIES if name in schema["properties"]] == members
+    assert {"time_limit", "start", "seed"} < schema["properties"].keys()
+    assert schema["additionalProperties"] is False
+
+
+def test_every_form_is_there_and_every_reference_leads_to_a_schema() -> None:
+    assert {*JSON_FORMS, *FILE_FORMS} < SCHEMAS.keys()
+    names = {reference.rsplit("/", 1)[-1] for reference in references(SCHEMAS)}
+    assert names == SCHEMAS.keys() - {*JSON_FORMS, *FILE_FORMS}
+
+
+def test_an_id_may_stand_for_an_index_among_stops_alone() -> None:
+    def types(form: str) -> list[Any]:
+        start = SCHEMAS[form]["properties"]["start"]
+        return [each["type"] for each in start.get("oneOf", [start])]
+
+    assert types("StopsRequest") == types("StopsFileRequest") == ["integer", "string"]
+    assert types("CoordinatesRequest") == types("MatricesRequest") == ["integer"]
+
+
+def test_an_objective_has_one_source() -> None:
+    kinds = {"MatrixObjective": "matrix", "PlaneObjective": "coordinates"}
+    for name, source in {**kinds, "MeasuredObjective": "from"}.items():
+        assert SCHEMAS[name]["required"] == ["name", source]
+        assert SCHEMAS[name]["properties"].keys() == {"name", "unit", source}
+    assert SCHEMAS["NamedObjective"]["properties"].keys() == {"name", "unit"}
+
+
+@pytest.mark.parametrize(
+    ("roads", "measures"),
+    [(False, ["great_circle"]), (True, ["great_circle", "road_time", "road_distance"])],
+)
+def test_roads_are_shown_where_there_is_a_routing_engine(roads: bool, measures: list[str]) -> None:
+    schemas = front_schemas(replace(LIMITS, roads=roads), ["pa-one"])
+    assert schemas["MeasuredObjective"]["properties"]["from"]["enum"] == measures
+
+
+def test_the_schemas_have_the_limits_and_the_actors() -> None:
+    for form, member in zip(JSON_FORMS, ("coordinates", "matrices", "stops"), strict=True):
+        fields = SCHEMAS[form]["properties"]
+        rows = fields[member]["items"] if member == "matrices" else fields[member]
+        assert rows["maxItems"] == LIMITS.cities
+        assert fields["actor"]["enum"] == ["pa-one"]
+    assert SCHEMAS["MatricesRequest"]["properties"]["augment"]["maximum"] == 1
+
+
+def references(value: Any) -> set[str]:
+    """All references in a schema."""
+    if isinstance(value, list):
+        return set().union(*map(references, value))
+    if not isinstance(value, dict):
+        return set()
+    own = {value["$ref"]} if "$ref" in value else set()
+    return own.union(*map(references, value.values()))
