@@ -25,6 +25,7 @@ from service.api.plan import BodyBounds
 from service.api.task_parser import ParserBounds
 from service.api.transport.connections import ConnectionLimits, Connections
 from service.api.transport.listener import ACCEPTED_AT_ONCE, bound_sockets, most_connections
+from service.api.transport.protocol import Connection
 from service.cluster import check_cluster
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
@@ -82,7 +83,12 @@ def serve(app: FastAPI, settings: Settings) -> None:
     gc.freeze()
     most = most_connections(settings.connections, settings.workers)
     connections = Connections(
-        ConnectionLimits(connections=most, head_seconds=settings.head_seconds)
+        ConnectionLimits(
+            connections=most,
+            share=settings.connection_share,
+            proxies=settings.forwarded_allow_ips,
+            head_seconds=settings.head_seconds,
+        )
     )
     configure_logging(plain=sys.stderr.isatty())
     config = uvicorn_config(app, connections, settings.drain_seconds)
@@ -99,11 +105,12 @@ def uvicorn_config(app: FastAPI, connections: Connections, drain_seconds: int) -
     """Return the configuration of uvicorn: HTTP/1.1 alone, over these connections."""
     return uvicorn.Config(
         app,
-        http=connections.protocol,  # type: ignore[arg-type]  # called as a class would be
+        http=partial(Connection, connections),  # type: ignore[arg-type]  # called as a class is
         ws="none",
         # Not uvloop: 1 % more answers, but it does not shut down while Redis is connected.
         loop="asyncio",
         backlog=ACCEPTED_AT_ONCE,
+        forwarded_allow_ips=connections.limits.proxies,
         server_header=False,
         log_config=None,
         access_log=False,

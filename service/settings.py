@@ -70,8 +70,17 @@ class Settings(BaseSettings):
     connections: int = Field(
         1000, ge=1, description="open connections; fewer where descriptors (`ulimit -n`) are few"
     )
+    connection_share: float = Field(
+        0.25, gt=0, le=1, description="share of these that one address may hold, but for proxies"
+    )
     head_seconds: float = Field(
         10.0, gt=0, description="how long a request's head may take, and a connection be silent"
+    )
+
+    forwarded_allow_ips: str = Field(
+        "127.0.0.1",
+        validation_alias="FORWARDED_ALLOW_IPS",
+        description="proxies whose X-Forwarded-For is believed, with commas between; or *",
     )
 
     # Limits of a request.

@@ -15,7 +15,6 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib.util import find_spec
-from ipaddress import IPv6Address, ip_address, ip_network
 from typing import Self
 
 from fastapi import Depends, Security
@@ -28,6 +27,7 @@ from limits.errors import StorageError
 from starlette.requests import Request
 
 from service.api.middleware import ANONYMOUS
+from service.api.transport.addresses import network_of
 from service.errors import Refusal
 
 _REDIS_SECONDS = 0.5  # that a request waits for Redis at most
@@ -94,7 +94,7 @@ class Rates:
         Raises:
             Refusal: The address is over its rate.
         """
-        await self._check(self._addresses, _network(address))
+        await self._check(self._addresses, network_of(address))
 
     async def _check(
         self, limiter: MovingWindowRateLimiter | SlidingWindowCounterRateLimiter, caller: str
@@ -129,7 +129,7 @@ def client_of(request: Request) -> str:
     """
     if request.scope["caller"] != ANONYMOUS:
         return caller_of(request)
-    return _network(request.client.host if request.client else "")
+    return network_of(request.client.host if request.client else "")
 
 
 class Access:
@@ -175,19 +175,6 @@ class Access:
         if not matches:
             raise _unauthorized("an API key of this service; this is none")
         return matches[0]
-
-
-def _network(address: str) -> str:
-    """Return an IPv4 address as it is, and of an IPv6 address the 64 bits that a client has."""
-    try:
-        parsed = ip_address(address)
-    except ValueError:  # what a proxy wrote, which need not be an address
-        return address[:64]
-    if not isinstance(parsed, IPv6Address):
-        return address
-    if parsed.ipv4_mapped is not None:
-        return str(parsed.ipv4_mapped)
-    return str(ip_network((parsed.packed, 64), strict=False))
 
 
 def _storage(redis_url: str | None) -> MemoryStorage | RedisStorage:

@@ -95,7 +95,7 @@ PROBLEMS: Mapping[str, Problem] = {
     "stopped": Problem(503, "the work was stopped before there was a front", _PLANS),
     "store-unavailable": Problem(503, "what fronts are kept in must answer, and does not"),
     "too-many-connections": Problem(
-        503, "there must be a free connection, and all are busy: ask again", _NONE
+        503, "all connections, or all that one address may have, are busy: ask again", _NONE
     ),
     "warming-up": Problem(
         503,

@@ -1,63 +1,74 @@
-"""Connections: how many there may be, how long each may be silent, and how one is closed."""
+"""The open connections of a server: how many there may be, in all and from one address."""
 
-import asyncio
 import logging
+import math
 import time
-import uuid
-from asyncio import TimerHandle, Transport
+from collections import Counter
 from dataclasses import dataclass
-from http import HTTPStatus
-from typing import Any, cast
+from typing import Protocol
 
-import h11
-from uvicorn.protocols.http.h11_impl import H11Protocol
+from service.api.transport.addresses import network_of, proxies_of
 
-from service.api.responses import problem_response
-from service.api.transport.http_parser import StrictParser
-from service.errors import Refusal
-
-_LINGER_SECONDS = 10.0  # that the rest of a refused body is read and dropped
-_LINGER_BYTES = 2**26  # of that rest: four times the longest body
-_STALL_SECONDS = 30.0  # after which a client must have read some of its answer
-_REFUSED_AT_ONCE = 32  # connections beyond the limit that are told so, at a time
+_REFUSED_AT_ONCE = 32  # connections beyond the limits that are told so, at a time
 _LOG_EVERY = 1.0  # seconds between two lines about connections that make way
-_NO_MORE_BODY = (h11.IDLE, h11.DONE, h11.MUST_CLOSE, h11.CLOSED)
+_PROXY = ""  # in place of an address, for connections that count for none
 _LOG = logging.getLogger("paretour")
+
+
+class OpenConnection(Protocol):
+    """A connection that can be closed to make way for another."""
+
+    def abort(self) -> None:
+        """Close the connection at once, whatever is under way."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ConnectionLimits:
-    """The most open connections, and the seconds until the head of a request has arrived."""
+    """The most connections, and for how long one may be silent.
+
+    Args:
+        connections: The most open connections.
+        share: The share of them that one address may hold, of IPv6 one network of 64 bits.
+        proxies: Addresses and networks of proxies, with commas between, or *. The share does not
+            hold for them: their connections are of many clients.
+        head_seconds: Seconds until the head of a request has arrived.
+    """
 
     connections: int = 1000
+    share: float = 0.25
+    proxies: str = "127.0.0.1"
     head_seconds: float = 10.0
+
+    @property
+    def of_address(self) -> int:
+        """The most open connections of one address."""
+        return max(math.ceil(self.share * self.connections), 1)
 
 
 class Connections:
     """The open connections of a server.
 
-    One that is idle makes way for a new one when there are too many: the one that has waited
-    longest for a request. Where none is idle, the new one is refused.
+    One that is idle makes way for a new one when there are too many, in all or from its address:
+    the one of these that has waited longest for a request. Where none is idle, the new one is
+    refused.
     """
 
     def __init__(self, limits: ConnectionLimits) -> None:
         self.limits = limits
-        self._open: set[Connection] = set()
-        self._idle: dict[Connection, None] = {}  # the first has been idle longest
-        self._refused: dict[Connection, None] = {}
+        self._is_proxy = proxies_of(limits.proxies)
+        self._open: dict[OpenConnection, str] = {}  # the network that each counts for
+        self._held: Counter[str] = Counter()  # by network
+        self._idle: dict[OpenConnection, None] = {}  # the first has been idle longest
+        self._refused: dict[OpenConnection, None] = {}
         self._next_line = 0.0
 
-    def protocol(self, **arguments: Any) -> "Connection":
-        """Return the protocol of a new connection, given the arguments of uvicorn."""
-        return Connection(self, **arguments)
-
-    def admit(self, connection: "Connection") -> bool:
-        """Take in a new connection, and return whether there is room for it."""
-        self._open.add(connection)
-        if len(self._open) <= self.limits.connections or self.make_room():
+    def admit(self, connection: OpenConnection, peer: str) -> bool:
+        """Take in a new connection of a peer, and return whether there is room for it."""
+        network = _PROXY if self._is_proxy(peer) else network_of(peer)
+        if self._has_place(network) and self._has_room():
+            self._open[connection] = network
+            self._held[network] += 1
             return True
-        self._open.remove(connection)
-        self._log("a connection was refused: %d are busy")
         if len(self._refused) >= _REFUSED_AT_ONCE:
             next(iter(self._refused)).abort()
         self._refused[connection] = None
@@ -67,211 +78,48 @@ class Connections:
         """Close the connection that has been idle longest, and return whether there was one."""
         oldest = next(iter(self._idle), None)
         if oldest is not None:
-            self._log("idle connections make way for new ones: %d are open")
+            self._log("idle connections make way for new ones: %d are open", len(self._open))
             oldest.abort()
         return oldest is not None
 
-    def set_idle(self, connection: "Connection", idle: bool) -> None:
+    def set_idle(self, connection: OpenConnection, idle: bool) -> None:
         """Take note of whether a connection waits for a request."""
         if not idle:
             self._idle.pop(connection, None)
         elif connection in self._open:
             self._idle.setdefault(connection)
 
-    def remove(self, connection: "Connection") -> None:
+    def remove(self, connection: OpenConnection) -> None:
         """Forget a connection that is closed."""
-        self._open.discard(connection)
+        network = self._open.pop(connection, None)
+        if network is not None:
+            self._held[network] -= 1
+            if not self._held[network]:
+                del self._held[network]
         self._idle.pop(connection, None)
         self._refused.pop(connection, None)
 
-    def _log(self, sentence: str) -> None:
+    def _has_room(self) -> bool:
+        """Return whether there may be one connection more, after an idle one has made way."""
+        if len(self._open) < self.limits.connections or self.make_room():
+            return True
+        self._log("a connection was refused: %d are busy", len(self._open))
+        return False
+
+    def _has_place(self, network: str) -> bool:
+        """Return the same of one network, for which one of its own makes way."""
+        if network == _PROXY or self._held[network] < self.limits.of_address:
+            return True
+        oldest = next((each for each in self._idle if self._open[each] == network), None)
+        if oldest is None:
+            self._log("a connection was refused: %s has %d", network, self._held[network])
+            return False
+        oldest.abort()
+        return True
+
+    def _log(self, sentence: str, *values: object) -> None:
         """Write a line, unless one was written just now: clients could fill the disk."""
         now = time.monotonic()
         if now >= self._next_line:
             self._next_line = now + _LOG_EVERY
-            _LOG.warning(sentence, len(self._open))
-
-
-class Connection(H11Protocol):
-    """A connection of uvicorn with a deadline for each request's head, and an end in peace.
-
-    A refusal may be sent before the body is read. To close the connection then would be to reset
-    it, and the client would lose the answer: the rest of the body is read and dropped first, up to
-    a limit of bytes and seconds.
-    """
-
-    def __init__(self, connections: Connections, **arguments: Any) -> None:
-        super().__init__(**arguments)
-        self.conn: StrictParser = StrictParser(h11.SERVER)
-        self._connections = connections
-        self._socket: Transport
-        self._head_timer: TimerHandle | None = None
-        self._linger_timer: TimerHandle | None = None
-        self._stall_timer: TimerHandle | None = None
-        self._dropped = 0
-        self.lingering = False
-
-    def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
-        """Begin to wait for a request, or refuse the connection where there are too many."""
-        self._socket = transport
-        super().connection_made(cast(Transport, _ClosingTransport(transport, self)))
-        if self._connections.admit(self):
-            self._note_idle()
-        else:
-            self._send_problem(Refusal("too-many-connections"))
-            self._linger()
-
-    def connection_lost(self, exc: Exception | None) -> None:
-        """Forget the connection."""
-        self._connections.remove(self)
-        for timer in (self._head_timer, self._linger_timer, self._stall_timer):
-            if timer is not None:
-                timer.cancel()
-        self._unset_keepalive_if_required()
-        super().connection_lost(exc)
-
-    def data_received(self, data: bytes) -> None:
-        """Parse what came, or drop it where it is the rest of a refused body."""
-        if self.lingering or self._rest_follows:
-            self._dropped += len(data)
-            if self._dropped > _LINGER_BYTES:
-                self.abort()
-        if not self.lingering and not self._socket.is_closing():
-            super().data_received(data)
-            self._note_idle()
-
-    def on_response_complete(self) -> None:
-        """Begin to wait for the next request."""
-        super().on_response_complete()
-        self._note_idle()
-
-    def send_400_response(self, msg: str) -> None:
-        """Refuse a request that is not HTTP."""
-        error = self.conn.error
-        refusal = Refusal("malformed-http", reason=str(error or msg))
-        refusal.status = error.error_status_hint if error else refusal.status
-        self._refuse(refusal)
-
-    def shutdown(self) -> None:
-        """Close the connection once its request is answered."""
-        if not self.lingering:
-            super().shutdown()
-
-    def pause_writing(self) -> None:
-        """Give the client a while to read some of its answer."""
-        super().pause_writing()
-        self._expect_reading()
-
-    def resume_writing(self) -> None:
-        """Go on: the client has read most of its answer."""
-        super().resume_writing()
-        if self._stall_timer is not None and not self._socket.is_closing():
-            self._stall_timer.cancel()
-            self._stall_timer = None
-
-    def close(self) -> None:
-        """Close the connection, in peace where the client is still sending."""
-        if self.lingering or self._socket.is_closing():
-            return
-        if self.conn.their_state in _NO_MORE_BODY:
-            self._socket.close()
-            self._expect_reading()
-        else:
-            self._linger()
-
-    def abort(self) -> None:
-        """Close the connection at once, whatever is under way."""
-        self._connections.remove(self)
-        self._socket.abort()
-
-    @property
-    def _rest_follows(self) -> bool:
-        """Whether a request is answered whose body has not ended."""
-        return self.conn.our_state is h11.DONE and self.conn.their_state is h11.SEND_BODY
-
-    def _unsupported_upgrade_warning(self) -> None:
-        """Say nothing of an upgrade that is not there: a client could fill the log."""
-
-    def _note_idle(self) -> None:
-        """Start the deadline for a request's head, or end it where a request is under way."""
-        idle = self.cycle is None or self.cycle.response_complete
-        self._connections.set_idle(self, idle)
-        if not idle:
-            self._dropped = 0
-            if self._head_timer is not None:
-                self._head_timer.cancel()
-                self._head_timer = None
-        elif self._head_timer is None and not self._socket.is_closing():
-            seconds = self._connections.limits.head_seconds
-            self._head_timer = self.loop.call_later(seconds, self._head_too_slow)
-
-    def _head_too_slow(self) -> None:
-        if self.conn.their_state is h11.IDLE and self.conn.trailing_data[0]:
-            self._refuse(Refusal("head-too-slow", limit=self._connections.limits.head_seconds))
-        else:
-            self.close()
-
-    def _refuse(self, refusal: Refusal) -> None:
-        """Send a problem document, unless an answer has begun, and close the connection."""
-        if self.cycle is not None and not self.cycle.response_complete:
-            self.cycle.disconnected = True
-            self.cycle.message_event.set()
-        if self.conn.our_state in (h11.IDLE, h11.SEND_RESPONSE):
-            self._send_problem(refusal)
-            self.close()
-        else:
-            self.abort()
-
-    def _send_problem(self, refusal: Refusal) -> None:
-        request_id = uuid.uuid4().hex
-        response = problem_response(refusal, request_id)
-        headers = [*self.server_state.default_headers, *response.raw_headers]
-        headers += [(b"connection", b"close"), (b"x-request-id", request_id.encode())]
-        body = b"" if self.conn.method == b"HEAD" else bytes(response.body)
-        reason = HTTPStatus(refusal.status).phrase.encode()
-        head = h11.Response(status_code=refusal.status, headers=headers, reason=reason)
-        for event in (head, h11.Data(data=body), h11.EndOfMessage()):
-            self._socket.write(self.conn.send(event) or b"")
-
-    def _linger(self) -> None:
-        """Send no more, and drop what comes until the client has read its answer and closes."""
-        if self.lingering or self._socket.is_closing():
-            return
-        self.lingering = True
-        self._unset_keepalive_if_required()
-        self._socket.write_eof()
-        self.flow.resume_reading()
-        self._connections.set_idle(self, True)
-        self._linger_timer = self.loop.call_later(_LINGER_SECONDS, self.abort)
-
-    def _expect_reading(self) -> None:
-        """Close the connection once the client has read nothing of its answer for a while."""
-        if self._stall_timer is None:
-            unsent = self._socket.get_write_buffer_size()
-            self._stall_timer = self.loop.call_later(_STALL_SECONDS, self._check_reading, unsent)
-
-    def _check_reading(self, unsent: int) -> None:
-        self._stall_timer = None
-        if self._socket.get_write_buffer_size() < unsent:
-            self._expect_reading()
-        else:
-            self.abort()
-
-
-class _ClosingTransport:
-    """The transport of a connection, which the connection closes in its own way."""
-
-    def __init__(self, transport: asyncio.Transport, connection: Connection) -> None:
-        self._transport = transport
-        self._connection = connection
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._transport, name)
-
-    def is_closing(self) -> bool:
-        """Return whether nothing more can be sent."""
-        return self._connection.lingering or self._transport.is_closing()
-
-    def close(self) -> None:
-        """Close the connection."""
-        self._connection.close()
+            _LOG.warning(sentence, *values)

@@ -12,7 +12,7 @@ import httpx
 import pytest
 
 from service.api.app import Edge
-from service.api.transport import connections
+from service.api.transport import protocol
 from service.api.transport.connections import ConnectionLimits
 from tests.helpers.processes import serve_process
 from tests.helpers.serving import app_of, serving
@@ -22,9 +22,11 @@ STALLED = f"POST /front HTTP/1.1\r\nHost: x\r\n{JSON}Content-Length: 100\r\n\r\n
 CHUNK = b"10000\r\n" + b" " * 2**16 + b"\r\n"
 
 
-def connected(url: str) -> socket.socket:
+def connected(url: str, source: str = "127.0.0.1") -> socket.socket:
     address = urlsplit(url)
-    return socket.create_connection((address.hostname, address.port), timeout=10)
+    return socket.create_connection(
+        (address.hostname, address.port), timeout=10, source_address=(source, 0)
+    )
 
 
 def received(connection: socket.socket) -> tuple[int, dict[str, str], bytes]:
@@ -161,6 +163,60 @@ def test_the_connection_that_is_idle_longest_makes_way() -> None:
         assert busy.recv(2**16).startswith(b"HTTP/1.1 422")
 
 
+def answered(connection: socket.socket, request: bytes = b"GET /actors") -> int:
+    connection.sendall(request + b" HTTP/1.1\r\nHost: x\r\n\r\n")
+    return int(connection.recv(2**16).split()[1])
+
+
+def test_one_address_cannot_take_the_connections_of_others() -> None:
+    limits = ConnectionLimits(connections=8, share=0.25)
+    with serving(app_of(), warm=False, connections=limits) as url, ExitStack() as stack:
+        crowd = [stack.enter_context(connected(url, "127.0.0.2")) for _ in range(2)]
+        for busy in crowd:
+            busy.sendall(STALLED)
+        time.sleep(0.2)
+        for _ in range(40):
+            with connected(url, "127.0.0.2") as more:
+                problem_in(more, 503, "too-many-connections")
+        with connected(url, "127.0.0.3") as other:
+            assert answered(other) == 200
+        crowd[0].close()
+        time.sleep(0.2)
+        with connected(url, "127.0.0.2") as freed:
+            assert answered(freed) == 200
+
+
+def test_of_an_address_with_its_share_the_connection_idle_longest_makes_way() -> None:
+    limits = ConnectionLimits(connections=8, share=0.25)
+    with serving(app_of(), warm=False, connections=limits) as url, ExitStack() as stack:
+        of_another = stack.enter_context(connected(url, "127.0.0.3"))
+        first, second = (stack.enter_context(connected(url, "127.0.0.2")) for _ in range(2))
+        with connected(url, "127.0.0.2") as third:
+            assert answered(third) == 200
+        assert is_closed(first)
+        assert answered(second) == 200
+        assert answered(of_another) == 200
+
+
+@pytest.mark.parametrize(
+    ("proxies", "status"),
+    [("127.0.0.2", 200), ("127.0.0.0/28", 200), ("*", 200), ("10.0.0.1", 503)],
+)
+def test_a_trusted_proxy_may_take_all_connections(proxies: str, status: int) -> None:
+    limits = ConnectionLimits(connections=8, share=0.25, proxies=proxies)
+    with serving(app_of(), warm=False, connections=limits) as url, ExitStack() as stack:
+        for _ in range(2):
+            stack.enter_context(connected(url, "127.0.0.2")).sendall(STALLED)
+        time.sleep(0.2)
+        with connected(url, "127.0.0.2") as third:
+            assert answered(third) == status
+
+
+def test_the_share_of_an_address_is_one_connection_at_least() -> None:
+    assert ConnectionLimits(connections=3, share=0.01).of_address == 1
+    assert ConnectionLimits(connections=1000).of_address == 250
+
+
 @pytest.mark.parametrize("close", [True, False], ids=["close", "keep-alive"])
 def test_a_refusal_arrives_though_twenty_megabytes_are_sent_all_the_same(
     url: str, close: bool
@@ -199,7 +255,7 @@ def test_a_client_that_sends_for_ever_is_cut_off(url: str, close: bool) -> None:
 def test_a_client_that_drips_for_ever_is_cut_off(
     url: str, close: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(connections, "_LINGER_SECONDS", 0.5)
+    monkeypatch.setattr(protocol, "_LINGER_SECONDS", 0.5)
     end = "Connection: close\r\n" if close else ""
     head = f"POST /nowhere HTTP/1.1\r\nHost: x\r\n{end}Transfer-Encoding: chunked\r\n\r\n"
     with connected(url) as connection:
@@ -261,7 +317,7 @@ def test_a_broken_chunk_ends_the_request_without_an_error_in_the_log(
 def test_a_client_that_does_not_read_its_answer_is_cut_off(
     url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(connections, "_STALL_SECONDS", 0.5)
+    monkeypatch.setattr(protocol, "_STALL_SECONDS", 0.5)
     path = "/docs/vendor/swagger-ui/swagger-ui-bundle.js"
     ask = f"GET {path} HTTP/1.1\r\nHost: x\r\n\r\n".encode()
     with connected(url) as connection:
