@@ -11,6 +11,7 @@ _NAMES = (
     "ablation",
     "actors",
     "asymmetric",
+    "attack",
     "concave",
     "coverage",
     "curves",

@@ -1,4 +1,4 @@
-"""What `load` and `soak` must find, and what of it they did not find."""
+"""What `load`, `soak` and `attack` must find, and what of it they did not find."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -9,6 +9,9 @@ SHARE = 0.9  # of the bare session's calls a second, answered
 LATENESS = 4.0  # times the median, the 99th percentile
 ASIDE_MS = 50.0  # for health and metrics, whatever else goes on
 GROWTH = 0.1  # of resident memory over the last half
+WORKERS = 2  # of the service that is attacked
+MORE_SECONDS = 1.0  # that an honest request may take beside an attack
+MEGABYTES = 2048  # of the server and its processes
 _ENDS = ("done", "cancelled", "failed", "forgotten once done")
 
 
@@ -36,12 +39,45 @@ def unmet_by_soak(results: Mapping[str, Any]) -> Iterator[str]:
         yield f"no job may fail, got {jobs['failed']}"
     if results["faults"]:
         yield f"there must be no fault, got {len(results['faults'])}: {results['faults'][0]}"
+    yield from _unmet_at_end(results)
+    if (growth := results["growth_over_last_half"]) >= GROWTH:
+        yield f"memory must grow by less than {GROWTH:.0%} over the last half, got {growth:.1%}"
+
+
+def unmet_by_attack(results: Mapping[str, Any]) -> Iterator[str]:
+    """A sentence for each demand that does not hold."""
+    for when in ("quiet", "beside"):
+        if lost := sorted(set(results[when]["statuses"]) - {"200"}):
+            yield f"every honest request must be a 200, got {', '.join(lost)} ({when})"
+    if (more := added_seconds(results)) > MORE_SECONDS:
+        yield f"honest requests must take at most {MORE_SECONDS:g} s more, got {more:.2f} s"
+    for name, seen in results["crowds"].items():
+        if seen["faults"]:
+            yield f"{name} must see no fault, got {seen['faults'][0]}"
+    if (megabytes := results["megabytes"]) > MEGABYTES:
+        yield f"memory must stay under {MEGABYTES} MB, got {megabytes} MB"
+    yield from _unmet_of_workers(results)
+    yield from _unmet_at_end(results)
+
+
+def added_seconds(results: Mapping[str, Any]) -> float:
+    """How much longer the slowest honest request took beside the attack than in quiet."""
+    milliseconds = results["beside"]["worst_ms"] - results["quiet"]["worst_ms"]
+    return float(milliseconds / 1000)
+
+
+def _unmet_of_workers(results: Mapping[str, Any]) -> Iterator[str]:
+    if results["workers_lost"]:
+        yield f"no worker may be lost, got {results['workers_lost']}"
+    if results["workers_present"] != WORKERS:
+        yield f"{WORKERS} workers must be there afterwards, got {results['workers_present']}"
+
+
+def _unmet_at_end(results: Mapping[str, Any]) -> Iterator[str]:
     if results["tracebacks_in_log"]:
         yield f"the log must have no traceback, got {results['tracebacks_in_log']}"
     if results["exit_status"]:
         yield f"the service must end with 0, got {results['exit_status']}"
-    if (growth := results["growth_over_last_half"]) >= GROWTH:
-        yield f"memory must grow by less than {GROWTH:.0%} over the last half, got {growth:.1%}"
 
 
 def growth(memory: list[float]) -> float:

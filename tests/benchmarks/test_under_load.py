@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from tests.benchmarks import provenance
-from tests.benchmarks.demands import growth, unmet_by_load, unmet_by_soak
+from tests.benchmarks.demands import growth, unmet_by_attack, unmet_by_load, unmet_by_soak
 from tests.benchmarks.traffic import (
     Client,
     as_fast_as_answered,
@@ -59,9 +59,27 @@ def soaked(**other: Any) -> dict[str, Any]:
     }
 
 
+def attacked(**other: Any) -> dict[str, Any]:
+    return {
+        **WHERE,
+        "minutes": 5.0,
+        "busy": 0.5,
+        "quiet": {"statuses": {"200": 120}, **QUICK},
+        "beside": {"statuses": {"200": 600}, **QUICK, "worst_ms": 1050.0},
+        "crowds": {"hang-ups": {"answers": {"hung up": 5}, "faults": []}},
+        "megabytes": 2048,
+        "workers_lost": 0,
+        "workers_present": 2,
+        "tracebacks_in_log": 0,
+        "exit_status": 0,
+        **other,
+    }
+
+
 def test_nothing_is_unmet_just_where_all_demands_hold() -> None:
     assert list(unmet_by_load(loaded())) == []
     assert list(unmet_by_soak(soaked())) == []
+    assert list(unmet_by_attack(attacked())) == []
 
 
 @pytest.mark.parametrize(
@@ -99,6 +117,33 @@ def test_a_demand_that_soak_does_not_meet_is_named(other: dict[str, Any], senten
     assert unmet.startswith(sentence)
 
 
+@pytest.mark.parametrize(
+    ("other", "sentence"),
+    [
+        (
+            {"beside": {"statuses": {"0": 1, "200": 9, "503": 2}, **QUICK}},
+            "every honest request must be a 200, got 0, 503 (beside)",
+        ),
+        (
+            {"beside": {"statuses": {"200": 9}, **QUICK, "worst_ms": 1060.0}},
+            "honest requests must take at most 1 s more, got 1.01 s",
+        ),
+        (
+            {"crowds": {"hostile bodies": {"answers": {"500": 1}, "faults": ["500 oh"]}}},
+            "hostile bodies must see no fault, got 500 oh",
+        ),
+        ({"megabytes": 2049}, "memory must stay under 2048 MB, got 2049 MB"),
+        ({"workers_lost": 1}, "no worker may be lost, got 1"),
+        ({"workers_present": 1}, "2 workers must be there afterwards, got 1"),
+        ({"tracebacks_in_log": 1}, "the log must have no traceback"),
+        ({"exit_status": -9}, "the service must end with 0, got -9"),
+    ],
+)
+def test_a_demand_that_attack_does_not_meet_is_named(other: dict[str, Any], sentence: str) -> None:
+    [unmet] = unmet_by_attack(attacked(**other))
+    assert unmet.startswith(sentence)
+
+
 def test_growth_is_that_of_the_last_half() -> None:
     assert growth([1.0] * 20 + [100.0] * 20) == 0
     assert growth([1.0] * 20 + [100.0] * 10 + [110.0] * 10) == pytest.approx(0.1)
@@ -108,14 +153,17 @@ def test_the_page_shows_what_was_found_and_what_does_not_hold(
     tmp_path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(provenance, "RESULTS", tmp_path)
-    assert section().count("Not measured.") == 2
+    assert section().count("Not measured.") == 3
     monkeypatch.setattr(provenance, "changed_files", list)
     provenance.store("load", loaded(served_share=0.8))
     provenance.store("soak", soaked())
+    provenance.store("attack", attacked(workers_lost=3))
     page = section()
     assert "| share of the bare session | 80.0% | at least 90% |" in page
     assert "| 80 % of that, at random: median, p99, ratio | 20.0 ms, 95.0 ms, 4.75 |" in page
     assert "- answers a second must be 90% of the bare session's calls, got 80.0%" in page
+    assert "| hang-ups: statuses | hung up: 5 |  |" in page
+    assert "- no worker may be lost, got 3" in page
     assert "| plan: statuses | 200: 7, 503: 1 |  |" in page
     assert "`none`. Does not hold: nothing." in page
 

@@ -34,8 +34,8 @@ class Client:
     says where it ends is looked at: a client takes its time from the same cores as the server.
     """
 
-    def __init__(self, address: tuple[str, int]) -> None:
-        self._socket = socket.create_connection(address, timeout=_PATIENCE)
+    def __init__(self, address: tuple[str, int], source: str = "127.0.0.1") -> None:
+        self._socket = socket.create_connection(address, _PATIENCE, (source, 0))
 
     def ask(self, method: str, path: str, body: bytes = b"", coding: str = "identity") -> int:
         """The status of the answer, which has been received to its end."""

@@ -1,4 +1,4 @@
-"""What `load` and `soak` found, in tables, beside what they must find."""
+"""What `load`, `soak` and `attack` found, in tables, beside what they must find."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
@@ -9,7 +9,12 @@ from tests.benchmarks.demands import (
     ASIDE_MS,
     GROWTH,
     LATENESS,
+    MEGABYTES,
+    MORE_SECONDS,
     SHARE,
+    WORKERS,
+    added_seconds,
+    unmet_by_attack,
     unmet_by_load,
     unmet_by_soak,
 )
@@ -21,7 +26,7 @@ _WHEN = {"under_full_load": "full load", "with_long_bodies": "and long bodies"}
 
 
 def section() -> str:
-    """What is stored of both."""
+    """What is stored of the three."""
     return (
         "## The service under load\n\nNot in the paper: `python -m tests.benchmarks load`. "
         "40 cities, 100 preferences, `time_limit` 0;\nclients, server and workers share the "
@@ -33,7 +38,12 @@ def section() -> str:
         f"{_part(load('load'), load_rows, unmet_by_load)}\n"
         "`python -m tests.benchmarks soak`: visitors who plan 10 to 500 cities, misuse, hang up, "
         "order, watch\nand cancel jobs.\n\n"
-        f"{_part(load('soak'), soak_rows, unmet_by_soak)}"
+        f"{_part(load('soak'), soak_rows, unmet_by_soak)}\n"
+        "`python -m tests.benchmarks attack`: honest requests, two a second, beside crowds that "
+        "attack, each\nfrom an address of its own: stalled uploads of 16 MB, idle connections, "
+        "hang-ups, repeats of a key on\na full queue, hostile bodies; 1,024 descriptors, no "
+        "rate.\n\n"
+        f"{_part(load('attack'), attack_rows, unmet_by_attack)}"
     )
 
 
@@ -45,6 +55,11 @@ def load_table(results: Mapping[str, Any]) -> str:
 def soak_table(results: Mapping[str, Any]) -> str:
     """What `soak` found."""
     return _table(soak_rows(results))
+
+
+def attack_table(results: Mapping[str, Any]) -> str:
+    """What `attack` found."""
+    return _table(attack_rows(results))
 
 
 def load_rows(results: Mapping[str, Any]) -> Iterator[Row]:
@@ -84,6 +99,27 @@ def soak_rows(results: Mapping[str, Any]) -> Iterator[Row]:
     yield "resident memory at first, at last", f"{memory[0]:.0f} MB, {memory[-1]:.0f} MB", ""
     growth = f"{results['growth_over_last_half']:+.1%}"
     yield "its growth over the last half", growth, f"under {GROWTH:.0%}"
+
+
+def attack_rows(results: Mapping[str, Any]) -> Iterator[Row]:
+    """What, what was found, and what is demanded of it."""
+    yield "minutes", f"{results['minutes']:g}", ""
+    yield "mean load of the machine, 15 minutes", f"{results['busy']:g}", ""
+    for when, said in (("quiet", "in quiet"), ("beside", "beside the crowds")):
+        found = results[when]
+        times = (found["median_ms"], found["p99_ms"], found["worst_ms"])
+        yield f"honest requests {said}: statuses", _counted(found["statuses"]), "200"
+        said_times = ", ".join(f"{each:.0f} ms" for each in times)
+        yield f"honest requests {said}: median, p99, worst", said_times, ""
+    yield "worst, more than in quiet", f"{added_seconds(results):.2f} s", f"{MORE_SECONDS:g} s"
+    for name, seen in results["crowds"].items():
+        yield f"{name}: statuses", _counted(seen["answers"]), ""
+        yield f"{name}: faults", str(len(seen["faults"])), "0"
+    yield "most memory", f"{results['megabytes']} MB", f"at most {MEGABYTES} MB"
+    yield "workers lost", str(results["workers_lost"]), "0"
+    yield "workers afterwards", str(results["workers_present"]), str(WORKERS)
+    yield "tracebacks in the log", str(results["tracebacks_in_log"]), "0"
+    yield "exit status at SIGTERM", str(results["exit_status"]), "0"
 
 
 def _part(

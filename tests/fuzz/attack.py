@@ -47,7 +47,7 @@ def post_many(url: str, sources: Iterable[TaskSource]) -> Counter[int]:
     statuses: Counter[int] = Counter()
     with httpx.Client(base_url=url, timeout=60) as client:
         for source in sources:
-            answer = client.post(f"/{source.kind}", **_message(source))
+            answer = client.post(f"/{source.kind}", **message_of(source))
             assert answer.status_code < 500 or answer.status_code == 503, answer.text
             strict_json(answer.content)
             statuses[answer.status_code] += 1
@@ -100,7 +100,7 @@ def watching_health(url: str) -> Iterator[HealthWatch]:
         thread.join()
 
 
-def _message(source: TaskSource) -> dict[str, Any]:
+def message_of(source: TaskSource) -> dict[str, Any]:
     if source.upload is None:
         return {"content": source.body, "headers": {"Content-Type": "application/json"}}
     part = "matrices" if source.kind == "front" else "map"
