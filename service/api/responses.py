@@ -95,7 +95,12 @@ class FrontAnswer(BaseModel):
     scale: Lengths | None
     actor: ActorName
     timings_ms: dict[str, float]
-    terminated: Termination | None = Field(description="null while the planning goes on")
+    terminated: Termination | None = Field(
+        description="how the search ended, null while it goes on. `converged`: up to nine cities"
+        " all tours were compared, and the front is exact; beyond, the search has long found"
+        " nothing better in its neighbourhoods, which proves nothing. Where `time_limit` is 0 there"
+        " was no search, and it says that all tours asked for were built"
+    )
     objectives: list[ObjectiveName] | SkipJsonSchema[None] = Field(
         default=None, description="as the request names them"
     )

@@ -34,7 +34,7 @@ def hypervolume_bound(
 ) -> float:
     """Return an upper bound on the hypervolume of any front of the instance, 0 to 1.
 
-    Exact up to eight cities. It is valid however early it stops, and tightens with time. By the
+    Exact up to nine cities. It is valid however early it stops, and tightens with time. By the
     Held-Karp bound where costs are symmetric, else by the assignment bound; either takes O(n^2)
     for each step under each weight.
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance, all_tours, tour_lengths
 from service.pareto import hypervolume
+from service.search import bound
 from service.search.bound import (
     WEIGHTS,
     area_above,
@@ -46,6 +47,9 @@ def test_the_exact_front_of_up_to_nine_cities_is_within_the_bound(
     reference_point = n * instance.scale * corner
     exact = hypervolume(tour_lengths(instance, TOURS[n]), reference_point)
     assert exact <= hypervolume_bound(instance, reference_point) <= 1
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(bound, "MAX_ENUMERATED", 3)  # else it is computed from all tours
+        assert exact <= hypervolume_bound(instance, reference_point) <= 1
 
 
 @settings(max_examples=60)

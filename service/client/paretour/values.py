@@ -106,7 +106,8 @@ class Front:
         reference_point: The reference point of the hypervolume, shape (2,).
         scale: The length that is 1 in scaled objectives, shape (2,).
         actor: The name of the network.
-        terminated: Why the search ended; None while it runs.
+        terminated: Why the search ended; None while it runs. `converged` proves that nothing is
+            better only up to nine cities.
         places: Over a map, the row and column of each city, shape (n, 2).
         paths: Over a map, the way of each tour, where the request asked for paths.
         document: The answer as it came, with every member.

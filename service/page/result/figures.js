@@ -24,7 +24,7 @@ const took = ({ timings_ms, terminated }) =>
   `${((timings_ms.total ?? 0) / 1000).toFixed(2)} s, ${ENDS[terminated] ?? terminated}`;
 
 const ENDS = {
-  converged: "converged",
+  converged: "nothing more found",
   time_limit: "to the limit",
   cancelled: "stopped",
 };
