@@ -9,12 +9,20 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from service.errors import InvalidInstance
-from service.instance import Instance, tour_lengths
+from service.instance import Instance, all_tours, least_lengths, tour_lengths
+from tests.helpers.instances import KINDS, small_integers
 
 COORDINATES = arrays(
     np.float64, st.tuples(st.integers(1, 6), st.just(4)), elements=st.integers(-5, 5)
 )
 SQUARE = np.array([[0, 0, 0, 0], [3, 0, 0, 1], [3, 4, 2, 1], [0, 4, 2, 0]], dtype=np.float64)
+
+
+@given(kind=st.sampled_from(KINDS), n=st.integers(1, 7), seed=st.integers(0, 10**6))
+def test_no_tour_is_shorter_than_the_least_lengths(kind: str, n: int, seed: int) -> None:
+    instance = small_integers(kind, n, seed)
+    shortest = tour_lengths(instance, all_tours(n)).min(axis=0)
+    assert (least_lengths(instance) <= shortest * (1 + 1e-12)).all()
 
 
 @pytest.mark.parametrize(

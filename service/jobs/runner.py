@@ -13,7 +13,7 @@ from service.errors import Cancelled
 from service.instance import Instance
 from service.jobs.front_document import FrontDocument, encode_front
 from service.planner import Constructor, Front, plan
-from service.requests.limits import Limits
+from service.requests.limits import Limits, check_reference_point
 from service.requests.stops import UnmeasuredStops, make_instance
 from service.requests.task import Task, TaskSource, parse_task
 from service.search import improve
@@ -97,6 +97,7 @@ class TaskRunner:
     ) -> FrontDocument:
         began = time.perf_counter()
         instance = make_instance(stops)
+        check_reference_point(instance, task.options)
         timings = {"costs": 1000 * (time.perf_counter() - began)}
         front = self._plan(task, instance, stop, report)
         front = replace(front, timings=timings | front.timings)
@@ -107,6 +108,7 @@ class TaskRunner:
     ) -> FrontDocument:
         began = time.perf_counter()
         surveyed = survey(coverage, self.limits.cities, stop)
+        check_reference_point(surveyed.instance, task.options)
         survey_seconds = time.perf_counter() - began
         places = surveyed.places.tolist()
         front = self._plan(task, surveyed.instance, stop, report, places)

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from service.errors import Refusal
+from service.instance import Instance, least_lengths
+from service.planner import PlanOptions
 from service.requests.schemas import PlanRequest
 from service.requests.validation import invalid
 
@@ -80,6 +82,23 @@ def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
         if len(tour) != n or sorted(tour) != list(range(n)):
             demand = f"must visit each city, 0 to {n - 1}, once"
             raise invalid(f"initial_tours/{index}", demand)
+
+
+def check_reference_point(instance: Instance, options: PlanOptions) -> None:
+    """Raise a refusal where it is plain that no tour lies below the reference point.
+
+    Every hypervolume would be 0. Where that is not plain, it is.
+
+    Raises:
+        Refusal: In one objective, every tour is as long or longer.
+    """
+    if options.reference_point is None:
+        return
+    lengths = zip(options.reference_point, least_lengths(instance), strict=True)
+    for m, (length, shortest) in enumerate(lengths):
+        if length <= shortest:
+            demand = f"must be more than {shortest:.6g}, which every tour has at least"
+            raise invalid(f"reference_point/{m}", f"{demand}, got {length:.6g}")
 
 
 def lower_defaults(request: AnyPlanRequest, limits: Limits) -> AnyPlanRequest:

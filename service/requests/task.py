@@ -11,7 +11,7 @@ from service.instance import Instance, Kind
 from service.planner import PlanOptions
 from service.requests.coverage import parse_coverage_request
 from service.requests.front_parser import parse_front_request
-from service.requests.limits import Limits, check_structure
+from service.requests.limits import Limits, check_reference_point, check_structure
 from service.requests.stops import Labels, UnmeasuredStops
 
 TaskKind = Literal["front", "coverage"]
@@ -76,9 +76,12 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
             paths=coverage_request.paths,
         )
     request = parse_front_request(source.body, limits, source.upload)
+    subject, options = request.subject(), request.options()
+    if isinstance(subject, Instance):
+        check_reference_point(subject, options)
     return Task(
-        subject=request.subject(),
-        options=request.options(),
+        subject=subject,
+        options=options,
         actor=choose_actor(actors, request.kind, request.requested_actor),
         labels=request.labels,
     )

@@ -41,6 +41,16 @@ def changed(**members: Any) -> dict[str, Any]:
     return {name: value for name, value in {**TASK, **members}.items() if value is not None}
 
 
+def test_a_reference_point_that_plainly_no_tour_comes_below_is_refused(
+    client: httpx.Client,
+) -> None:
+    answer = client.post("/coverage", json=changed(reference_point=[100, 5]))
+    document = problem(answer, 422, "invalid-request")
+    assert document["errors"][0]["pointer"] == "/reference_point/1"
+    answer = client.post("/coverage", json=changed(reference_point=[100, 10.1]))
+    assert answer.json()["hypervolume"] == 0
+
+
 def test_places_on_a_map_become_a_front_with_paths(client: httpx.Client) -> None:
     answer = client.post("/coverage", json=changed(paths=True, start=2, size=10))
     assert answer.status_code == 200, answer.text

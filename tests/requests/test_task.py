@@ -8,7 +8,7 @@ import pytest
 from service.coverage.survey import Coverage
 from service.errors import InvalidCoverage, Refusal
 from service.instance import Instance
-from service.requests.task import TaskSource, choose_actor, parse_task
+from service.requests.task import Task, TaskSource, choose_actor, parse_task
 from tests.helpers.actors import info_of
 from tests.helpers.serving import LIMITS
 
@@ -34,6 +34,37 @@ def test_a_body_becomes_a_task() -> None:
     task = parse_task(TaskSource("coverage", json.dumps(COVERAGE).encode()), LIMITS, FACTS)
     assert isinstance(task.subject, Coverage)
     assert (task.actor, task.paths, task.needs_compiled_code) == ("pa-one-matrix", True, True)
+
+
+MATRIX = [[0, 2, 3], [4, 0, 1], [5, 2, 0]]  # least out of each city: 2 + 1 + 2; into: 4 + 2 + 1
+CITIES = [[0, 0, 0, 0], [3, 1, 1, 2], [1, 2, 2, 5]]  # longer sides of the planes: 3 and 5
+
+
+@pytest.mark.parametrize("cities", [{"coordinates": CITIES}, {"matrices": [MATRIX, MATRIX]}])
+@pytest.mark.parametrize("objective", [0, 1])
+def test_a_reference_point_that_plainly_no_tour_comes_below_is_refused(
+    cities: dict[str, object], objective: int
+) -> None:
+    least = (6, 10) if "coordinates" in cities else (7, 7)
+    point = [100.0, 100.0]
+    point[objective] = least[objective]
+    with pytest.raises(Refusal) as refused:
+        parse_front({**cities, "reference_point": point})
+    assert refused.value.code == "invalid-request"
+    [fault] = refused.value.document("x")["errors"]
+    assert fault["pointer"] == f"/reference_point/{objective}"
+    assert f"must be more than {least[objective]}, " in fault["detail"]
+    point[objective] *= 1.001
+    assert parse_front({**cities, "reference_point": point}).options.reference_point is not None
+
+
+@pytest.mark.parametrize("cities", [CITIES[:1], CITIES[:1] * 3])
+def test_any_reference_point_is_above_tours_of_no_length(cities: list[list[int]]) -> None:
+    parse_front({"coordinates": cities, "reference_point": [1e-150, 1e-150]})
+
+
+def parse_front(request: dict[str, object]) -> Task:
+    return parse_task(TaskSource("front", json.dumps(request).encode()), LIMITS, FACTS)
 
 
 def test_what_cannot_be_planned_is_refused() -> None:
