@@ -1,10 +1,13 @@
 """Parse request bodies into tasks: short ones here, others in processes with bounds."""
 
 import asyncio
+import logging
 import resource
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
 
@@ -18,6 +21,9 @@ _FEW_QUOTES = 200  # no request has as many; a list of faults as long takes a wh
 _MEDIUM = 2**20  # bytes that take a tenth of a second or two
 _ATTEMPTS = 2
 _MOST_WAITING = 16  # bodies for each process
+_MOST_WARNINGS = 10  # of one body, that are logged
+_LONGEST_WARNING = 500  # characters
+_LOG = logging.getLogger("py.warnings")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +37,13 @@ class ParserBounds:
 
     seconds: float = 20.0
     memory: int = 2**29 + 2**28
+
+
+class _Outcome(NamedTuple):
+    """What a process made of a body, and the warnings of Python on the way."""
+
+    task: Task | Refusal
+    warnings: list[str]
 
 
 class _Lane:
@@ -109,7 +122,7 @@ class TaskParser:
             try:
                 # At the end of its time the call is cancelled, which kills the process.
                 async with asyncio.timeout(seconds):
-                    return await to_process.run_sync(
+                    outcome = await to_process.run_sync(
                         _parse_bounded,
                         source,
                         self._limits,
@@ -118,6 +131,7 @@ class TaskParser:
                         cancellable=True,
                         limiter=self._processes,
                     )
+                return _checked(outcome)
             except BrokenWorkerProcess:
                 continue
             except TimeoutError:
@@ -125,15 +139,34 @@ class TaskParser:
         raise _too_complex("without the loss of its process, and two were lost")
 
 
+def _checked(outcome: _Outcome) -> Task:
+    """Log the warnings, as the process has no log, and return the task or raise the refusal."""
+    for warning in outcome.warnings:
+        _LOG.warning("%s", warning)
+    if isinstance(outcome.task, Refusal):
+        raise outcome.task
+    return outcome.task
+
+
 def _parse_bounded(
     source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo], memory: int
-) -> Task:
+) -> _Outcome:
     """Parse a body in a process that may take so many bytes more than when it was idle."""
     _bound_memory(memory)
-    try:
-        return parse_task(source, limits, actors)
-    except MemoryError:
-        raise _too_complex(f"in {memory} bytes of memory, and was not") from None
+    with warnings.catch_warnings(record=True) as caught:
+        task: Task | Refusal
+        try:
+            task = parse_task(source, limits, actors)
+        except MemoryError:
+            task = _too_complex(f"in {memory} bytes of memory, and was not")
+        except Refusal as refusal:
+            task = refusal
+    return _Outcome(task, [_warning_text(each) for each in caught[:_MOST_WARNINGS]])
+
+
+def _warning_text(caught: warnings.WarningMessage) -> str:
+    text = f"{caught.category.__name__}: {caught.message}"
+    return f"{Path(caught.filename).name}:{caught.lineno}: {text}"[:_LONGEST_WARNING]
 
 
 def _bound_memory(memory: int) -> None:

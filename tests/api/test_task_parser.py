@@ -3,13 +3,17 @@
 import asyncio
 import json
 import time
-from dataclasses import replace
+import warnings
+from contextlib import suppress
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
+from service.actor import ActorInfo
 from service.api.task_parser import ParserBounds, TaskParser
 from service.errors import QueueFull, Refusal
+from service.instance import Kind
 from service.requests.task import Task, TaskSource
 from tests.helpers.serving import ACTORS, LIMITS
 
@@ -64,6 +68,32 @@ def test_a_body_that_takes_too_long_ends_its_process() -> None:
 def test_a_body_that_takes_too_much_memory_is_refused() -> None:
     refused = refusal(NUMBERS, parser(memory=2**26))
     assert refused.code == "body-too-complex"
+
+
+@dataclass(frozen=True, kw_only=True)
+class WarningActor(ActorInfo):
+    """An actor whose choice warns, in the process that chooses it."""
+
+    def serves(self, kind: Kind) -> bool:
+        for number in range(50):
+            warnings.warn_explicit("over\nflow" * 100, RuntimeWarning, "/a/choice.py", number)
+        return super().serves(kind)
+
+
+@pytest.mark.parametrize("refused", [False, True])
+def test_warnings_of_the_process_are_logged(
+    refused: bool, caplog: pytest.LogCaptureFixture
+) -> None:
+    actors = {"x": WarningActor(**vars(INFO["pa-one-matrix"]))}
+    asked = {"matrices": COSTS, "actor": "y"} if refused else {"matrices": COSTS}
+    source = TaskSource("front", json.dumps(asked).encode())
+    with suppress(Refusal):
+        asyncio.run(TaskParser(LARGE, actors).parse(source))
+        assert not refused
+    lines = [record for record in caplog.records if record.name == "py.warnings"]
+    assert len(lines) == 10
+    assert lines[3].getMessage().startswith("choice.py:3: RuntimeWarning: over\nflowover")
+    assert max(len(line.getMessage()) for line in lines) == 500
 
 
 def test_an_honest_body_does_not_wait_for_longer_ones() -> None:
