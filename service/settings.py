@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated
+from urllib.parse import urlsplit
 
 from limits import parse
 from pydantic import AfterValidator, BeforeValidator, Field
@@ -27,6 +28,17 @@ def _split(value: object) -> object:
     return [word.strip() for word in value.split(",") if word] if isinstance(value, str) else value
 
 
+def _checked_redis_url(value: str) -> str:
+    try:
+        parts = urlsplit(value)
+        named = parts.scheme in ("redis", "rediss") and parts.hostname and parts.port != 0
+    except ValueError:  # of the port
+        named = False
+    if not named:
+        raise ValueError("must be redis://HOST:PORT/NUMBER, or rediss:// for TLS")
+    return value
+
+
 def _key_hash(value: object) -> object:
     return KeyHash.read(value) if isinstance(value, str) else value
 
@@ -40,6 +52,7 @@ Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)]
 KeyHashes = Annotated[
     tuple[Annotated[KeyHash, BeforeValidator(_key_hash)], ...], NoDecode, BeforeValidator(_split)
 ]
+RedisUrl = Annotated[str, AfterValidator(_checked_redis_url)]
 Rate = Annotated[str, AfterValidator(_checked_rate)]
 
 
@@ -117,7 +130,7 @@ class Settings(BaseSettings):
         STORE_BYTES, ge=1, description="the most bytes of those; callers with most make way"
     )
     store_seconds: float = Field(3600.0, gt=0, description="how long a front is kept")
-    redis_url: str | None = Field(
+    redis_url: RedisUrl | None = Field(
         None,
         description="Redis of all replicas: rates, fronts and jobs, which `paretour work` plans",
     )

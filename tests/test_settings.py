@@ -50,6 +50,40 @@ def test_the_command_names_the_setting_that_is_wrong(
     )
 
 
+@pytest.mark.parametrize("command", ["serve", "work"])
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        ("foo", "'foo'"),
+        ("", "''"),
+        ("http://redis:6379", "'http://redis:6379'"),
+        ("redis://", "'redis://'"),
+        ("redis://user:secret@host:port/0", "'redis://***@host:port/0'"),
+    ],
+)
+def test_a_wrong_address_of_redis_is_a_sentence_that_names_the_variable(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    command: str,
+    value: str,
+    shown: str,
+) -> None:
+    monkeypatch.setenv("PARETOUR_REDIS_URL", value)
+    with pytest.raises(SystemExit) as stopped:
+        main([command])
+    assert stopped.value.code == 2
+    said = " ".join(capsys.readouterr().err.split())
+    demand = "must be redis://HOST:PORT/NUMBER, or rediss:// for TLS"
+    assert f"PARETOUR_REDIS_URL: {demand}, got {shown}" in said
+    assert "secret" not in said
+
+
+@pytest.mark.parametrize("url", ["redis://redis:6379/0", "rediss://:pw@[::1]:6380/1?x=y"])
+def test_an_address_of_redis_is_taken(monkeypatch: pytest.MonkeyPatch, url: str) -> None:
+    monkeypatch.setenv("PARETOUR_REDIS_URL", url)
+    assert Settings().redis_url == url
+
+
 def test_an_option_of_the_command_is_a_setting(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["serve", "--workers", "0"])

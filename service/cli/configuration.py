@@ -1,6 +1,7 @@
 """Load the settings, and what they name, with a UsageError where that fails."""
 
 import os
+import re
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
@@ -10,6 +11,7 @@ from service.cli.errors import UsageError
 from service.settings import Settings, unknown_variables, variable_of
 
 T = TypeVar("T")
+_PASSWORD = re.compile(r"//[^/]*@")  # of a URL
 
 
 def load_settings(**options: Any) -> Settings:
@@ -41,7 +43,8 @@ def load_with(load: Callable[[Settings], T], settings: Settings) -> T:
 def _sentence(error: ValidationError, options: Mapping[str, Any]) -> str:
     """Return what is wrong, with options and variables named as the operator wrote them."""
     return "; ".join(
-        f"{_written(fault['loc'], options)}: {fault['msg']}, got {fault['input']!r}"
+        f"{_written(fault['loc'], options)}: {fault['msg'].removeprefix('Value error, ')},"
+        f" got {_PASSWORD.sub('//***@', repr(fault['input']))}"
         for fault in error.errors()
     )
 

@@ -27,6 +27,8 @@ from tests.helpers.deploy_files import (
     our_services,
 )
 
+ALIASES = {field.validation_alias for field in Settings.model_fields.values()} - {None}
+SETTINGS = ALIASES | {f"PARETOUR_{name.upper()}" for name in Settings.model_fields}
 CONTAINERS = {
     f"{name} {container['name']}": container
     for name, pod in all_pods().items()
@@ -111,13 +113,28 @@ def variables() -> Iterator[tuple[str, str]]:
 def test_every_variable_is_a_setting_that_takes_its_value(
     monkeypatch: pytest.MonkeyPatch, name: str, value: str
 ) -> None:
-    if not name.startswith("PARETOUR_"):
+    if name not in SETTINGS:
         assert any(f"$({name})" in other for _, other in variables())
         return
-    assert name.removeprefix("PARETOUR_").lower() in Settings.model_fields
     if not value.startswith("$"):
         monkeypatch.setenv(name, value)
         Settings()
+
+
+@pytest.mark.parametrize("file", COMPOSE_FILES, ids=lambda each: each.name)
+def test_compose_asks_for_keys_and_for_the_proxy(file: ComposeFile) -> None:
+    given = file.services["paretour"]["environment"]
+    # Without it Compose starts nothing, and says why.
+    assert given["PARETOUR_API_KEYS"].startswith("${PARETOUR_API_KEYS?must be CALLER:HASH")
+    assert given["FORWARDED_ALLOW_IPS"] == "${FORWARDED_ALLOW_IPS:-127.0.0.1}"
+    assert (DEPLOY / file.name).read_text().startswith("# PARETOUR_API_KEYS= docker compose")
+
+
+@of_each_manifest
+def test_a_manifest_says_which_proxies_are_believed(manifest: Manifest) -> None:
+    [container] = manifest.pods["paretour"]["spec"]["containers"]
+    given = {each["name"]: each.get("value") for each in container["env"]}
+    assert given["FORWARDED_ALLOW_IPS"] == Settings.model_fields["forwarded_allow_ips"].default
 
 
 @of_our_pods

@@ -30,7 +30,14 @@ from tests.guide.tree import modules, named, tree
 from tests.helpers.serving import app_of, serving_released
 
 # Commands that a test of their own runs or checks: deployment, the image, set-up and linters.
-NOT_RUN = ("docker ", "kubectl ", "python3 -m venv ", ".venv/bin/", "PARETOUR_OWN_ACTORS=")
+NOT_RUN = (
+    "docker ",
+    "PARETOUR_API_KEYS= docker ",
+    "kubectl ",
+    "python3 -m venv ",
+    ".venv/bin/",
+    "PARETOUR_OWN_ACTORS=",
+)
 # One process for all, because each would import torch.
 HELP_OF_EACH = """
 import contextlib, runpy, sys
