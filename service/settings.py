@@ -18,6 +18,7 @@ from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 from service.api.auth import KeyHash
 from service.jobs.store import STORE_BYTES
 from service.requests.limits import Limits
+from service.roads.router import DEFAULT_PROFILES, RouterName, RouterSettings
 
 
 def _cores() -> int:
@@ -48,12 +49,23 @@ def _checked_rate(value: str) -> str:
     return value
 
 
+def _checked_address(value: str) -> str:
+    """Return an http or https URL of a server, maybe with a path, to which more is added."""
+    parts = urlsplit(value)
+    whole = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
+    if not whole or parts.query or parts.fragment or not value.isascii() or " " in value:
+        raise ValueError("must be like http://valhalla:8002")
+    return value
+
+
 Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)]
 KeyHashes = Annotated[
     tuple[Annotated[KeyHash, BeforeValidator(_key_hash)], ...], NoDecode, BeforeValidator(_split)
 ]
 RedisUrl = Annotated[str, AfterValidator(_checked_redis_url)]
 Rate = Annotated[str, AfterValidator(_checked_rate)]
+Address = Annotated[str, AfterValidator(_checked_address)]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,50}$")]
 
 
 class Settings(BaseSettings):
@@ -135,6 +147,31 @@ class Settings(BaseSettings):
         description="Redis of all replicas: rates, fronts and jobs, which `paretour work` plans",
     )
 
+    # The routing engine.
+    router_url: Address | None = Field(
+        None, description="routing engine that knows costs by road; none refuses these"
+    )
+    router: RouterName = Field("valhalla", description="whose interface that has, valhalla or osrm")
+    router_profile: Name | None = Field(
+        None,
+        description="its means of transport; by default auto for valhalla and driving for osrm",
+    )
+    router_snap: float = Field(
+        250.0, gt=0, le=10_000, description="metres that a stop may lie from a road"
+    )
+    router_seconds: float = Field(
+        20.0, gt=0, description="how long it may take for the costs of a request"
+    )
+    router_pairs: int = Field(
+        2500, ge=1, le=10_000, description="the most pairs of stops that it is asked about at once"
+    )
+    router_cache_bytes: int = Field(
+        2**26, ge=0, description="bytes of costs that are remembered, so that it is asked once"
+    )
+    router_cache_seconds: float = Field(
+        3600.0, gt=0, description="how long costs by road are remembered"
+    )
+
     # Access.
     api_keys: KeyHashes = Field(
         (), description="who may call, as CALLER:HASH with commas between; none lets everybody in"
@@ -154,6 +191,23 @@ class Settings(BaseSettings):
     )
 
     @property
+    def roads(self) -> RouterSettings | None:
+        """The routing engine, if there is one."""
+        if self.router_url is None:
+            return None
+        return RouterSettings(
+            url=self.router_url,
+            router=self.router,
+            profile=self.router_profile or DEFAULT_PROFILES[self.router],
+            snap=self.router_snap,
+            # So that a slow engine is named as the cause, before the request is overdue.
+            seconds=min(self.router_seconds, _ROUTER_SHARE * self.request_seconds),
+            pairs=self.router_pairs,
+            cache_bytes=self.router_cache_bytes,
+            cache_seconds=self.router_cache_seconds,
+        )
+
+    @property
     def limits(self) -> Limits:
         """The limits of a request."""
         return Limits(
@@ -168,6 +222,7 @@ class Settings(BaseSettings):
 
 
 PREFIX = "PARETOUR_"
+_ROUTER_SHARE = 0.9  # of a request's seconds that its costs by road may take
 # Of the command line, and what Kubernetes and Docker set for services beside ours.
 _OTHERS = re.compile(
     r"PARETOUR_(API_KEY|(\w+_)?SERVICE_(HOST|PORT(_\w+)?)|(\w+_)?PORT_\d+_(TCP|UDP|SCTP)(_\w+)?)"

@@ -10,6 +10,7 @@ from hypothesis import settings
 
 from tests.helpers.redis_server import Redis, redis_server
 from tests.helpers.serving import serving_released
+from tests.helpers.valhalla import RunningValhalla, valhalla_service
 
 NO_CERTIFICATES = Path(__file__).parent
 
@@ -33,6 +34,13 @@ def redis(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Redis]:
     """A real Redis, for tests that leave it running."""
     with redis_server(tmp_path_factory.mktemp("redis")) as server:
         yield server
+
+
+@pytest.fixture(scope="session")
+def valhalla(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningValhalla]:
+    """A real routing engine of central Helsinki, for tests that leave it running."""
+    with valhalla_service(tmp_path_factory.mktemp("valhalla")) as running:
+        yield running
 
 
 @pytest.fixture(scope="session")

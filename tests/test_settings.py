@@ -27,6 +27,14 @@ def test_a_setting_is_read_from_its_variable(monkeypatch: pytest.MonkeyPatch) ->
         ("PARETOUR_QUEUE", "-1"),
         ("PARETOUR_STORE_SECONDS", "0"),
         ("PARETOUR_MAX_CITIES", "many"),
+        ("PARETOUR_ROUTER_URL", "valhalla:8002"),
+        ("PARETOUR_ROUTER_URL", "http://"),
+        ("PARETOUR_ROUTER_URL", "http://valhalla:none"),
+        ("PARETOUR_ROUTER_URL", "http://valhalla:8002/?key=a"),
+        ("PARETOUR_ROUTER", "graphhopper"),
+        ("PARETOUR_ROUTER_PROFILE", "../../etc"),
+        ("PARETOUR_ROUTER_SNAP", "nan"),
+        ("PARETOUR_ROUTER_PAIRS", "1000000"),
     ],
 )
 def test_a_wrong_setting_is_refused(
@@ -35,6 +43,21 @@ def test_a_wrong_setting_is_refused(
     monkeypatch.setenv(variable, value)
     with pytest.raises(ValidationError):
         Settings()
+
+
+@pytest.mark.parametrize(("router", "profile"), [("valhalla", "auto"), ("osrm", "driving")])
+def test_the_routing_engine_is_that_of_the_settings(
+    monkeypatch: pytest.MonkeyPatch, router: str, profile: str
+) -> None:
+    assert Settings().roads is None
+    monkeypatch.setenv("PARETOUR_ROUTER_URL", "https://roads.example/engine")
+    monkeypatch.setenv("PARETOUR_ROUTER", router)
+    roads = Settings().roads
+    assert roads is not None
+    assert (roads.url, roads.router) == ("https://roads.example/engine", router)
+    assert roads.profile == profile
+    monkeypatch.setenv("PARETOUR_ROUTER_PROFILE", "truck")
+    assert Settings().roads.profile == "truck"  # type: ignore[union-attr]
 
 
 def test_the_command_names_the_setting_that_is_wrong(

@@ -10,6 +10,7 @@ from typing import NamedTuple
 _ALL = ("*",)
 _NONE = ()  # no operation is at fault, but the path, the method or the service
 _PLANS = ("POST /front", "POST /coverage")
+_ROADS = ("POST /front",)
 _TOUR = ("GET /tour",)
 
 
@@ -63,6 +64,8 @@ PROBLEMS: Mapping[str, Problem] = {
     "no-router": Problem(
         422, "{name} {measure} needs a routing engine, and none is configured", ("POST /front",)
     ),
+    "no-road": Problem(422, "{detail}", _ROADS),
+    "off-road": Problem(422, "{detail}", _ROADS),
     "paths-too-long": Problem(
         422, "paths must have at most {limit} cells, got {actual}: {advice}", ("POST /coverage",)
     ),
@@ -79,12 +82,18 @@ PROBLEMS: Mapping[str, Problem] = {
         429, "requests must be at most {rate}, and {caller} made more: wait {wait} s"
     ),
     "internal-error": Problem(500, "this is a fault of the service, not of the request", _NONE),
+    "router-unusable": Problem(
+        502, "the routing engine must answer as documented, and does not: {reason}", _ROADS
+    ),
     "bodies-full": Problem(503, "all bodies under way must fit {limit} bytes: ask again", _PLANS),
     "no-worker": Problem(
         503, "a worker must be running, and none can be started yet", ("GET /health/ready",)
     ),
     "queue-full": Problem(
         503, "the queue must have a free place, and all are taken: ask again", _PLANS
+    ),
+    "router-unavailable": Problem(
+        503, "the routing engine must answer, and does not: ask again", _ROADS
     ),
     "share-full": Problem(
         503,
@@ -104,6 +113,11 @@ PROBLEMS: Mapping[str, Problem] = {
     ),
     "worker-lost": Problem(
         503, "the work must leave its worker alive, and two were lost over it", _PLANS
+    ),
+    "router-too-slow": Problem(
+        504,
+        "the routing engine must answer within {limit:g} s, and has not: bring fewer stops",
+        _ROADS,
     ),
     "overdue": Problem(504, "the work must end in time, and there was no front yet", _PLANS),
 }

@@ -35,3 +35,21 @@ def great_circle_matrix(locations: Array) -> Array:
 def _half_chords(angles: Array) -> Array:
     """Return the squared sines of half the differences of all angles, shape (n, n)."""
     return np.sin((angles[:, np.newaxis] - angles) / 2) ** 2
+
+
+def great_circle_distances(one: Array, other: Array) -> Array:
+    """Return the distances in metres from each place to the other of its row, shape (k,).
+
+    Args:
+        one: Longitude and latitude of each place in degrees, shape (k, 2).
+        other: Likewise.
+
+    >>> great_circle_distances(np.array([[0.0, 90.0]]), np.array([[17.0, 0.0]])).round()
+    array([10007557.])
+    """
+    longitude, latitude = np.radians(one).T
+    other_longitude, other_latitude = np.radians(other).T
+    north = np.sin((latitude - other_latitude) / 2) ** 2
+    east = np.sin((longitude - other_longitude) / 2) ** 2
+    square = north + np.cos(latitude) * np.cos(other_latitude) * east
+    return 2 * EARTH_RADIUS * np.arcsin(np.sqrt(np.minimum(square, 1.0)))

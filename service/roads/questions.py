@@ -1,0 +1,162 @@
+"""The questions of one request to a routing engine, and what their answers come to."""
+
+from asyncio import TaskGroup
+from collections.abc import Awaitable, Callable, Iterable, Iterator, Sequence
+from itertools import pairwise
+from math import ceil, isqrt
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.errors import NoRoad, OffRoad, RouterUnusable
+from service.roads.reachability import MissingWay, missing_ways
+from service.roads.router import Array, Line, Location, NoWay, RouterInterface, Unintelligible
+from service.roads.trails import Leg, trails
+from service.roads.transport import AT_ONCE, RouterTransport
+
+_PLACES_AT_ONCE = 100  # in one question about the nearest roads
+_Item = TypeVar("_Item")
+_Result = TypeVar("_Result")
+_Indices = NDArray[np.int64]
+
+
+class Questions:
+    """The questions about the places of one request, shape (n, 2), and their answers."""
+
+    def __init__(
+        self,
+        router: RouterInterface,
+        transport: RouterTransport,
+        places: Array,
+        ids: Sequence[str],
+    ) -> None:
+        self._router = router
+        self._transport = transport
+        self._places: list[Location] = [(lon, lat) for lon, lat in places.tolist()]
+        self._ids = ids
+        n = len(places)
+        self._costs = np.full((2, n, n), np.nan)
+
+    async def check_snapped(self, snap: float) -> None:
+        """Raise OffRoad where stops lie farther from every road than so many metres."""
+        parts = _parts(len(self._places), _PLACES_AT_ONCE)
+        distances = [await self._snapped(part) for part in parts]
+        off = np.flatnonzero(np.concatenate(distances) > snap).tolist()
+        if off:
+            raise OffRoad([(i, self._ids[i]) for i in off], snap)
+
+    async def costs(self, pairs: int) -> Array:
+        """Return both matrices, shape (2, n, n), of blocks of at most so many pairs.
+
+        Raises:
+            NoRoad: There is no way between some stops.
+        """
+        parts = _parts(len(self._places), isqrt(pairs))
+        blocks = ((sources, targets) for sources in parts for targets in parts)
+        await _for_each(blocks, self._fill)
+        for costs in self._costs:
+            np.fill_diagonal(costs, 0.0)
+        if ways := missing_ways(np.isnan(self._costs[0])):
+            raise self._no_road(ways)
+        self._costs.setflags(write=False)
+        return self._costs
+
+    async def streets(self, legs: Iterable[Leg]) -> dict[Leg, Line]:
+        """Return the line along the streets of each leg.
+
+        Raises:
+            NoRoad: There is no way along some leg.
+        """
+        lines: dict[Leg, Line] = {}
+
+        async def follow(trail: list[int]) -> None:
+            lines.update(zip(pairwise(trail), await self._route(trail), strict=True))
+
+        await _for_each(trails(legs, self._router.most_route_stops), follow)
+        return lines
+
+    async def _fill(self, block: tuple[_Indices, _Indices]) -> None:
+        sources, targets = block
+        self._costs[:, sources[:, np.newaxis], targets] = await self._table(sources, targets)
+
+    async def _route(self, trail: list[int]) -> list[Line]:
+        """Return the line of each leg of a trail, of which halves are asked for if it has none."""
+        answer = await self._transport.ask(self._router.ask_route(self._places_of(trail)))
+        try:
+            return _understood(lambda: self._router.read_route(answer, len(trail) - 1))
+        except NoWay:
+            if len(trail) == 2:
+                raise self._no_road([MissingWay(trail[0], trail[1], trail[0])]) from None
+        middle = len(trail) // 2
+        return [*await self._route(trail[: middle + 1]), *await self._route(trail[middle:])]
+
+    async def _snapped(self, part: _Indices) -> Array:
+        """Return how many metres places lie from a road, infinity where there is none."""
+        places = self._places_of(part.tolist())
+        answer = await self._transport.ask(self._router.ask_snapped(places))
+        try:
+            return _understood(lambda: self._router.read_snapped(answer, places))
+        except NoWay:
+            if len(part) == 1:
+                return np.array([np.inf])
+        return np.concatenate([await self._snapped(half) for half in np.array_split(part, 2)])
+
+    async def _table(self, sources: _Indices, targets: _Indices) -> Array:
+        """Return the costs of a block, shape (2, sources, targets).
+
+        An engine that refuses the whole block is asked for halves of it, until it is found between
+        which two stops there is no way.
+        """
+        places = self._places_of(sources.tolist()), self._places_of(targets.tolist())
+        answer = await self._transport.ask(self._router.ask_table(*places))
+        shape = len(sources), len(targets)
+        try:
+            return _understood(lambda: self._router.read_table(answer, shape))
+        except NoWay:
+            if shape == (1, 1):
+                origin, destination = int(sources[0]), int(targets[0])
+                if origin == destination:
+                    return np.zeros((2, 1, 1))
+                raise self._no_road([MissingWay(origin, destination, origin)]) from None
+        if shape[0] >= shape[1]:
+            halves = [await self._table(half, targets) for half in np.array_split(sources, 2)]
+            return np.concatenate(halves, axis=1)
+        halves = [await self._table(sources, half) for half in np.array_split(targets, 2)]
+        return np.concatenate(halves, axis=2)
+
+    def _places_of(self, indices: Sequence[int]) -> list[Location]:
+        return [self._places[i] for i in indices]
+
+    def _no_road(self, ways: list[MissingWay]) -> NoRoad:
+        ids = self._ids
+        return NoRoad([(way.blamed, ids[way.origin], ids[way.destination]) for way in ways])
+
+
+async def _for_each(items: Iterable[_Item], do: Callable[[_Item], Awaitable[None]]) -> None:
+    """Do something with each item, a few at once. The first error ends all."""
+    left: Iterator[_Item] = iter(items)
+
+    async def work() -> None:
+        for item in left:
+            await do(item)
+
+    try:
+        async with TaskGroup() as group:
+            for _ in range(AT_ONCE):
+                group.create_task(work())
+    except BaseExceptionGroup as errors:
+        raise errors.exceptions[0] from None
+
+
+def _parts(n: int, most: int) -> list[_Indices]:
+    """Return the indices 0 to n - 1 in parts of about equal size, of at most so many each."""
+    return np.array_split(np.arange(n), ceil(n / most))
+
+
+def _understood(read: Callable[[], _Result]) -> _Result:
+    """Return an answer that is read; where it is not understood, raise RouterUnusable."""
+    try:
+        return read()
+    except Unintelligible as error:
+        raise RouterUnusable(str(error)) from None

@@ -1,0 +1,41 @@
+"""Which stops to leave out, so that there is a way by road between all that remain."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.errors import MOST_FAULTS
+
+
+class MissingWay(NamedTuple):
+    """Two stops without a way from the first to the second, and the one of them to leave out."""
+
+    origin: int
+    destination: int
+    blamed: int
+
+
+def missing_ways(missing: NDArray[np.bool_]) -> list[MissingWay]:
+    """Return a missing way of each stop to leave out, at most MOST_FAULTS of them.
+
+    The stops are those with the most missing ways, each counted when the ones before it are left
+    out: nearly the fewest that can be.
+
+    Args:
+        missing: Whether there is no way from a stop (row) to another (column), shape (n, n).
+
+    >>> island = np.array([[0, 0, 1], [0, 0, 1], [1, 1, 0]], dtype=bool)
+    >>> missing_ways(island)
+    [MissingWay(origin=2, destination=0, blamed=2)]
+    """
+    left = missing.copy()
+    ways: list[MissingWay] = []
+    while left.any() and len(ways) < MOST_FAULTS:
+        blamed = int((left.sum(axis=0) + left.sum(axis=1)).argmax())
+        if left[blamed].any():
+            ways.append(MissingWay(blamed, int(left[blamed].argmax()), blamed))
+        else:
+            ways.append(MissingWay(int(left[:, blamed].argmax()), blamed, blamed))
+        left[blamed] = left[:, blamed] = False
+    return ways

@@ -1,0 +1,102 @@
+"""What a routing engine is asked, and what its answers mean: the interface of Valhalla and OSRM."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Location = tuple[float, float]  # longitude and latitude in degrees, WGS84
+Line = list[Location]
+RouterName = Literal["valhalla", "osrm"]
+DEFAULT_PROFILES: Mapping[RouterName, str] = {"valhalla": "auto", "osrm": "driving"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class RouterSettings:
+    """The routing engine of a service, and what may be spent on it.
+
+    Attributes:
+        url: Its address, to which the paths of its services are added.
+        router: Whose interface it has.
+        profile: The means of transport, by the engine's own name.
+        snap: Metres that a stop may lie from a road.
+        seconds: The time for all matrices of one request, or all streets of one.
+        pairs: The most pairs of stops that the engine answers at once.
+        cache_bytes: Bytes of matrices that are remembered.
+        cache_seconds: How long these are remembered.
+    """
+
+    url: str
+    router: RouterName = "valhalla"
+    profile: str = "auto"
+    snap: float = 250.0
+    seconds: float = 20.0
+    pairs: int = 2500
+    cache_bytes: int = 2**26
+    cache_seconds: float = 3600.0
+
+
+class Question(NamedTuple):
+    """A request to a routing engine: a POST where it has a body of JSON, else a GET.
+
+    `most_bytes` is how long the answer may be.
+    """
+
+    path: str
+    most_bytes: int
+    body: bytes | None = None
+
+
+class Answer(NamedTuple):
+    """The status and the body of an engine's answer: 200, or 400 with an error of its own."""
+
+    status: int
+    content: bytes
+
+
+class Unintelligible(ValueError):
+    """An answer that is not of the engine's documented form, with what is wrong with it."""
+
+
+class NoWay(Exception):
+    """The engine knows no way between some of the places asked about; it does not say which."""
+
+
+class RouterInterface(Protocol):
+    """The interface of a routing engine: how to ask, and how to read what it answers.
+
+    Readers raise Unintelligible where an answer is not of the documented form.
+    """
+
+    @property
+    def most_route_stops(self) -> int:
+        """The most places that the engine finds a route through at once."""
+
+    def ask_snapped(self, places: Sequence[Location]) -> Question:
+        """Return the question which roads are nearest to places."""
+
+    def read_snapped(self, answer: Answer, places: Sequence[Location]) -> Array:
+        """Return how many metres each place, shape (n,), lies from its road; infinity: no road."""
+
+    def ask_table(self, sources: Sequence[Location], targets: Sequence[Location]) -> Question:
+        """Return the question for the times and distances from each source to each target."""
+
+    def read_table(self, answer: Answer, shape: tuple[int, int]) -> Array:
+        """Return seconds and metres, shape (2, sources, targets), NaN where there is no way.
+
+        Raises:
+            NoWay: The engine refuses the whole table because some pair has no way.
+        """
+
+    def ask_route(self, places: Sequence[Location]) -> Question:
+        """Return the question for the way through places in this order."""
+
+    def read_route(self, answer: Answer, legs: int) -> list[Line]:
+        """Return the line of each leg of a route.
+
+        Raises:
+            NoWay: There is none.
+        """
