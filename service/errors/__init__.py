@@ -9,15 +9,10 @@ from service.errors.exceptions import (
     IdempotencyMismatch,
     InvalidCoverage,
     InvalidInstance,
-    NoRoad,
     NotFound,
     NoWorker,
-    OffRoad,
     QueueFull,
     Refusal,
-    RouterTooSlow,
-    RouterUnavailable,
-    RouterUnusable,
     ShareFull,
     ShuttingDown,
     StoreUnavailable,
@@ -26,6 +21,13 @@ from service.errors.exceptions import (
     WorkerLost,
 )
 from service.errors.problems import PROBLEMS
+from service.errors.roads import (
+    NoRoad,
+    OffRoad,
+    RouterTooSlow,
+    RouterUnavailable,
+    RouterUnusable,
+)
 
 __all__ = [
     "MOST_FAULTS",

@@ -14,11 +14,8 @@
     │   ├── Cancelled             a task was cancelled before it had a front
     │   ├── DeadlineExceeded      a task took too long before it had a front
     │   ├── IdempotencyMismatch   a key was used for another body
-    │   ├── OffRoad               stops lie too far from every road
-    │   ├── NoRoad                there is no way by road between some stops
-    │   ├── RouterUnavailable     the routing engine does not answer
-    │   ├── RouterUnusable        the routing engine answers something else than it should
-    │   ├── RouterTooSlow         the routing engine takes too long
+    │   ├── OffRoad, NoRoad       stops without a road, or a way to another; see `roads.py`
+    │   ├── RouterUnavailable, RouterUnusable, RouterTooSlow
     │   └── StoreUnavailable      the store does not answer
     └── LookupError
         ├── NotFound              the store has no front with this id
@@ -35,7 +32,6 @@ from typing import Any
 from service.errors.problems import PROBLEMS
 
 MOST_FAULTS = 20  # that one problem document lists
-_LONGEST_NAME = 100  # characters of a caller's name for something, where it is quoted
 
 
 @dataclass(frozen=True)
@@ -119,7 +115,7 @@ class InvalidCoverage(InvalidInstance):
     ) -> None:
         self.faults = faults
         errors = [Fault(f"{part} {demand}", f"/{part}") for part, demand in faults]
-        detail, shown = _summary(errors), errors[:MOST_FAULTS]
+        detail, shown = summarize(errors), errors[:MOST_FAULTS]
         code = type(self).code
         Refusal.__init__(self, code, detail=detail, errors=shown, limit=limit, actual=actual)
 
@@ -208,58 +204,6 @@ class StoreUnavailable(_Plain):
     code = "store-unavailable"
 
 
-class OffRoad(Refusal):
-    """Stops, given by index and id, lie farther from every road than so many metres."""
-
-    def __init__(self, stops: Sequence[tuple[int, str]], snap: float) -> None:
-        faults = [
-            Fault(
-                f"stop {_quoted(name)} must lie within {snap:g} m of a road, and does not",
-                f"/stops/{index}/location",
-            )
-            for index, name in stops
-        ]
-        super().__init__("off-road", errors=faults[:MOST_FAULTS], detail=_summary(faults))
-
-
-class NoRoad(Refusal):
-    """There is no way by road between some stops.
-
-    Of each way it is given the index of the stop to look at, and the ids of both its ends.
-    """
-
-    def __init__(self, ways: Sequence[tuple[int, str, str]]) -> None:
-        faults = [
-            Fault(
-                f"there must be a way by road from stop {_quoted(origin)} to stop"
-                f" {_quoted(destination)}, and the routing engine knows none",
-                f"/stops/{index}",
-            )
-            for index, origin, destination in ways
-        ]
-        super().__init__("no-road", errors=faults[:MOST_FAULTS], detail=_summary(faults))
-
-
-class RouterUnavailable(_Plain):
-    """The routing engine does not answer, or answers that it is busy."""
-
-    code = "router-unavailable"
-
-
-class RouterUnusable(Refusal):
-    """The routing engine answers something else than it should; the reason quotes none of it."""
-
-    def __init__(self, reason: str) -> None:
-        super().__init__("router-unusable", reason=reason)
-
-
-class RouterTooSlow(Refusal):
-    """The routing engine takes longer than so many seconds."""
-
-    def __init__(self, seconds: float) -> None:
-        super().__init__("router-too-slow", limit=seconds)
-
-
 class NotFound(LookupError):
     """The caller has no front with this id, and had none that the store remembers."""
 
@@ -275,11 +219,8 @@ def _unpickled(kind: type[Refusal], members: dict[str, Any]) -> Refusal:
     return refusal
 
 
-def _quoted(name: str) -> str:
-    return repr(name[:_LONGEST_NAME])
-
-
-def _summary(faults: Sequence[Fault]) -> str:
+def summarize(faults: Sequence[Fault]) -> str:
+    """Return the first fault, and how many more there are, as one sentence."""
     more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
     return faults[0].detail + more
 

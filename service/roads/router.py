@@ -1,4 +1,4 @@
-"""What a routing engine is asked, and what its answers mean: the interface of Valhalla and OSRM."""
+"""The interface of routing engines: questions to one, and how its answers are read."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
