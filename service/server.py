@@ -5,7 +5,7 @@ import logging
 import multiprocessing
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from functools import partial
@@ -17,7 +17,7 @@ from fastapi import FastAPI
 from uvicorn.config import STARTUP_FAILURE
 
 from service import installed_version
-from service.actor import load_actors
+from service.actor import ActorInfo, load_actors
 from service.api.app import Edge, create_app
 from service.api.auth import Access, Rates
 from service.api.metrics import Metrics
@@ -29,10 +29,14 @@ from service.api.transport.protocol import Connection
 from service.cluster import check_cluster
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
+from service.jobs.road_measurer import RoadMeasurer
 from service.jobs.runner import MakeRunner, load_runner, warm_up
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.worker_pool import WorkerPool
+from service.requests.task import parse_task
+from service.roads.client import RoadClient
+from service.roads.router import RouterSettings
 from service.settings import Settings
 from service.telemetry import configure_logging, log_loading, logged, trace
 
@@ -45,12 +49,15 @@ def build(settings: Settings) -> FastAPI:
     """
     # The workers load the actors, too: here only their facts are needed.
     actors = load_actors(settings.actors, settings.threads, settings.own_actors)
+    infos = {name: actor.info for name, actor in actors.items()}
     metrics = Metrics()
-    make_engine = _local_engine if settings.redis_url is None else _redis_engine
-    store, engine = make_engine(settings, metrics)
+    if settings.redis_url is None:
+        store, engine = _local_engine(settings, metrics, infos)
+    else:
+        store, engine = _redis_engine(settings, metrics)
     metrics.watch(engine)
     app = create_app(
-        {name: actor.info for name, actor in actors.items()},
+        infos,
         store,
         engine,
         settings.limits,
@@ -133,7 +140,9 @@ def build_worker(settings: Settings) -> Callable[[], int]:
     seconds = settings.request_seconds
     worker = CeleryWorker(
         celery=make_celery(redis_url, seconds),
-        make_record_worker=partial(make_record_worker, _make_runner(settings), redis_url, seconds),
+        make_record_worker=partial(
+            make_record_worker, _make_runner(settings, settings.roads), redis_url, seconds
+        ),
         workers=settings.workers,
         drain_seconds=settings.drain_seconds,
     )
@@ -158,10 +167,12 @@ def takes_work(settings: Settings) -> bool:
     return worker_store.takes_work(redis_url)
 
 
-def _local_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
+def _local_engine(
+    settings: Settings, metrics: Metrics, actors: Mapping[str, ActorInfo]
+) -> tuple[Store, Engine]:
     """Return the store in SQLite, and the engine in this process and its children."""
     workers = WorkerPool(
-        _make_runner(settings),
+        _make_runner(settings, None),
         workers=settings.workers,
         queue=settings.queue,
         share=settings.caller_share,
@@ -174,7 +185,11 @@ def _local_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
         max_age=settings.store_seconds,
         max_bytes=settings.store_bytes,
     )
-    return store, LocalEngine(workers, store)
+    measurer = None
+    if settings.roads is not None:
+        parse = partial(parse_task, limits=settings.limits, actors=actors)
+        measurer = RoadMeasurer(RoadClient(settings.roads, metrics.routed), parse)
+    return store, LocalEngine(workers, store, measurer)
 
 
 def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
@@ -194,9 +209,9 @@ def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
     )
 
 
-def _make_runner(settings: Settings) -> MakeRunner:
+def _make_runner(settings: Settings, roads: RouterSettings | None) -> MakeRunner:
     load = partial(
-        load_runner, settings.actors, settings.threads, settings.limits, settings.own_actors
+        load_runner, settings.actors, settings.threads, settings.limits, settings.own_actors, roads
     )
     return partial(logged, load)
 

@@ -218,6 +218,7 @@ class Settings(BaseSettings):
             preferences=self.max_preferences,
             size=self.max_size,
             seconds=self.max_time_limit,
+            roads=self.router_url is not None,
         )
 
 

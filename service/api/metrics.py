@@ -70,6 +70,18 @@ class Metrics:
             registry=registry,
             buckets=_SHARES,
         )
+        self._router_requests = Counter(
+            "paretour_router_requests",
+            "questions to the routing engine, by what came of them",
+            ["outcome"],
+            registry=registry,
+        )
+        self._router_seconds = Histogram(
+            "paretour_router_seconds",
+            "one question to the routing engine",
+            registry=registry,
+            buckets=_SECONDS,
+        )
         self._engine: StatsSource | None = None
         self._workers = _WorkerCollector()
         registry.register(self._workers)
@@ -96,6 +108,11 @@ class Metrics:
     def watch(self, engine: StatsSource) -> None:
         """Report the workers of an engine as they are at each scrape."""
         self._engine = engine
+
+    def routed(self, outcome: str, seconds: float) -> None:
+        """Count a question to the routing engine: answered, unavailable or unusable."""
+        self._router_requests.labels(outcome).inc()
+        self._router_seconds.observe(seconds)
 
     def planned(self, front: FrontDocument) -> None:
         """Count a planned front: its phases, and the hypervolume that the search gained."""

@@ -20,8 +20,10 @@ from service.errors import (
 from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.record import Record, as_cancelled, as_failed, as_finished
 from service.jobs.retries import UnsavedRecords
+from service.jobs.road_measurer import RoadMeasurer
 from service.jobs.running_job import RunningJob
 from service.jobs.store import Store
+from service.jobs.submission import Submission
 from service.jobs.worker_pool import WorkerPool
 
 _PAUSE = 0.5  # seconds between two tries to resume the job of an earlier process
@@ -34,11 +36,17 @@ class LocalEngine:
     Jobs that are unfinished when the service ends stay in the store; the next service with that
     store resumes them. Where the store does not take a finished record, its front is told all the
     same and stored later; until it is, no new job is taken.
+
+    Costs by road are asked for here, not in the workers: while a job waits for the routing engine
+    it holds its place, but no process.
     """
 
-    def __init__(self, workers: WorkerPool, store: Store) -> None:
+    def __init__(
+        self, workers: WorkerPool, store: Store, measurer: RoadMeasurer | None = None
+    ) -> None:
         self._workers = workers
         self._store = store
+        self._measurer = measurer
         self._unsaved = UnsavedRecords(store)
         self._jobs: dict[str, RunningJob] = {}
         self._tasks: set[asyncio.Task[None]] = set()
@@ -57,6 +65,8 @@ class LocalEngine:
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
+        if self._measurer is not None:
+            await self._measurer.close()
 
     async def stats(self) -> EngineStats:
         """Return the numbers for the metrics."""
@@ -85,7 +95,8 @@ class LocalEngine:
         """Run a new job while its client waits; when that disconnects, cancel it."""
         assert record.source is not None
         self._unsaved.check_none()
-        submission = self._workers.submit(record.source, client=record.client)
+        submission = self._workers.reserve(record.source, client=record.client)
+        self._queue(submission)
         try:
             await submission.wait(disconnected)
         finally:
@@ -165,8 +176,30 @@ class LocalEngine:
 
     def _begin(self, job: RunningJob) -> None:
         assert job.submission is not None
-        self._workers.queue(job.submission)
+        self._queue(job.submission)
         self._spawn(self._follow(job))
+
+    def _queue(self, submission: Submission) -> None:
+        """Queue a submission that has a place, at once or when its costs by road are there."""
+        if self._measurer is None or not self._measurer.needed(submission.source):
+            self._workers.queue(submission)
+        else:
+            self._spawn(self._queue_measured(submission, self._measurer))
+
+    async def _queue_measured(self, submission: Submission, measurer: RoadMeasurer) -> None:
+        """Ask for the costs by road of a submission, until it ends, and queue it with them."""
+        asking = asyncio.create_task(measurer.measured(submission.source))
+        submission.when_ended(asking.cancel)
+        try:
+            await asyncio.wait((asking,))
+            if not asking.cancelled():
+                submission.source = asking.result()
+        except Exception as error:
+            submission.fail(error)
+        finally:
+            asking.cancel()
+            # One that has ended only gives its place back.
+            self._workers.queue(submission)
 
     def _drop(self, job: RunningJob) -> None:
         """Give up a job that was not admitted."""

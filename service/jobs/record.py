@@ -83,7 +83,12 @@ def as_cancelled(record: Record) -> Record:
 
 def as_failed(record: Record, error: Exception, front: FrontDocument) -> Record:
     """Log the error, and return the record with its problem document and the best front so far."""
-    _LOG.warning("front %s failed", record.id, exc_info=error)
-    refusal = error if isinstance(error, Refusal) else Refusal("internal-error")
+    if isinstance(error, Refusal):
+        # Its sentence may quote the caller's names of stops, which no log is to have.
+        _LOG.warning("front %s is refused: %s", record.id, error.code)
+        refusal = error
+    else:
+        _LOG.warning("front %s failed", record.id, exc_info=error)
+        refusal = Refusal("internal-error")
     problem = refusal.document(record.request_id)
     return replace(record, status="failed", front=front, problem=problem, source=None)

@@ -12,10 +12,13 @@ from service.coverage.survey import Coverage, CoveragePath, Survey, survey
 from service.errors import Cancelled
 from service.instance import Instance
 from service.jobs.front_document import FrontDocument, encode_front
+from service.jobs.road_measurer import BlockingMeasurer, needs_roads
 from service.planner import Constructor, Front, plan
 from service.requests.limits import Limits, check_reference_point
 from service.requests.stops import UnmeasuredStops, make_instance
 from service.requests.task import Task, TaskSource, parse_task
+from service.roads.client import RoadClient
+from service.roads.router import RouterSettings
 from service.search import improve
 from service.search.improve import Progress
 
@@ -58,10 +61,14 @@ class NamedActor(Constructor, Protocol):
 
 @dataclass(frozen=True)
 class TaskRunner:
-    """Plans fronts within limits, with the actors that are loaded."""
+    """Plans fronts within limits, with the actors that are loaded.
+
+    With a measurer, it asks for the costs by road of tasks that come without.
+    """
 
     actors: Mapping[str, NamedActor]
     limits: Limits
+    measurer: BlockingMeasurer | None = None
 
     def warm_up(self) -> None:
         """Compile the search, or load it from the cache."""
@@ -78,6 +85,8 @@ class TaskRunner:
         """Return the front of a task, parsed or not."""
         if isinstance(task, TaskSource):
             task = self.parse(task)
+        if self.measurer is not None and needs_roads(task):
+            task = self.measurer.measured(task, stop)
         if isinstance(task.subject, Coverage):
             return self._cover(task, task.subject, stop, report)
         if isinstance(task.subject, UnmeasuredStops):
@@ -98,7 +107,7 @@ class TaskRunner:
         began = time.perf_counter()
         instance = make_instance(stops)
         check_reference_point(instance, task.options)
-        timings = {"costs": 1000 * (time.perf_counter() - began)}
+        timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
         front = self._plan(task, instance, stop, report)
         front = replace(front, timings=timings | front.timings)
         return encode_front(front, self._identity(task), labels=task.labels)
@@ -176,7 +185,15 @@ def warm_up() -> None:
 
 
 def load_runner(
-    directory: Path, threads: int, limits: Limits, own_directory: Path | None = None
+    directory: Path,
+    threads: int,
+    limits: Limits,
+    own_directory: Path | None = None,
+    roads: RouterSettings | None = None,
 ) -> TaskRunner:
-    """Return a runner with the actors of a directory, and of one of the user's."""
-    return TaskRunner(load_actors(directory, threads, own_directory), limits)
+    """Return a runner with the actors of a directory, and of one of the user's.
+
+    With a routing engine, it asks that for the costs by road of tasks that come without.
+    """
+    measurer = None if roads is None else BlockingMeasurer(RoadClient(roads))
+    return TaskRunner(load_actors(directory, threads, own_directory), limits, measurer)

@@ -65,6 +65,10 @@ class Submission:
         """Wait until it has ended or the client has disconnected."""
         await asyncio.wait((self._future, disconnected), return_when=asyncio.FIRST_COMPLETED)
 
+    def when_ended(self, callback: Callable[[], object]) -> None:
+        """Have a function called soon after it has ended."""
+        self._future.add_done_callback(lambda _: callback())
+
     def begin(self) -> None:
         """Count an attempt: a worker begins."""
         self.attempts += 1

@@ -137,6 +137,8 @@ class WorkerPool:
         self.check_open()
         self.check_place(client)
         submission = Submission(next(self._numbers), source, on_change, patient, client)
+        if not patient:
+            self._start_timer(submission)
         self._reserved.add(submission)
         return submission
 
@@ -144,8 +146,6 @@ class WorkerPool:
         """Queue a submission that has a place, unless it was stopped there."""
         self._reserved.discard(submission)
         if not submission.ended:
-            if not submission.patient:
-                self._start_timer(submission)
             self._queue.append(submission)
             self._assign()
 

@@ -1,7 +1,7 @@
 """Stops and objectives as a request names them, and the instance that is made of their costs."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -101,20 +101,25 @@ class UnmeasuredStops:
         measures = {source.measure for source in self.sources if isinstance(source, Measured)}
         return frozenset(measure for measure in ROAD_MEASURES if measure in measures)
 
+    def measured_by_road(self, costs: Mapping[RoadMeasure, Array]) -> "UnmeasuredStops":
+        """Return these stops with a matrix, shape (n, n), in place of each measure by road."""
+
+        def measured(source: Source) -> Source:
+            match source:
+                case Measured("road_time" | "road_distance" as measure):
+                    return Matrix(costs[measure])
+            return source
+
+        return replace(self, sources=[measured(source) for source in self.sources])
+
 
 def locations_of(stops: Sequence[Stop]) -> Array:
     """Return longitude and latitude of each stop, shape (n, 2); NaN where a stop has none."""
     return np.array([stop.location or (np.nan, np.nan) for stop in stops], dtype=np.float64)
 
 
-def make_instance(
-    stops: UnmeasuredStops, roads: Mapping[RoadMeasure, Array] | None = None
-) -> Instance:
+def make_instance(stops: UnmeasuredStops) -> Instance:
     """Return stops and the costs between them as an instance. O(n^2) unless both are planes.
-
-    Args:
-        stops: The stops, with the sources of their costs.
-        roads: A matrix, shape (n, n), for each of `stops.road_measures`.
 
     Raises:
         InvalidInstance: The costs are too large, or too far apart, to be planned.
@@ -122,11 +127,11 @@ def make_instance(
     planes = [source.points for source in stops.sources if isinstance(source, Plane)]
     if len(planes) == OBJECTIVES:
         return Instance(coordinates=np.concatenate(planes, axis=1))
-    costs = [_costs(source, stops.locations, roads or {}) for source in stops.sources]
+    costs = [_costs(source, stops.locations) for source in stops.sources]
     return Instance(matrices=np.stack(costs))
 
 
-def _costs(source: Source, locations: Array, roads: Mapping[RoadMeasure, Array]) -> Array:
+def _costs(source: Source, locations: Array) -> Array:
     """Return the costs between all stops, shape (n, n)."""
     match source:
         case Matrix(costs):
@@ -134,7 +139,7 @@ def _costs(source: Source, locations: Array, roads: Mapping[RoadMeasure, Array])
         case Plane(points):
             steps = points[:, np.newaxis] - points
             return np.hypot(steps[..., 0], steps[..., 1])
+        case Measured("great_circle"):
+            return great_circle_matrix(locations)
         case Measured(measure):
-            if measure == "great_circle":
-                return great_circle_matrix(locations)
-            return roads[measure]
+            raise ValueError(f"{measure} must be measured before, by a routing engine")

@@ -28,6 +28,7 @@ class Task:
         actor: The name of the actor that builds the first tours.
         paths: Whether each tour comes with its path over the map.
         labels: The caller's names of stops and objectives.
+        timings: Milliseconds of what was done for it since it was parsed, by name.
     """
 
     subject: Instance | Coverage | UnmeasuredStops
@@ -35,6 +36,7 @@ class Task:
     actor: str
     paths: bool = False
     labels: Labels | None = None
+    timings: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def needs_compiled_code(self) -> bool:

@@ -17,6 +17,8 @@ from tests.helpers.deploy_files import (
     DEPLOY,
     IMAGE,
     MANIFESTS,
+    ROADS,
+    ROADS_COMPOSE,
     USER,
     ComposeFile,
     Manifest,
@@ -39,12 +41,12 @@ of_our_pods = pytest.mark.parametrize("pod", our_pods().values(), ids=our_pods()
 
 
 def test_no_file_is_left_out() -> None:
-    tested = {each.name for each in (*MANIFESTS, *COMPOSE_FILES, AUTOSCALING)}
+    tested = {each.name for each in (*MANIFESTS, *COMPOSE_FILES, AUTOSCALING, ROADS)}
     tested.add("constraints.txt")
     assert tested == {path.name for path in DEPLOY.iterdir()}
 
 
-@of_each_manifest
+@pytest.mark.parametrize("manifest", [*MANIFESTS, ROADS], ids=lambda each: each.name)
 def test_kubernetes_knows_every_field(manifest: Manifest) -> None:
     for each in manifest.objects:
         kubernetes_validate.validate(each, kubernetes_validate.latest_version(), strict=True)
@@ -232,3 +234,21 @@ def test_no_secret_has_a_value_that_everybody_knows(manifest: Manifest) -> None:
     assert (
         "secret generic paretour --from-literal=api-keys=" in (DEPLOY / manifest.name).read_text()
     )
+
+
+def test_the_routing_engine_is_where_the_service_asks() -> None:
+    asked = ROADS_COMPOSE.services["paretour"]["environment"]["PARETOUR_ROUTER_URL"]
+    assert asked == "http://valhalla:8002"
+    assert f"PARETOUR_ROUTER_URL={asked}\n" in (DEPLOY / ROADS.name).read_text()
+    [port] = ROADS.named("Service")["valhalla"]["spec"]["ports"]
+    assert port["port"] == 8002
+    [container] = ROADS.pods["valhalla"]["spec"]["containers"]
+    assert container["ports"] == [{"name": port["targetPort"], "containerPort": 8002}]
+    command = ROADS_COMPOSE.services["valhalla"]["command"]
+    assert container["command"] == command
+    [policy] = ROADS.named("NetworkPolicy").values()
+    assert (
+        policy["spec"]["podSelector"] == ROADS.named("Deployment")["valhalla"]["spec"]["selector"]
+    )
+    [rule] = policy["spec"]["ingress"]
+    assert rule["ports"] == [{"protocol": "TCP", "port": "routes"}]

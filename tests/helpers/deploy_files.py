@@ -54,21 +54,33 @@ class ComposeFile:
 
     @property
     def services(self) -> dict[str, dict[str, Any]]:
-        """Its services by name."""
-        services: dict[str, dict[str, Any]] = self.document["services"]
-        return services
+        """Its services by name, each with what it extends."""
+        return {name: _extended(each) for name, each in self.document["services"].items()}
+
+
+def _extended(service: dict[str, Any]) -> dict[str, Any]:
+    """Return a service of Compose with the members, and the environment, of the one it extends."""
+    if "extends" not in service:
+        return service
+    extended = service["extends"]
+    base = ComposeFile(extended["file"]).services[extended["service"]]
+    environment = base["environment"] | service.get("environment", {})
+    return base | service | {"environment": environment}
 
 
 EMBEDDED, CLUSTER = Manifest("kubernetes.yaml"), Manifest("cluster-kubernetes.yaml")
 AUTOSCALING = Manifest("cluster-autoscaling.yaml")
+ROADS = Manifest("roads-kubernetes.yaml")
 MANIFESTS = (EMBEDDED, CLUSTER)
 CLUSTER_COMPOSE = ComposeFile("cluster-compose.yaml")
-COMPOSE_FILES = (ComposeFile("compose.yaml"), CLUSTER_COMPOSE)
+ROADS_COMPOSE = ComposeFile("roads-compose.yaml")
+COMPOSE_FILES = (ComposeFile("compose.yaml"), CLUSTER_COMPOSE, ROADS_COMPOSE)
 
 
 def all_pods() -> dict[str, dict[str, Any]]:
     """Return the pod templates of all manifests by file and name."""
-    return {f"{file.name} {name}": pod for file in MANIFESTS for name, pod in file.pods.items()}
+    files = (*MANIFESTS, ROADS)
+    return {f"{file.name} {name}": pod for file in files for name, pod in file.pods.items()}
 
 
 def all_services() -> dict[str, dict[str, Any]]:

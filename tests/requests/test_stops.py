@@ -92,7 +92,9 @@ def test_road_matrices_complete_an_instance() -> None:
     assert isinstance(subject, UnmeasuredStops)
     assert subject.sources == (Measured("road_time"), Measured("great_circle"))
     assert subject.road_measures == {"road_time"}
-    instance = make_instance(subject, {"road_time": np.array(COSTS, dtype=np.float64)})
+    measured = subject.measured_by_road({"road_time": np.array(COSTS, dtype=np.float64)})
+    assert not measured.road_measures
+    instance = make_instance(measured)
     np.testing.assert_allclose(instance.matrices, [COSTS, great_circle_matrix(np.array(LOCATIONS))])
 
 

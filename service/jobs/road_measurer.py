@@ -1,0 +1,102 @@
+"""Measure tasks by road: ask a routing engine for the costs that they lack."""
+
+import asyncio
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+from service.errors import Cancelled
+from service.requests.stops import UnmeasuredStops
+from service.requests.task import Task, TaskSource
+from service.roads.client import RoadClient
+
+_POLL_SECONDS = 0.05  # between two questions whether to stop
+
+
+def needs_roads(task: Task) -> bool:
+    """Return whether costs by road are missing of a task."""
+    return isinstance(task.subject, UnmeasuredStops) and bool(task.subject.road_measures)
+
+
+async def measured_by_road(task: Task, client: RoadClient) -> Task:
+    """Return a task with its costs by road, and the time that it took to ask for them.
+
+    Raises:
+        Refusal: The engine has no costs between these stops, or fails; see RoadClient.costs.
+    """
+    stops, labels = task.subject, task.labels
+    assert isinstance(stops, UnmeasuredStops)
+    assert labels is not None
+    began = time.perf_counter()
+    costs = await client.costs(stops.locations, [stop.id for stop in labels.stops])
+    measured = stops.measured_by_road({"road_time": costs.seconds, "road_distance": costs.metres})
+    return replace(task, subject=measured, timings={"roads": 1000 * (time.perf_counter() - began)})
+
+
+class RoadMeasurer:
+    """Measures the tasks of an engine that runs in an event loop.
+
+    Args:
+        client: The client of the routing engine.
+        parse: Parses the source of a job that an earlier process left unfinished.
+    """
+
+    def __init__(self, client: RoadClient, parse: Callable[[TaskSource], Task]) -> None:
+        self._client = client
+        self._parse = parse
+
+    def needed(self, source: TaskSource) -> bool:
+        """Return whether costs by road are missing, or may be where the task is not parsed."""
+        if source.task is not None:
+            return needs_roads(source.task)
+        return b"road_" in source.body
+
+    async def measured(self, source: TaskSource) -> TaskSource:
+        """Return the source with a task that has its costs by road.
+
+        Raises:
+            Refusal: There are none; see RoadClient.costs.
+        """
+        task = source.task
+        if task is None:
+            task = await asyncio.to_thread(self._parse, source)
+        if needs_roads(task):
+            task = await measured_by_road(task, self._client)
+        return replace(source, task=task)
+
+    async def close(self) -> None:
+        """Close the connections to the engine."""
+        await self._client.close()
+
+
+class BlockingMeasurer:
+    """Measures the tasks of a process that runs one at a time."""
+
+    def __init__(self, client: RoadClient) -> None:
+        self._client = client
+        self._runner = asyncio.Runner()
+
+    def measured(self, task: Task, stop: Callable[[], bool]) -> Task:
+        """Return the task with its costs by road.
+
+        Raises:
+            Cancelled: It was told to stop before.
+            Refusal: There are none; see RoadClient.costs.
+        """
+        return self._runner.run(self._until_stopped(task, stop))
+
+    def close(self) -> None:
+        """Close the connections to the engine."""
+        self._runner.run(self._client.close())
+        self._runner.close()
+
+    async def _until_stopped(self, task: Task, stop: Callable[[], bool]) -> Task:
+        asking = asyncio.create_task(measured_by_road(task, self._client))
+        try:
+            while not asking.done():
+                if stop():
+                    raise Cancelled
+                await asyncio.wait((asking,), timeout=_POLL_SECONDS)
+            return asking.result()
+        finally:
+            asking.cancel()
