@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from service.jobs.runner import warm_up
 from tests.helpers.redis_server import Redis, redis_server
 from tests.helpers.serving import serving_released
 from tests.helpers.valhalla import RunningValhalla, valhalla_service
@@ -41,6 +42,12 @@ def valhalla(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningValhal
     """A real routing engine of central Helsinki, for tests that leave it running."""
     with valhalla_service(tmp_path_factory.mktemp("valhalla")) as running:
         yield running
+
+
+@pytest.fixture(scope="session")
+def compiled() -> None:
+    """The compiled search, for tests that give it some tenths of a second to search in."""
+    warm_up()
 
 
 @pytest.fixture(scope="session")

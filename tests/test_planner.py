@@ -17,6 +17,8 @@ from service.planner import Front, PlanOptions, plan
 from service.preferences import fan
 from service.settings import Settings
 
+pytestmark = pytest.mark.usefixtures("compiled")
+
 SMALL = (
     st.integers(1, 7)
     .flatmap(lambda n: arrays(np.float64, (n, 4), elements=st.integers(0, 4)))

@@ -21,6 +21,8 @@ from service.search.bound import (
 from service.search.costs import make_costs
 from service.search.improve import improve
 
+pytestmark = pytest.mark.usefixtures("compiled")
+
 TOURS = {n: all_tours(n) for n in range(1, 10)}
 
 

@@ -15,6 +15,8 @@ from service.pareto import hypervolume, nondominated
 from service.search.improve import Progress, SearchResult, improve
 from tests.helpers.instances import KINDS, no_tours, random_tours, small_integers, uniform
 
+pytestmark = pytest.mark.usefixtures("compiled")
+
 
 def is_front(instance: Instance, found: SearchResult) -> bool:
     """Whether permutations and points go together, sorted, and none dominates another."""

@@ -17,6 +17,8 @@ from service.search.bound import hypervolume_bound
 from service.search.improve import improve
 from tests.helpers.instances import no_tours
 
+pytestmark = pytest.mark.usefixtures("compiled")
+
 Array = NDArray[np.float64]
 POWERS = st.integers(-320, 300)
 
