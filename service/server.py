@@ -29,11 +29,11 @@ from service.api.transport.protocol import Connection
 from service.cluster import check_cluster
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
-from service.jobs.road_measurer import RoadMeasurer
 from service.jobs.runner import MakeRunner, load_runner, warm_up
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.worker_pool import WorkerPool
+from service.requests.road_measurer import RoadMeasurer
 from service.requests.task import parse_task
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings

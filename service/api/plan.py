@@ -83,7 +83,7 @@ class PlanRoutes:
         router.post(
             "/front",
             response_model=FrontAnswer,
-            responses=responses,
+            responses=responses | problem_responses(502),
             openapi_extra=_openapi_request(FRONT_BODY),
         )(self.plan_front)
         router.post(

@@ -20,11 +20,11 @@ from service.errors import (
 from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.record import Record, as_cancelled, as_failed, as_finished
 from service.jobs.retries import UnsavedRecords
-from service.jobs.road_measurer import RoadMeasurer
 from service.jobs.running_job import RunningJob
 from service.jobs.store import Store
 from service.jobs.submission import Submission
 from service.jobs.worker_pool import WorkerPool
+from service.requests.road_measurer import RoadMeasurer
 
 _PAUSE = 0.5  # seconds between two tries to resume the job of an earlier process
 _LOG = logging.getLogger("paretour")

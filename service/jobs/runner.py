@@ -12,9 +12,9 @@ from service.coverage.survey import Coverage, CoveragePath, Survey, survey
 from service.errors import Cancelled
 from service.instance import Instance
 from service.jobs.front_document import FrontDocument, encode_front
-from service.jobs.road_measurer import BlockingMeasurer, needs_roads
 from service.planner import Constructor, Front, plan
 from service.requests.limits import Limits, check_reference_point
+from service.requests.road_measurer import BlockingMeasurer, needs_roads
 from service.requests.stops import UnmeasuredStops, make_instance
 from service.requests.task import Task, TaskSource, parse_task
 from service.roads.client import RoadClient

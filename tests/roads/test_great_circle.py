@@ -7,7 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.roads.great_circle import EARTH_RADIUS, great_circle_matrix
+from service.roads.great_circle import (
+    EARTH_RADIUS,
+    great_circle_distances,
+    great_circle_matrix,
+)
 
 QUARTER = math.pi / 2 * EARTH_RADIUS
 PLACES = st.lists(st.tuples(st.floats(-180, 180), st.floats(-90, 90)), min_size=1, max_size=6).map(
@@ -61,3 +65,11 @@ def test_places_a_metre_apart_keep_their_digits() -> None:
     north = np.degrees(1 / EARTH_RADIUS)
     distances = great_circle_matrix(np.array([[24.94, 60.17], [24.94, 60.17 + north]]))
     np.testing.assert_allclose(distances[0, 1], 1, rtol=1e-6)
+
+
+@given(PLACES)
+def test_distances_from_places_to_others_are_those_of_the_matrix(places: np.ndarray) -> None:
+    others = np.roll(places, 1, axis=0)
+    matrix = great_circle_matrix(places)
+    expected = matrix[np.arange(len(places)), np.roll(np.arange(len(places)), 1)]
+    np.testing.assert_allclose(great_circle_distances(places, others), expected)

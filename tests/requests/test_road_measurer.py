@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from service.errors import Cancelled, RouterUnusable
-from service.jobs.road_measurer import BlockingMeasurer, RoadMeasurer, needs_roads
 from service.requests.limits import Limits
+from service.requests.road_measurer import BlockingMeasurer, RoadMeasurer, needs_roads
 from service.requests.stops import Matrix, UnmeasuredStops
 from service.requests.task import Task, TaskSource, parse_task
 from service.roads.client import RoadClient
