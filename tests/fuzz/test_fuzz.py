@@ -7,12 +7,13 @@ import httpx
 import pytest
 
 from tests.fuzz.attack import largest_memory, parse_many, post_many, strict_json
-from tests.fuzz.bodies import GENERATORS
-from tests.helpers.serving import ACTORS, LIMITS, app_of, serving
+from tests.fuzz.bodies import GENERATORS, extreme
+from tests.helpers.serving import ACTORS, LIMITS, app_of, serving, workers_of
 
 INFO = {actor.info.name: actor.info for actor in ACTORS}
 COUNT = 2000
 SAMPLE = 15
+EXTREMES = 500
 
 
 @pytest.mark.parametrize("name", GENERATORS)
@@ -27,8 +28,19 @@ def test_every_mutated_body_is_planned_or_refused(name: str) -> None:
 
 @pytest.fixture(scope="module")
 def url() -> Iterator[str]:
-    with serving(app_of()) as address:
+    workers = workers_of()
+    with serving(app_of(workers=workers)) as address:
         yield address
+        assert workers.lost == 0
+    assert largest_memory() < 1024
+
+
+def test_extreme_numbers_over_http_are_planned_or_refused(url: str) -> None:
+    sources = (extreme(random.Random(f"extreme {number}")) for number in range(EXTREMES))
+    statuses = post_many(url, sources)
+    assert statuses.total() == EXTREMES
+    assert set(statuses) == {200, 422}
+    assert statuses[200] > EXTREMES // 5
 
 
 @pytest.mark.parametrize("name", sorted(set(GENERATORS) - {"multipart"}))
