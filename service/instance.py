@@ -1,10 +1,9 @@
-"""Instances: cities and the costs between them; the lengths of tours; symmetries and all tours."""
+"""Instances: cities and the costs between them; the lengths of tours; symmetries."""
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cache, cached_property
-from itertools import permutations
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -17,7 +16,6 @@ Kind = Literal["coordinates", "matrices"]
 OBJECTIVES = 2  # lengths of a tour
 PLANE = 2  # coordinates of a city in the plane of an objective
 MAX_SYMMETRIES = 8  # of a square
-MAX_ENUMERATED = 9  # cities, and 40,320 tours: 40 ms, and as many once to list them
 MOST_SPREAD = 2.0**-1000  # of a matrix's largest cost; below it a scaled cost would vanish
 
 
@@ -33,15 +31,22 @@ class Instance:
             Euclidean distance in plane m.
         matrices: Shape (2, n, n). Cost m of going from i to j is matrices[m, i, j]. The diagonal
             is ignored.
+        closed: Whether tours return to where they began. If not, they are open routes.
+        start: The city at which every open route starts; None leaves it free.
+        end: The city at which every open route ends; None leaves it free.
 
     Raises:
         InvalidInstance: A shape is wrong, there is no city, a number is not finite, a cost is
-            negative, costs are so large that the length of a tour could overflow, or a matrix has
-            costs so far apart that no double holds both in one unit.
+            negative, costs are so large that the length of a tour could overflow, a matrix has
+            costs so far apart that no double holds both in one unit, an end is no city or that of
+            closed tours, or a route of several cities starts where it ends.
     """
 
     coordinates: Array | None = None
     matrices: Array | None = None
+    closed: bool = True
+    start: int | None = None
+    end: int | None = None
 
     def __post_init__(self) -> None:
         if (self.coordinates is None) == (self.matrices is None):
@@ -54,6 +59,7 @@ class Instance:
             raise InvalidInstance(
                 f"costs must leave a tour's length finite, got costs up to {self._extents.max():g}"
             )
+        _check_ends(self)
 
     @property
     def n(self) -> int:
@@ -85,7 +91,7 @@ class Instance:
         """
         return 1 - np.frexp(self.scale)[1].astype(np.intp)
 
-    @property
+    @cached_property
     def symmetric(self) -> bool:
         """Whether every cost is the same in both directions."""
         return self.matrices is None or np.array_equal(
@@ -119,11 +125,17 @@ class Instance:
         assert self.matrices is not None
         return self.matrices.max(axis=(1, 2))
 
+    @property
+    def fixed_ends(self) -> tuple[int, ...]:
+        """The cities at which an open route has to start or end."""
+        ends = (self.start, self.end) if self.start != self.end else (self.start,)
+        return tuple(city for city in ends if city is not None)
+
 
 def tour_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
-    """Return the lengths, shape (k, 2), of closed tours, shape (k, n), in the instance's units.
+    """Return the lengths, shape (k, 2), of tours, shape (k, n), in the instance's units.
 
-    The step from the last city back to the first is included. O(k n).
+    Of closed tours the step from the last city back to the first is included. O(k n).
 
     >>> corners = np.array([[0, 0, 0, 0], [3, 0, 0, 1], [3, 4, 2, 1], [0, 4, 2, 0]])
     >>> square = Instance(coordinates=corners)
@@ -134,17 +146,42 @@ def tour_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
     if instance.coordinates is not None:
         # As complex numbers, (x, y) are looked up together, and numpy's abs() is a faster hypot().
         visited = instance.coordinates.view(np.complex128)[tours]
-        return np.abs(np.diff(visited, axis=1, append=visited[:, :1])).sum(axis=1)
+        back = visited[:, : int(instance.closed)]
+        return np.abs(np.diff(visited, axis=1, append=back)).sum(axis=1)
     assert instance.matrices is not None
-    following = np.roll(tours, -1, axis=1)
-    return instance.matrices[:, tours, following].sum(axis=2).T
+    origins, destinations = tour_steps(instance, tours)
+    return instance.matrices[:, origins, destinations].sum(axis=2).T
+
+
+def step_lengths(
+    instance: Instance, origins: NDArray[np.integer], destinations: NDArray[np.integer]
+) -> Array:
+    """Return both costs of steps, in the instance's units, with one more axis of 2 at the end."""
+    if instance.matrices is not None:
+        return np.moveaxis(instance.matrices[:, origins, destinations], 0, -1)
+    assert instance.coordinates is not None
+    cities = instance.coordinates.view(np.complex128)
+    return np.abs(cities[destinations] - cities[origins])
+
+
+def tour_steps(
+    instance: Instance, tours: NDArray[np.integer]
+) -> tuple[NDArray[np.integer], NDArray[np.integer]]:
+    """Return where the steps of tours, shape (k, n), begin and end.
+
+    Either has shape (k, n), or (k, n - 1) for open routes, which have no step back.
+    """
+    if instance.closed:
+        return tours, np.roll(tours, -1, axis=1)
+    return tours[:, :-1], tours[:, 1:]
 
 
 def least_lengths(instance: Instance) -> Array:
-    """Return lengths, shape (2,), that no closed tour goes below, by what is cheap. O(n^2).
+    """Return lengths, shape (2,), that no tour goes below, by what is cheap. O(n^2).
 
-    In a plane a tour goes from one side of the bounding box to the other and back. Of a matrix it
-    has an entry in each row and in each column, none of them on the diagonal.
+    In a plane a tour goes from one side of the bounding box to the other, and back where it is
+    closed. Of a matrix it has an entry in each row and in each column, none of them on the
+    diagonal; an open route has none in one row and in one column.
 
     >>> corners = np.array([[0, 0, 0, 0], [3, 0, 0, 1], [3, 4, 2, 1], [0, 4, 2, 0]])
     >>> least_lengths(Instance(coordinates=corners))
@@ -152,15 +189,20 @@ def least_lengths(instance: Instance) -> Array:
     >>> costs = np.array([[0, 2, 3], [4, 0, 1], [5, 2, 0]])
     >>> least_lengths(Instance(matrices=np.stack([costs, costs.T])))
     array([7., 7.])
+    >>> least_lengths(Instance(matrices=np.stack([costs, costs.T]), closed=False))
+    array([3., 3.])
     """
     if instance.coordinates is not None:
         sides = np.ptp(instance.coordinates, axis=0).reshape(OBJECTIVES, PLANE)
-        return 2 * sides.max(axis=1)
+        return sides.max(axis=1) * (2 if instance.closed else 1)
     assert instance.matrices is not None
     if instance.n == 1:
         return np.zeros(OBJECTIVES)
     steps = np.where(np.eye(instance.n, dtype=bool), np.inf, instance.matrices)
-    return np.maximum(steps.min(axis=2).sum(axis=1), steps.min(axis=1).sum(axis=1))
+    leaving, entering = steps.min(axis=2), steps.min(axis=1)
+    if not instance.closed:
+        leaving, entering = (np.sort(least)[:, :-1] for least in (leaving, entering))
+    return np.maximum(leaving.sum(axis=1), entering.sum(axis=1))
 
 
 def symmetries(instance: Instance, count: int) -> Iterator[Instance]:
@@ -176,20 +218,20 @@ def symmetries(instance: Instance, count: int) -> Iterator[Instance]:
         planes = instance.coordinates.reshape(-1, OBJECTIVES, PLANE)
         mirrored = planes * np.where([number & 1, number & 2], -1.0, 1.0)
         turned = mirrored[..., ::-1] if number & 4 else mirrored
-        yield Instance(coordinates=turned.reshape(-1, OBJECTIVES * PLANE))
+        yield replace(instance, coordinates=turned.reshape(-1, OBJECTIVES * PLANE))
 
 
-@cache
-def all_tours(n: int) -> NDArray[np.int32]:
-    """Return every tour of n cities that begins at city 0, shape ((n - 1)!, n), read-only.
-
-    >>> all_tours(3)
-    array([[0, 1, 2],
-           [0, 2, 1]], dtype=int32)
-    """
-    tours = np.array([(0, *rest) for rest in permutations(range(1, n))], np.int32)
-    tours.setflags(write=False)
-    return tours
+def _check_ends(instance: Instance) -> None:
+    """Raise InvalidInstance where a fixed end of a route does not fit the instance."""
+    for name, city in (("start", instance.start), ("end", instance.end)):
+        if city is None:
+            continue
+        if instance.closed:
+            raise InvalidInstance(f"a closed tour has no {name}, got {city}")
+        if not 0 <= city < instance.n:
+            raise InvalidInstance(f"{name} must be a city, 0 to {instance.n - 1}, got {city}")
+    if instance.n > 1 and instance.start == instance.end is not None:
+        raise InvalidInstance(f"an open route cannot end where it starts, got {instance.start}")
 
 
 def _checked_coordinates(coordinates: Array) -> Array:

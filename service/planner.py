@@ -19,18 +19,19 @@ from service.pareto import best_subset, hypervolume, nondominated
 from service.preferences import angles, from_angles
 from service.search.bound import hypervolume_bound
 from service.search.improve import Progress, SearchResult, Termination, improve
+from service.search.open_routes import built_tours, oriented, plain_tours
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 BOUND_SECONDS = 5.0  # after these a bound, which is valid all along, is tight enough
-MIN_CONSTRUCTED = 3  # cities: of fewer there is one tour, and no network was trained on them
+MIN_CONSTRUCTED = 3  # cities: no network was trained on fewer
 
 
 class Constructor(Protocol):
     """A builder of tours from nothing but an instance and preferences."""
 
     def tours(self, instance: Instance, preferences: Array) -> Tours:
-        """Return tours, shape (k, n), one for each preference (k, 2), or raise Cancelled."""
+        """Return closed tours, shape (k, n), one a preference (k, 2), or raise Cancelled."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,7 +41,7 @@ class PlanOptions:
     Args:
         angles: Of the preferences for which tours are constructed, in degrees, shape (k,).
         size: The greatest number of tours of the front.
-        start: The city from which every tour is reported.
+        start: The city from which every closed tour is reported.
         reference_point: Of the hypervolume, shape (2,), in the instance's units; by default n
             times the scale.
         time_limit: Seconds for the search; at 0 there is no search.
@@ -154,7 +155,7 @@ def plan(
         bound = hypervolume_bound(instance, reference_point, deadline, stop)
     clock.ends("bound")
     return Front(
-        tours=_starting_at(options.start, tours[chosen]),
+        tours=_as_reported(instance, options.start, tours[chosen]),
         points=points[chosen],
         found=len(points),
         scale=instance.scale,
@@ -187,12 +188,12 @@ def _constructed(
 ) -> Tours:
     """Return a tour for each angle and each of the symmetries, until told to stop."""
     if instance.n < MIN_CONSTRUCTED:
-        return np.arange(instance.n, dtype=np.int64)[np.newaxis]
+        return plain_tours(instance).astype(np.int64)
     tours = []
     for call, image in enumerate(symmetries(instance, options.augment)):
         angles = _shifted(options.angles, call / options.augment)
         try:
-            tours.append(constructor.tours(image, from_angles(angles)))
+            tours.append(built_tours(constructor.tours, image, from_angles(angles)))
         except Cancelled:
             if not tours:
                 raise
@@ -244,7 +245,7 @@ def _best_front(
     """Return the best tours found so far, at most `size` of them."""
     found = best(min(size, options.size))
     return Front(
-        tours=_starting_at(options.start, found.tours),
+        tours=_as_reported(instance, options.start, found.tours),
         points=found.points,
         found=progress.points,
         scale=instance.scale,
@@ -260,8 +261,10 @@ def _gained(instance: Instance, first: Tours, points: Array, reference_point: Ar
     return hypervolume(points, reference_point) - before
 
 
-def _starting_at(start: int, tours: NDArray[np.integer]) -> NDArray[np.integer]:
-    """Return closed tours rotated so that they begin at a city."""
+def _as_reported(instance: Instance, start: int, tours: NDArray[np.integer]) -> NDArray[np.integer]:
+    """Return closed tours rotated so that they begin at a city; open routes in their direction."""
+    if not instance.closed:
+        return oriented(instance, tours)
     n = tours.shape[1]
     first = (tours == start).argmax(axis=1)
     return np.take_along_axis(tours, (first[:, np.newaxis] + np.arange(n)) % n, axis=1)

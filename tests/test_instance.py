@@ -1,6 +1,7 @@
 """What an instance is, and what it refuses to be."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,8 +10,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from service.errors import InvalidInstance
-from service.instance import Instance, all_tours, least_lengths, tour_lengths
-from tests.helpers.instances import KINDS, small_integers
+from service.instance import Instance, least_lengths, step_lengths, tour_lengths
+from tests.helpers.instances import ENDS, KINDS, every_tour, opened, small_integers
 
 COORDINATES = arrays(
     np.float64, st.tuples(st.integers(1, 6), st.just(4)), elements=st.integers(-5, 5)
@@ -18,10 +19,17 @@ COORDINATES = arrays(
 SQUARE = np.array([[0, 0, 0, 0], [3, 0, 0, 1], [3, 4, 2, 1], [0, 4, 2, 0]], dtype=np.float64)
 
 
-@given(kind=st.sampled_from(KINDS), n=st.integers(1, 7), seed=st.integers(0, 10**6))
-def test_no_tour_is_shorter_than_the_least_lengths(kind: str, n: int, seed: int) -> None:
+@given(
+    kind=st.sampled_from(KINDS),
+    ends=st.sampled_from(("closed", *ENDS)),
+    n=st.integers(2, 7),
+    seed=st.integers(0, 10**6),
+)
+def test_no_tour_is_shorter_than_the_least_lengths(kind: str, ends: str, n: int, seed: int) -> None:
     instance = small_integers(kind, n, seed)
-    shortest = tour_lengths(instance, all_tours(n)).min(axis=0)
+    if ends != "closed":
+        instance = opened(instance, ends, seed)
+    shortest = tour_lengths(instance, every_tour(instance)).min(axis=0)
     assert (least_lengths(instance) <= shortest * (1 + 1e-12)).all()
 
 
@@ -43,6 +51,11 @@ def test_no_tour_is_shorter_than_the_least_lengths(kind: str, n: int, seed: int)
         ({"matrices": -np.ones((2, 2, 2))}, "not be negative, got -1"),
         ({"matrices": np.full((2, 2, 2), np.inf)}, "costs must be finite"),
         ({"matrices": np.full((2, 2, 2), 1e308)}, r"got costs up to 1e\+308"),
+        ({"coordinates": SQUARE, "start": 1}, "a closed tour has no start, got 1"),
+        ({"coordinates": SQUARE, "end": 0}, "a closed tour has no end, got 0"),
+        ({"coordinates": SQUARE, "closed": False, "end": 4}, "end must be a city, 0 to 3, got 4"),
+        ({"coordinates": SQUARE, "closed": False, "start": -1}, "start must be a city"),
+        ({"coordinates": SQUARE, "closed": False, "start": 2, "end": 2}, "cannot end where"),
     ],
 )
 def test_what_is_not_an_instance_is_refused(given: dict[str, np.ndarray], sentence: str) -> None:
@@ -95,6 +108,20 @@ def test_a_tour_is_closed() -> None:
     lengths = tour_lengths(Instance(coordinates=SQUARE), np.array([[0, 1, 2, 3], [0, 2, 1, 3]]))
     np.testing.assert_allclose(lengths[0], [3 + 4 + 3 + 4, 1 + 2 + 1 + 2])
     np.testing.assert_allclose(lengths[1], [5 + 4 + 5 + 4, 5**0.5 + 2 + 5**0.5 + 2])
+
+
+@given(COORDINATES)
+def test_an_open_route_is_shorter_by_the_step_back(coordinates: np.ndarray) -> None:
+    closed = Instance(coordinates=coordinates)
+    both = replace(closed, closed=False)
+    by_matrices = replace(
+        both, coordinates=None, matrices=closed.scaled_matrices * closed.scale[:, None, None]
+    )
+    tours = np.array([range(closed.n), range(closed.n)[::-1]])
+    back = step_lengths(closed, tours[:, -1], tours[:, 0])
+    expected = tour_lengths(closed, tours) - back
+    np.testing.assert_allclose(tour_lengths(both, tours), expected, atol=1e-12)
+    np.testing.assert_allclose(tour_lengths(by_matrices, tours), expected, atol=1e-12)
 
 
 @given(COORDINATES, st.randoms(use_true_random=False))

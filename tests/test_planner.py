@@ -15,7 +15,9 @@ from service.instance import Instance, symmetries, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.planner import Front, PlanOptions, plan
 from service.preferences import fan
+from service.search.improve import warm_up
 from service.settings import Settings
+from tests.helpers.instances import ENDS, KINDS, every_tour, opened, small_integers
 
 pytestmark = pytest.mark.usefixtures("compiled")
 
@@ -31,6 +33,18 @@ class Everything:
 
     def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:  # noqa: ARG002
         return np.array(list(permutations(range(instance.n))))
+
+
+class InOrder:
+    """A constructor whose tours all visit the cities in their order."""
+
+    def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
+        return np.tile(np.arange(instance.n), (len(preferences), 1))
+
+
+@pytest.fixture(scope="module")
+def matrix_actor() -> OnnxActor:
+    return OnnxActor(Settings().actors / "pa-one-matrix.onnx", threads=1)
 
 
 @pytest.fixture(scope="module")
@@ -72,6 +86,47 @@ def test_no_front_is_better_than_brute_force(actor: OnnxActor, n: int) -> None:
     for point in front.points:
         assert (best <= point + slack).all(axis=1).any()
     assert front.hypervolume <= hypervolume(best, front.reference_point) + slack
+
+
+def test_open_routes_equal_brute_force_on_200_instances(actor: OnnxActor) -> None:
+    for seed in range(200):
+        n, kind, ends = 3 + seed % 7, KINDS[seed % 3], ENDS[seed % 4]
+        instance = opened(small_integers(kind, n, seed), ends, seed)
+        options = PlanOptions(angles=fan(5), size=1000, time_limit=1.0)
+        front = plan(actor if kind == "coordinates" else InOrder(), instance, options)
+        check(front, instance)
+        assert instance.start is None or (front.tours[:, 0] == instance.start).all()
+        assert instance.end is None or (front.tours[:, -1] == instance.end).all()
+        every = tour_lengths(instance, every_tour(instance))
+        best = every[nondominated(every.round(9))]
+        np.testing.assert_allclose(front.points, best, rtol=1e-12)
+
+
+@pytest.mark.parametrize("ends", ENDS)
+@pytest.mark.parametrize("kind", ["coordinates", "matrices"])
+def test_without_a_search_the_network_plans_open_routes(
+    kind: str, ends: str, actor: OnnxActor, matrix_actor: OnnxActor
+) -> None:
+    instance = random_instance(40)
+    if kind == "matrices":
+        instance = Instance(matrices=np.random.default_rng(1).random((2, 40, 40)))
+    instance = opened(instance, ends)
+    network = actor if kind == "coordinates" else matrix_actor
+    options = PlanOptions(angles=fan(20), size=100)
+    front = plan(network, instance, options)
+    check(front, instance)
+    assert instance.start is None or (front.tours[:, 0] == instance.start).all()
+    assert instance.end is None or (front.tours[:, -1] == instance.end).all()
+    in_order = plan(InOrder(), instance, options)
+    assert front.hypervolume > in_order.hypervolume + 0.1
+
+
+def test_open_routes_of_two_cities_go_both_ways() -> None:
+    matrices = np.array([[[0, 1], [5, 0]], [[0, 7], [2, 0]]])
+    instance = Instance(matrices=matrices, closed=False)
+    front = plan(InOrder(), instance, PlanOptions(angles=fan(3), size=10))
+    assert front.tours.tolist() == [[0, 1], [1, 0]]
+    assert front.points.tolist() == [[1, 7], [5, 2]]
 
 
 @pytest.mark.parametrize("size", [1, 2, 5])
@@ -132,6 +187,7 @@ def test_the_nearest_tour_is_nearest_in_scaled_objectives() -> None:
 
 
 def test_what_the_search_gained_is_what_it_added_to_the_first_tours(actor: OnnxActor) -> None:
+    warm_up()  # else the time may be up before the search begins
     instance = random_instance(30)
     demand = PlanOptions(angles=fan(5), size=10_000)
     first = plan(actor, instance, demand)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.jit import allocating, compiled, inlined
+from service.search.closing import closing_cost, is_closing
 from service.search.costs import Costs, step_costs
 
 Array = NDArray[np.float64]
@@ -32,9 +33,12 @@ def make_assignment(n: int) -> Assignment:
 
 @inlined
 def arc_cost(costs: Costs, w0: float, w1: float, i: int, j: int) -> float:
-    """Return the weighted cost from i to j; infinite from a city to itself."""
+    """Return the weighted cost from i to j; infinite from a city to itself, or where forbidden."""
     if i == j:
         return np.inf
+    if is_closing(costs.closing, i, j):
+        closing = closing_cost(costs.closing, i, j)
+        return np.inf if closing > 0 else 0.0
     c = step_costs(costs, i, j)
     return w0 * c[0] + w1 * c[1]
 

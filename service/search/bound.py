@@ -11,10 +11,11 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import MAX_ENUMERATED, Instance, all_tours, tour_lengths
+from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.search.assignment import augment, make_assignment, price_bound
 from service.search.costs import Costs, make_costs, scaled_reference
+from service.search.enumeration import MAX_ENUMERATED, exact_tours
 from service.search.one_tree import ascend, make_ascent
 from service.search.schedule import bisection_order
 
@@ -34,9 +35,9 @@ def hypervolume_bound(
 ) -> float:
     """Return an upper bound on the hypervolume of any front of the instance, 0 to 1.
 
-    Exact up to nine cities. It is valid however early it stops, and tightens with time. By the
-    Held-Karp bound where costs are symmetric, else by the assignment bound; either takes O(n^2)
-    for each step under each weight.
+    Exact up to nine cities. It is valid however early it stops, and tightens with time.
+    By the Held-Karp bound where costs are symmetric, else by the assignment bound; either takes
+    O(n^2) for each step under each weight.
 
     Args:
         instance: The instance.
@@ -45,7 +46,7 @@ def hypervolume_bound(
         stop: Called at least every few ms; True ends the tightening at once.
     """
     if instance.n <= MAX_ENUMERATED:
-        points = tour_lengths(instance, all_tours(instance.n))
+        points = tour_lengths(instance, exact_tours(instance))
         return hypervolume(points, reference_point)
     share = np.linspace(0.0, 1.0, WEIGHTS)
     scale = np.ldexp(instance.scale, instance.shifts)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.jit import compiled, inlined
+from service.search.closing import closing_cost, closing_costs, is_closing
 
 Array = NDArray[np.float64]
 
@@ -19,11 +20,15 @@ LEAST_REFERENCE, LARGEST_REFERENCE = 2.0**-500, 2.0**500
 
 
 class Costs(NamedTuple):
-    """The scaled costs of an instance: a matrix, or coordinates where that is empty."""
+    """The scaled costs of an instance: a matrix, or coordinates where that is empty.
+
+    Those of open routes have one more city, city 0, which comes before the instance's.
+    """
 
     cities: Array  # (n, 4)
     matrix: Array  # (n, n, 2), or (0, 0, 2) where the coordinates are used
     symmetric: bool
+    closing: Array | None  # (2, n), the costs from city 0 and to it; None of closed tours
 
 
 def make_costs(instance: Instance) -> Costs:
@@ -32,19 +37,26 @@ def make_costs(instance: Instance) -> Costs:
     A power of two rounds nothing, so sums of whole-numbered costs stay exact, and neither huge
     nor tiny units overflow or underflow in a product of two lengths.
     """
+    closing = None if instance.closed else closing_costs(instance)
+    added = 0 if closing is None else 1
+    n = added + instance.n
+    cities = np.zeros((n, 4))
     if instance.coordinates is None:
         assert instance.matrices is not None
         planes = np.ldexp(instance.matrices, instance.shifts[:, None, None])
-        matrix = np.ascontiguousarray(planes.transpose(1, 2, 0))
-        return Costs(np.zeros((instance.n, 4)), matrix, instance.symmetric)
+        matrix = np.empty((n, n, 2))
+        matrix[added:, added:] = planes.transpose(1, 2, 0)
+        if closing is not None:
+            matrix[0], matrix[:, 0] = closing[0, :, None], closing[1, :, None]
+        return Costs(cities, matrix, instance.symmetric, closing)
     corner = instance.coordinates.min(axis=0)
-    cities = np.ldexp(instance.coordinates - corner, instance.shifts.repeat(2))
-    sparse = Costs(cities, np.zeros((0, 0, 2)), True)
+    cities[added:] = np.ldexp(instance.coordinates - corner, instance.shifts.repeat(2))
+    sparse = Costs(cities, np.zeros((0, 0, 2)), True, closing)
     if instance.n >= DENSE_BELOW:
         return sparse
-    matrix = np.empty((instance.n, instance.n, 2))
+    matrix = np.empty((n, n, 2))
     tabulate(sparse, matrix)
-    return Costs(cities, matrix, True)
+    return sparse._replace(matrix=matrix)
 
 
 def scaled_reference(instance: Instance, reference_point: Array) -> Array:
@@ -61,10 +73,21 @@ def step_costs(costs: Costs, i: int, j: int) -> tuple[float, float]:
     """Return both scaled costs of the step from city i to city j."""
     if len(costs.matrix):
         return costs.matrix[i, j, 0], costs.matrix[i, j, 1]
+    if is_closing(costs.closing, i, j):
+        closing = closing_cost(costs.closing, i, j)
+        return closing, closing
     cities = costs.cities
     x, y = cities[i, 0] - cities[j, 0], cities[i, 1] - cities[j, 1]
     u, v = cities[i, 2] - cities[j, 2], cities[i, 3] - cities[j, 3]
     return np.sqrt(x * x + y * y), np.sqrt(u * u + v * v)
+
+
+@inlined
+def travel_costs(costs: Costs, i: int, j: int) -> tuple[float, float]:
+    """Return what a step adds to both scaled lengths: nothing to or from an invented city."""
+    if is_closing(costs.closing, i, j):
+        return 0.0, 0.0
+    return step_costs(costs, i, j)
 
 
 @compiled
@@ -77,10 +100,10 @@ def tabulate(costs: Costs, matrix: Array) -> None:
 
 @compiled
 def lengths(costs: Costs, tour: NDArray[np.int32]) -> tuple[float, float]:
-    """Return both scaled lengths of a closed tour, summed afresh. O(n)."""
-    first, second = step_costs(costs, tour[-1], tour[0])
+    """Return both scaled lengths of a tour, summed afresh. O(n)."""
+    first, second = travel_costs(costs, tour[-1], tour[0])
     for k in range(len(tour) - 1):
-        c = step_costs(costs, tour[k], tour[k + 1])
+        c = travel_costs(costs, tour[k], tour[k + 1])
         first += c[0]
         second += c[1]
     return first, second

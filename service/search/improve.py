@@ -13,10 +13,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import MAX_ENUMERATED, Instance, all_tours, tour_lengths
+from service.instance import Instance, tour_lengths
 from service.pareto import best_subset, nondominated
 from service.search.archive import MAX_POINTS
 from service.search.bound import hypervolume_bound
+from service.search.enumeration import MAX_ENUMERATED, exact_tours
+from service.search.open_routes import plain_tours
 from service.search.schedule import Search
 
 Array = NDArray[np.float64]
@@ -79,14 +81,14 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
             it was given more.
     """
     if instance.n <= MAX_ENUMERATED:
-        return _front(instance, all_tours(instance.n), "converged")
+        return _front(instance, exact_tours(instance), "converged")
     if reference_point is None:
         reference_point = instance.n * instance.scale
     search = Search(instance, seed, reference_point, capacity)
     search.add(tours)
     terminated = _run(search, deadline, iterations, stop, report)
     if not search.size:
-        search.add(np.arange(instance.n)[None])
+        search.add(plain_tours(instance))
     dropped = search.not_covered(tours)
     if len(dropped):
         return _front(instance, np.concatenate((search.tours(), dropped)), terminated)
@@ -141,6 +143,12 @@ def warm_up() -> None:
     none = np.empty((0, 12), np.int32)
     points = np.stack([cities, 12 - cities], axis=1)
     best_subset(points, 3, np.full(2, 13.0))
-    for instance in (Instance(coordinates=coordinates), Instance(matrices=np.triu(matrices))):
+    for instance in (
+        Instance(coordinates=coordinates),
+        Instance(matrices=np.triu(matrices)),
+        Instance(coordinates=coordinates, closed=False),
+        Instance(matrices=np.triu(matrices), closed=False),
+    ):
+        exact_tours(instance)
         improve(instance, none, iterations=5_000)
         hypervolume_bound(instance, 12 * instance.scale)

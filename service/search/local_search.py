@@ -6,10 +6,12 @@ from numpy.typing import NDArray
 from service.jit import allocating, compiled, inlined
 from service.search.archive import Archive, accepts, insert
 from service.search.candidates import Scalarization, weighted_cost
+from service.search.closing import is_kept
 from service.search.costs import lengths
 from service.search.moves import apply_move, block_swap, length_change, or_opt, two_opt
-from service.search.working_tour import WorkingTour, dequeue, enqueue, restore, save
+from service.search.working_tour import WorkingTour, dequeue, enqueue, restore, save, wrap
 
+Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
 
 LONGEST_BLOCK = 50  # cities that a perturbation moves at once
@@ -18,23 +20,22 @@ LEAST_GAIN = 1e-12  # as a share of the weighted length, far above what rounding
 
 
 @allocating
-def nearest_neighbour(scalarization: Scalarization, first: int, tour: Cities) -> None:
-    """Fill `tour` from city `first` on, always going to the nearest unvisited city.
+def nearest_neighbour(scalarization: Scalarization, begun: int, tour: Cities) -> None:
+    """Fill `tour` after its first `begun` cities, always going to the nearest unvisited city.
 
     Candidates are looked up first, and all unvisited cities only where no candidate is left.
     """
     n = len(tour)
     unvisited = np.arange(n).astype(np.int32)  # in the first n - k places
     place = unvisited.copy()
-    city = first
-    for k in range(n):
-        tour[k] = city
+    for k in range(n - 1):
+        city = tour[k]
         last = unvisited[n - 1 - k]
         unvisited[place[city]] = last
         place[last] = place[city]
         place[city] = -1
-        if k == n - 1:
-            break
+        if k < begun - 1:
+            continue
         following = -1
         for other in scalarization.candidates[city]:
             if place[other] >= 0:
@@ -46,7 +47,7 @@ def nearest_neighbour(scalarization: Scalarization, first: int, tour: Cities) ->
                 value = weighted_cost(scalarization, city, unvisited[j])
                 if value < least:
                     least, following = value, unvisited[j]
-        city = following
+        tour[k + 1] = following
 
 
 @inlined
@@ -105,12 +106,29 @@ def descend(
 
 
 @inlined
+def removes_kept_step(
+    working: WorkingTour, closing: Array | None, start: int, a: int, b: int
+) -> bool:
+    """Return whether a swap of two blocks removes a step that has to stay in the tour."""
+    if closing is None:
+        return False
+    tour, n = working.tour, len(working.tour)
+    return (
+        is_kept(closing, tour[wrap(start - 1, n)], tour[start])
+        or is_kept(closing, tour[wrap(start + a - 1, n)], tour[wrap(start + a, n)])
+        or is_kept(closing, tour[wrap(start + a + b - 1, n)], tour[wrap(start + a + b, n)])
+    )
+
+
+@inlined
 def perturb(working: WorkingTour, scalarization: Scalarization, random: NDArray[np.int64]) -> None:
     """Swap two adjacent blocks of random sizes at a random place."""
     n = len(working.tour)
     longest = min(LONGEST_BLOCK, n // 3)
     start = random_below(random, n)
     a, b = 1 + random_below(random, longest), 1 + random_below(random, longest)
+    while removes_kept_step(working, scalarization.costs.closing, start, a, b):
+        start = random_below(random, n)
     make_move(working, scalarization, start, a, b, False)
 
 

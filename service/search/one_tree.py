@@ -3,7 +3,9 @@
 A tour is a 1-tree: a spanning tree of all cities but one, plus two edges at that one. So it is no
 shorter than the least 1-tree, and that stays true under any penalties added to the costs of all
 edges of a city, once twice their sum is deducted (Held and Karp, 1971). The penalties are improved
-by subgradient ascent with the step lengths of Volgenant and Jonker (1982).
+by subgradient ascent with the step lengths of Volgenant and Jonker (1982). An open route becomes a
+tour through city 0, which is invented and at no cost (see closing.py), so the tree is one of all
+its cities.
 """
 
 from typing import NamedTuple
@@ -11,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import allocating, compiled
+from service.jit import allocating, compiled, inlined
+from service.search.closing import is_kept
 from service.search.costs import Costs, step_costs
 
 Array = NDArray[np.float64]
@@ -48,7 +51,21 @@ def one_tree(
         degrees[parent[closest]] += 1
         total += distance[closest]
         city = closest
-    return total + two_shortest_edges(costs, w0, w1, penalties, degrees)
+    return total + edges_outside_tree(costs.closing, costs, (w0, w1), penalties, degrees)
+
+
+@inlined
+def edges_outside_tree(
+    closing: Array | None,
+    costs: Costs,
+    weights: tuple[float, float],
+    penalties: Array,
+    degrees: NDArray[np.int64],
+) -> float:
+    """Return the length of the two edges at city 0, and count them in the degrees."""
+    if closing is None:
+        return two_shortest_edges(costs, weights[0], weights[1], penalties, degrees)
+    return two_closing_edges(closing, penalties, degrees)
 
 
 @compiled
@@ -70,6 +87,27 @@ def two_shortest_edges(
     degrees[nearest] += 1
     degrees[runner_up] += 1
     return least + second
+
+
+@compiled
+def two_closing_edges(closing: Array, penalties: Array, degrees: NDArray[np.int64]) -> float:
+    """Return the length of the invented city's two edges, and count them in the degrees.
+
+    They lead to the fixed ends of a route, and where an end is free to the least penalty.
+    """
+    least, second = np.inf, np.inf
+    nearest, runner_up = 0, 0
+    for j in range(1, len(penalties)):
+        key = -np.inf if is_kept(closing, 0, j) else penalties[j]
+        if key < least:
+            second, runner_up = least, nearest
+            least, nearest = key, j
+        elif key < second:
+            second, runner_up = key, j
+    degrees[0] = 2
+    degrees[nearest] += 1
+    degrees[runner_up] += 1
+    return 2 * penalties[0] + penalties[nearest] + penalties[runner_up]
 
 
 class Ascent(NamedTuple):

@@ -28,6 +28,7 @@ from service.search.candidates import (
     make_candidate_pool,
     rank_candidates,
 )
+from service.search.closing import close_routes, open_tours
 from service.search.costs import lengths, make_costs, scaled_reference
 from service.search.local_search import (
     LEAST_GAIN,
@@ -36,6 +37,7 @@ from service.search.local_search import (
     nearest_neighbour,
     offer,
 )
+from service.search.open_routes import moved_ends
 from service.search.pareto_local_search import STEPS, SearchState, WeightedCandidates, fill_gaps
 from service.search.working_tour import enqueue_all, load, make_working_tour
 
@@ -83,7 +85,7 @@ class Search:
     def __init__(
         self, instance: Instance, seed: int, reference_point: Array, capacity: int = MAX_POINTS
     ) -> None:
-        self.n = instance.n
+        self.instance = instance
         self.shifts = instance.shifts
         self.reference_point = reference_point
         self.corner = scaled_reference(instance, reference_point)
@@ -91,9 +93,11 @@ class Search:
         weights = np.stack([share, 1 - share], axis=1) / np.ldexp(instance.scale, self.shifts)
         weights /= weights.sum(axis=1, keepdims=True)
         self.weights = weights
+        costs = make_costs(instance)
+        self.n = len(costs.cities)
         candidates = np.zeros((WEIGHTS, self.n, min(CANDIDATES_PER_CITY, self.n - 1)), np.int32)
         self.state = SearchState(
-            make_costs(instance),
+            costs,
             WeightedCandidates(weights, candidates, np.zeros(candidates.shape)),
             make_archive(self.n, capacity),
             make_working_tour(self.n),
@@ -114,7 +118,8 @@ class Search:
         """Return the tours of the front, or those at indices, by ascending first length."""
         archive = self.state.archive
         slots = archive.slots[: self.size]
-        return archive.tours[slots if indices is None else slots[indices]]
+        tours = archive.tours[slots if indices is None else slots[indices]]
+        return tours if self.instance.closed else open_tours(self.instance, tours)
 
     def points(self) -> Array:
         """Return the points of the front, shape (p, 2), in the instance's units."""
@@ -126,13 +131,19 @@ class Search:
         Of tours that were added there are some only where a full archive had to drop them.
         """
         costs, archive = self.state.costs, self.state.archive
-        points = [lengths(costs, tour) for tour in np.ascontiguousarray(tours, np.int32)]
+        points = [lengths(costs, tour) for tour in self._closed(tours)]
         return tours[[k for k in range(len(tours)) if accepts(archive, *points[k])]]
 
     def add(self, tours: NDArray[np.integer]) -> None:
         """Add tours, shape (m, n), to the front."""
-        for tour in np.ascontiguousarray(tours, np.int32):
+        for tour in self._closed(tours):
             insert(self.state.archive, lengths(self.state.costs, tour), tour)
+
+    def _closed(self, tours: NDArray[np.integer]) -> NDArray[np.int32]:
+        """Return tours of the instance as the closed tours that the search moves."""
+        if self.instance.closed:
+            return np.ascontiguousarray(tours, np.int32)
+        return close_routes(tours)
 
     def run(self) -> Iterator[int]:
         """Search, and yield about every millisecond the number of iterations done since.
@@ -176,11 +187,20 @@ class Search:
             least = scalarization.w0 * first + scalarization.w1 * second
             load(working, archive.tours[archive.slots[k]], first, second)
         if construct or self.size == 0:
-            tour = np.empty(self.n, np.int32)
-            nearest_neighbour(scalarization, 0, tour)
+            tour = self._construct(scalarization)
             first, second = lengths(scalarization.costs, tour)
             if scalarization.w0 * first + scalarization.w1 * second < least:
                 load(working, tour, first, second)
+
+    def _construct(self, scalarization: Scalarization) -> NDArray[np.int32]:
+        """Return a tour by nearest neighbours."""
+        tour = np.zeros(self.n, np.int32)
+        if self.instance.closed:
+            nearest_neighbour(scalarization, 1, tour)
+            return tour
+        tour[1] = 1 + (self.instance.start or 0)
+        nearest_neighbour(scalarization, 2, tour)
+        return close_routes(moved_ends(self.instance, tour[np.newaxis, 1:] - 1))[0]
 
     def _descend(self, k: int, construct: bool) -> Iterator[int]:
         """Rank the candidates of weight k, and descend to a local optimum under it."""

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from service.instance import Instance, all_tours, tour_lengths
+from service.instance import Instance, tour_lengths
 from service.pareto import nondominated
 from tests.benchmarks.kro import rounded_distances
 from tests.benchmarks.rivals.construction import (
@@ -18,6 +18,7 @@ from tests.benchmarks.rivals.construction import (
     nearest_neighbour,
     spread_weights,
 )
+from tests.helpers.instances import all_tours
 
 TINY = Instance(coordinates=np.random.default_rng(0).random((7, 4)) * [3, 3, 50, 50])
 LIBRARIES = pytest.mark.parametrize(

@@ -1,4 +1,8 @@
-"""Instances and tours drawn at random, and one weighted sum of both objectives."""
+"""Instances and tours drawn at random, all tours there are, and one weighted sum."""
+
+from dataclasses import replace
+from functools import cache
+from itertools import permutations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,8 +10,10 @@ from numpy.typing import NDArray
 from service.instance import Instance
 from service.search.candidates import Scalarization
 from service.search.costs import make_costs
+from service.search.open_routes import moved_ends
 
 KINDS = ("coordinates", "symmetric", "asymmetric")
+ENDS = ("no", "start", "end", "both")  # which ends of an open route are fixed
 
 
 def small_integers(kind: str, n: int, seed: int) -> Instance:
@@ -32,6 +38,41 @@ def random_matrices(n: int, seed: int, symmetric: bool) -> Instance:
     if symmetric:
         matrices += matrices.transpose(0, 2, 1)
     return Instance(matrices=matrices)
+
+
+@cache
+def all_tours(n: int) -> NDArray[np.int32]:
+    """Every closed tour of n cities, from city 0 on, shape ((n - 1)!, n)."""
+    tours = np.array([(0, *rest) for rest in permutations(range(1, n))], np.int32)
+    tours.setflags(write=False)
+    return tours
+
+
+def every_tour(instance: Instance) -> NDArray[np.int32]:
+    """Every tour of an instance: closed ones, or orders of its cities with its ends."""
+    n = instance.n
+    if instance.closed:
+        return all_tours(n)
+    orders = all_tours(n + 1)[:, 1:] - 1
+    first = instance.start is None or orders[:, 0] == instance.start
+    last = instance.end is None or orders[:, -1] == instance.end
+    return orders[first & last & np.ones(len(orders), bool)]
+
+
+def opened(instance: Instance, ends: str, seed: int = 0) -> Instance:
+    """The instance for open routes with `no`, a `start`, an `end` or `both` fixed."""
+    start, end = np.random.default_rng(seed).permutation(instance.n)[:2].tolist()
+    return replace(
+        instance,
+        closed=False,
+        start=start if ends in ("start", "both") else None,
+        end=end if ends in ("end", "both") else None,
+    )
+
+
+def random_routes(instance: Instance, m: int, seed: int = 0) -> NDArray[np.int64]:
+    """Tours of an instance drawn uniformly, shape (m, n), between its ends."""
+    return moved_ends(instance, random_tours(instance.n, m, seed))
 
 
 def random_tours(n: int, m: int, seed: int = 0) -> NDArray[np.int64]:

@@ -1,8 +1,7 @@
 """The search never loses a tour, always returns permutations, and keeps to what limits it."""
 
 import time
-from collections.abc import Iterable, Iterator
-from itertools import pairwise, permutations
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,18 +9,31 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from service.instance import Instance, all_tours, tour_lengths
+from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume, nondominated
+from service.search.enumeration import MAX_ENUMERATED, exact_tours
 from service.search.improve import Progress, SearchResult, improve
-from tests.helpers.instances import KINDS, no_tours, random_tours, small_integers, uniform
+from tests.helpers.instances import (
+    ENDS,
+    KINDS,
+    every_tour,
+    no_tours,
+    opened,
+    random_routes,
+    random_tours,
+    small_integers,
+    uniform,
+)
 
 pytestmark = pytest.mark.usefixtures("compiled")
 
 
 def is_front(instance: Instance, found: SearchResult) -> bool:
-    """Whether permutations and points go together, sorted, and none dominates another."""
+    """Whether tours with the right ends go with their points, and none dominates another."""
     return (
-        (np.sort(found.tours, axis=1) == np.arange(instance.n)).all()
+        (instance.start is None or (found.tours[:, 0] == instance.start).all())
+        and (instance.end is None or (found.tours[:, -1] == instance.end).all())
+        and (np.sort(found.tours, axis=1) == np.arange(instance.n)).all()
         and np.allclose(tour_lengths(instance, found.tours), found.points, rtol=1e-13)
         and np.array_equal(nondominated(found.points), np.arange(len(found.points)))
     )
@@ -32,36 +44,38 @@ def covers(points: NDArray[np.float64], given: NDArray[np.float64]) -> bool:
     return (points[:, None] <= given[None] * (1 + 1e-11)).all(axis=2).any(axis=0).all()
 
 
+def nondominated_points(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The nondominated of points, once each: lengths that differ by rounding are equal."""
+    return points[nondominated(points.round(9))]
+
+
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("n", range(1, 10))
 def test_a_few_cities_give_the_exact_front(kind: str, n: int) -> None:
-    for seed in range(10 if n < 9 else 2):
-        instance = small_integers(kind, n, seed)
-        found = improve(instance, no_tours(n), deadline=0.0)
-        assert front_of(found.points) == front_of(all_lengths(instance))
+    instance = small_integers(kind, n, seed=n)
+    found = improve(instance, no_tours(n))
+    points = tour_lengths(instance, every_tour(instance))
+    np.testing.assert_allclose(found.points, nondominated_points(points), rtol=1e-12)
+    assert is_front(instance, found)
+    assert found.terminated == "converged"
+
+
+@pytest.mark.parametrize("ends", ENDS)
+@pytest.mark.parametrize("kind", KINDS)
+def test_open_routes_through_a_few_cities_give_the_exact_front(kind: str, ends: str) -> None:
+    for seed in range(17):
+        n = 2 + seed % 8
+        instance = opened(small_integers(kind, n, seed), ends, seed)
+        found = improve(instance, no_tours(n))
+        points = tour_lengths(instance, every_tour(instance))
+        np.testing.assert_allclose(found.points, nondominated_points(points), rtol=1e-12)
         assert is_front(instance, found)
-        assert found.terminated == "converged"
 
 
-def all_lengths(instance: Instance) -> Iterator[list[float]]:
-    """The lengths of every tour, summed here."""
-    if instance.matrices is None:
-        assert instance.coordinates is not None
-        planes = instance.coordinates.reshape(-1, 2, 2)
-        costs = np.linalg.norm(planes[:, None] - planes, axis=-1).transpose(2, 0, 1).tolist()
-    else:
-        costs = instance.matrices.tolist()
-    for rest in permutations(range(1, instance.n)):
-        yield [sum(cost[a][b] for a, b in pairwise((0, *rest, 0))) for cost in costs]
-
-
-def front_of(points: Iterable[Iterable[float]]) -> list[tuple[float, ...]]:
-    """The nondominated among points, which are equal where they agree to nine digits."""
-    front: list[tuple[float, ...]] = []
-    for point in sorted({tuple(round(length, 9) for length in point) for point in points}):
-        if not front or point[1] < front[-1][1]:
-            front.append(point)
-    return front
+def test_of_an_open_route_through_one_city_there_is_one() -> None:
+    for start, end in [(None, None), (0, None), (None, 0), (0, 0)]:
+        instance = Instance(coordinates=np.ones((1, 4)), closed=False, start=start, end=end)
+        assert improve(instance, no_tours(1)).tours.tolist() == [[0]]
 
 
 @settings(max_examples=40)
@@ -74,14 +88,51 @@ def test_every_given_tour_is_dominated_or_equalled(kind: str, n: int, m: int, se
     assert covers(found.points, tour_lengths(instance, tours))
 
 
+@settings(max_examples=60)
+@given(
+    kind=st.sampled_from(KINDS),
+    ends=st.sampled_from(ENDS),
+    n=st.integers(10, 30),
+    m=st.integers(0, 5),
+    seed=st.integers(0, 1000),
+)
+def test_every_given_route_is_dominated_or_equalled(
+    kind: str, ends: str, n: int, m: int, seed: int
+) -> None:
+    instance = opened(small_integers(kind, n, seed), ends, seed)
+    routes = random_routes(instance, m, seed)
+    found = improve(instance, routes, iterations=500, seed=seed)
+    assert is_front(instance, found)
+    assert covers(found.points, tour_lengths(instance, routes))
+
+
+@pytest.mark.parametrize("ends", ["closed", *ENDS])
 @pytest.mark.parametrize("kind", KINDS)
-def test_ten_cities_come_close_to_the_exact_front(kind: str) -> None:
-    for seed in range(2):
-        instance = small_integers(kind, 10, seed)
-        best = tour_lengths(instance, all_tours(10))
+def test_ten_cities_come_close_to_the_exact_front(kind: str, ends: str) -> None:
+    n = MAX_ENUMERATED + 1
+    for seed in range(3):
+        instance = small_integers(kind, n, seed)
+        if ends != "closed":
+            instance = opened(instance, ends, seed)
+        best = tour_lengths(instance, exact_tours(instance))
         corner = best.max(axis=0) + 1
-        found = improve(instance, no_tours(10), iterations=20_000)
-        assert hypervolume(found.points, corner) >= 0.99 * hypervolume(best, corner)
+        found = improve(instance, no_tours(n), iterations=20_000)
+        assert is_front(instance, found)
+        assert covers(best, found.points)
+        assert hypervolume(found.points, corner) >= 0.98 * hypervolume(best, corner)
+
+
+@pytest.mark.parametrize("ends", ENDS)
+@pytest.mark.parametrize("n", [60, 700])  # by a matrix of costs, and by coordinates
+def test_coordinates_and_their_distances_give_routes_as_good(n: int, ends: str) -> None:
+    instance = opened(uniform(n), ends, seed=n)
+    matrices = instance.scaled_matrices * instance.scale[:, None, None]
+    same = replace(instance, coordinates=None, matrices=matrices)
+    corner = np.full(2, float(n))
+    found, other = (improve(each, no_tours(n), iterations=3000) for each in (instance, same))
+    assert is_front(instance, found)
+    shares = [hypervolume(each.points, corner) for each in (found, other)]
+    assert shares[0] == pytest.approx(shares[1], abs=0.003)
 
 
 def test_more_given_tours_than_the_search_can_keep_are_all_dominated_or_equalled() -> None:

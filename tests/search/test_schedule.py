@@ -1,14 +1,19 @@
 """A search keeps costs exact, and tells which tours its archive dropped."""
 
 import numpy as np
+import pytest
 
 from service.instance import tour_lengths
 from service.search.schedule import Search
-from tests.helpers.instances import random_tours, small_integers, uniform
+from tests.helpers.instances import ENDS, opened, random_tours, small_integers, uniform
 
 
-def test_whole_numbered_matrices_stay_exact() -> None:
-    instance = small_integers("symmetric", 60, seed=1)
+@pytest.mark.parametrize("ends", ["closed", *ENDS])
+@pytest.mark.parametrize("kind", ["symmetric", "asymmetric"])
+def test_whole_numbered_matrices_stay_exact(kind: str, ends: str) -> None:
+    instance = small_integers(kind, 60, seed=1)
+    if ends != "closed":
+        instance = opened(instance, ends)
     search = Search(instance, 0, 60 * instance.scale)
     for _, _ in zip(range(200), search.run(), strict=False):
         pass

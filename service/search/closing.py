@@ -1,0 +1,74 @@
+"""Open routes as closed tours: through one more, invented city, between a route's end and start.
+
+The search moves closed tours. So to a route of cities 1 to n it adds a city 0, to which and from
+which all steps are free of cost. Where an end is fixed, the step between it and city 0 is kept: in
+the search it costs so much less than nothing that no move gains by its removal. Lengths leave all
+steps of city 0 out, so that neither sum nor difference of lengths ever holds such a cost.
+
+A closed instance has no such city, and None for its costs: numba compiles the functions here for
+each of the two types, and for closed tours nothing is left of them.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.instance import Instance
+from service.jit import inlined
+from service.search.open_routes import oriented
+
+Array = NDArray[np.float64]
+
+KEPT = -1024.0  # far below what a move can gain otherwise: scaled steps cost less than 3
+FORBIDDEN = 1024.0
+
+
+def closing_costs(instance: Instance) -> Array:
+    """Return the costs from city 0 to each city, and from each city to city 0, shape (2, n + 1)."""
+    costs = np.zeros((2, instance.n + 1))
+    if instance.symmetric:
+        if len(instance.fixed_ends) == len(costs):
+            costs[:] = FORBIDDEN
+        costs[:, [1 + city for city in instance.fixed_ends]] = KEPT
+        return costs
+    for direction, end in enumerate((instance.start, instance.end)):
+        if end is not None:
+            costs[direction] = FORBIDDEN
+            costs[direction, 1 + end] = KEPT
+    return costs
+
+
+def close_routes(routes: NDArray[np.integer]) -> NDArray[np.int32]:
+    """Return open routes, shape (k, n), as closed tours that begin at city 0, shape (k, n + 1)."""
+    return np.pad(routes.astype(np.int32) + 1, ((0, 0), (1, 0)))
+
+
+def open_tours(instance: Instance, tours: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return closed tours, shape (k, n + 1), as open routes of an instance, shape (k, n)."""
+    size = tours.shape[1]
+    following = (tours == 0).argmax(axis=1)[:, np.newaxis] + np.arange(1, size)
+    routes = np.take_along_axis(tours, following % size, axis=1) - np.int32(1)
+    return oriented(instance, routes).astype(np.int32)
+
+
+@inlined
+def is_closing(closing: Array | None, i: int, j: int) -> bool:
+    """Return whether a step is to or from the invented city."""
+    if closing is None:
+        return False
+    return i == 0 or j == 0
+
+
+@inlined
+def closing_cost(closing: Array | None, i: int, j: int) -> float:
+    """Return the cost of a step to or from the invented city."""
+    if closing is None:
+        return 0.0
+    return closing[0, j] if i == 0 else closing[1, i]
+
+
+@inlined
+def is_kept(closing: Array | None, i: int, j: int) -> bool:
+    """Return whether a step has to stay in the tour."""
+    if closing is None:
+        return False
+    return (i == 0 or j == 0) and closing_cost(closing, i, j) < 0
