@@ -108,8 +108,8 @@ class PlanRoutes:
     async def plan_coverage(self, request: Request) -> Response:
         """Plan the front of tours through places on a map, and on request their paths.
 
-        The map may come as a PNG file instead, where dark is an obstacle: the part `map` of a
-        multipart/form-data body, beside the part `request` with everything else.
+        The map may come as a PNG or PGM file instead, where dark is an obstacle: the part `map` of
+        a multipart/form-data body, beside the part `request` with everything else.
 
         With `Prefer: respond-async` the answer is 202 at once, and `Location` says where the front
         will be. A repeat with the same `Idempotency-Key` is answered with the front of the first.

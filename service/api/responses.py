@@ -121,6 +121,11 @@ class PathItem(BaseModel):
 
     cells: list[list[int]] = Field(description="row and column of each, the first also last")
     metres: float
+    points: list[list[float]] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="x and y of each cell's middle in the frame of the map, in metres, where the"
+        " origin is known",
+    )
 
 
 class CoverageItem(TourItem):

@@ -45,6 +45,12 @@ def largest_region(free: Mask) -> Mask:
     return free & (numbers == sizes.argmax())
 
 
+def region_of(free: Mask, cell: Cells) -> Mask:
+    """Return the cells of the region of a free cell, shape (2,)."""
+    numbers = regions(free)
+    return numbers == numbers[tuple(cell)]
+
+
 def covering_places(region: Mask, spacing: float) -> Cells:
     """Return places that cover a region: rows and columns, shape (n, 2), row by row.
 

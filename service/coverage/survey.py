@@ -7,14 +7,17 @@ metres times the mean of the layer at the step's two ends; of equally short path
 taken.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.coverage.grid import covering_places, free_cells, largest_region, regions
+from service.coverage.coverage import Coverage
+from service.coverage.frame import MapFrame
+from service.coverage.grid import free_cells
+from service.coverage.places import find_places
 from service.coverage.shortest_paths import (
     Grid,
     cell_numbers,
@@ -23,7 +26,7 @@ from service.coverage.shortest_paths import (
     pairwise_paths,
     trace_path,
 )
-from service.errors import Cancelled, InvalidCoverage, Refusal, TooManyPlaces
+from service.errors import Cancelled, InvalidCoverage, Refusal
 from service.instance import Instance
 
 Array = NDArray[np.float64]
@@ -31,88 +34,32 @@ Mask = NDArray[np.bool_]
 Cells = NDArray[np.int64]
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Coverage:
-    """A coverage task: a grid, a robot, places to visit, and a second objective.
-
-    Exactly one of `places` and `spacing` is given, and exactly one of the last three.
-
-    Args:
-        blocked: Obstacles, shape (rows, columns).
-        cell_size: The side of a cell, in metres.
-        robot_radius: In metres.
-        places: Rows and columns of the places, shape (n, 2).
-        spacing: In metres. The places cover the largest free region, one in each square of this
-            side.
-        start: The place from which all tours are reported.
-        second_matrix: Costs between places, shape (n, n).
-        cost_layer: Costs on the grid, shape (rows, columns).
-        second_coordinates: Coordinates of the places in a plane, shape (n, 2).
-
-    Raises:
-        InvalidCoverage: A size is not positive, a cost layer does not fit the grid or has an
-            invalid cost, or both or neither of two alternatives are given.
-    """
-
-    blocked: Mask
-    cell_size: float
-    robot_radius: float = 0.0
-    places: Cells | None = None
-    spacing: float | None = None
-    start: int = 0
-    second_matrix: Array | None = None
-    cost_layer: Array | None = None
-    second_coordinates: Array | None = None
-
-    def __post_init__(self) -> None:
-        if not 0 < self.cell_size < np.inf:
-            raise InvalidCoverage(("cell_size", f"must be positive, got {self.cell_size:g}"))
-        if not 0 <= self.robot_radius < np.inf:
-            demand = f"must not be negative, got {self.robot_radius:g}"
-            raise InvalidCoverage(("robot_radius", demand))
-        if (self.places is None) == (self.spacing is None):
-            raise InvalidCoverage(("places", "or spacing is required, and not both"))
-        if self.spacing is not None and not 0 < self.spacing < np.inf:
-            raise InvalidCoverage(("spacing", f"must be positive, got {self.spacing:g}"))
-        second = (self.second_matrix, self.cost_layer, self.second_coordinates)
-        if sum(source is not None for source in second) != 1:
-            demand = "or cost_layer or second_coordinates is required, and only one of them"
-            raise InvalidCoverage(("second_matrix", demand))
-        self._check_layer()
-
-    def _check_layer(self) -> None:
-        layer = self.cost_layer
-        if layer is None:
-            return
-        if layer.shape != self.blocked.shape:
-            demand = f"must be as large as grid, {_size(self.blocked)}, got {_size(layer)}"
-            raise InvalidCoverage(("cost_layer", demand))
-        costs = (layer >= 0) & (layer < np.inf)
-        if not costs.all():
-            row, column = np.unravel_index(costs.argmin(), costs.shape)
-            demand = f"must be finite and not negative, got {layer[row, column]:g}"
-            raise InvalidCoverage((f"cost_layer/{row}/{column}", demand))
-
-
 @dataclass(frozen=True, eq=False)
 class CoveragePath:
-    """The closed path of a tour: rows and columns, shape (m, 2), the first also last."""
+    """The closed path of a tour: rows and columns, shape (m, 2), the first also last.
+
+    The frame is that of the map, where it is known.
+    """
 
     cells: Cells
     metres: float
+    frame: MapFrame | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Survey:
     """Places, rows and columns, shape (n, 2), and the instance of the costs between them.
 
-    `steps`, shape (n, n), are the numbers of steps of the paths between places.
+    Tours are reported from the place `start`. `steps`, shape (n, n), are the numbers of steps of
+    the paths between places. The frame is that of the map, where it is known.
     """
 
     places: Cells
+    start: int
     instance: Instance
     grid: Grid
     steps: NDArray[np.int32]
+    frame: MapFrame | None
 
     def paths(
         self,
@@ -142,7 +89,8 @@ class Survey:
             _check(stop)
             legs = [paths[step] for step in zip(tour, successors, strict=True)]
             cells = np.concatenate([legs[0], *(leg[1:] for leg in legs[1:])])
-            yield CoveragePath(cells, float(self.instance.matrices[0, tour, successors].sum()))
+            metres = float(self.instance.matrices[0, tour, successors].sum())
+            yield CoveragePath(cells, metres, self.frame)
 
     def _paths_of_steps(
         self, steps: list[tuple[int, int]], stop: Callable[[], bool]
@@ -171,8 +119,8 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
         stop: Called once for each place, and before and after; True ends the survey.
 
     Raises:
-        InvalidCoverage: No cell is free, a place is not free or cannot be reached, or the second
-            objective is not of as many places.
+        InvalidCoverage: No cell is free, a place or a pose is not free or cannot be reached, or the
+            second objective is not of as many places.
         TooManyPlaces: The spacing gives more than `max_places`.
         InvalidInstance: The second objective's costs are not valid.
         Cancelled: `stop` returned True.
@@ -181,64 +129,18 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
     _check(stop)
     if not free.any():
         raise InvalidCoverage(
-            ("grid", f"must have a free cell {_far_enough(coverage)}, and there is none")
+            ("grid", f"must have a free cell {coverage.far_enough}, and there is none")
         )
-    places = _places(coverage, free, max_places)
+    places = find_places(coverage, free, max_places)
+    cells = places.cells
     grid = make_grid(free, coverage.cost_layer)
     _check(stop)
-    steps = np.zeros((len(places), len(places)), np.int32)
-    lengths, costs = pairwise_paths(grid, cell_numbers(grid, places), stop, steps)
+    steps = np.zeros((len(cells), len(cells)), np.int32)
+    lengths, costs = pairwise_paths(grid, cell_numbers(grid, cells), stop, steps)
     _check(stop)
     matrices = np.stack((coverage.cell_size * lengths, _second_objective(coverage, costs)))
-    return Survey(places, Instance(matrices=matrices), grid, steps)
-
-
-def _places(coverage: Coverage, free: Mask, max_places: int) -> Cells:
-    """Return the caller's places, or those that cover the largest region, checked."""
-    if coverage.places is None:
-        assert coverage.spacing is not None
-        places = covering_places(largest_region(free), coverage.spacing / coverage.cell_size)
-        if len(places) > max_places:
-            raise TooManyPlaces(max_places, len(places))
-    else:
-        places = coverage.places
-        _raise_any(_misplaced(coverage, places, free))
-    _raise_any(_miscounted(coverage, len(places)))
-    _raise_any(_unreachable(places, coverage.start, free))
-    return places
-
-
-def _misplaced(coverage: Coverage, places: Cells, free: Mask) -> Iterator[tuple[str, str]]:
-    for i, (row, column) in enumerate(places.tolist()):
-        if not (0 <= row < free.shape[0] and 0 <= column < free.shape[1]):
-            demand = f"must be a cell of the grid of {_size(free)}, got [{row}, {column}]"
-        elif coverage.blocked[row, column]:
-            demand = f"must be a free cell, and [{row}, {column}] is an obstacle"
-        elif not free[row, column]:
-            demand = f"must be a cell {_far_enough(coverage)}, and [{row}, {column}] is not"
-        else:
-            continue
-        yield f"places/{i}", demand
-
-
-def _miscounted(coverage: Coverage, n: int) -> Iterator[tuple[str, str]]:
-    if coverage.start >= n:
-        yield "start", f"must be a place, 0 to {n - 1}, got {coverage.start}"
-    for name in ("second_matrix", "second_coordinates"):
-        rows = getattr(coverage, name)
-        if rows is not None and len(rows) != n:
-            yield name, f"must have a row for each of {n} places, got {len(rows)}"
-
-
-def _unreachable(places: Cells, start: int, free: Mask) -> Iterator[tuple[str, str]]:
-    region = regions(free)[tuple(places.T)]
-    for i in np.flatnonzero(region != region[start]):
-        yield f"places/{i}", f"must be reachable from places/{start}, and no path leads there"
-
-
-def _raise_any(faults: Iterable[tuple[str, str]]) -> None:
-    if faults := tuple(faults):
-        raise InvalidCoverage(*faults)
+    instance = Instance(matrices=matrices)
+    return Survey(cells, places.start, instance, grid, steps, coverage.frame)
 
 
 def _second_objective(coverage: Coverage, costs: Array) -> Array:
@@ -262,11 +164,3 @@ def _paths_too_long(most: int, cells: Cells) -> Refusal:
     advice = f"ask for a size of {fitting}" if fitting else "ask without paths"
     actual = int(cells.sum())
     return Refusal("paths-too-long", pointer="/paths", limit=most, actual=actual, advice=advice)
-
-
-def _far_enough(coverage: Coverage) -> str:
-    return f"farther than {coverage.robot_radius:g} m from every obstacle"
-
-
-def _size(cells: NDArray[np.generic]) -> str:
-    return f"{cells.shape[0]} x {cells.shape[1]} cells"

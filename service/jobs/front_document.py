@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from service.coverage.survey import CoveragePath
@@ -187,10 +188,16 @@ def _named(labels: Labels | None) -> dict[str, Any]:
 
 def _encode_path(path: CoveragePath) -> bytes:
     """Return a path as JSON, written in parts: a list takes ten times the memory of its text."""
-    parts = range(0, len(path.cells), PATH_PART)
-    cells = [to_json(path.cells[begin : begin + PATH_PART].tolist())[1:-1] for begin in parts]
-    metres = to_json(path.metres)
-    return b"".join((b'{"cells":[', b",".join(cells), b'],"metres":', metres, b"}"))
+    parts = [path.cells[i : i + PATH_PART] for i in range(0, len(path.cells), PATH_PART)]
+    members = [b'"cells":', *_encode_rows(parts), b',"metres":', to_json(path.metres)]
+    if path.frame is not None:
+        members += [b',"points":', *_encode_rows(map(path.frame.points, parts))]
+    return b"".join((b"{", *members, b"}"))
+
+
+def _encode_rows(parts: Iterable[NDArray[Any]]) -> tuple[bytes, bytes, bytes]:
+    """Return a list of rows of numbers as JSON, from parts of them."""
+    return b"[", b",".join(to_json(part.tolist())[1:-1] for part in parts), b"]"
 
 
 def empty_front(task: Task, actor: Mapping[str, str]) -> FrontDocument:

@@ -8,7 +8,8 @@ from typing import Protocol
 
 from service.actor import ActorInfo, load_actors
 from service.coverage import shortest_paths
-from service.coverage.survey import Coverage, CoveragePath, Survey, survey
+from service.coverage.coverage import Coverage
+from service.coverage.survey import CoveragePath, Survey, survey
 from service.errors import Cancelled
 from service.instance import Instance
 from service.jobs.front_document import FrontDocument, encode_front
@@ -120,6 +121,7 @@ class TaskRunner:
         check_reference_point(surveyed.instance, task.options)
         survey_seconds = time.perf_counter() - began
         places = surveyed.places.tolist()
+        task = replace(task, options=replace(task.options, start=surveyed.start))
         front = self._plan(task, surveyed.instance, stop, report, places)
         began = time.perf_counter()
         paths = self._paths(surveyed, front, stop) if task.paths else None

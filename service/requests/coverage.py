@@ -8,54 +8,37 @@ from numpy.typing import NDArray
 from pydantic import Field, GetPydanticSchema, ValidationInfo
 from pydantic_core.core_schema import with_info_after_validator_function
 
-from service.coverage.survey import Coverage
+from service.coverage.coverage import Coverage
 from service.instance import Kind
-from service.requests.arrays import Array, check_costs, rectangular_array, square_array
+from service.requests.arrays import Array, check_costs, square_array
 from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
-from service.requests.png import read_png
+from service.requests.maps.fields import Layer, MapRequest, describe_map, empty_array
 from service.requests.schemas import (
     LARGEST,
     ArrayRows,
     NonNegativeInteger,
+    Number,
     PlanePoint,
-    PlanRequest,
     PositiveNumber,
 )
-from service.requests.validation import invalid, parse_json, too_many_cells, too_many_cities
-
-
-def _as_layer(rows: list[list[float]], info: ValidationInfo) -> Array:
-    return rectangular_array(rows, str(info.field_name))
+from service.requests.validation import invalid, parse_json, too_many_cities
 
 
 def _as_matrix(rows: list[list[float]], info: ValidationInfo) -> Array:
     return square_array(rows, str(info.field_name))
 
 
-Layer = Annotated[
-    NDArray[np.float64],
-    GetPydanticSchema(lambda _, h: with_info_after_validator_function(_as_layer, h(ArrayRows))),
-]
 Matrix = Annotated[
     NDArray[np.float64],
     GetPydanticSchema(lambda _, h: with_info_after_validator_function(_as_matrix, h(ArrayRows))),
 ]
 Cell = Annotated[list[NonNegativeInteger], Field(min_length=2, max_length=2, fail_fast=True)]
+RobotPose = Annotated[list[Number], Field(min_length=2, max_length=3, fail_fast=True)]
 
 
-def _empty_array() -> Array:
-    return np.empty((0, 0))
-
-
-class CoverageRequest(PlanRequest):
+class CoverageRequest(MapRequest):
     """Places on a map, a second objective between them, and the options of their front."""
 
-    # An empty default means that the field was not given: no caller can give an empty array.
-    grid: Layer = Field(
-        default_factory=_empty_array,
-        description="the map, row by row: 0 where it is free, 1 an obstacle",
-    )
-    cell_size: PositiveNumber = Field(description="side of a cell, in metres")
     robot_radius: float = Field(
         default=0.0,
         ge=0,
@@ -69,14 +52,19 @@ class CoverageRequest(PlanRequest):
     spacing: PositiveNumber = Field(
         default=0.0,
         description="instead of places, in metres: one is laid in each square of this side over"
-        " the largest free region",
+        " the region of the start pose, or the largest free region",
+    )
+    start_pose: RobotPose = Field(
+        default_factory=list,
+        description="instead of start: x and y, and maybe yaw, of the robot in the frame of the"
+        " map; the tours begin in this cell, which is a place of its own if none is there",
     )
     second_matrix: Matrix = Field(
-        default_factory=_empty_array,
+        default_factory=empty_array,
         description="the second objective: its costs from each place (row) to each (column)",
     )
     cost_layer: Layer = Field(
-        default_factory=_empty_array,
+        default_factory=empty_array,
         description="or: on each cell of the grid, what a metre costs; added up along the paths",
     )
     second_coordinates: Annotated[list[PlanePoint], Field(min_length=1, fail_fast=True)] = Field(
@@ -95,10 +83,12 @@ class CoverageRequest(PlanRequest):
         return Coverage(
             blocked=self.grid > 0,
             cell_size=self.cell_size,
+            origin=self.origin or None,
             robot_radius=self.robot_radius,
             places=np.array(self.places, dtype=np.int64) if self.places else None,
             spacing=self.spacing or None,
             start=self.start,
+            start_pose=self.start_pose or None,
             second_matrix=self.second_matrix if self.second_matrix.size else None,
             cost_layer=self.cost_layer if self.cost_layer.size else None,
             second_coordinates=np.array(points, dtype=np.float64) if points else None,
@@ -109,11 +99,14 @@ def coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
     """Return the JSON schema of a request under these limits, with these actors to choose from."""
     schema = limited_schema(CoverageRequest, limits, actors)
     fields = schema["properties"]
-    fields["grid"]["items"]["items"] = {"enum": [0, 1]}
+    forms = describe_map(schema, limits.cells)
     del fields["spacing"]["default"]
     fields["places"]["maxItems"] = limits.cities
-    schema["required"] = ["grid", "cell_size"]
+    in_a_frame = [{"required": ["origin"]}, {"required": ["occupancy_grid"]}]
+    without = dict.fromkeys(("start", "initial_tours"), False)
+    schema["dependentSchemas"] = {"start_pose": {"anyOf": in_a_frame, "properties": without}}
     schema["allOf"] = [
+        {"oneOf": forms},
         {"oneOf": [{"required": ["places"]}, {"required": ["spacing"]}]},
         {
             "oneOf": [
@@ -126,35 +119,28 @@ def coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
 
 
 def parse_coverage_request(
-    body: bytes, limits: Limits, png: bytes | None = None
+    body: bytes, limits: Limits, picture: bytes | None = None
 ) -> CoverageRequest:
-    """Return the request in a JSON body, with the map of a PNG file where one came with it.
+    """Return the request in a JSON body, with the map of a picture where one came with it.
 
     Raises:
         Refusal: The body is not JSON, misses the schema, is over a limit or has no map.
     """
-    request = parse_json(CoverageRequest, body)
-    if png is not None:
-        if "grid" in request.model_fields_set:
-            raise invalid("grid", "must come once, got it as the part map as well")
-        request = request.model_copy(update={"grid": read_png(png, limits.cells)})
-    _check_grid(request.grid, limits.cells)
+    request = parse_json(CoverageRequest, body).with_map(picture, limits.cells)
     if len(request.places) > limits.cities:
         raise too_many_cities("places", limits.cities, len(request.places))
-    if request.initial_tours and not request.places:
-        raise invalid("initial_tours", "must be of places, and none are given")
+    _check_start(request)
     check_costs(request.second_matrix, "second_matrix", LARGEST)
     # With a spacing, the number of places is not known before the survey.
     check_limits(request, len(request.places) or limits.cities, limits)
     return lower_defaults(request, limits)
 
 
-def _check_grid(grid: Array, most: int) -> None:
-    if not grid.size:
-        raise invalid("grid", "is required, as rows or as the part map")
-    if grid.size > most:
-        raise too_many_cells(most, grid.size, grid.size)
-    binary = (grid == 0) | (grid == 1)
-    if not binary.all():
-        row, column = np.unravel_index(binary.argmin(), binary.shape)
-        raise invalid(f"grid/{row}/{column}", f"must be 0 or 1, got {grid[row, column]:g}")
+def _check_start(request: CoverageRequest) -> None:
+    given = request.model_fields_set
+    if request.initial_tours and not request.places:
+        raise invalid("initial_tours", "must be of places, and none are given")
+    if "start_pose" in given and "start" in given:
+        raise invalid("start_pose", "or start must be left out")
+    if "start_pose" in given and request.initial_tours:
+        raise invalid("initial_tours", "must be left out where a pose may become a place")

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from service.actor import ActorInfo
-from service.coverage.survey import Coverage
+from service.coverage.coverage import Coverage
 from service.errors import Refusal
 from service.instance import Instance, Kind
 from service.planner import PlanOptions
@@ -51,7 +51,7 @@ class TaskSource:
     Args:
         kind: The kind of request, named after its path.
         body: The request as JSON.
-        upload: The .npy file of matrices, or the PNG file of a map, where one came with it.
+        upload: The .npy file of matrices, or the PNG or PGM file of a map, where one came with it.
         task: The parsed task, where this process has it, so that no worker parses it again.
     """
 

@@ -34,6 +34,12 @@ VALID: dict[str, Any] = {
 MATRIX = [[0, 2, 3], [4, 0, 1], [5, 2, 0]]
 GRID = {**PLAN, "cell_size": 0.5, "robot_radius": 0.3, "grid": [[0, 0, 1, 0]] * 4, "paths": True}
 PLACES = [[0, 0], [2, 1], [3, 0]]
+POSE = {"position": {"x": 1, "y": 2}, "orientation": {"z": 0, "w": 1}}
+MESSAGE = {
+    "info": {"resolution": 0.5, "width": 4, "height": 2, "origin": POSE},
+    "data": [0, 0, 100, -1, 0, 0, 0, 0],
+}
+BY_MESSAGE = {name: GRID[name] for name in GRID if name not in ("grid", "cell_size", "start")}
 # Requests of every kind, and where they go.
 REQUESTS: list[tuple[str, dict[str, Any]]] = [
     ("/front", VALID),
@@ -41,6 +47,18 @@ REQUESTS: list[tuple[str, dict[str, Any]]] = [
     ("/coverage", {**GRID, "places": PLACES, "second_matrix": MATRIX}),
     ("/coverage", {**GRID, "places": PLACES, "cost_layer": [[1, 2, 3, 4]] * 4}),
     ("/coverage", {**GRID, "places": PLACES, "second_coordinates": [[0, 1], [2, 3], [4, 4]]}),
+    (
+        "/coverage",
+        {
+            **BY_MESSAGE,
+            "occupancy_grid": MESSAGE,
+            "spacing": 0.5,
+            "cost_layer": [[1, 0, 1, 2]] * 2,
+            "start_pose": [1.1, 2.1, 0],
+            "obstacle_from": 65,
+            "unknown": "blocked",
+        },
+    ),
     ("/coverage", {**GRID, "spacing": 0.5, "start": 0, "cost_layer": [[1, 0, 1, 2]] * 4}),
 ]
 MEMBERS = [(path, body, member) for path, body in REQUESTS for member in sorted(body)]
@@ -135,6 +153,9 @@ def test_a_request_with_one_thing_wrong(
 
 
 def _replaced(value: Any, depth: int) -> Any:
+    if depth and isinstance(value, dict):
+        *_, last = value
+        return {**value, last: _replaced(value[last], depth - 1)}
     if depth == 0 or not isinstance(value, list):
         return "HERE"
     return [*value[:-1], _replaced(value[-1], depth - 1)]

@@ -22,6 +22,14 @@ Generator = Callable[[random.Random], TaskSource]
 
 _OPTIONS: dict[str, Any] = {"time_limit": 0, "preferences": 3}
 _SPACING = {**_OPTIONS, "cell_size": 1, "spacing": 2, "second_coordinates": [[0, 1]]}
+_POSE = {"position": {"x": 0, "y": 0}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}
+_BY_MESSAGE = {
+    **{name: value for name, value in _SPACING.items() if name != "cell_size"},
+    "occupancy_grid": {
+        "info": {"resolution": 1, "width": 3, "height": 2, "origin": _POSE},
+        "data": [0, 100, -1, 0, 0, 50],
+    },
+}
 _HEADERS = [
     *(
         b"'",
@@ -106,6 +114,30 @@ def png(rng: random.Random) -> TaskSource:
     return TaskSource("coverage", json.dumps(_SPACING).encode(), content)
 
 
+def pgm(rng: random.Random) -> TaskSource:
+    """Return a map in a PGM file with its header or its shades mutated, and any reading of it."""
+    columns, rows = rng.randint(1, 20), rng.randint(1, 20)
+    white = rng.choice([1, 255, 255])
+    shades = [rng.choice((0, white)) for _ in range(rows * columns)]
+    plain = rng.random() < 0.5
+    raster = " ".join(map(str, shades)).encode() if plain else bytes(shades)
+    content = b"P%d\n# map\n%d %d\n%d\n" % (2 if plain else 5, columns, rows, white) + raster
+    tokens = [b"#", b"\n", b"\r", b" " * 5000, b"-1", b"0", b"65536", b"9" * 5000, b"\xff", b"P5"]
+    members = {
+        "mode": rng.choice(["trinary", "scale", "raw"]),
+        "negate": rng.random() < 0.5,
+        "occupied_thresh": rng.choice([0, 0.65, 1]),
+        "free_thresh": rng.choice([0, 0.196, 1]),
+        "unknown": rng.choice(["blocked", "free"]),
+        "origin": [rng.choice(_EXTREMES), -rng.choice(_EXTREMES), rng.choice(_EXTREMES)],
+        "start_pose": [rng.choice(_EXTREMES), 0],
+    }
+    request = {**_SPACING, **dict(rng.sample(sorted(members.items()), rng.randint(0, 5)))}
+    return TaskSource(
+        "coverage", json.dumps(request).encode(), _mutated(rng, content, tokens, len(content))
+    )
+
+
 def json_body(rng: random.Random) -> TaskSource:
     """Return JSON of a request with tokens put in, members repeated, or cut short."""
     rows = [[rng.choice((0, 1, 2.5)) for _ in range(4)] for _ in range(rng.randint(1, 6))]
@@ -114,6 +146,7 @@ def json_body(rng: random.Random) -> TaskSource:
         ("front", {"matrices": [[[0, 1], [1, 0]]] * 2}),
         ("coverage", {**_SPACING, "grid": [[0, 0, 1]] * 3}),
         ("coverage", {**_SPACING, "grid": [[0, 0]] * 2, "cost_layer": [[1, 2]] * 2}),
+        ("coverage", {**_BY_MESSAGE, "start_pose": [0.5, 0.5]}),
     ]
     kind, request = rng.choice(requests)
     options = {"seed": 1, "start": 0, "reference_point": [9, 9], "initial_tours": [[0, 1]]}
@@ -162,6 +195,7 @@ def extreme(rng: random.Random) -> TaskSource:
 GENERATORS: Mapping[str, Callable[[random.Random], TaskSource | Refusal]] = {
     "npy": npy,
     "png": png,
+    "pgm": pgm,
     "json": json_body,
     "multipart": multipart,
 }

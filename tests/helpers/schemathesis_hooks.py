@@ -5,6 +5,12 @@ from typing import Any
 
 import schemathesis
 
+_POSE = {"position": {"x": 0, "y": 0}, "orientation": {"z": 0, "w": 1}}
+_MESSAGE = {
+    "info": {"resolution": 1, "width": 2, "height": 2, "origin": _POSE},
+    "data": [0, 0, 0, 0],
+}
+
 
 @schemathesis.hook
 def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noqa: ARG001
@@ -22,6 +28,9 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
             _make_coverable(body)
         case {"stops": _, "objectives": _} as body if case.meta.generation.mode.is_positive:
             _make_plannable(body)
+        case {"occupancy_grid": _} as body if case.meta.generation.mode.is_positive:
+            body["occupancy_grid"] = _MESSAGE
+            _make_coverable(body)
         case {"coordinates": [_, *_] as rows}:
             _fit_to_cities(case.body, len(rows))
         case {"matrices": [[_, *_] as rows, _] as matrices} if _are_matrices(matrices):
@@ -33,8 +42,11 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
 
 def _make_coverable(body: dict[str, Any]) -> None:
     """Replace a task of coverage by one that can be done, with the same fields."""
-    body |= {"grid": [[0, 0], [0, 0]], "robot_radius": 0, "start": 0, "actor": "pa-one-matrix"}
+    body |= {"robot_radius": 0, "start": 0, "actor": "pa-one-matrix"}
     body.pop("initial_tours", None)
+    body.pop("start_pose", None)
+    if "grid" in body:
+        body["grid"] = [[0, 0], [0, 0]]
     n = 2 if "places" in body else 1
     fit = {
         "places": [[0, 0], [1, 1]],

@@ -48,7 +48,11 @@ def test_a_request_becomes_a_coverage_task() -> None:
 @pytest.mark.parametrize(
     ("change", "pointer", "sentence"),
     [
-        ({"grid": None}, "/grid", "grid is required, as rows or as the part map"),
+        (
+            {"grid": None},
+            "/grid",
+            "grid is required, as rows, as occupancy_grid or as the part map",
+        ),
         ({"grid": []}, "/grid", "grid must have a row of numbers or more, got none"),
         ({"grid": [[0, 0], [0]]}, "/grid/1", "grid/1 must have 2 numbers, as the first, got 1"),
         ({"grid": [[0, 2]]}, "/grid/0/1", "grid/0/1 must be 0 or 1, got 2"),
@@ -116,13 +120,14 @@ def test_a_map_may_come_as_a_png_and_not_as_a_grid_as_well() -> None:
     request = parse_coverage_request(body(grid=None), LIMITS, stream.getvalue())
     np.testing.assert_array_equal(request.grid, GRID)
     refused = refusal(body(), stream.getvalue())
-    assert refused.detail == "grid must come once, got it as the part map as well"
+    assert refused.detail == "grid must come once, got it as grid and as the part map"
 
 
 def test_the_schema_asks_for_places_and_a_second_objective_in_one_form_each() -> None:
     schema = coverage_schema(LIMITS, ["pa-one-matrix"])
     ways = [[each["required"] for each in choice["oneOf"]] for choice in schema["allOf"]]
     assert ways == [
+        [["grid", "cell_size"], ["occupancy_grid"]],
         [["places"], ["spacing"]],
         [["second_matrix"], ["cost_layer"], ["second_coordinates"]],
     ]

@@ -7,59 +7,63 @@ some decoders obey, is refused, and so are sizes over the limit before a pixel i
 import struct
 from collections.abc import Iterator
 from io import BytesIO
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
 from service.errors import Refusal
-from service.requests.validation import invalid, shorten, too_many_cells
+from service.requests.maps.size import check_size
+from service.requests.validation import invalid, shorten
 
-_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _LENGTH = struct.Struct(">I")
 _SIZE = struct.Struct(">II")
 _HEADER_LENGTH = 13
 _BESIDE_CONTENT = 12  # bytes of a chunk: its length, its kind and its checksum
 _PICTURE = (b"IHDR", b"PLTE", b"IDAT", b"IEND")
 _MOST_CHUNKS = 20_000  # a large map has some thousand
-_MODES = ("1", "L", "LA", "P", "RGB", "RGBA")
-_LIGHT = 128  # of 256 shades: a cell darker than this is an obstacle
+# Modes of Pillow, and that in which their channels are a byte each.
+_MODES = {"1": "L", "L": "L", "LA": "LA", "P": "RGB", "RGB": "RGB", "RGBA": "RGBA"}
 
 
-def read_png(content: bytes, most_cells: int) -> NDArray[np.float64]:
-    """Return the map in an image, shape (rows, columns): 0 where it is light, 1 where it is dark.
+def read_png(content: bytes, most_cells: int) -> NDArray[np.uint8]:
+    """Return the channels of a picture, shape (rows, columns, channels).
+
+    They are grey, grey and alpha, three colours, or three colours and alpha. The transparency of a
+    palette is not read.
+
+    Args:
+        content: The file, which begins with the signature of PNG.
+        most_cells: The most pixels.
 
     Raises:
         Refusal: The file cannot be read as PNG, or has too many cells.
     """
-    if not content.startswith(_SIGNATURE):
-        raise invalid("grid", "must be a PNG file")
     chunks = [(kind, whole) for kind, whole in _chunks(content) if kind in _PICTURE]
     _check_header([whole for kind, whole in chunks if kind == b"IHDR"], chunks, most_cells)
-    picture = _SIGNATURE + b"".join(whole for _, whole in chunks)
+    picture = SIGNATURE + b"".join(whole for _, whole in chunks)
     try:
-        shades = _decode(picture, most_cells)
+        return _decode(picture, most_cells)
     except (Refusal, MemoryError):
         raise
     # The decoder is not ours, and raises a dozen kinds of exceptions over broken files.
     except Exception as error:
         reason = shorten(str(error) or type(error).__name__)
         raise invalid("grid", f"must be a PNG file that can be read: {reason}") from None
-    return (shades < _LIGHT).astype(np.float64)
 
 
-def _decode(picture: bytes, most_cells: int) -> NDArray[Any]:
-    """Return the shades of a picture, 0 to 255, shape (rows, columns)."""
+def _decode(picture: bytes, most_cells: int) -> NDArray[np.uint8]:
     with Image.open(BytesIO(picture), formats=["PNG"]) as image:
-        _check_size(*image.size, most_cells)  # what the decoder is going to unpack
+        check_size(*image.size, most_cells)  # what the decoder is going to unpack
         if image.mode not in _MODES:
             raise invalid("grid", f"must have 8 bits a channel or fewer, got {image.mode}")
         size = image.size
         image.load()
         if image.size != size:
             raise invalid("grid", f"must have one size, got {size} and {image.size}")
-        return np.asarray(image.convert("L"))
+        channels = np.asarray(image.convert(_MODES[image.mode]))
+    return channels if channels.ndim == 3 else channels[:, :, np.newaxis]
 
 
 def _check_header(headers: list[bytes], chunks: list[tuple[bytes, bytes]], most: int) -> None:
@@ -70,19 +74,12 @@ def _check_header(headers: list[bytes], chunks: list[tuple[bytes, bytes]], most:
     if len(headers[0]) != _HEADER_LENGTH + _BESIDE_CONTENT:
         raise invalid("grid", f"must be a PNG file with a header of {_HEADER_LENGTH} bytes")
     width, height = _SIZE.unpack_from(headers[0], 8)
-    _check_size(width, height, most)
-
-
-def _check_size(width: int, height: int, most: int) -> None:
-    if width * height > most:
-        raise too_many_cells(most, width * height, f"{height} x {width}")
-    if width * height == 0:
-        raise invalid("grid", f"must have a cell or more, got {height} x {width}")
+    check_size(width, height, most)
 
 
 def _chunks(content: bytes) -> Iterator[tuple[bytes, bytes]]:
     """Yield the kind of each chunk and all of its bytes, up to IEND or where the file is cut."""
-    at = len(_SIGNATURE)
+    at = len(SIGNATURE)
     for _ in range(_MOST_CHUNKS):
         if at + _BESIDE_CONTENT > len(content):
             return

@@ -1,0 +1,121 @@
+"""The places of a coverage task: the caller's, or those that cover a region, and their checks."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.coverage.coverage import Coverage
+from service.coverage.grid import covering_places, largest_region, region_of, regions
+from service.errors import InvalidCoverage, TooManyPlaces
+
+Mask = NDArray[np.bool_]
+Cells = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """The places that tours go through: rows and columns, shape (n, 2), and the one to start at."""
+
+    cells: Cells
+    start: int
+
+
+def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
+    """Return the caller's places, or those that cover a region; and one for a pose without one.
+
+    Args:
+        coverage: The task.
+        free: The cells free for the robot, shape (rows, columns).
+        max_places: The greatest number of places.
+
+    Raises:
+        InvalidCoverage: A place or a pose is not free or cannot be reached, or the second objective
+            is not of as many places.
+        TooManyPlaces: A spacing gives more than `max_places`.
+    """
+    pose = _pose_cell(coverage, free)
+    cells = _given_or_laid_out(coverage, free, pose)
+    names = [f"places/{i}" for i in range(len(cells))]
+    start = coverage.start
+    if pose is not None:
+        found = np.flatnonzero((cells == pose).all(axis=1))
+        start = int(found[0]) if len(found) else len(cells)
+        if not len(found):
+            _check_costs_anywhere(coverage)
+            cells, names = np.vstack((cells, pose)), [*names, "start_pose"]
+    if coverage.spacing is not None and len(cells) > max_places:
+        raise TooManyPlaces(max_places, len(cells))
+    places = Places(cells, start)
+    _raise_any(_miscounted(coverage, places))
+    _raise_any(_unreachable(places, names, free))
+    return places
+
+
+def _given_or_laid_out(coverage: Coverage, free: Mask, pose: Cells | None) -> Cells:
+    if coverage.places is not None:
+        faults = (
+            (f"places/{i}", demand)
+            for i, cell in enumerate(coverage.places.tolist())
+            if (demand := _misplaced(coverage, cell, free)) is not None
+        )
+        _raise_any(faults)
+        return coverage.places
+    assert coverage.spacing is not None
+    region = largest_region(free) if pose is None else region_of(free, pose)
+    return covering_places(region, coverage.spacing / coverage.cell_size)
+
+
+def _pose_cell(coverage: Coverage, free: Mask) -> Cells | None:
+    """Return the row and column, shape (2,), of the cell that the start pose is in."""
+    if coverage.start_pose is None:
+        return None
+    assert coverage.frame is not None
+    cell = coverage.frame.cell(*coverage.start_pose[:2])
+    demand = _misplaced(coverage, cell, free)
+    if demand is not None:
+        raise InvalidCoverage(("start_pose", demand))
+    return np.array(cell, dtype=np.int64)
+
+
+def _misplaced(coverage: Coverage, cell: Sequence[int], free: Mask) -> str | None:
+    """Return what a cell misses to be a place; None where it misses nothing."""
+    row, column = cell
+    shown = f"[{row:.6g}, {column:.6g}]"
+    if not (0 <= row < free.shape[0] and 0 <= column < free.shape[1]):
+        return f"must be a cell of the grid of {coverage.size}, got {shown}"
+    if coverage.blocked[row, column]:
+        return f"must be a free cell, and {shown} is an obstacle"
+    if not free[row, column]:
+        return f"must be a cell {coverage.far_enough}, and {shown} is not"
+    return None
+
+
+def _check_costs_anywhere(coverage: Coverage) -> None:
+    """Raise InvalidCoverage unless there are costs from and to any cell, not of places alone."""
+    if coverage.cost_layer is None:
+        demand = "must be in the cell of a place, as only a cost_layer has costs of other cells"
+        raise InvalidCoverage(("start_pose", demand))
+
+
+def _miscounted(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
+    n = len(places.cells)
+    if places.start >= n:
+        yield "start", f"must be a place, 0 to {n - 1}, got {places.start}"
+    for name in ("second_matrix", "second_coordinates"):
+        rows = getattr(coverage, name)
+        if rows is not None and len(rows) != n:
+            yield name, f"must have a row for each of {n} places, got {len(rows)}"
+
+
+def _unreachable(places: Places, names: list[str], free: Mask) -> Iterator[tuple[str, str]]:
+    region = regions(free)[tuple(places.cells.T)]
+    origin = names[places.start]
+    for i in np.flatnonzero(region != region[places.start]):
+        yield names[i], f"must be reachable from {origin}, and no path leads there"
+
+
+def _raise_any(faults: Iterable[tuple[str, str]]) -> None:
+    if faults := tuple(faults):
+        raise InvalidCoverage(*faults)

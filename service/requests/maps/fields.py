@@ -1,0 +1,208 @@
+"""The fields of a coverage request about its map, and the grid of obstacles that they make.
+
+A map is the rows of `grid`, a picture beside the JSON, or an occupancy grid of ROS. The fields of a
+picture go by the names of the keys of a map.yaml, so that one becomes a request by copying them.
+"""
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, GetPydanticSchema, ValidationInfo
+from pydantic_core.core_schema import with_info_after_validator_function
+
+from service.requests.arrays import Array, rectangular_array
+from service.requests.maps.occupancy_grid import OccupancyGrid
+from service.requests.maps.pictures import (
+    UNKNOWN,
+    Interpretation,
+    Mode,
+    Occupancy,
+    occupancy,
+    read_picture,
+)
+from service.requests.schemas import ArrayRows, AsInteger, Number, PlanRequest, PositiveNumber
+from service.requests.validation import invalid, too_many_cells
+
+
+def _as_layer(rows: list[list[float]], info: ValidationInfo) -> Array:
+    return rectangular_array(rows, str(info.field_name))
+
+
+Layer = Annotated[
+    NDArray[np.float64],
+    GetPydanticSchema(lambda _, h: with_info_after_validator_function(_as_layer, h(ArrayRows))),
+]
+_Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
+_Pose = Annotated[list[Number], Field(min_length=3, max_length=3, fail_fast=True)]
+
+_OF_PICTURE = ("mode", "negate", "occupied_thresh", "free_thresh")
+# The forms of a map in the JSON, and the fields that have nothing to say about them.
+_USELESS = {
+    "grid": (*_OF_PICTURE, "obstacle_from", "unknown"),
+    "occupancy_grid": (*_OF_PICTURE, "cell_size", "origin"),
+}
+
+
+def empty_array() -> Array:
+    """Return the default of an array that was not given: no caller can give an empty one."""
+    return np.empty((0, 0))
+
+
+def _no_occupancy_grid() -> OccupancyGrid:
+    return OccupancyGrid.model_construct()
+
+
+class MapRequest(PlanRequest):
+    """A map, in one of three forms."""
+
+    grid: Layer = Field(
+        default_factory=empty_array,
+        description="the map, row by row from the top: 0 where it is free, 1 an obstacle",
+    )
+    occupancy_grid: OccupancyGrid = Field(
+        default_factory=_no_occupancy_grid,
+        description="or: a message nav_msgs/OccupancyGrid, which brings cell_size and origin",
+    )
+    cell_size: PositiveNumber = Field(
+        default=0.0, description="side of a cell, in metres; resolution in a map.yaml"
+    )
+    origin: _Pose = Field(
+        default_factory=list,
+        description="x, y and yaw of the map's lower left corner in its frame, in metres and"
+        " radians counterclockwise; with it paths have points, and there may be poses",
+    )
+    mode: Mode = Field(
+        default="trinary", description="how map_server reads a picture; needs both thresholds"
+    )
+    negate: bool = Field(default=False, description="whether in a picture black is free")
+    occupied_thresh: _Share = Field(
+        default=0.5, description="a pixel darker than this, 0 white to 1 black, is an obstacle"
+    )
+    free_thresh: _Share = Field(
+        default=0.0,
+        description="a pixel lighter than this is free, those between are unknown; without it"
+        " every pixel that is no obstacle is free, but for grey 205, which is unknown",
+    )
+    obstacle_from: Annotated[int, Field(ge=1, le=100), AsInteger] = Field(
+        default=50,
+        description="occupancy, 0 to 100, from which a cell is an obstacle: of an occupancy_grid,"
+        " and of a picture in mode scale or raw",
+    )
+    unknown: Literal["blocked", "free"] = Field(
+        default="blocked", description="what unknown cells are for the robot"
+    )
+
+    def with_map(self, picture: bytes | None, most_cells: int) -> Self:
+        """Return the request with grid, cell_size and origin of the map, whichever its form.
+
+        Args:
+            picture: The PNG or PGM file that came with the request.
+            most_cells: The most cells of a map.
+
+        Raises:
+            Refusal: There is no map, or more than one, or it cannot be read, or is too large; or a
+                field is given that such a map has no use for.
+        """
+        self._check_forms(picture)
+        if picture is not None:
+            how = self._interpretation()
+            values = occupancy(read_picture(picture, most_cells), how)
+            return self.model_copy(update={"grid": self._blocked(values)})
+        if "occupancy_grid" in self.model_fields_set:
+            return self._with_occupancy_grid(most_cells)
+        _check_grid(self.grid, most_cells)
+        return self
+
+    def _with_occupancy_grid(self, most_cells: int) -> Self:
+        message = self.occupancy_grid
+        update: dict[str, Any] = {
+            "grid": self._blocked(message.occupancy(most_cells)),
+            "cell_size": message.info.resolution,
+            "origin": list(message.origin()),
+            "occupancy_grid": _no_occupancy_grid(),
+        }
+        return self.model_copy(update=update)
+
+    def _check_forms(self, picture: bytes | None) -> None:
+        given = self.model_fields_set
+        forms = [form for form in _USELESS if form in given]
+        if picture is not None:
+            forms.append("the part map")
+        if not forms:
+            raise invalid("grid", "is required, as rows, as occupancy_grid or as the part map")
+        if len(forms) > 1:
+            raise invalid("grid", f"must come once, got it as {' and as '.join(forms)}")
+        for name in _USELESS.get(forms[0], ()):
+            if name in given:
+                raise invalid(name, f"must be left out where the map comes as {forms[0]}")
+        if forms != ["occupancy_grid"] and "cell_size" not in given:
+            raise invalid("cell_size", "is required")
+
+    def _interpretation(self) -> Interpretation:
+        given = self.model_fields_set
+        mode = self.mode if {"mode", "free_thresh"} & given else None
+        if mode in ("trinary", "scale"):
+            self._check_thresholds()
+        return Interpretation(
+            mode=mode,
+            negate=self.negate,
+            occupied_thresh=self.occupied_thresh,
+            free_thresh=self.free_thresh,
+        )
+
+    def _check_thresholds(self) -> None:
+        for name in ("occupied_thresh", "free_thresh"):
+            if name not in self.model_fields_set:
+                raise invalid(name, f"is required in mode {self.mode}")
+        if self.free_thresh >= self.occupied_thresh:
+            demand = f"must be less than occupied_thresh, which is {self.occupied_thresh:g}"
+            raise invalid("free_thresh", f"{demand}, got {self.free_thresh:g}")
+
+    def _blocked(self, values: Occupancy) -> Array:
+        blocked = values >= self.obstacle_from
+        if self.unknown == "blocked":
+            blocked |= values == UNKNOWN
+        return blocked.astype(np.float64)
+
+
+def describe_map(schema: dict[str, Any], most_cells: int) -> list[dict[str, Any]]:
+    """Refine the fields of a map in a JSON schema, and return a schema for each form of a map.
+
+    Definitions are put where they are referred to, as the schema is part of a larger document.
+    """
+    fields, definitions = schema["properties"], schema.pop("$defs")
+    fields["grid"]["items"]["items"] = {"enum": [0, 1]}
+    for name in ("cell_size", "mode", "free_thresh"):
+        del fields[name]["default"]
+    fields["occupancy_grid"] = _inlined(fields["occupancy_grid"], definitions)
+    data = fields["occupancy_grid"]["properties"]["data"]
+    data["items"], data["maxItems"] = {"type": "integer", "minimum": -1, "maximum": 100}, most_cells
+    required = {"grid": ["grid", "cell_size"], "occupancy_grid": ["occupancy_grid"]}
+    return [
+        {"required": required[form], "properties": dict.fromkeys((*useless, *others), False)}
+        for form, useless in _USELESS.items()
+        if (others := _USELESS.keys() - {form})
+    ]
+
+
+def _inlined(schema: Any, definitions: Mapping[str, Any]) -> Any:
+    """Return a JSON schema with definitions in the place of the references to them."""
+    if isinstance(schema, list):
+        return [_inlined(each, definitions) for each in schema]
+    if not isinstance(schema, dict):
+        return schema
+    beside = {name: _inlined(each, definitions) for name, each in schema.items() if name != "$ref"}
+    if "$ref" not in schema:
+        return beside
+    return {**_inlined(definitions[schema["$ref"].rsplit("/", 1)[1]], definitions), **beside}
+
+
+def _check_grid(grid: Array, most: int) -> None:
+    if grid.size > most:
+        raise too_many_cells(most, grid.size, grid.size)
+    binary = (grid == 0) | (grid == 1)
+    if not binary.all():
+        row, column = np.unravel_index(binary.argmin(), binary.shape)
+        raise invalid(f"grid/{row}/{column}", f"must be 0 or 1, got {grid[row, column]:g}")

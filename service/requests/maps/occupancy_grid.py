@@ -1,0 +1,101 @@
+"""Occupancy grids as the message nav_msgs/OccupancyGrid of ROS has them, in JSON.
+
+Members that say nothing about the cells, as header and map_load_time, are disregarded.
+"""
+
+import math
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.requests.maps.pictures import UNKNOWN, Occupancy
+from service.requests.maps.size import check_size
+from service.requests.schemas import Number, PositiveInteger, PositiveNumber
+from service.requests.validation import invalid
+
+_OCCUPIED = 100
+_TILT = 1e-3  # at most, of a quaternion about the z axis; and how far it may be from a unit one
+_INFO = "occupancy_grid/info"
+
+
+class _Message(BaseModel):
+    model_config = ConfigDict(strict=True, extra="ignore", frozen=True)
+
+
+class Point(_Message):
+    """Where the lower left corner of a map is, in metres."""
+
+    x: Number
+    y: Number
+
+
+class Quaternion(_Message):
+    """How a map is turned about the z axis."""
+
+    x: Number = 0.0
+    y: Number = 0.0
+    z: Number
+    w: Number
+
+
+class Pose(_Message):
+    """Where a map is, and how it is turned."""
+
+    position: Point
+    orientation: Quaternion
+
+
+class MapMetaData(_Message):
+    """The size of a map, and where it is."""
+
+    resolution: PositiveNumber = Field(description="side of a cell, in metres")
+    width: PositiveInteger
+    height: PositiveInteger
+    origin: Pose
+
+
+class OccupancyGrid(_Message):
+    """A message nav_msgs/OccupancyGrid."""
+
+    info: MapMetaData
+    data: Annotated[list[float], Field(fail_fast=True)] = Field(
+        description="row by row from the lower left cell: occupancy 0 to 100, or -1 for unknown"
+    )
+
+    def origin(self) -> tuple[float, float, float]:
+        """Return x, y and the yaw of the lower left corner.
+
+        Raises:
+            Refusal: The orientation is no rotation about the z axis.
+        """
+        at, turn = self.info.origin.position, self.info.origin.orientation
+        length = math.hypot(turn.z, turn.w)
+        if abs(length - 1) > _TILT or math.hypot(turn.x, turn.y) > _TILT:
+            raise invalid(f"{_INFO}/origin/orientation", "must be a unit quaternion about z")
+        return at.x, at.y, 2 * math.atan2(turn.z, turn.w)
+
+    def occupancy(self, most_cells: int) -> Occupancy:
+        """Return the occupancy of each cell, 0 to 100 or UNKNOWN, with the top row first.
+
+        Raises:
+            Refusal: The data are not of width x height cells, or not occupancies; or too many.
+        """
+        width, height = self.info.width, self.info.height
+        check_size(width, height, most_cells)
+        if len(self.data) != width * height:
+            demand = f"must have {width} x {height} numbers, got {len(self.data)}"
+            raise invalid("occupancy_grid/data", demand)
+        values = np.array(self.data)
+        _check(values)
+        return np.flipud(values.reshape(height, width)).astype(np.int8)
+
+
+def _check(values: NDArray[np.float64]) -> None:
+    with np.errstate(invalid="ignore"):
+        occupancies = (values >= UNKNOWN) & (values <= _OCCUPIED) & (values == np.rint(values))
+    if not occupancies.all():
+        at = int(occupancies.argmin())
+        demand = f"must be a whole number, {UNKNOWN} to {_OCCUPIED}, got {values[at]:g}"
+        raise invalid(f"occupancy_grid/data/{at}", demand)
