@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour import read_ros_map
 
 from service.cli.csv_tables import Ids, Table, parse_table
 from service.cli.errors import UnreadableFile
@@ -20,6 +21,9 @@ T = TypeVar("T")
 STANDARD_INPUT = Path("-")
 _TSPLIB = (".tsp", ".atsp")
 _PNG = b"\x89PNG"
+_PGM = (b"P5", b"P2")
+_PICTURES = (".png", ".pgm")
+_YAML = (".yaml", ".yml")
 
 
 @dataclass(frozen=True)
@@ -61,18 +65,33 @@ def read_request(files: Sequence[Path], *, unrounded: bool = False) -> tuple[Req
 
 
 def read_map(path: Path) -> tuple[Request, bytes | None]:
-    """Return the request in a JSON file, or an empty one and the content of a PNG file.
+    """Return the request in a JSON file, or what goes beside a picture, and the picture.
 
-    Standard input, a file named -, is either.
+    A picture is a PNG or PGM file, or that of a map.yaml of ROS, which says how to read it. JSON
+    may be a message nav_msgs/OccupancyGrid as well. Standard input, a file named -, is a picture or
+    JSON.
 
     Raises:
-        UnreadableFile: The file is neither; the message names it.
+        UnreadableFile: The file is none of these; the message names it.
         OSError: There is no such file.
     """
+    if path.suffix in _YAML:
+        return _read_yaml(path)
     content = _content(path)
-    if content.suffix == ".png":
+    if content.suffix in _PICTURES:
         return {}, content.data
-    return _parsed(path, content, lambda content: _parse_json(content.text)), None
+    request = _parsed(path, content, lambda content: _parse_json(content.text))
+    if {"info", "data"} <= request.keys():
+        return {"occupancy_grid": request}, None
+    return request, None
+
+
+def _read_yaml(path: Path) -> tuple[Request, bytes]:
+    try:
+        request, picture = read_ros_map(path)
+    except ValueError as error:
+        raise UnreadableFile(f"{path}: {error}") from None
+    return {**request}, picture
 
 
 def read_layer(path: Path) -> Array:
@@ -90,8 +109,8 @@ def _content(path: Path) -> _Content:
     if path != STANDARD_INPUT:
         return _Content(path.suffix, path.read_bytes())
     data = sys.stdin.buffer.read()
-    if data.startswith(_PNG):
-        return _Content(".png", data)
+    if data.startswith((_PNG, *_PGM)):
+        return _Content(".png" if data.startswith(_PNG) else ".pgm", data)
     return _Content(".json" if data.lstrip()[:1] in (b"{", b"[") else ".csv", data)
 
 

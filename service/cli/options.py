@@ -49,6 +49,9 @@ Angle = Annotated[
     float, Option(min=0, max=90, help="The trade-off: near 0 the second length is small.")
 ]
 Plot = Annotated[Path | None, Option(help="Draw the front into this file.")]
+PlotMap = Annotated[
+    Path | None, Option("--plot", help="Draw the map with three tours, and the front, into a file.")
+]
 Url = Annotated[
     str | None,
     Option(help="A running service that shall plan, not this process; as localhost:8000."),
@@ -61,16 +64,27 @@ MapFile = Annotated[
     Path,
     Argument(
         metavar="MAP",
-        help="PNG, dark where there are obstacles; or JSON, a whole request. - is standard input.",
+        help="A map.yaml of ROS; PNG or PGM, dark where there are obstacles; or JSON, a whole"
+        " request or a message nav_msgs/OccupancyGrid. - is standard input.",
     ),
 ]
-CellSize = Annotated[float | None, Option(help="Metres that a pixel is wide.")]
+CellSize = Annotated[
+    float | None, Option(help="Metres that a pixel is wide, where the map does not say it.")
+]
+StartPose = Annotated[
+    str | None, Option(help="Where the robot is, as -2.0,-0.5: x and y in the frame of the map.")
+]
+Unknown = Annotated[
+    str | None,
+    Option(help="free: the robot may go through unknown cells.", show_default="blocked"),
+]
 RobotRadius = Annotated[float | None, Option(help="In metres.", show_default="0")]
 Spacing = Annotated[
     float | None, Option(help="A place is visited in each square of so many metres.")
 ]
 CostLayer = Annotated[Path | None, Option(help="The second objective: CSV, a cost for each pixel.")]
 Paths = Annotated[
-    bool | None, Option("--paths", help="Have the cells of each tour's path, with --json.")
+    bool | None,
+    Option("--paths", help="Have the path of each tour, in cells and metres, with --json."),
 ]
 Workers = Annotated[int | None, Option(help="Plans made at a time.", show_default=False)]

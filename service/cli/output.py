@@ -57,7 +57,7 @@ def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> 
         front = backend.front(plan, _STDERR)
         _print(front, ids, output, Console())
         if draw is not None:
-            draw(front)
+            draw(front, plan)
     _STDERR.print(front_summary(front), highlight=False)
 
 
@@ -113,7 +113,7 @@ def print_chart(front: Front, console: Console) -> None:
     table = Table("tour", "angle", "first length", "second length")
     for column in table.columns[1:]:
         column.justify = "right"
-    for name, i in _choices(front.lengths).items():
+    for name, i in three_tours(front.lengths).items():
         lengths = (f"{length:.6g}" for length in front.lengths[i])
         table.add_row(name, f"{front.angles[i]:.2f}", *lengths)
     console.print(table)
@@ -163,7 +163,7 @@ def actors_as_table(actors: Iterable[Actor]) -> Table:
     return table
 
 
-def _choices(lengths: NDArray[np.float64]) -> dict[str, int]:
+def three_tours(lengths: NDArray[np.float64]) -> dict[str, int]:
     """Return, of points with shape (m, 2), both ends and the knee: the least sum in their box."""
     low, high = lengths.min(axis=0), lengths.max(axis=0)
     box = np.where(high > low, high - low, 1.0)
@@ -186,8 +186,8 @@ def _print(front: Front, ids: Ids | None, output: OutputFormat, console: Console
         console.print(front_as_table(front))
 
 
-def _drawing_into(path: Path) -> Callable[[Front], None]:
-    """Return a function that draws a front into a file.
+def _drawing_into(path: Path) -> Callable[[Front, Plan], None]:
+    """Return a function that draws a front, and over a map its tours, into a file.
 
     Raises:
         UsageError: No picture can be drawn into it, or matplotlib is not installed.
@@ -197,4 +197,12 @@ def _drawing_into(path: Path) -> Callable[[Front], None]:
     except ModuleNotFoundError:
         raise UsageError("--plot needs matplotlib: pip install 'paretour[plot]'") from None
     check_path(path)
-    return lambda front: plot_front(front, path)
+
+    def draw(front: Front, plan: Plan) -> None:
+        if front.paths is None:
+            return plot_front(front, path)
+        from service.cli.plot_map import plot_map
+
+        return plot_map(front, plan, path, three_tours(front.lengths))
+
+    return draw

@@ -31,28 +31,33 @@ def plan_cities(
         UsageError: `angles` are not numbers with commas between.
     """
     request, ids = read_request([file] if file2 is None else [file, file2], unrounded=unrounded)
-    given = _without_none({**options, "preferences": _parse_angles(angles)})
+    given = _without_none({**options, "preferences": _parse_numbers(angles, "--angles")})
     return front_plan(cast(FrontRequest, {**request, **given})), ids
 
 
-def plan_map(file: Path, cost_layer: Path | None, options: Options) -> tuple[Plan, None]:
+def plan_map(
+    file: Path, cost_layer: Path | None, options: Options, *, start_pose: str | None = None
+) -> tuple[Plan, None]:
     """Return the plan for places on the map in a file, maybe with costs in another; and no ids.
 
     Raises:
         UnreadableFile: A file is not of its format.
         OSError: There is no such file.
-        UsageError: Something that a plan needs is missing; the message names all of it.
+        UsageError: Something that a plan needs is missing, and the message names all of it; or the
+            pose is not numbers with commas between.
     """
-    request, png = read_map(file)
+    pose = _parse_numbers(start_pose, "--start-pose")
+    request, picture = read_map(file)
     costs = None if cost_layer is None else read_layer(cost_layer)
-    whole = {**request, **_without_none({**options, "cost_layer": costs})}
+    given = _without_none({**options, "cost_layer": costs, "start_pose": pose})
+    whole = {**request, **given}
     _check_complete(whole)
-    return coverage_plan(cast(CoverageRequest, whole), png), None
+    return coverage_plan(cast(CoverageRequest, whole), picture), None
 
 
 def _check_complete(request: Mapping[str, Any]) -> None:
     needs = {
-        "--cell-size": ("cell_size",),
+        "--cell-size": ("cell_size", "occupancy_grid"),
         "--spacing (or places in a request)": ("spacing", "places"),
         "--cost-layer (or second_matrix or second_coordinates in a request)": _SECOND_OBJECTIVES,
     }
@@ -61,11 +66,11 @@ def _check_complete(request: Mapping[str, Any]) -> None:
         raise UsageError(f"a map cannot be covered without {', '.join(missing)}")
 
 
-def _parse_angles(text: str | None) -> list[float] | None:
+def _parse_numbers(text: str | None, option: str) -> list[float] | None:
     try:
-        return None if text is None else [float(angle) for angle in text.split(",")]
+        return None if text is None else [float(number) for number in text.split(",")]
     except ValueError:
-        sentence = f"--angles must be numbers with commas between, got {text!r}"
+        sentence = f"{option} must be numbers with commas between, got {text!r}"
         raise UsageError(sentence) from None
 
 

@@ -106,6 +106,41 @@ def test_a_picture_of_a_map_is_covered_as_its_grid_is(tmp_path: Path) -> None:
     assert all(item["path"]["metres"] > 0 for item in answer["front"])
 
 
+def test_a_map_of_ros_is_covered_as_the_same_map_in_a_message(tmp_path: Path) -> None:
+    shades = np.full((5, 7), 254, np.uint8)
+    shades[0], shades[1, :4], shades[4, 2:] = 205, 0, 205  # unknown, an obstacle, unknown
+    (tmp_path / "map.pgm").write_bytes(b"P5 7 5 255\n" + shades.tobytes())
+    (tmp_path / "map.yaml").write_text(
+        "image: map.pgm\nresolution: 0.5\norigin: [-2.0, 1.0, 0.0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    data = np.array(
+        [[{254: 0, 205: -1, 0: 100}[shade] for shade in row] for row in shades.tolist()]
+    )
+    pose = {"position": {"x": -2, "y": 1, "z": 0}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}
+    info = {"resolution": 0.5, "width": 7, "height": 5, "origin": pose}
+    message = {"info": info, "data": data[::-1].ravel().tolist()}
+    (tmp_path / "message.json").write_text(json.dumps(message))
+    layer = np.random.default_rng(0).random((5, 7))
+    np.savetxt(tmp_path / "people.csv", layer, delimiter=",", fmt="%.17g")
+    by_row_sums(tmp_path / "sums.onnx")
+    given = ["--cost-layer", tmp_path / "people.csv", "--spacing=1", "--start-pose=-1.9,1.1"]
+    picture = tmp_path / "picture.png"
+    of_yaml, of_message = (
+        paretour("coverage", tmp_path / name, *given, *more, PARETOUR_ACTORS=str(tmp_path))
+        for name, more in (
+            ("map.yaml", ["--json", "--plot", picture]),
+            ("message.json", ["--json", "--paths"]),
+        )
+    )
+    answer = json.loads(of_yaml.stdout)
+    assert found(answer) == found(json.loads(of_message.stdout))
+    for item in answer["front"]:
+        assert item["path"]["points"][0] == [-1.75, 1.25]  # the cell at the lower left
+        assert (data[tuple(np.transpose(item["path"]["cells"]))] == 0).all()
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
 WRONG = [
     (["front"], "Missing argument"),
     (["front", "none.json"], "none.json: No such file"),
@@ -120,6 +155,8 @@ WRONG = [
     (["tour"], "Missing 'FILE' and '--angle'"),
     (["tour", EXAMPLE, "--angle", "x"], "Invalid value for '--angle'"),
     (["coverage", "none.png"], "none.png: No such file"),
+    (["coverage", "none.yaml"], "none.yaml: No such file"),
+    (["coverage", "README.md", "--start-pose", "1;2"], "--start-pose must be numbers with commas"),
     (["front", EXAMPLE, "--url", "ftp://x"], "--url must be a URL"),
     (["coverage", "README.md"], "README.md: must be JSON"),
 ]

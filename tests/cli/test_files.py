@@ -60,6 +60,21 @@ def test_files_of_tsplib_are_planes_where_that_is_asked_for(tmp_path: Path) -> N
     assert read_request(files, unrounded=True)[0] == {"coordinates": expected}
 
 
+def test_a_map_is_read_by_its_suffix(tmp_path: Path) -> None:
+    pgm = b"P5 1 1 255\n\xfe"
+    (tmp_path / "map.pgm").write_bytes(pgm)
+    (tmp_path / "map.yaml").write_text(
+        "{image: map.pgm, resolution: 1, origin: [0, 0, 0], negate: 0, occupied_thresh: 0.65,"
+        " free_thresh: 0.196}"
+    )
+    assert read_map(tmp_path / "map.pgm") == ({}, pgm)
+    members, picture = read_map(tmp_path / "map.yaml")
+    assert (members["cell_size"], members["free_thresh"], picture) == (1.0, 0.196, pgm)
+    (tmp_path / "broken.yml").write_text("1")
+    with pytest.raises(UnreadableFile, match=r"broken\.yml: a map.yaml must be keys with values"):
+        read_map(tmp_path / "broken.yml")
+
+
 WRONG = [
     ("a.csv", "", "must have a row of numbers for each city, got none"),
     ("a.csv", "a,b,c,d\n", "must have a row of numbers"),

@@ -57,6 +57,16 @@ def test_everything_that_a_map_lacks_is_named_at_once(tmp_path: Path) -> None:
         plan_map(tmp_path / "map.json", None, {})
 
 
+def test_a_message_lacks_no_cell_size(tmp_path: Path) -> None:
+    (tmp_path / "map.json").write_text('{"info": {}, "data": [0]}')
+    options = {"spacing": 2.0, "unknown": None, "cell_size": None}
+    (tmp_path / "costs.csv").write_text("1\n")
+    plan, _ = plan_map(tmp_path / "map.json", tmp_path / "costs.csv", options, start_pose="-1,2.5")
+    assert plan.request.keys() == {"occupancy_grid", "spacing", "cost_layer", "start_pose"}
+    assert plan.request["occupancy_grid"] == {"info": {}, "data": [0]}
+    assert plan.request["start_pose"] == [-1.0, 2.5]
+
+
 def test_ids_of_cities_come_beside_the_plan(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("depot,1,2,3,4\nb,5,6,7,8\n")
     assert plan_cities(tmp_path / "a.csv", options={})[1] == ("depot", "b")

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from contextlib import chdir
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +61,8 @@ def lasting(answer: dict[str, Any]) -> dict[str, Any]:
 def _run(block: Block, folder: Path, address: str) -> list[str]:
     reached = address.removeprefix("http://")
     if block.language == "python":
-        exec(block.text.replace(REACHED, reached), {})
+        with chdir(folder):
+            exec(block.text.replace(REACHED, reached), {})
     if block.language != "sh":
         return []
     commands = [line for line in split_commands(block.text) if line.startswith(RUN)]

@@ -13,6 +13,7 @@ events of `events`; neither needs anything of the service but its address.
 from paretour.asynchronous import AsyncClient, AsyncJob
 from paretour.errors import Refused
 from paretour.requests import Plan, coverage_plan, front_plan
+from paretour.ros_maps import read_ros_map
 from paretour.sync import Client, Job
 from paretour.values import Actor, CoverageRequest, Front, FrontRequest, Path, Progress, Tour
 
@@ -32,4 +33,5 @@ __all__ = [
     "Tour",
     "coverage_plan",
     "front_plan",
+    "read_ros_map",
 ]

@@ -61,7 +61,7 @@ def front_plan(request: FrontRequest) -> Plan:
 
 
 def coverage_plan(request: CoverageRequest, png: bytes | None) -> Plan:
-    """Return the request to POST /coverage. The map is its grid, or the content of a PNG file."""
+    """Return the request to POST /coverage. The map is in it, or a PNG or PGM file."""
     return Plan("/coverage", request, None if png is None else File("map", png))
 
 

@@ -50,7 +50,8 @@ class Client:
         """Plan a front over a map and wait for it.
 
         Args:
-            png: The map as the content of a PNG file, instead of a grid in the request.
+            png: The map as the content of a PNG or PGM file, instead of a grid in the request;
+                `read_ros_map` reads both from a map.yaml.
             **request: The members of the request.
         """
         return self.plan(coverage_plan(request, png))

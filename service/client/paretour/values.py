@@ -39,10 +39,19 @@ class CoverageRequest(PlanRequest, total=False):
     """The members of a request to POST /coverage: map, places, second objective."""
 
     grid: ArrayLike
+    occupancy_grid: Mapping[str, Any]
     cell_size: float
+    origin: ArrayLike
+    mode: Literal["trinary", "scale", "raw"]
+    negate: bool
+    occupied_thresh: float
+    free_thresh: float
+    obstacle_from: int
+    unknown: Literal["blocked", "free"]
     robot_radius: float
     places: ArrayLike
     spacing: float
+    start_pose: ArrayLike
     second_matrix: ArrayLike
     cost_layer: ArrayLike
     second_coordinates: ArrayLike
@@ -65,10 +74,13 @@ class Path:
     Attributes:
         cells: Rows and columns, shape (m, 2), from the first place back to it.
         metres: The length.
+        points: x and y of each cell's middle in the frame of the map, in metres, shape (m, 2);
+            None where its origin is not known.
     """
 
     cells: NDArray[np.int64]
     metres: float
+    points: Array | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -208,7 +220,9 @@ def parse_tour(document: Mapping[str, Any]) -> Tour:
 def _parse_path(item: Mapping[str, Any]) -> Path | None:
     if "path" not in item:
         return None
-    return Path(_integers(item["path"]["cells"]), item["path"]["metres"])
+    path = item["path"]
+    points = _floats(path["points"]) if "points" in path else None
+    return Path(_integers(path["cells"]), path["metres"], points)
 
 
 def _integers(values: Any) -> NDArray[np.int64]:
