@@ -19,6 +19,7 @@ from service.requests.limits import Limits
 Array = NDArray[np.float64]
 
 _WALL, _PATH, _PLACE, _START = "#3d3d3d", "#1f4e9c", "#c1272d", "#1a9850"
+_MARGIN = 4  # cells drawn around the free ones
 _NO_LIMIT = 2**62  # on a request that was planned already
 _LIMITS = Limits(
     body_bytes=_NO_LIMIT,
@@ -69,8 +70,10 @@ def _draw_map(panel: Axes, blocked: NDArray[np.bool_], frame: MapFrame) -> None:
     image = panel.imshow(blocked, cmap=ListedColormap(["white", _WALL]), vmin=0, vmax=1)
     image.set_extent((0, width, 0, height))
     image.set_transform(to_frame + panel.transData)
-    corners = to_frame.transform([(0, 0), (width, 0), (width, height), (0, height)])
-    (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
+    # Robots save large maps, of which they know a small part.
+    free = frame.points(np.argwhere(~blocked))
+    margin = _MARGIN * frame.cell_size
+    (left, bottom), (right, top) = free.min(axis=0) - margin, free.max(axis=0) + margin
     panel.set(xlim=(left, right), ylim=(bottom, top), aspect="equal", xlabel="x, m", ylabel="y, m")
 
 
