@@ -146,25 +146,72 @@ end
 
 function verbs.check_place(now) return refusal(now) or 'new' end
 
+-- A client's turn comes after those of all others that wait.
+local function queue_turn(client, wait)
+  if wait == 'again' or not redis.call('ZSCORE', TURNS, client) then
+    redis.call('ZADD', TURNS, redis.call('INCR', TURN), client)
+  end
+end
+
 -- Admission to the queue and to the records at once.
 function verbs.submit(now)
   local reply = repeated(unpack(ARGV, 7, 9)) or refusal(now)
   if reply then return reply end
   reply = admit(now, 6)
   redis.call('HSET', front_of(ARGV[6]), 'client', ARGV[5])
+  queue_turn(ARGV[5])
   return reply
 end
 
--- Nothing where the record is finished, or another worker is at it, unless that is known to be lost.
+-- The record that waits and is next: the first of the client whose turn is longest ago.
+local function next_in_turn()
+  local first, waiting = {}, {}
+  for _, id in ipairs(redis.call('ZRANGE', UNFINISHED, 0, -1)) do
+    local status, client, caller =
+      unpack(redis.call('HMGET', front_of(id), 'status', 'client', 'caller'))
+    client = client or caller or ''
+    if status == 'queued' and not first[client] then
+      first[client] = id
+      waiting[#waiting + 1] = client
+    end
+  end
+  for _, client in ipairs(redis.call('ZRANGE', TURNS, 0, -1)) do
+    if not first[client] then redis.call('ZREM', TURNS, client) end
+  end
+  local found, least
+  for _, client in ipairs(waiting) do
+    local turn = tonumber(redis.call('ZSCORE', TURNS, client) or 0)
+    if not least or turn < least then found, least = client, turn end
+  end
+  if found then queue_turn(found, 'again') end
+  return first[found]
+end
+
+-- The record that the worker of a message is to plan. A message is a turn, of whichever record is
+-- next; but where it comes again, and its worker is lost, of the same one.
+local function record_of(now, message, lease, known)
+  for _, id in ipairs(redis.call('ZRANGE', UNFINISHED, 0, -1)) do
+    local status, seen, began_by = unpack(redis.call('HMGET', front_of(id), 'status', 'seen', 'message'))
+    if status == 'running' then
+      local unseen = now - (tonumber(seen) or 0) >= lease
+      local same = (began_by or id) == message
+      if (same and (unseen or known ~= '')) or (id == message and unseen) then return id end
+    end
+  end
+  return next_in_turn()
+end
+
+-- Nothing where no record waits, and none has lost the worker of this message.
 function verbs.begin(now)
-  local id, worker, lease, known = ARGV[3], ARGV[4], tonumber(ARGV[5]), ARGV[6]
-  local status, seen = unpack(redis.call('HMGET', front_of(id), 'status', 'seen'))
-  if not status or is_finished(status) then return false end
-  if status == 'running' and known == '' and now - seen < lease then return false end
-  redis.call('HSET', front_of(id), 'status', 'running', 'worker', worker, 'seen', now)
+  local message, worker, lease, known = ARGV[3], ARGV[4], tonumber(ARGV[5]), ARGV[6]
+  local id = record_of(now, message, lease, known)
+  if not id then return false end
+  redis.call(
+    'HSET', front_of(id), 'status', 'running', 'worker', worker, 'seen', now, 'message', message
+  )
   if redis.call('HINCRBY', front_of(id), 'attempts', 1) > 1 then redis.call('INCR', LOST) end
   tell(id)
-  return {redis.call('HGETALL', front_of(id)), redis.call('HGETALL', work_of(id))}
+  return {id, redis.call('HGETALL', front_of(id)), redis.call('HGETALL', work_of(id))}
 end
 
 local function has(id, worker) return redis.call('HGET', front_of(id), 'worker') == worker end

@@ -61,7 +61,11 @@ class RecordWorker:
         Thread(target=self._send_heartbeats, name="heartbeat", daemon=True).start()
 
     def plan(self, id: str, known_lost: bool) -> None:  # noqa: A002
-        """Plan the front of a record, unless it is finished or another worker does.
+        """Plan the front of the record whose turn it is, unless none waits.
+
+        Args:
+            id: Of the message that this is the turn of.
+            known_lost: Whether the worker that had the message before is lost.
 
         Raises:
             Draining: The worker shuts down; the record is queued again.
@@ -78,7 +82,7 @@ class RecordWorker:
         result = self._result(stored, supervisor)
         supervisor.end()
         if supervisor.reason is Draining:
-            self._store.hand_back(id)
+            self._store.hand_back(stored.record.id)
             raise Draining
         if supervisor.reason is not TakenOver:
             self._store.finish(result)

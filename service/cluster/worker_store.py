@@ -57,22 +57,29 @@ class WorkerStore:
         self._call_once("present", self._worker)
 
     def begin(self, id: str, known_lost: bool) -> StoredRecord | None:  # noqa: A002
-        """Take a record for this worker and return it.
+        """Take the next record for this worker and return it.
 
-        Returns None where the record is finished, or cannot be read, which drops it, or another
-        worker runs it, unless that is known to be lost.
+        A message is a turn, of the client whose turn is next. Where the worker that had the message
+        before is lost, the record is the one that it had.
+
+        Args:
+            id: Of the message.
+            known_lost: Whether the message was delivered before, to a worker that is lost.
+
+        Returns None where no record waits, or the next cannot be read, which drops it.
         """
         known = "lost" if known_lost else ""
-        hashes = self._call_until_answered("begin", id, self._worker, LEASE, known)
-        if not hashes:
+        reply = self._call_until_answered("begin", id, self._worker, LEASE, known)
+        if not reply:
             return None
+        name, *hashes = reply
         try:
             stored = stored_record(*hashes)
             if stored.record.source is None:
                 raise UnreadableRecord("what to plan is missing")
         except UnreadableRecord as error:
-            log_dropped(id, error)
-            self._call_until_answered("drop", id)
+            log_dropped(name.decode(errors="replace")[:80], error)
+            self._call_until_answered("drop", name)
             return None
         return stored
 

@@ -46,7 +46,17 @@ def test_fields_of_a_report_keep_their_names() -> None:
 
 
 def test_the_script_sets_the_fields_that_are_read() -> None:
-    for name in ("kept", "attempts", "stop", "seen", "sent", "worker", "claimed", "number"):
+    for name in (
+        "kept",
+        "attempts",
+        "stop",
+        "seen",
+        "sent",
+        "worker",
+        "claimed",
+        "number",
+        "message",
+    ):
         assert f"'{name}'" in SCRIPT
 
 

@@ -1,0 +1,116 @@
+"""Clients take turns in the cluster: a message is a turn, whichever record it was sent for."""
+
+import asyncio
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import redis as redis_client
+from redis.asyncio import Redis as AsyncRedis
+
+from service.cluster.redis_store import RedisStore
+from service.cluster.worker_store import LEASE, WorkerStore
+from service.jobs.record import Record
+from tests.helpers.redis_server import Redis
+from tests.helpers.stores import job, record
+
+pytestmark = pytest.mark.usefixtures("connection")
+
+
+@pytest.fixture
+def connection(redis: Redis) -> Iterator[Any]:
+    with redis_client.Redis.from_url(redis.url) as connection:
+        connection.flushall()
+        yield connection
+
+
+def submitted(url: str, *ids: str) -> None:
+    """Submit a job for each id, of the client that its first letter names."""
+
+    async def submit() -> None:
+        store = RedisStore(AsyncRedis.from_url(url), entries=9, max_age=60)
+        for id_ in ids:
+            await store.submit(job(id_, client=id_[0]), queue=99, share=1.0)
+        await store.close()
+
+    asyncio.run(submit())
+
+
+def begun(worker: WorkerStore, message: str, known_lost: bool = False) -> str | None:
+    stored = worker.begin(message, known_lost)
+    return stored and stored.record.id
+
+
+def finished(id_: str) -> Record:
+    return record(id_)
+
+
+def test_clients_take_turns_whoever_came_first(redis: Redis) -> None:
+    ids = ("a1", "a2", "a3", "a4", "b1", "b2", "c1")
+    submitted(redis.url, *ids)
+    worker = WorkerStore(redis.url, "host:1:aa")
+    assert [begun(worker, each) for each in ids] == ["a1", "b1", "c1", "a2", "b2", "a3", "a4"]
+    assert begun(worker, "a1") is None
+    submitted(redis.url, "a5", "b3", "d1")
+    assert [begun(worker, each) for each in ("d1", "b3", "a5")] == ["a5", "b3", "d1"]
+
+
+def test_one_that_comes_often_waits_for_one_that_comes_seldom(
+    redis: Redis, connection: Any
+) -> None:
+    worker = WorkerStore(redis.url, "host:1:aa")
+    submitted(redis.url, "a1", "a2", "a3")
+    assert begun(worker, "a1") == "a1"
+    submitted(redis.url, "b1")
+    assert begun(worker, "a2") == "a2"  # its turn was before that of b, which came later
+    submitted(redis.url, "a4")
+    assert [begun(worker, each) for each in ("a3", "b1", "a4")] == ["b1", "a3", "a4"]
+    submitted(redis.url, "c1")
+    worker.begin("c1", known_lost=False)
+    assert connection.zcard("paretour:turns") <= 1  # of clients that wait, or had the last turn
+
+
+def test_a_message_whose_worker_is_lost_is_of_the_record_that_it_had(
+    redis: Redis, connection: Any
+) -> None:
+    submitted(redis.url, "a1", "a2", "b1")
+    one, other = WorkerStore(redis.url, "host:1:aa"), WorkerStore(redis.url, "host:2:bb")
+    assert begun(one, "a1") == "a1"
+    assert begun(one, "a2") == "b1"
+    # Not the record it is named for, which waits, but the one that was under way.
+    assert begun(other, "a2", known_lost=True) == "b1"
+    assert connection.hget("paretour:front:b1", "attempts") == b"2"
+    assert connection.get("paretour:lost") == b"1"
+    # The worker of a1 is there: this is a turn like any other.
+    assert begun(other, "b1", known_lost=True) == "a2"
+    assert begun(other, "b1", known_lost=False) is None
+
+
+def test_a_record_that_nobody_was_seen_at_for_a_while_is_begun_again(
+    redis: Redis, connection: Any
+) -> None:
+    submitted(redis.url, "a1", "b1")
+    worker = WorkerStore(redis.url, "host:1:aa")
+    assert [begun(worker, each) for each in ("b1", "a1")] == ["a1", "b1"]
+    connection.hincrbyfloat("paretour:front:b1", "seen", -LEASE - 1)
+    assert begun(worker, "b1") == "b1"  # sent again by its own name
+    assert begun(worker, "b1") is None
+
+
+def test_what_ended_while_it_waited_takes_no_turn(redis: Redis) -> None:
+    submitted(redis.url, "a1", "a2", "b1")
+    worker = WorkerStore(redis.url, "host:1:aa")
+    worker.finish(finished("a1"))
+    assert [begun(worker, each) for each in ("a1", "a2", "b1")] == ["a2", "b1", None]
+
+
+def test_jobs_of_the_last_release_have_no_turn_and_come_first(redis: Redis) -> None:
+    async def put() -> None:
+        store = RedisStore(AsyncRedis.from_url(redis.url), entries=9, max_age=60)
+        await store.put(job("old", caller="us"))
+        await store.close()
+
+    submitted(redis.url, "a1")
+    asyncio.run(put())
+    worker = WorkerStore(redis.url, "host:1:aa")
+    assert [begun(worker, each) for each in ("a1", "old")] == ["old", "a1"]
