@@ -11,6 +11,7 @@ import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
+from service.construction import CallEstimate
 from service.errors import Cancelled
 from service.instance import PLANE, Instance, Kind
 
@@ -83,6 +84,7 @@ class OnnxActor:
             **{name: metadata[name] for name in ("name", "commit")},
             **{name: _decoded(metadata[name]) for name in ("sizes", "angles", "config", "figures")},
         )
+        self.estimate = CallEstimate(self.info.inputs)
 
     def tours(self, instance: Instance, preferences: Array, repairs: int = 0) -> Tours:
         """Return tours, shape (k, n), one for each preference, shape (k, 2), by one inference.

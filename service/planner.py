@@ -1,37 +1,29 @@
 """plan(...): from an instance to its front.
 
 A constructor, which is a network, builds first tours; the search improves them; the best subset
-of the size asked for is reported. Nothing here knows of HTTP, jobs or files.
+of the size asked for is reported. The time limit is that of all three together. Nothing here knows
+of HTTP, jobs or files.
 """
 
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.errors import Cancelled
-from service.instance import Instance, symmetries, tour_lengths
-from service.pareto import best_subset, hypervolume, nondominated
-from service.preferences import angles, from_angles
+from service.construction import MIN_CONSTRUCTED, SHARE, Constructor, construct
+from service.instance import Instance, tour_lengths
+from service.pareto import best_subset, hypervolume, nondominated, selection_seconds
+from service.preferences import angles
 from service.search.bound import hypervolume_bound
 from service.search.improve import Progress, SearchResult, Termination, improve
-from service.search.open_routes import built_tours, oriented, plain_tours
+from service.search.open_routes import oriented, plain_tours
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 BOUND_SECONDS = 5.0  # after these a bound, which is valid all along, is tight enough
-MIN_CONSTRUCTED = 3  # cities: no network was trained on fewer
-
-
-class Constructor(Protocol):
-    """A builder of tours from nothing but an instance and preferences."""
-
-    def tours(self, instance: Instance, preferences: Array) -> Tours:
-        """Return closed tours, shape (k, n), one a preference (k, 2), or raise Cancelled."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,11 +32,14 @@ class PlanOptions:
 
     Args:
         angles: Of the preferences for which tours are constructed, in degrees, shape (k,).
+        fewer: Whether within a time limit fewer preferences will do: at most k, evenly spread, as
+            many as fit into the network's share of it.
         size: The greatest number of tours of the front.
         start: The city from which every closed tour is reported.
         reference_point: Of the hypervolume, shape (2,), in the instance's units; by default n
             times the scale.
-        time_limit: Seconds for the search; at 0 there is no search.
+        time_limit: Seconds for construction, search and selection together, not for the bound;
+            at 0 there is no search.
         initial_tours: Shape (m, n): tours that the front shall dominate or equal as well.
         bound: Whether to compute an upper bound on the hypervolume of any front.
         seed: Of the search's random choices.
@@ -54,6 +49,7 @@ class PlanOptions:
 
     angles: Array
     size: int
+    fewer: bool = False
     start: int = 0
     reference_point: Array | None = None
     time_limit: float = 0.0
@@ -77,6 +73,7 @@ class Front:
         tours: One tour a row, shape (m, n).
         points: Their lengths, shape (m, 2).
         found: The number of nondominated tours found, of which m were kept.
+        constructed: The number of tours that the network built.
         scale: Of the instance, shape (2,).
         reference_point: Of the hypervolumes, shape (2,).
         terminated: How the search ended; None while it goes on.
@@ -88,6 +85,7 @@ class Front:
     tours: NDArray[np.integer]
     points: Array
     found: int
+    constructed: int
     scale: Array
     reference_point: Array
     terminated: Termination | None
@@ -139,31 +137,36 @@ def plan(
         Cancelled: The constructor was told to stop before it had a tour.
     """
     clock = _Clock()
+    deadline = time.monotonic() + options.time_limit
     reference_point = _reference_point(instance, options)
     options = replace(options, reference_point=reference_point)
-    first = _first_tours(constructor, instance, options, stop)
+    constructed = _constructed(constructor, instance, options, deadline, stop)
+    first = _first_tours(instance, constructed, options)
+    before = hypervolume(tour_lengths(instance, first), reference_point)
     clock.ends("construction")
-    tours, points, terminated = _improved(instance, first, options, stop, report)
+    report_front = partial(_report_front, instance, options, len(constructed), report)
+    found = _improved(instance, first, options, deadline, stop, report_front)
     clock.ends("improvement")
-    searched = options.time_limit > 0
-    gained = _gained(instance, first, points, reference_point) if searched else None
-    chosen = best_subset(points, options.size, reference_point, stop)
+    gained = hypervolume(found.points, reference_point) - before
+    chosen = best_subset(found.points, options.size, reference_point, stop)
+    tours = found.tours[chosen].astype(np.int64)
     clock.ends("selection")
     bound = None
     if options.bound and not stop():
-        deadline = time.monotonic() + BOUND_SECONDS
-        bound = hypervolume_bound(instance, reference_point, deadline, stop)
+        until = time.monotonic() + BOUND_SECONDS
+        bound = hypervolume_bound(instance, reference_point, until, stop)
     clock.ends("bound")
     return Front(
-        tours=_as_reported(instance, options.start, tours[chosen]),
-        points=points[chosen],
-        found=len(points),
+        tours=_as_reported(instance, options.start, tours),
+        points=found.points[chosen],
+        found=len(found.points),
+        constructed=len(constructed),
         scale=instance.scale,
         reference_point=reference_point,
-        terminated=terminated,
+        terminated=found.terminated,
         timings=clock.phases,
         bound=bound,
-        gained=gained,
+        gained=gained if options.time_limit > 0 else None,
     )
 
 
@@ -173,92 +176,87 @@ def _reference_point(instance: Instance, options: PlanOptions) -> Array:
     return instance.n * instance.scale
 
 
-def _first_tours(
-    constructor: Constructor, instance: Instance, options: PlanOptions, stop: Callable[[], bool]
-) -> Tours:
-    """Return the constructor's tours, then the caller's."""
-    tours = _constructed(constructor, instance, options, stop)
-    if options.initial_tours is None:
-        return tours
-    return np.concatenate((tours, options.initial_tours))
-
-
 def _constructed(
-    constructor: Constructor, instance: Instance, options: PlanOptions, stop: Callable[[], bool]
+    constructor: Constructor,
+    instance: Instance,
+    options: PlanOptions,
+    deadline: float,
+    stop: Callable[[], bool],
 ) -> Tours:
-    """Return a tour for each angle and each of the symmetries, until told to stop."""
+    """Return the constructor's tours; after the deadline it is not called once more."""
+    limited = options.time_limit > 0
+    return construct(
+        constructor,
+        instance,
+        options.angles,
+        options.augment,
+        within=SHARE * options.time_limit if limited and options.fewer else None,
+        stop=lambda: stop() or (limited and time.monotonic() >= deadline),
+    )
+
+
+def _first_tours(instance: Instance, constructed: Tours, options: PlanOptions) -> Tours:
+    """Return the constructed tours, then the caller's; of one or two cities all there are."""
+    tours = [constructed]
     if instance.n < MIN_CONSTRUCTED:
-        return plain_tours(instance).astype(np.int64)
-    tours = []
-    for call, image in enumerate(symmetries(instance, options.augment)):
-        angles = _shifted(options.angles, call / options.augment)
-        try:
-            tours.append(built_tours(constructor.tours, image, from_angles(angles)))
-        except Cancelled:
-            if not tours:
-                raise
-            break
-        if stop():
-            break
+        tours.append(plain_tours(instance).astype(np.int64))
+    if options.initial_tours is not None:
+        tours.append(options.initial_tours)
     return np.concatenate(tours)
-
-
-def _shifted(angles: Array, share: float) -> Array:
-    """Return the angles, each shifted by a share of the way to the next; the last stays."""
-    index = np.arange(len(angles))
-    return np.interp(index + share, index, angles)
 
 
 def _improved(
     instance: Instance,
     tours: Tours,
     options: PlanOptions,
+    deadline: float,
     stop: Callable[[], bool],
-    report: Report,
-) -> tuple[Tours, Array, Termination | None]:
-    """Return nondominated tours, their points, and why the search for them ended."""
+    report: Callable[[Progress, Callable[[int], SearchResult]], None],
+) -> SearchResult:
+    """Return nondominated tours, their points, and why the search for them ended.
+
+    The search leaves as much time as the selection from what it found is going to take.
+    """
     if options.time_limit == 0:
         points = tour_lengths(instance, tours)
         front = nondominated(points)
-        return tours[front], points[front], "converged"
-    found = improve(
+        return SearchResult(tours[front], points[front], "converged")
+    return improve(
         instance,
         tours,
-        deadline=time.monotonic() + options.time_limit,
+        deadline=deadline,
+        reserve=partial(selection_seconds, options.size),
         seed=options.seed,
         stop=stop,
-        report=lambda progress, best: report(
-            progress, partial(_best_front, instance, options, progress, best)
-        ),
+        report=report,
         reference_point=options.reference_point,
     )
-    return found.tours.astype(np.int64), found.points, found.terminated
 
 
-def _best_front(
+def _report_front(
     instance: Instance,
     options: PlanOptions,
+    constructed: int,
+    report: Report,
     progress: Progress,
     best: Callable[[int], SearchResult],
-    size: int,
-) -> Front:
-    """Return the best tours found so far, at most `size` of them."""
-    found = best(min(size, options.size))
-    return Front(
-        tours=_as_reported(instance, options.start, found.tours),
-        points=found.points,
-        found=progress.points,
-        scale=instance.scale,
-        reference_point=_reference_point(instance, options),
-        terminated=None,
-        timings={},
-    )
+) -> None:
+    """Report the progress of the search, with the best tours found so far on demand."""
 
+    def best_front(size: int) -> Front:
+        found = best(min(size, options.size))
+        return Front(
+            tours=_as_reported(instance, options.start, found.tours),
+            points=found.points,
+            found=progress.points,
+            constructed=constructed,
+            scale=instance.scale,
+            reference_point=_reference_point(instance, options),
+            terminated=None,
+            timings={},
+        )
 
-def _gained(instance: Instance, first: Tours, points: Array, reference_point: Array) -> float:
-    """Return the hypervolume that the search added to that of the first tours."""
-    before = hypervolume(tour_lengths(instance, first), reference_point)
-    return hypervolume(points, reference_point) - before
+    report(progress, best_front)
 
 
 def _as_reported(instance: Instance, start: int, tours: NDArray[np.integer]) -> NDArray[np.integer]:

@@ -122,7 +122,7 @@ class Settings(BaseSettings):
     max_path_cells: int = Field(2**21, ge=1, description="the most cells of all paths of an answer")
     max_preferences: int = Field(200, ge=1, description="the most preferences of a request")
     max_size: int = Field(1000, ge=1, description="the most tours that a request may ask for")
-    max_time_limit: float = Field(60.0, ge=0, description="the most seconds of improvement")
+    max_time_limit: float = Field(60.0, ge=0, description="the most seconds of planning")
 
     # Deadlines.
     request_seconds: float = Field(

@@ -154,7 +154,7 @@ class PlanRoutes:
             caller=caller_of(request),
             request_id=request.scope["request_id"],
             status="queued",
-            front=empty_front(source.task, self._actors[source.task.actor].identity),
+            front=empty_front(source.task),
             source=source,
             key=key,
             digest=await asyncio.to_thread(_digest, source) if key else "",

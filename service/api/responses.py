@@ -93,7 +93,7 @@ class FrontAnswer(BaseModel):
         description="null while costs are still to be measured, as is the scale"
     )
     scale: Lengths | None
-    actor: ActorName
+    actor: ActorName | None = Field(description="null where no network built tours, or none yet")
     timings_ms: dict[str, float]
     terminated: Termination | None = Field(
         description="how the search ended, null while it goes on. `converged`: up to nine cities"

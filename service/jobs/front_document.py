@@ -57,7 +57,7 @@ class FrontDocument:
     Attributes:
         reference_point: One number for each objective; None while the places are not known.
         scale: The same.
-        actor: Name and digest of the network.
+        actor: Name and digest of the network; None where it built no tours.
         places: Row and column of each place of a coverage task.
         objectives: Name and unit of each objective, where the caller named them.
         stops: Id and location of each stop, where the caller named them.
@@ -75,7 +75,7 @@ class FrontDocument:
     scale: list[float] | None
     timings_ms: Timings
     terminated: Termination | None
-    actor: Mapping[str, str]
+    actor: Mapping[str, str] | None
     places: list[list[int]] | None = None
     objectives: list[dict[str, Any]] | None = None
     stops: list[dict[str, Any]] | None = None
@@ -143,7 +143,10 @@ def encode_front(
     paths: Iterable[CoveragePath] | None = None,
     labels: Labels | None = None,
 ) -> FrontDocument:
-    """Write a front as JSON: with paths the path of each tour, with labels the ids of its stops."""
+    """Write a front as JSON: with paths the path of each tour, with labels the ids of its stops.
+
+    The actor is left out where it built no tours.
+    """
     rows = zip(front.angles.tolist(), front.points.tolist(), front.tours.tolist(), strict=True)
     ids = None if labels is None else [stop.id for stop in labels.stops]
     encoded = [_encode_tour(angle, lengths, tour, ids) for angle, lengths, tour in rows]
@@ -162,7 +165,7 @@ def encode_front(
         scale=front.scale.tolist(),
         timings_ms=Timings(front.timings),
         terminated=front.terminated,
-        actor=actor,
+        actor=actor if front.constructed else None,
         places=places,
         **_named(labels),
         tours=b",".join(encoded),
@@ -200,7 +203,7 @@ def _encode_rows(parts: Iterable[NDArray[Any]]) -> tuple[bytes, bytes, bytes]:
     return b"[", b",".join(to_json(part.tolist())[1:-1] for part in parts), b"]"
 
 
-def empty_front(task: Task, actor: Mapping[str, str]) -> FrontDocument:
+def empty_front(task: Task) -> FrontDocument:
     """Return the document of a task of which nothing has been found yet."""
     subject, reference_point = task.subject, task.options.reference_point
     if isinstance(subject, Instance):
@@ -222,7 +225,7 @@ def empty_front(task: Task, actor: Mapping[str, str]) -> FrontDocument:
         scale=scale,
         timings_ms=Timings({}),
         terminated=None,
-        actor=actor,
+        actor=None,
         places=places,
         **_named(task.labels),
     )

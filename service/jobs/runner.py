@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Protocol
 
 from service.actor import ActorInfo, load_actors
+from service.construction import Constructor
 from service.coverage import shortest_paths
 from service.coverage.coverage import Coverage
 from service.coverage.survey import CoveragePath, Survey, survey
 from service.errors import Cancelled
 from service.instance import Instance
 from service.jobs.front_document import FrontDocument, encode_front
-from service.planner import Constructor, Front, plan
+from service.planner import Front, plan
 from service.requests.limits import Limits, check_reference_point
 from service.requests.road_measurer import BlockingMeasurer, needs_roads
 from service.requests.stops import UnmeasuredStops, make_instance

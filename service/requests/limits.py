@@ -25,7 +25,7 @@ class Limits:
         path_cells: Cells of all paths of an answer.
         preferences: Preferences of a front.
         size: Tours to return, or to bring as initial tours.
-        seconds: The time limit of a search.
+        seconds: The time limit of planning.
         roads: Whether a routing engine is configured, so that costs may be those of roads.
     """
 
@@ -108,7 +108,8 @@ def lower_defaults(request: AnyPlanRequest, limits: Limits) -> AnyPlanRequest:
         for name, default in defaults(limits).items()
         if name not in request.model_fields_set and default < getattr(request, name)
     }
-    return request.model_copy(update=lowered) if lowered else request
+    # A field with a lower default still counts as not given.
+    return type(request).model_construct(request.model_fields_set, **{**dict(request), **lowered})
 
 
 def defaults(limits: Limits) -> dict[str, float]:
@@ -136,6 +137,7 @@ def limited_schema(
     fields["size"]["maximum"] = limits.size
     for name, default in defaults(limits).items():
         fields[name]["default"] = default
+    del fields["preferences"]["default"]  # it depends on the time limit
     index, *_ = fields["start"].get("oneOf", [fields["start"]])
     index["maximum"] = limits.cities - 1
     del fields["actor"]["default"]

@@ -48,13 +48,15 @@ class PlanRequest(BaseModel):
         | Annotated[list[Angle], Field(min_length=1, fail_fast=True), Tag("[angles]")],
         Discriminator(lambda value: "[angles]" if isinstance(value, list) else "[count]"),
     ] = Field(
-        default=100, description="angles in degrees to look along, or how many, evenly spread"
+        default=100,
+        description="angles in degrees to look along, or how many, evenly spread; by default 100"
+        " with time_limit 0, else as many as fit into a tenth of it, maybe none",
     )
     time_limit: float = Field(
         default=1.0,
         ge=0,
         allow_inf_nan=False,
-        description="seconds of improvement after the network; 0 asks for its tours alone",
+        description="seconds of all planning, at most; 0 asks for the network's tours alone",
     )
     size: PositiveInteger = Field(default=100, description="the most tours to return")
     start: NonNegativeInteger = Field(
@@ -98,6 +100,7 @@ class PlanRequest(BaseModel):
         angles = self.preferences
         return PlanOptions(
             angles=fan(angles) if isinstance(angles, int) else np.array(angles),
+            fewer="preferences" not in self.model_fields_set,
             size=self.size,
             start=self.start,
             reference_point=np.array(self.reference_point) if self.reference_point else None,

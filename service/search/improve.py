@@ -18,7 +18,6 @@ from service.pareto import best_subset, nondominated
 from service.search.archive import MAX_POINTS
 from service.search.bound import hypervolume_bound
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
-from service.search.open_routes import plain_tours
 from service.search.schedule import Search
 
 Array = NDArray[np.float64]
@@ -31,7 +30,7 @@ REPORT_EVERY = 0.1  # seconds
 class SearchResult:
     """A front: tours, shape (p, n), and points, shape (p, 2), by ascending first length."""
 
-    tours: NDArray[np.int32]
+    tours: NDArray[np.integer]
     points: Array
     terminated: Termination | None  # None while the search goes on
 
@@ -53,6 +52,7 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
     tours: NDArray[np.integer],
     *,
     deadline: float | None = None,
+    reserve: Callable[[int], float] = lambda _: 0.0,
     iterations: int | None = None,
     seed: int = 0,
     stop: Callable[[], bool] | None = None,
@@ -69,6 +69,8 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
         instance: The instance.
         tours: Tours to start from, shape (m, n); m may be 0.
         deadline: Time to stop, by time.monotonic(); None sets no limit.
+        reserve: Called with the number of points found so far: the seconds before the deadline at
+            which to stop, because they are needed for what follows the search.
         iterations: Number of local optima to visit; None sets no limit. Without a deadline, the
             same seed and the same iterations give the same front.
         seed: Of all random choices.
@@ -86,9 +88,9 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
         reference_point = instance.n * instance.scale
     search = Search(instance, seed, reference_point, capacity)
     search.add(tours)
-    terminated = _run(search, deadline, iterations, stop, report)
+    terminated = _run(search, deadline, reserve, iterations, stop, report)
     if not search.size:
-        search.add(plain_tours(instance))
+        search.construct()
     dropped = search.not_covered(tours)
     if len(dropped):
         return _front(instance, np.concatenate((search.tours(), dropped)), terminated)
@@ -98,6 +100,7 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
 def _run(
     search: Search,
     deadline: float | None,
+    reserve: Callable[[int], float],
     iterations: int | None,
     stop: Callable[[], bool] | None,
     report: Report | None,
@@ -110,11 +113,11 @@ def _run(
         now = time.monotonic()
         if stop is not None and stop():
             return "cancelled"
-        if (deadline is not None and now >= deadline) or (
-            iterations is not None and spent >= iterations
-        ):
+        left = np.inf if deadline is None else deadline - now
+        if left <= reserve(search.size) or (iterations is not None and spent >= iterations):
             return "time_limit"
-        if report is not None and now - reported >= REPORT_EVERY:
+        # A report takes time; shortly before the deadline it could break it.
+        if report is not None and now - reported >= REPORT_EVERY and left > REPORT_EVERY:
             reported = now
             progress = Progress(now - began, search.hypervolume, search.size)
             report(progress, partial(_best_found, search))

@@ -139,6 +139,11 @@ class Search:
         for tour in self._closed(tours):
             insert(self.state.archive, lengths(self.state.costs, tour), tour)
 
+    def construct(self) -> None:
+        """Add a nearest-neighbour tour under equal weights, at most O(n^2)."""
+        tour = self._construct(self._scalarization(WEIGHTS // 2))
+        insert(self.state.archive, lengths(self.state.costs, tour), tour)
+
     def _closed(self, tours: NDArray[np.integer]) -> NDArray[np.int32]:
         """Return tours of the instance as the closed tours that the search moves."""
         if self.instance.closed:

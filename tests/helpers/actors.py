@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from service.actor import ActorInfo
+from service.construction import CallEstimate
 from service.instance import Instance, Kind
 
 
@@ -34,6 +35,7 @@ class Shuffler:
 
     gate: Path | None = None
     info: ActorInfo = field(default_factory=lambda: info_of("pa-one", "coordinates"))
+    estimate: CallEstimate = field(default_factory=lambda: CallEstimate("coordinates"))
 
     @property
     def started(self) -> bool:
@@ -60,6 +62,9 @@ class Shuffler:
                 time.sleep(0.005)
         rng = np.random.default_rng(0)
         return np.array([rng.permutation(instance.n) for _ in preferences])
+
+    def terminate(self) -> None:
+        """Do nothing: a call ends when the gate opens."""
 
 
 class Broken(Shuffler):

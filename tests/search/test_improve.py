@@ -13,6 +13,7 @@ from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
 from service.search.improve import Progress, SearchResult, improve
+from service.search.schedule import WEIGHTS, Search
 from tests.helpers.instances import (
     ENDS,
     KINDS,
@@ -237,3 +238,30 @@ def test_random_tours_are_improved_a_great_deal() -> None:
     before = hypervolume(tour_lengths(instance, tours), corner)
     found = improve(instance, tours, iterations=2_000)
     assert hypervolume(found.points, corner) > before + 0.3
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_without_time_for_a_single_step_there_is_a_nearest_neighbour_tour(kind: str) -> None:
+    instance = small_integers(kind, 60, seed=4)
+    found = improve(instance, no_tours(60), deadline=time.monotonic() - 1)
+    search = Search(instance, 0, 60 * instance.scale)
+    matrices = np.ldexp(instance.scale, instance.shifts)[:, None, None] * instance.scaled_matrices
+    cost = np.tensordot(search.weights[WEIGHTS // 2], matrices, 1)
+    [tour] = found.tours.tolist()
+    visited = tour[tour.index(0) :] + tour[: tour.index(0)]
+    for k in range(1, 60):
+        left = visited[k:]
+        assert cost[visited[k - 1], visited[k]] == pytest.approx(cost[visited[k - 1], left].min())
+
+
+def test_the_search_stops_before_its_deadline_by_the_seconds_reserved_for_its_points() -> None:
+    instance = uniform(40, seed=1)
+    sizes: list[int] = []
+
+    def reserve(points: int) -> float:
+        sizes.append(points)
+        return 60.0 if points > 20 else 0.0
+
+    found = improve(instance, no_tours(40), deadline=time.monotonic() + 60, reserve=reserve)
+    assert found.terminated == "time_limit"
+    assert len(found.points) == sizes[-1] > 20

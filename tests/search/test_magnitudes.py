@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from service.construction import CallEstimate
 from service.errors import InvalidInstance
 from service.instance import Instance
 from service.pareto import best_subset
@@ -26,8 +27,13 @@ POWERS = st.integers(-320, 300)
 class OneOrder:
     """A constructor whose tours all visit the cities in their order."""
 
+    estimate = CallEstimate("coordinates")
+
     def tours(self, instance: Instance, preferences: Array) -> NDArray[np.int64]:
         return np.tile(np.arange(instance.n), (len(preferences), 1))
+
+    def terminate(self) -> None:
+        """Do nothing: no call takes long."""
 
 
 def drawn(seed: int, n: int, powers: tuple[int, int], spread: float, kind: str) -> Instance:

@@ -117,7 +117,7 @@ class Front:
         hypervolume_bound: The most that any front can have, where a bound was asked for.
         reference_point: The reference point of the hypervolume, shape (2,).
         scale: The length that is 1 in scaled objectives, shape (2,).
-        actor: The name of the network.
+        actor: The name of the network; None where it built no tours.
         terminated: Why the search ended; None while it runs. `converged` proves that nothing is
             better only up to nine cities.
         places: Over a map, the row and column of each city, shape (n, 2).
@@ -135,7 +135,7 @@ class Front:
     hypervolume_bound: float | None
     reference_point: Array
     scale: Array
-    actor: str
+    actor: str | None
     terminated: Literal["converged", "time_limit", "cancelled"] | None
     places: NDArray[np.int64] | None
     paths: tuple[Path, ...] | None
@@ -198,7 +198,7 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         hypervolume_bound=document["hypervolume_bound"],
         reference_point=_floats(document["reference_point"]),
         scale=_floats(document["scale"]),
-        actor=document["actor"]["name"],
+        actor=(document["actor"] or {}).get("name"),
         terminated=document["terminated"],
         places=_integers(document["places"]) if "places" in document else None,
         paths=paths or None,

@@ -4,9 +4,9 @@ const FIELDS = [
   { name: "cell_size", label: "Metres a cell", where: "coverage" },
   { name: "robot_radius", label: "Robot’s radius, m", where: "coverage" },
   { name: "spacing", label: "Places apart, m", where: "coverage" },
-  { name: "time_limit", label: "Seconds of search", value: "3" },
+  { name: "time_limit", label: "Seconds of planning", value: "3" },
   { name: "size", label: "Tours", value: "100" },
-  { name: "preferences", label: "Directions of the network", value: "100", where: "more" },
+  { name: "preferences", label: "Directions of the network", where: "more" },
   { name: "start", label: "Start city", value: "0", where: "more" },
   { name: "seed", label: "Seed", value: "0", where: "more" },
 ];

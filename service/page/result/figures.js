@@ -17,7 +17,7 @@ const known = (answer) => [
   ["Reference point", answer.reference_point.map(length).join(", ")],
   ["Tours", `${answer.front.length} of ${answer.points.toLocaleString("en")} found`],
   ["Time", answer.terminated ? took(answer) : "still searching"],
-  ["Network", answer.actor.name],
+  ["Network", answer.actor?.name ?? "none"],
 ];
 
 const took = ({ timings_ms, terminated }) =>

@@ -1,0 +1,150 @@
+"""First tours: the estimate of a call's seconds, and calls that end in time."""
+
+import time
+from threading import Event
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from service.actor import OnnxActor
+from service.construction import SHARE, CallEstimate, construct
+from service.errors import Cancelled
+from service.instance import Instance, Kind
+from service.planner import PlanOptions, plan
+from service.preferences import fan, from_angles
+from service.search.improve import warm_up
+from service.settings import Settings
+
+KINDS = st.sampled_from(["coordinates", "matrices"])
+CITIES, PREFERENCES = st.integers(3, 5000), st.integers(1, 200)
+OTHERS = 0.5  # seconds that other processes may hold a test up
+
+
+class Counted:
+    """A constructor that counts its calls, each of which takes so many seconds."""
+
+    def __init__(self, seconds: float = 0.0) -> None:
+        self.estimate = CallEstimate("coordinates")
+        self.calls: list[np.ndarray] = []
+        self._seconds = seconds
+        self._ended = Event()
+
+    def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
+        self.calls.append(preferences)
+        self._ended.clear()
+        if self._ended.wait(self._seconds):
+            raise Cancelled
+        return np.tile(np.arange(instance.n), (len(preferences), 1))
+
+    def terminate(self) -> None:
+        self._ended.set()
+
+
+def cities(n: int) -> Instance:
+    return Instance(coordinates=np.random.default_rng(n).random((n, 4)))
+
+
+@given(KINDS, CITIES, PREFERENCES)
+def test_as_many_fit_as_the_estimate_says(kind: Kind, n: int, k: int) -> None:
+    estimate = CallEstimate(kind)
+    assert estimate.fitting(n, estimate.seconds(n, k) * (1 + 1e-9)) == k
+    assert estimate.fitting(n, estimate.seconds(n, k) * (1 - 1e-6)) in (k - 1, k)
+
+
+@given(KINDS, CITIES, PREFERENCES, st.floats(0.01, 100))
+def test_calls_teach_how_fast_the_machine_is(kind: Kind, n: int, k: int, slower: float) -> None:
+    known, learnt = CallEstimate(kind), CallEstimate(kind)
+    for _ in range(20):
+        learnt.correct(n, k, slower * known.seconds(n, k))
+    assert learnt.seconds(50, 7) == pytest.approx(slower * known.seconds(50, 7), rel=1e-3)
+
+
+def test_a_network_that_was_slow_is_tried_again_later() -> None:
+    estimate = CallEstimate("coordinates")
+    for _ in range(5):
+        estimate.correct_ended()
+    fitting = [estimate.fitting(200, 0.05) for _ in range(100)]
+    assert fitting[0] == 0
+    assert max(fitting) == 1  # and from there on calls correct it
+
+
+def test_all_angles_that_were_asked_for_are_honoured() -> None:
+    constructor = Counted()
+    angles = np.array([3.0, 80.0])
+    assert len(construct(constructor, cities(20), angles)) == 2
+    np.testing.assert_array_equal(constructor.calls, [from_angles(angles)])
+
+
+@given(st.floats(0, 2), st.integers(3, 300), st.integers(1, 8))
+def test_within_a_time_only_preferences_that_fit_are_constructed(
+    within: float, n: int, augment: int
+) -> None:
+    constructor, estimate = Counted(), CallEstimate("coordinates")
+    tours = construct(constructor, cities(n), fan(100), augment, within=within)
+    sizes = {len(preferences) for preferences in constructor.calls}
+    if not sizes:
+        assert estimate.fitting(n, 0.5 * within / augment) == 0
+        assert tours.shape == (0, n)
+        return
+    [k] = sizes
+    assert 1 <= k <= 100
+    assert len(constructor.calls) == augment
+    assert augment * estimate.seconds(n, k) <= within
+    np.testing.assert_allclose(constructor.calls[0], from_angles(fan(k)))
+
+
+def test_a_call_that_takes_longer_than_its_time_is_ended_and_brings_nothing() -> None:
+    constructor = Counted(seconds=60)
+    before = constructor.estimate.seconds(10, 5)
+    began = time.monotonic()
+    assert construct(constructor, cities(10), fan(5), within=0.1).shape == (0, 10)
+    assert time.monotonic() - began < 0.1 + OTHERS
+    assert len(constructor.calls) == 1
+    assert constructor.estimate.seconds(10, 5) > before
+
+
+def test_a_call_that_somebody_else_ends_is_cancelled() -> None:
+    class Ended(Counted):
+        def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:  # noqa: ARG002
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        construct(Ended(), cities(10), fan(5), within=10.0)
+
+
+def test_the_released_network_is_ended_in_time() -> None:
+    actor = OnnxActor(Settings().actors / "pa-one.onnx", threads=1)
+    for _ in range(30):  # it is taken for much faster than it is
+        actor.estimate.correct(1000, 100, 1e-6)
+    began = time.monotonic()
+    assert construct(actor, cities(1000), fan(100), within=0.05).shape == (0, 1000)
+    assert time.monotonic() - began < 0.05 + OTHERS
+
+
+def test_a_plan_is_over_in_time_though_the_network_is_slow() -> None:
+    warm_up()
+    constructor = Counted(seconds=60)
+    began = time.monotonic()
+    front = plan(
+        constructor, cities(60), PlanOptions(angles=fan(100), size=10, fewer=True, time_limit=0.3)
+    )
+    assert time.monotonic() - began < 0.3 + OTHERS
+    assert (len(constructor.calls), front.constructed) == (1, 0)
+    assert len(front.tours) == 10
+    assert front.timings["construction"] >= 1000 * SHARE * 0.3
+
+
+def test_preferences_that_were_asked_for_exceed_the_limit_by_one_call_at_most() -> None:
+    constructor = Counted(seconds=0.2)
+    options = PlanOptions(angles=fan(7), size=10, time_limit=0.1, augment=8)
+    front = plan(constructor, cities(60), options)
+    assert (len(constructor.calls), front.constructed) == (1, 7)
+    assert front.terminated == "time_limit"
+
+
+def test_without_a_limit_every_symmetry_is_called() -> None:
+    constructor = Counted()
+    front = plan(constructor, cities(60), PlanOptions(angles=fan(7), size=10, augment=8))
+    assert (len(constructor.calls), front.constructed) == (8, 56)
