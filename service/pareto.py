@@ -1,4 +1,4 @@
-"""Dominance, hypervolume and best subsets of points under two objectives, both minimised.
+"""Dominance, hypervolume, best subsets, balance and knee of points of two minimised objectives.
 
 A point dominates another if it is no worse in both objectives and better in one. The hypervolume
 of points is the share of the box between the origin and a reference point that they dominate: a
@@ -103,6 +103,47 @@ def best_subset(
     spare = spare[np.argsort(points[spare, 0], kind="stable")]
     places = np.linspace(0, len(spare) - 1, size - len(useful)).astype(np.intp)
     return np.sort(np.concatenate((useful, spare[places])))
+
+
+def balances(points: Array) -> Array:
+    """Return the balance of each point: 0 at the least first length, 1 at the least second.
+
+    With u and v the two lengths in the points' own box, 0 at its least and 1 at its greatest, the
+    balance is (u + 1 - v) / 2. Where all points have one length in common, that one counts as 0.
+
+    Args:
+        points: Shape (m, 2), in any order and unit.
+
+    >>> balances(np.array([[2.0, 70.0], [3.0, 40.0], [6.0, 30.0]]))
+    array([0.   , 0.5  , 1.   ])
+    >>> balances(np.array([[5.0, 5.0]]))
+    array([0.5])
+    """
+    u, v = _in_box(points).T
+    return (u + 1 - v) / 2
+
+
+def knee(points: Array) -> int:
+    """Return the index of the point with the least u + v, of equal ones the first.
+
+    u and v are the lengths in the points' own box, as of balances().
+
+    Args:
+        points: Shape (m, 2), m at least 1.
+
+    >>> knee(np.array([[2.0, 70.0], [3.0, 40.0], [6.0, 30.0]]))
+    1
+    """
+    return int(_in_box(points).sum(axis=1).argmin())
+
+
+def _in_box(points: Array) -> Array:
+    """Return points in their own box: 0 at the least of a length, 1 at the greatest."""
+    if not len(points):
+        return points
+    least = points.min(axis=0)
+    extent = points.max(axis=0) - least
+    return (points - least) / np.where(extent > 0, extent, 1.0)
 
 
 def selection_seconds(size: int, m: int) -> float:

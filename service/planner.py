@@ -108,10 +108,6 @@ class Front:
         """The direction of each point in scaled objective space, in degrees, shape (m,)."""
         return angles(self.points / self.scale)
 
-    def nearest(self, angle: float) -> int:
-        """Return the index of the tour whose direction is nearest to the angle in degrees."""
-        return int(np.abs(self.angles - angle).argmin())
-
 
 Report = Callable[[Progress, Callable[[int], Front]], None]
 

@@ -49,6 +49,7 @@ class TourItem(BaseModel):
     """A tour and where it stands."""
 
     angle: float = Field(description="direction of the scaled lengths, in degrees")
+    balance: float = Field(description="0 at the front's least first length, 1 at its least second")
     lengths: Lengths
     tour: list[int]
     stops: list[str] | SkipJsonSchema[None] = Field(

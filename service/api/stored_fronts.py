@@ -17,7 +17,7 @@ from service.errors import Expired, NotFound, Refusal
 from service.jobs.engine import Engine, JobState
 from service.jobs.record import Record
 from service.jobs.store import Store
-from service.requests.schemas import TourQuery
+from service.requests.tour import TourQuery
 from service.search.improve import Progress
 
 HEARTBEAT = 15.0  # seconds of silence before a comment says that the stream is alive
@@ -68,11 +68,12 @@ class StoredFrontRoutes:
         return event_stream(self._engine.watch(await self._record(request, id)))
 
     async def tour(self, request: Request, query: Annotated[TourQuery, Query()]) -> Response:
-        """Give the tour of a front whose direction is nearest to an angle."""
+        """Give one tour of a front: at an angle, at a balance, within a budget, or the knee."""
+        query.check()
         record = await self._record(request, query.front)
         if not record.front.tours:
             raise Refusal("no-tour", front=record.id)
-        tour = record.front.nearest(query.angle)
+        tour = record.front.tour(query.choose(record.front.lengths, record.front.directions))
         return json_bytes(b'{"front":' + to_json(record.id) + b"," + tour[1:])
 
     async def _record(self, request: Request, id: str | None) -> Record:  # noqa: A002

@@ -5,10 +5,9 @@ option, come at once.
 """
 
 from functools import partial
-from typing import Annotated, Any
+from typing import Annotated
 
-from typer import Argument, BadParameter, Exit, Option, Typer, echo
-from typer.core import TyperCommand
+from typer import Argument, Exit, Option, Typer, echo
 
 from service import installed_version
 from service.cli.options import (
@@ -20,14 +19,18 @@ from service.cli.options import (
     AsJson,
     AsTable,
     Augment,
+    Balance,
     CellSize,
     CostLayer,
     File,
+    FirstAtMost,
+    Knee,
     MapFile,
     Paths,
     Plot,
     PlotMap,
     RobotRadius,
+    SecondAtMost,
     SecondFile,
     Seed,
     Size,
@@ -107,37 +110,16 @@ def front(  # noqa: PLR0913  an option each
     )
 
 
-class _NamingAllMissing(TyperCommand):
-    """A command that names every missing argument and option at once."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse the arguments."""
-        given = list(args)
-        try:
-            return super().parse_args(ctx, args)
-        except BadParameter as error:
-            missing = self._missing(ctx, given)
-            if len(missing) > 1:
-                ctx.fail(f"Missing {' and '.join(missing)}.")
-            raise error
-
-    def _missing(self, ctx: Any, args: list[str]) -> list[str]:
-        values, _, _ = self.make_parser(ctx).parse_args(args=args)
-        missing = []
-        for parameter in self.get_params(ctx):
-            value, _ = parameter.consume_value(ctx, values)
-            if parameter.required and parameter.value_is_missing(value):
-                option = parameter.opts[0].startswith("-")
-                missing.append(f"'{parameter.opts[0] if option else parameter.opts[0].upper()}'")
-        return missing
-
-
-@app.command(cls=_NamingAllMissing)
+@app.command()
 def tour(  # noqa: PLR0913  an option each
     file: File,
     file2: SecondFile = None,
     *,
-    angle: Angle,
+    angle: Angle = None,
+    balance: Balance = None,
+    first_at_most: FirstAtMost = None,
+    second_at_most: SecondAtMost = None,
+    knee: Knee = False,
     time_limit: TimeLimit = None,
     start: Start = None,
     seed: Seed = None,
@@ -148,7 +130,9 @@ def tour(  # noqa: PLR0913  an option each
     url: Url = None,
     api_key: ApiKey = None,
 ) -> None:
-    """Plan a front and print its tour nearest to an angle."""
+    """Plan a front and print one of its tours: at an angle, at a balance, or within a budget."""
+    from paretour import Choice
+
     from service.cli.backends import backend_for
     from service.cli.output import run_tour
     from service.cli.plans import plan_cities
@@ -161,7 +145,13 @@ def tour(  # noqa: PLR0913  an option each
         "augment": augment,
     }
     build_plan = partial(plan_cities, file, file2, unrounded=unrounded, options=options)
-    run_tour(build_plan, backend_for(url, api_key), angle, as_json)
+    choice: Choice = {
+        "balance": balance,
+        "first_at_most": first_at_most,
+        "second_at_most": second_at_most,
+        "knee": knee,
+    }
+    run_tour(build_plan, backend_for(url, api_key), angle, choice, as_json)
 
 
 @app.command()

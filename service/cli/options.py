@@ -46,7 +46,25 @@ AsTable = Annotated[
 ]
 AsCsv = Annotated[bool, Option("--csv", help="Print a line for each tour.")]
 Angle = Annotated[
-    float, Option(min=0, max=90, help="The trade-off: near 0 the second length is small.")
+    float | None,
+    Option(min=0, max=90, help="The tour nearest to this: near 0 the second length is small."),
+]
+Balance = Annotated[
+    float | None,
+    Option(
+        min=0,
+        max=1,
+        help="The tour nearest to this: 0 at the least first length, 1 at the least second.",
+    ),
+]
+FirstAtMost = Annotated[
+    float | None, Option(help="The least second length of which the first is within this.")
+]
+SecondAtMost = Annotated[
+    float | None, Option(help="The least first length of which the second is within this.")
+]
+Knee = Annotated[
+    bool, Option("--knee", help="The least sum of both lengths, each in the front's own box.")
 ]
 Plot = Annotated[Path | None, Option(help="Draw the front into this file.")]
 PlotMap = Annotated[

@@ -3,13 +3,15 @@
 import csv
 import io
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour import Actor, Front, Plan, Tour
+from paretour import Actor, Choice, Front, Plan, Tour
+from paretour.choice import the_way
 from rich.console import Console
 from rich.table import Table
 from typer import echo
@@ -61,14 +63,28 @@ def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> 
     _STDERR.print(front_summary(front), highlight=False)
 
 
-def run_tour(build_plan: BuildPlan, backend: Backend, angle: float, as_json: bool) -> None:
-    """Plan a front and print its tour nearest to an angle in degrees."""
+def run_tour(
+    build_plan: BuildPlan, backend: Backend, angle: float | None, choice: Choice, as_json: bool
+) -> None:
+    """Plan a front and print one of its tours, at an angle in degrees or by another choice."""
     with exit_on_error():
+        with _usage_errors():
+            the_way(angle, choice)
         plan, ids = build_plan()
         front = backend.front(plan, _STDERR)
-    tour = front.nearest(angle)
+        with _usage_errors():
+            tour = front.choose(angle, **choice)
     echo(tour_as_json(tour) if as_json else tour_as_text(tour.tour, ids))
     _STDERR.print(tour_summary(tour), highlight=False)
+
+
+@contextmanager
+def _usage_errors() -> Iterator[None]:
+    """Raise UsageError in place of ValueError."""
+    try:
+        yield
+    except ValueError as error:
+        raise UsageError(str(error)) from None
 
 
 def run_actors(backend: Backend, as_json: bool) -> None:
@@ -98,11 +114,12 @@ def front_as_csv(front: Front, ids: Ids | None = None) -> str:
 
 def front_as_table(front: Front) -> Table:
     """Return a table with a row for each tour, without its cities."""
-    table = Table("angle", "first length", "second length")
+    table = Table("balance", "angle", "first length", "second length")
     for column in table.columns:
         column.justify = "right"
-    for angle, lengths in zip(front.angles, front.lengths, strict=True):
-        table.add_row(f"{angle:.2f}", *(f"{length:.6g}" for length in lengths))
+    for balance, angle, lengths in zip(front.balances, front.angles, front.lengths, strict=True):
+        shown = (f"{length:.6g}" for length in lengths)
+        table.add_row(f"{balance:.3f}", f"{angle:.2f}", *shown)
     return table
 
 
@@ -110,12 +127,12 @@ def print_chart(front: Front, console: Console) -> None:
     """Print a chart of a front on a console, and the lengths of three of its tours."""
     utf8 = console.encoding.startswith("utf")
     console.print(draw_front(front.lengths, "•" if utf8 else "o"), highlight=False)
-    table = Table("tour", "angle", "first length", "second length")
+    table = Table("tour", "balance", "angle", "first length", "second length")
     for column in table.columns[1:]:
         column.justify = "right"
     for name, i in three_tours(front.lengths).items():
         lengths = (f"{length:.6g}" for length in front.lengths[i])
-        table.add_row(name, f"{front.angles[i]:.2f}", *lengths)
+        table.add_row(name, f"{front.balances[i]:.3f}", f"{front.angles[i]:.2f}", *lengths)
     console.print(table)
 
 
@@ -129,7 +146,12 @@ def front_summary(front: Front) -> str:
 
 def tour_as_json(tour: Tour) -> str:
     """Return a tour as the service answers it, without the front's id."""
-    members = {"angle": tour.angle, "lengths": tour.lengths.tolist(), "tour": tour.tour.tolist()}
+    members = {
+        "angle": tour.angle,
+        "balance": tour.balance,
+        "lengths": tour.lengths.tolist(),
+        "tour": tour.tour.tolist(),
+    }
     return json.dumps(members)
 
 
@@ -145,9 +167,10 @@ def tour_as_text(tour: NDArray[np.int64], ids: Ids | None = None) -> str:
 
 
 def tour_summary(tour: Tour) -> str:
-    """Return a line about the angle and the lengths of a tour."""
+    """Return a line about the balance, the angle and the lengths of a tour."""
     first, second = tour.lengths
-    return f"angle {tour.angle:.2f}, lengths {first:.6g} and {second:.6g}"
+    where = f"balance {tour.balance:.3f}, angle {tour.angle:.2f}"
+    return f"{where}, lengths {first:.6g} and {second:.6g}"
 
 
 def actors_as_json(actors: Iterable[Actor]) -> str:

@@ -33,6 +33,11 @@ PROBLEMS: Mapping[str, Problem] = {
     "unauthorized": Problem(401, "Authorization must be {demand}"),
     "no-front": Problem(404, "a tour is of a front: plan one with POST /front first", _TOUR),
     "no-such-path": Problem(404, "there is nothing at {path}; /docs says what is", _NONE),
+    "no-such-tour": Problem(
+        404,
+        "no tour has a {which} length of at most {limit:.16g}: the least is {actual:.16g}",
+        _TOUR,
+    ),
     "no-tour": Problem(404, "front {front} must have a tour, and has none yet", _TOUR),
     "unknown-front": Problem(404, "there is no front {front}"),
     "method-not-allowed": Problem(405, "{path} must be asked with {allowed}, got {came}", _NONE),

@@ -11,16 +11,18 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic_core import to_json
+from pydantic_core import from_json, to_json
 
 from service.coverage.survey import CoveragePath
-from service.instance import Instance
+from service.instance import OBJECTIVES, Instance
+from service.pareto import balances
 from service.planner import Front
 from service.requests.stops import Labels, UnmeasuredStops
 from service.requests.task import Task
 from service.search.improve import Termination
 
 PATH_PART = 2**14  # cells of a path that are written at once
+_HEAD = 100  # bytes of a tour in which its first members are
 
 
 @dataclass(frozen=True)
@@ -88,11 +90,22 @@ class FrontDocument:
     def from_members(cls, members: Mapping[str, Any], **encoded: Any) -> Self:
         """Return the document of parsed members, with the other fields as given.
 
-        Members that this release does not know are dropped.
+        Members that this release does not know are dropped. Tours of releases that knew no balance
+        get theirs.
         """
         known = {name: members[name] for name in _MEMBERS if name in members}
         timings = Timings.from_json(known.pop("timings_ms"))
-        return cls(**known, timings_ms=timings, **encoded)
+        return cls(**known, timings_ms=timings, **encoded).with_balances()
+
+    def with_balances(self) -> Self:
+        """Return the front with the balance of each tour, where they have none yet."""
+        if b'"balance":' in self.tours[:_HEAD]:
+            return self
+        tours, ends = _joined(
+            tour.replace(b',"lengths":', b',"balance":' + to_json(balance) + b',"lengths":', 1)
+            for tour, balance in zip(self.split(), balances(self.lengths).tolist(), strict=True)
+        )
+        return replace(self, tours=tours, ends=ends)
 
     def members(self) -> dict[str, Any]:
         """Return the members of the answer but the tours, ready for JSON."""
@@ -105,12 +118,25 @@ class FrontDocument:
         members = to_json({**more, **self.members()})
         return b"".join((members[:-1], b',"front":[', self.tours, b"]}"))
 
-    def nearest(self, angle: float) -> bytes:
-        """Return the tour whose direction is nearest to the angle in degrees, as JSON."""
-        index = int(np.abs(np.frombuffer(self.angles) - angle).argmin())
-        ends = np.frombuffer(self.ends, np.int64)
-        begin = int(ends[index - 1]) + 1 if index else 0
-        return self.tours[begin : int(ends[index])]
+    @property
+    def directions(self) -> NDArray[np.float64]:
+        """The direction of each tour in degrees, shape (m,)."""
+        return np.frombuffer(self.angles)
+
+    @property
+    def lengths(self) -> NDArray[np.float64]:
+        """The lengths of each tour, shape (m, 2)."""
+        return np.array([_lengths(tour) for tour in self.split()]).reshape(-1, OBJECTIVES)
+
+    def split(self) -> list[bytes]:
+        """Return the JSON of each tour."""
+        ends = np.frombuffer(self.ends, np.int64).tolist()
+        begins = [0, *(end + 1 for end in ends)]
+        return [self.tours[begin:end] for begin, end in zip(begins, ends, strict=False)]
+
+    def tour(self, index: int) -> bytes:
+        """Return the JSON of one tour."""
+        return self.split()[index]
 
     def without_tours(self) -> Self:
         """Return the front with none of its tours."""
@@ -136,6 +162,22 @@ _MEMBERS = tuple(field.name for field in _MEMBER_FIELDS)
 _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
 
 
+_TOUR_MEMBERS = ("angle", "balance", "lengths", "tour")
+
+
+def _joined(tours: Iterable[bytes]) -> tuple[bytes, bytes]:
+    """Return the JSON of all tours in one, and where each ends in it."""
+    each = list(tours)
+    ends = np.cumsum([len(tour) + 1 for tour in each], dtype=np.int64) - 1
+    return b",".join(each), ends.tobytes()
+
+
+def _lengths(tour: bytes) -> list[float]:
+    """Return the lengths in the JSON of a tour, whose first members are numbers and they."""
+    lengths: list[float] = from_json(tour[: tour.index(b"]") + 1] + b"}")["lengths"]
+    return lengths
+
+
 def encode_front(
     front: Front,
     actor: Mapping[str, str],
@@ -147,15 +189,16 @@ def encode_front(
 
     The actor is left out where it built no tours.
     """
-    rows = zip(front.angles.tolist(), front.points.tolist(), front.tours.tolist(), strict=True)
     ids = None if labels is None else [stop.id for stop in labels.stops]
-    encoded = [_encode_tour(angle, lengths, tour, ids) for angle, lengths, tour in rows]
+    columns = (front.angles, balances(front.points), front.points, front.tours)
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    encoded = [_encode_tour(row, ids) for row in rows]
     if paths is not None:
         encoded = [
             b"".join((tour[:-1], b',"path":', _encode_path(path), b"}"))
             for tour, path in zip(encoded, paths, strict=True)
         ]
-    ends = np.cumsum([len(tour) + 1 for tour in encoded], dtype=np.int64) - 1
+    tours, ends = _joined(encoded)
     return FrontDocument(
         cities=front.n,
         points=front.found,
@@ -168,19 +211,18 @@ def encode_front(
         actor=actor if front.constructed else None,
         places=places,
         **_named(labels),
-        tours=b",".join(encoded),
-        ends=ends.tobytes(),
+        tours=tours,
+        ends=ends,
         angles=front.angles.tobytes(),
         gained=front.gained,
     )
 
 
-def _encode_tour(
-    angle: float, lengths: list[float], tour: list[int], ids: Sequence[str] | None
-) -> bytes:
-    members: dict[str, object] = {"angle": angle, "lengths": lengths, "tour": tour}
+def _encode_tour(row: Sequence[Any], ids: Sequence[str] | None) -> bytes:
+    """Return a tour, whose angle, balance, lengths and cities are a row, as JSON."""
+    members = dict(zip(_TOUR_MEMBERS, row, strict=True))
     if ids is not None:
-        members["stops"] = [ids[city] for city in tour]
+        members["stops"] = [ids[city] for city in members["tour"]]
     return to_json(members)
 
 

@@ -1,10 +1,9 @@
-"""The types of fields in requests, the fields that all requests for a front share, and a query."""
+"""The types of fields in requests, and the fields that all requests for a front share."""
 
 from typing import Annotated
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
-from pydantic.json_schema import SkipJsonSchema
 
 from service.instance import OBJECTIVES
 from service.planner import PlanOptions
@@ -109,14 +108,3 @@ class PlanRequest(BaseModel):
             bound=self.bound,
             seed=self.seed,
         )
-
-
-class TourQuery(BaseModel):
-    """The query parameters of `GET /tour`."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    angle: Angle = Field(description="the trade-off wanted, in degrees")
-    front: str | SkipJsonSchema[None] = Field(
-        default=None, description="the front's id; by default the latest"
-    )

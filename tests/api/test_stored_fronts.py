@@ -40,10 +40,43 @@ def test_the_tour_at_an_angle_is_the_nearest_of_the_front(client: httpx.Client) 
     assert latest.json()["front"] == other["id"]
 
 
+def test_a_tour_is_chosen_by_balance_by_budget_or_at_the_knee(client: httpx.Client) -> None:
+    front = client.post("/front", json=FRONT).json()
+    tours, id_ = front["front"], front["id"]
+
+    def asked(query: str) -> httpx.Response:
+        return client.get(f"/tour?{query}&front={id_}")
+
+    firsts = [tour["lengths"][0] for tour in tours]
+    middle = sorted(firsts)[len(firsts) // 2]
+    within = [tour for tour in tours if tour["lengths"][0] <= middle]
+    for query, tour in {
+        "balance=0": tours[0],
+        "balance=1": tours[-1],
+        f"first_at_most={middle!r}": min(within, key=lambda tour: tour["lengths"][1]),
+        f"second_at_most={tours[-1]['lengths'][1]!r}": tours[-1],
+    }.items():
+        assert asked(query).json() == {"front": id_, **tour}
+    assert asked("knee").json() == asked("knee=true").json()
+    refused = problem(asked(f"first_at_most={min(firsts) / 2}"), 404, "no-such-tour")
+    assert (refused["limit"], refused["actual"]) == (min(firsts) / 2, min(firsts))
+
+
+@pytest.mark.parametrize(
+    ("query", "came"), [("", "none"), ("angle=1&knee", "angle and knee"), ("knee=no", "none")]
+)
+def test_a_tour_is_chosen_by_one_way_at_a_time(client: httpx.Client, query: str, came: str) -> None:
+    document = problem(client.get(f"/tour?{query}"), 422, "invalid-request")
+    assert document["detail"].endswith(f"must be given, got {came}")
+
+
 @pytest.mark.parametrize(
     ("query", "parameter", "sentence"),
     [
-        ("", "angle", "angle is required"),
+        ("balance=1.5", "balance", 'balance must be at most 1, got "1.5"'),
+        ("first_at_most=-1", "first_at_most", "first_at_most must be at least 0"),
+        ("second_at_most=inf", "second_at_most", "second_at_most must be a finite number"),
+        ("knee=2", "knee", "knee must be a valid boolean"),
         ("angle=-1", "angle", 'angle must be at least 0, got "-1"'),
         ("angle=90.1", "angle", 'angle must be at most 90, got "90.1"'),
         ("angle=nan", "angle", 'angle must be a finite number, got "nan"'),

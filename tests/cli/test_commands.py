@@ -62,10 +62,11 @@ def test_a_front_may_be_lines_of_csv(cities: Path) -> None:
     assert [
         {
             "angle": float(row["angle"]),
+            "balance": item["balance"],
             "lengths": [float(row["length_1"]), float(row["length_2"])],
             "tour": [int(city) for city in row["tour"].split()],
         }
-        for row in rows
+        for row, item in zip(rows, front, strict=True)
     ] == front
 
 
@@ -84,6 +85,8 @@ def test_the_tour_at_an_angle_is_the_nearest_of_the_front(cities: Path) -> None:
     as_text = paretour("tour", *arguments, "--angle", 30)
     assert [int(city) for city in as_text.stdout.split()] == nearest["tour"]
     assert "angle" in as_text.stderr
+    least = json.loads(paretour("tour", *arguments, "--balance", 1, "--json").stdout)
+    assert least == front[-1]
 
 
 def test_a_picture_of_a_map_is_covered_as_its_grid_is(tmp_path: Path) -> None:
@@ -151,8 +154,11 @@ WRONG = [
     (["front", EXAMPLE, "--json", "--csv"], "not as both"),
     (["front", EXAMPLE, "--plot", "front.txt"], "--plot must end in one of"),
     (["front", EXAMPLE, "--plot", "none/front.png"], "in a directory that is there"),
-    (["tour", EXAMPLE], "Missing option '--angle'"),
-    (["tour"], "Missing 'FILE' and '--angle'"),
+    (["tour", EXAMPLE], "one of angle, balance, first_at_most, second_at_most and knee"),
+    (["tour", EXAMPLE, "--angle", "3", "--knee"], "is wanted, got angle and knee"),
+    (["tour", EXAMPLE, "--balance", "1.1"], "Invalid value for '--balance'"),
+    (["tour", EXAMPLE, "--time-limit", "0", "--first-at-most", "1"], "first length up to 1: the"),
+    (["tour"], "Missing argument"),
     (["tour", EXAMPLE, "--angle", "x"], "Invalid value for '--angle'"),
     (["coverage", "none.png"], "none.png: No such file"),
     (["coverage", "none.yaml"], "none.yaml: No such file"),

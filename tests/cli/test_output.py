@@ -78,7 +78,7 @@ def test_a_tour_is_its_cities_or_an_item_of_the_front() -> None:
     tour = THE_FRONT.nearest(60)
     assert tour_as_text(np.array([0, 1, 2])) == "0 1 2"
     assert json.loads(tour_as_json(tour)) == FRONT["front"][0]  # type: ignore[index]
-    assert tour_summary(tour) == "angle 60.00, lengths 1 and 2"
+    assert tour_summary(tour) == "balance 0.000, angle 60.00, lengths 1 and 2"
 
 
 @pytest.mark.parametrize(
@@ -95,17 +95,18 @@ def test_a_front_is_printed_in_the_format_asked_for(
 
 
 def test_the_tour_at_an_angle_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
-    run_tour(build_plan, Prepared(), 30, as_json=False)
-    assert capsys.readouterr() == ("0 2 1\n", "angle 30.00, lengths 2 and 1\n")
+    run_tour(build_plan, Prepared(), 30, {}, as_json=False)
+    line = "balance 1.000, angle 30.00, lengths 2 and 1\n"
+    assert capsys.readouterr() == ("0 2 1\n", line)
 
 
 def test_cities_go_by_their_ids_where_they_have_some(capsys: pytest.CaptureFixture[str]) -> None:
-    run_tour(build_named, Prepared(), 30, as_json=False)
+    run_tour(build_named, Prepared(), None, {"balance": 0.9}, as_json=False)
     assert capsys.readouterr().out == 'depot c "b 2"\n'
     run_front(build_named, Prepared(), OutputFormat(as_csv=True))
     rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
     assert next(csv.reader([rows[0]["tour"]], delimiter=" ")) == ["depot", "b 2", "c"]
-    run_tour(build_named, Prepared(), 30, as_json=True)
+    run_tour(build_named, Prepared(), None, {"second_at_most": 1.0}, as_json=True)
     assert json.loads(capsys.readouterr().out)["tour"] == [0, 2, 1]
 
 

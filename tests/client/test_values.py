@@ -27,7 +27,14 @@ def test_the_nearest_tour_is_that_of_the_nearest_angle() -> None:
 def test_a_tour_over_a_map_has_its_path() -> None:
     path = {"cells": [[0, 0], [0, 1]], "metres": 2.0}
     tour = parse_tour(
-        {"front": "f", "angle": 45.0, "lengths": [1, 2], "tour": [0, 1], "path": path}
+        {
+            "front": "f",
+            "angle": 45.0,
+            "balance": 0.5,
+            "lengths": [1, 2],
+            "tour": [0, 1],
+            "path": path,
+        }
     )
     assert tour.path is not None
     assert (tour.path.cells.tolist(), tour.path.metres) == ([[0, 0], [0, 1]], 2.0)

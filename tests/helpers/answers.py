@@ -11,8 +11,8 @@ FRONT = {
     "status": "done",
     "cities": 3,
     "front": [
-        {"angle": 60.0, "lengths": [1.0, 2.0], "tour": [0, 1, 2]},
-        {"angle": 30.0, "lengths": [2.0, 1.0], "tour": [0, 2, 1]},
+        {"angle": 60.0, "balance": 0.0, "lengths": [1.0, 2.0], "tour": [0, 1, 2]},
+        {"angle": 30.0, "balance": 1.0, "lengths": [2.0, 1.0], "tour": [0, 2, 1]},
     ],
     "points": 2,
     "hypervolume": 0.5,

@@ -80,6 +80,7 @@ def document(terminated: str | None, gained: float | None = None) -> FrontDocume
     """Return a front of one tour through three cities."""
     front = Front(
         tours=np.arange(3)[np.newaxis],
+        constructed=1,
         points=np.ones((1, 2)),
         found=1,
         scale=np.ones(2),

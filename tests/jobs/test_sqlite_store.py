@@ -51,7 +51,8 @@ def test_a_file_of_the_last_release_is_read(tmp_path: Path) -> None:
         store = SqliteStore(str(path), entries=9, max_age=60, clock=lambda: 1001.0)
         done = await store.get("us", "done")
         assert done.json() == ANSWERS["done"]
-        assert json.loads(done.front.nearest(20))["tour"] == [0, 2, 1]
+        assert json.loads(done.front.tour(1))["tour"] == [0, 2, 1]
+        assert done.front.lengths.tolist() == [[1.0, 2.5], [2.0, 1.0]]
         for id_ in ("waiting", "lost"):
             stored = await store.get("us", id_)
             assert json.loads(stored.json()) == json.loads(ANSWERS[id_])

@@ -39,7 +39,7 @@ def test_a_picture_of_a_map_is_covered(browser: Browser) -> None:
         page.get_by_label("Open files").set_input_files([given])
         expect(page.get_by_text("A grid of 20 by 30 cells")).to_be_visible()
         expect(page.get_by_label("Metres a cell")).to_have_value("0.05")
-        page.get_by_label("Seconds of search").fill("0.1")
+        page.get_by_label("Seconds of planning").fill("0.1")
         page.get_by_role("button", name="Plan").click()
         wait_until_planned(page)
         expect(page.locator("#grid")).to_be_visible()
@@ -109,7 +109,7 @@ def test_two_files_of_tsplib_give_the_front_of_the_command_line(
     page.get_by_label("Open files").set_input_files(tsplib_files)
     page.get_by_text("More settings").click()
     page.get_by_label("Seed").fill("3")
-    page.get_by_label("Seconds of search").fill("50")
+    page.get_by_label("Seconds of planning").fill("50")
     page.get_by_role("button", name="Plan").click()
     wait_until_planned(page)
     with page.expect_download() as saved:

@@ -26,7 +26,7 @@ def test_a_link_opens_the_same_front_with_its_cities(page: Page, browser: Browse
 
 
 def test_a_link_to_the_networks_front_calls_it_that(page: Page, browser: Browser) -> None:
-    page.get_by_label("Seconds of search").fill("0")
+    page.get_by_label("Seconds of planning").fill("0")
     page.get_by_role("button", name="Plan").click()
     wait_until_planned(page)
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])

@@ -66,7 +66,7 @@ def test_nothing_sticks_out_at_either_width(
         wait_until_planned(page)
         unfold(page)
         assert page.evaluate("document.documentElement.scrollWidth") == width
-        page.get_by_label("Seconds of search").fill("as long as it takes, if that is not forever")
+        page.get_by_label("Seconds of planning").fill("as long as it takes, if that is not forever")
         page.get_by_role("button", name="Plan").click()
         expect(page.locator("#time_limit-fault")).not_to_be_empty()
         assert page.evaluate("document.documentElement.scrollWidth") == width
@@ -79,7 +79,7 @@ def test_every_text_is_legible_against_what_lies_behind_it(
     with open_page(browser, released, scheme=scheme) as page:
         wait_until_planned(page)
         page.get_by_role("button", name="Pin to compare").click()
-        page.get_by_label("Seconds of search").fill("soon")
+        page.get_by_label("Seconds of planning").fill("soon")
         page.get_by_role("button", name="Plan").click()
         expect(page.locator("#time_limit-fault")).not_to_be_empty()
         unfold(page)
@@ -97,9 +97,9 @@ def test_cities_and_tours_stand_out_from_the_maps(
 ) -> None:
     with open_page(browser, released, scheme=scheme) as page:
         wait_until_planned(page)
-        page.get_by_role("slider", name="Angle").press("Home")
+        page.get_by_role("slider", name="Balance").press("Home")
         page.get_by_role("button", name="Pin to compare").click()
-        page.get_by_role("slider", name="Angle").press("End")
+        page.get_by_role("slider", name="Balance").press("End")
         wait_for_next_frame(page)
         lines = page.evaluate(LINES)
         assert len(lines) == 6  # cities, the selected tour and the pinned one, in either plane
@@ -125,11 +125,11 @@ def test_a_thousand_cities_and_a_hundred_tours_are_shown(browser: Browser, relea
         wait_until_planned(page)
         page.get_by_label("x1, y1, x2, y2").fill("\n".join(",".join(map(str, r)) for r in cities))
         expect(page.locator("#count")).to_have_text("1,000 cities")
-        page.get_by_label("Seconds of search").fill("2")
+        page.get_by_label("Seconds of planning").fill("2")
         page.get_by_role("button", name="Plan").click()
         expect(page.get_by_label("A front of 100 tours")).to_be_visible(timeout=120_000)
         wait_until_planned(page)
-        slider = page.get_by_role("slider", name="Angle")
+        slider = page.get_by_role("slider", name="Balance")
         shown = set()
         for key, place in [("Home", 1), ("PageUp", 11), ("End", 100)]:
             slider.press(key)

@@ -24,7 +24,7 @@ def test_the_page_opens_with_an_example_and_its_front(page: Page) -> None:
 
 @at_both_widths
 def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> None:
-    slider = page.get_by_role("slider", name="Angle")
+    slider = page.get_by_role("slider", name="Balance")
     slider.press("Home")
     shortest = figure(page, "Distance")
     slider.press("End")
@@ -39,7 +39,7 @@ def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> N
 
 
 def test_a_pinned_tour_stays_beside_the_selected_one(page: Page) -> None:
-    slider = page.get_by_role("slider", name="Angle")
+    slider = page.get_by_role("slider", name="Balance")
     slider.press("Home")
     wait_for_next_frame(page)
     page.get_by_role("button", name="Pin to compare").click()
@@ -53,7 +53,7 @@ def test_a_pinned_tour_stays_beside_the_selected_one(page: Page) -> None:
 
 
 def test_what_was_found_stays_when_the_search_is_stopped(page: Page) -> None:
-    page.get_by_label("Seconds of search").fill("50")
+    page.get_by_label("Seconds of planning").fill("50")
     page.get_by_role("button", name="Plan").click()
     expect(page.locator("#status")).to_contain_text("improving")
     page.get_by_role("button", name="Stop").click()
@@ -76,11 +76,11 @@ def test_the_search_is_stopped_before_the_service_has_taken_it(page: Page) -> No
 
 
 def test_what_the_service_refuses_is_said_at_the_field(page: Page) -> None:
-    page.get_by_label("Seconds of search").fill("soon")
+    page.get_by_label("Seconds of planning").fill("soon")
     page.get_by_role("button", name="Plan").click()
     fault = page.locator("#time_limit-fault")
-    expect(fault).to_have_text('Seconds of search must be a valid number, got "soon".')
-    expect(page.get_by_label("Seconds of search")).to_be_focused()
+    expect(fault).to_have_text('Seconds of planning must be a valid number, got "soon".')
+    expect(page.get_by_label("Seconds of planning")).to_be_focused()
     page.get_by_label("x1, y1, x2, y2").fill("1, 2, 3, 4\n1, 2, 3\n")
     page.get_by_role("button", name="Plan").click()
     expect(page.locator("#cities-fault")).to_contain_text("City 1 must have 4 items")
@@ -100,12 +100,12 @@ def test_cities_are_clicked_into_place_plane_by_plane(page: Page) -> None:
 @at_both_widths
 def test_the_keyboard_is_enough(page: Page) -> None:
     page.get_by_label("x1, y1, x2, y2").fill(CITIES)
-    page.get_by_label("Seconds of search").focus()
+    page.get_by_label("Seconds of planning").focus()
     page.keyboard.press("Control+a")
     page.keyboard.type("0.1")
     page.keyboard.press("Enter")
     expect(page.locator("#status")).to_contain_text("Done")
-    slider = page.get_by_role("slider", name="Angle")
+    slider = page.get_by_role("slider", name="Balance")
     for _ in range(20):
         if slider.evaluate("slider => slider === document.activeElement"):
             break

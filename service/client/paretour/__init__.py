@@ -4,13 +4,14 @@
 
     with Client("http://localhost:8000") as client:
         front = client.front(coordinates=cities, time_limit=2)
-        tour = front.nearest(angle=30).tour
+        tour = front.choose(balance=0.3).tour
 
 AsyncClient is the same for asynchronous programs. Both send the requests of `calls` and read the
 events of `events`; neither needs anything of the service but its address.
 """
 
 from paretour.asynchronous import AsyncClient, AsyncJob
+from paretour.choice import Choice
 from paretour.errors import Refused
 from paretour.requests import Plan, coverage_plan, front_plan
 from paretour.ros_maps import read_ros_map
@@ -21,6 +22,7 @@ __all__ = [
     "Actor",
     "AsyncClient",
     "AsyncJob",
+    "Choice",
     "Client",
     "CoverageRequest",
     "Front",

@@ -6,6 +6,7 @@ from typing import Self, TypeVar, Unpack
 
 import httpx
 from paretour.calls import Call, Calls, auth_headers
+from paretour.choice import Choice
 from paretour.events import JobEvents
 from paretour.requests import Plan, coverage_plan, front_plan
 from paretour.values import Actor, CoverageRequest, Front, FrontRequest, Progress, Tour
@@ -72,9 +73,11 @@ class AsyncClient:
         """Return the job of a front by its id, without asking whether the service knows it."""
         return AsyncJob(front, self._connection, self._calls)
 
-    async def tour(self, angle: float, front: str | None = None) -> Tour:
-        """Return the tour nearest to an angle in degrees, of a front by its id or of the latest."""
-        return await self._connection.run(self._calls.tour(angle, front))
+    async def tour(
+        self, angle: float | None = None, front: str | None = None, **choice: Unpack[Choice]
+    ) -> Tour:
+        """Return a tour of a front by its id, or of the latest, as `Front.choose` does."""
+        return await self._connection.run(self._calls.tour(angle, front, choice))
 
     async def actors(self) -> tuple[Actor, ...]:
         """Return the actors that the service has loaded."""

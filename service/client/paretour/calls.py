@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import httpx
+from paretour.choice import Choice, parameters
 from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
 from paretour.requests import Plan
@@ -90,9 +91,9 @@ class Calls:
         """Delete the front of a job that has ended."""
         yield from self._send(self._delete(front_id))
 
-    def tour(self, angle: float, front_id: str | None) -> Call[Tour]:
-        """Return the tour nearest to an angle in degrees, of one front or of the latest."""
-        params = {"angle": angle} if front_id is None else {"angle": angle, "front": front_id}
+    def tour(self, angle: float | None, front_id: str | None, choice: Choice) -> Call[Tour]:
+        """Return a tour at an angle in degrees, or of another choice."""
+        params = parameters(angle, choice) | ({} if front_id is None else {"front": front_id})
         return parse_tour((yield from self._get("/tour", params)).json())
 
     def actors(self) -> Call[tuple[Actor, ...]]:

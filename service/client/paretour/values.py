@@ -2,10 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypedDict, TypeVar
+from typing import Any, Literal, TypedDict, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from paretour.choice import Choice, choose
 
 Array = NDArray[np.float64]
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
@@ -90,6 +91,7 @@ class Tour:
     Attributes:
         front: The id of the front.
         angle: The direction of its lengths in objective space, in degrees.
+        balance: 0 at the least first length of the front, 1 at the least second.
         lengths: Its length under each objective, shape (2,).
         tour: Its cities, or over a map its places, in order, shape (n,).
         path: Its way over a map, where the request asked for paths.
@@ -97,6 +99,7 @@ class Tour:
 
     front: str
     angle: float
+    balance: float
     lengths: Array
     tour: NDArray[np.int64]
     path: Path | None
@@ -112,6 +115,7 @@ class Front:
         tours: The cities of each tour in order, shape (m, n).
         lengths: The lengths of each tour, shape (m, 2).
         angles: The direction of the lengths of each tour, in degrees, shape (m,).
+        balances: 0 at the least first length of the tours, 1 at the least second, shape (m,).
         points: The number of nondominated tours found, of which these are returned.
         hypervolume: The share of the box at the reference point that the points found dominate.
         hypervolume_bound: The most that any front can have, where a bound was asked for.
@@ -130,6 +134,7 @@ class Front:
     tours: NDArray[np.int64]
     lengths: Array
     angles: Array
+    balances: Array
     points: int
     hypervolume: float
     hypervolume_bound: float | None
@@ -147,10 +152,20 @@ class Front:
         Raises:
             ValueError: The front is still empty.
         """
-        index = int(np.abs(self.angles - angle).argmin())
+        return self.choose(angle)
+
+    def choose(self, angle: float | None = None, **choice: Unpack[Choice]) -> Tour:
+        """Return one tour: at an angle in degrees, at a balance, within a budget, or the knee.
+
+        Raises:
+            ValueError: Not exactly one way to choose is given, no tour is within the budget, or
+                the front is still empty.
+        """
+        index = choose(self.lengths, self.angles, angle, choice)
         return Tour(
             front=self.id,
             angle=float(self.angles[index]),
+            balance=float(self.balances[index]),
             lengths=self.lengths[index],
             tour=self.tours[index],
             path=None if self.paths is None else self.paths[index],
@@ -193,6 +208,7 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         tours=tours.reshape(len(items), document["cities"]),
         lengths=_floats([item["lengths"] for item in items]).reshape(-1, 2),
         angles=_floats([item["angle"] for item in items]),
+        balances=_floats([item["balance"] for item in items]),
         points=document["points"],
         hypervolume=document["hypervolume"],
         hypervolume_bound=document["hypervolume_bound"],
@@ -211,6 +227,7 @@ def parse_tour(document: Mapping[str, Any]) -> Tour:
     return Tour(
         front=document["front"],
         angle=document["angle"],
+        balance=document["balance"],
         lengths=_floats(document["lengths"]),
         tour=_integers(document["tour"]),
         path=_parse_path(document),

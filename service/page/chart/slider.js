@@ -1,4 +1,4 @@
-/** A slider over the angles of a front, in the direction of its chart; arrow keys go tour by tour. */
+/** A slider from the least first length of a front to the least second; arrow keys go tour by tour. */
 
 import { degrees, length } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
@@ -6,7 +6,7 @@ import { nearest } from "../result/tours.js";
 
 const STEPS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 };
 
-export class AngleSlider {
+export class BalanceSlider {
   #input;
   #shown;
   #front = [];
@@ -27,22 +27,18 @@ export class AngleSlider {
   show(front) {
     this.#front = front;
     this.#input.disabled = !front.length;
-    if (!front.length) {
-      this.#shown.textContent = "";
-      return;
-    }
-    this.#input.min = front.at(-1).angle;
-    this.#input.max = front[0].angle;
+    if (!front.length) this.#shown.textContent = "";
   }
 
   /** Stands at a tour of the front. A hand that drags the slider is not pulled back. */
   select(index) {
-    const { angle, lengths } = this.#front[index];
-    if (nearest(this.#front, Number(this.#input.value)) !== index) this.#input.value = angle;
-    this.#shown.textContent = degrees(angle);
+    const { balance, angle, lengths } = this.#front[index];
+    if (nearest(this.#front, Number(this.#input.value)) !== index) this.#input.value = balance;
+    const at = `${balance.toFixed(2)}, ${degrees(angle)}`;
+    this.#shown.textContent = at;
     const place = `tour ${index + 1} of ${this.#front.length}`;
     const said = this.#objectives.map(({ name }, axis) => `${name} ${length(lengths[axis])}`);
-    this.#input.setAttribute("aria-valuetext", `${degrees(angle)}, ${place}: ${said.join(", ")}`);
+    this.#input.setAttribute("aria-valuetext", `${at}, ${place}: ${said.join(", ")}`);
   }
 
   #step(event, onSelect) {

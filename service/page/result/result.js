@@ -7,8 +7,10 @@ import { Growth } from "../chart/growth.js";
 import { Maps } from "../map/maps.js";
 import { length } from "../common/numbers.js";
 import { UNNAMED, titled } from "../common/objectives.js";
-import { AngleSlider } from "../chart/slider.js";
+import { BalanceSlider } from "../chart/slider.js";
 import { nearest } from "./tours.js";
+
+const MIDDLE = 0.5; // of balances
 
 const element = (id) => document.getElementById(id);
 
@@ -18,7 +20,7 @@ export class Result {
   #growth;
   #slider;
   #front = [];
-  #angle = null; // wanted by the viewer, in degrees
+  #balance = MIDDLE; // wanted by the viewer
   #selected = null;
   #pinned = null;
   #frame = 0;
@@ -30,7 +32,7 @@ export class Result {
     this.#maps = new Maps(onClick);
     this.#chart = new FrontChart(element("front-chart"), onSelect);
     this.#growth = new Growth(element("growth"), element("growth-help"));
-    this.#slider = new AngleSlider(element("angle"), element("angle-shown"), onSelect);
+    this.#slider = new BalanceSlider(element("balance"), element("balance-shown"), onSelect);
     element("pin").addEventListener("click", () => this.#pin());
     element("order").addEventListener("toggle", () => this.#order());
     this.clear({});
@@ -53,7 +55,7 @@ export class Result {
     this.#maps.show(instance, fit);
     element("shade").textContent = instance.cost_layer ? `shaded: ${this.#objectives[1].name}` : "";
     this.#front = [];
-    this.#angle = null;
+    this.#balance = MIDDLE;
     this.#selected = this.#pinned = null;
     this.#chart.show([], []);
     this.#legend("alone", false);
@@ -76,12 +78,12 @@ export class Result {
     this.#growth.show(growth);
     this.#slider.show(answer.front);
     this.#maps.place(answer.places);
-    if (this.#front.length) this.#select(nearest(this.#front, this.#angle ?? middle(this.#front)));
+    if (this.#front.length) this.#select(nearest(this.#front, this.#balance));
     showFigures(element("figures"), element("more-figures"), alone, answer);
   }
 
   #choose(index) {
-    this.#angle = this.#front[index].angle;
+    this.#balance = this.#front[index].balance;
     this.#select(index);
   }
 
@@ -130,5 +132,3 @@ export class Result {
     element("order").querySelector("p").textContent = this.#selected?.tour.join(" → ") ?? "";
   }
 }
-
-const middle = (front) => (front[0].angle + front.at(-1).angle) / 2;

@@ -1,10 +1,10 @@
-/** Find the tour of a front that is nearest to an angle or to a place on the chart. */
+/** Find the tour of a front that is nearest to a balance or to a place on the chart. */
 
-/** The index of the tour whose direction is nearest to the angle in degrees. */
-export function nearest(front, angle) {
+/** The index of the tour that is nearest to a balance: 0 at the least first length, 1 at the least second. */
+export function nearest(front, balance) {
   let best = 0;
   for (let index = 1; index < front.length; index++) {
-    if (Math.abs(front[index].angle - angle) < Math.abs(front[best].angle - angle)) best = index;
+    if (Math.abs(front[index].balance - balance) < Math.abs(front[best].balance - balance)) best = index;
   }
   return best;
 }
