@@ -11,7 +11,7 @@ import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
-from service.construction import CallEstimate
+from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled
 from service.instance import PLANE, Instance, Kind
 

@@ -13,7 +13,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from service.construction import MIN_CONSTRUCTED, SHARE, Constructor, construct
+from service.construction.first_tours import MIN_CONSTRUCTED, SHARE, Constructor, construct
 from service.instance import Instance, tour_lengths
 from service.pareto import best_subset, hypervolume, nondominated, selection_seconds
 from service.preferences import angles

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from service.actor import OnnxActor
-from service.construction import CallEstimate
+from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled
 from service.instance import Instance, symmetries, tour_lengths
 from service.pareto import hypervolume, nondominated

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Protocol
 
 from service.actor import ActorInfo, load_actors
-from service.construction import Constructor
+from service.construction.first_tours import Constructor
 from service.coverage import shortest_paths
 from service.coverage.coverage import Coverage
 from service.coverage.survey import CoveragePath, Survey, survey

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.actor import OnnxActor, load_actors
-from service.construction import CallEstimate
+from service.construction.call_estimate import CallEstimate
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.planner import PlanOptions, plan

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from service.construction import CallEstimate
+from service.construction.call_estimate import CallEstimate
 from service.errors import InvalidInstance
 from service.instance import Instance
 from service.pareto import best_subset

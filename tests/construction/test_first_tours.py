@@ -1,4 +1,4 @@
-"""First tours: the estimate of a call's seconds, and calls that end in time."""
+"""First tours: as many as fit, by calls that end in time."""
 
 import time
 from threading import Event
@@ -9,16 +9,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from service.actor import OnnxActor
-from service.construction import SHARE, CallEstimate, construct
+from service.construction.call_estimate import CallEstimate
+from service.construction.first_tours import SHARE, construct
 from service.errors import Cancelled
-from service.instance import Instance, Kind
+from service.instance import Instance
 from service.planner import PlanOptions, plan
 from service.preferences import fan, from_angles
 from service.search.improve import warm_up
 from service.settings import Settings
 
-KINDS = st.sampled_from(["coordinates", "matrices"])
-CITIES, PREFERENCES = st.integers(3, 5000), st.integers(1, 200)
 OTHERS = 0.5  # seconds that other processes may hold a test up
 
 
@@ -44,30 +43,6 @@ class Counted:
 
 def cities(n: int) -> Instance:
     return Instance(coordinates=np.random.default_rng(n).random((n, 4)))
-
-
-@given(KINDS, CITIES, PREFERENCES)
-def test_as_many_fit_as_the_estimate_says(kind: Kind, n: int, k: int) -> None:
-    estimate = CallEstimate(kind)
-    assert estimate.fitting(n, estimate.seconds(n, k) * (1 + 1e-9)) == k
-    assert estimate.fitting(n, estimate.seconds(n, k) * (1 - 1e-6)) in (k - 1, k)
-
-
-@given(KINDS, CITIES, PREFERENCES, st.floats(0.01, 100))
-def test_calls_teach_how_fast_the_machine_is(kind: Kind, n: int, k: int, slower: float) -> None:
-    known, learnt = CallEstimate(kind), CallEstimate(kind)
-    for _ in range(20):
-        learnt.correct(n, k, slower * known.seconds(n, k))
-    assert learnt.seconds(50, 7) == pytest.approx(slower * known.seconds(50, 7), rel=1e-3)
-
-
-def test_a_network_that_was_slow_is_tried_again_later() -> None:
-    estimate = CallEstimate("coordinates")
-    for _ in range(5):
-        estimate.correct_ended()
-    fitting = [estimate.fitting(200, 0.05) for _ in range(100)]
-    assert fitting[0] == 0
-    assert max(fitting) == 1  # and from there on calls correct it
 
 
 def test_all_angles_that_were_asked_for_are_honoured() -> None:

@@ -1,0 +1,1 @@
+"""First tours, which a network builds within its share of the time limit."""
