@@ -205,6 +205,15 @@ def least_lengths(instance: Instance) -> Array:
     return np.maximum(leaving.sum(axis=1), entering.sum(axis=1))
 
 
+def cumulated_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
+    """Return both lengths of tours, shape (k, n), from their first city up to each.
+
+    Shape (k, n + 1, 2) for closed tours, with the return, and (k, n, 2) for open routes. O(k n).
+    """
+    steps = step_lengths(instance, *tour_steps(instance, tours))
+    return np.pad(steps.cumsum(axis=1), ((0, 0), (1, 0), (0, 0)))
+
+
 def symmetries(instance: Instance, count: int) -> Iterator[Instance]:
     """Yield the instance, then its images under `count` - 1 more of the 8 symmetries of a square.
 

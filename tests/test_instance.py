@@ -10,8 +10,21 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from service.errors import InvalidInstance
-from service.instance import Instance, least_lengths, step_lengths, tour_lengths
-from tests.helpers.instances import ENDS, KINDS, every_tour, opened, small_integers
+from service.instance import (
+    Instance,
+    cumulated_lengths,
+    least_lengths,
+    step_lengths,
+    tour_lengths,
+)
+from tests.helpers.instances import (
+    ENDS,
+    KINDS,
+    every_tour,
+    opened,
+    random_routes,
+    small_integers,
+)
 
 COORDINATES = arrays(
     np.float64, st.tuples(st.integers(1, 6), st.just(4)), elements=st.integers(-5, 5)
@@ -155,3 +168,26 @@ def test_an_instance_keeps_its_own_copy() -> None:
     assert instance.coordinates[0].tolist() == [0, 0, 0, 0]
     with pytest.raises(ValueError, match="read-only"):
         instance.coordinates[0] = 99
+
+
+@given(
+    st.sampled_from(KINDS),
+    st.integers(1, 8),
+    st.sampled_from(["closed", *ENDS]),
+    st.integers(0, 1000),
+)
+def test_lengths_are_cumulated_step_by_step(kind: str, n: int, ends: str, seed: int) -> None:
+    instance = small_integers(kind, n, seed)
+    if ends != "closed" and n > 1:
+        instance = opened(instance, ends, seed)
+    tours = random_routes(instance, 3, seed)
+    found = cumulated_lengths(instance, tours)
+    for tour, arrivals in zip(tours.tolist(), found, strict=True):
+        way = [*tour, tour[0]] if instance.closed else tour
+        so_far = np.zeros(2)
+        assert len(arrivals) == len(way)
+        np.testing.assert_array_equal(arrivals[0], so_far)
+        for k in range(1, len(way)):
+            so_far += step_lengths(instance, np.array(way[k - 1]), np.array(way[k]))
+            np.testing.assert_allclose(arrivals[k], so_far)
+    np.testing.assert_allclose(found[:, -1], tour_lengths(instance, tours))

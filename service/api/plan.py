@@ -15,13 +15,13 @@ from service.actor import ActorInfo
 from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
 from service.api.body_budget import DEFAULT_BUDGET, BodyAllowance, BodyBudget
+from service.api.geojson import CONTENT, check_acceptable, front_response
 from service.api.request_bodies import COVERAGE_BODY, FRONT_BODY, openapi_body
 from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async
 from service.api.responses import (
     AcceptedAnswer,
     CoverageAnswer,
     FrontAnswer,
-    json_bytes,
     json_response,
     problem_bytes,
     problem_responses,
@@ -78,12 +78,12 @@ class PlanRoutes:
         router = APIRouter(tags=["fronts"])
         responses: dict[int | str, dict[str, Any]] = {
             202: {"model": AcceptedAnswer, "description": "Accepted", "content": _ACCEPTED},
-            **problem_responses(400, 408, 413, 415, 422, 503, 504),
+            **problem_responses(400, 406, 408, 413, 415, 422, 503, 504),
         }
         router.post(
             "/front",
             response_model=FrontAnswer,
-            responses=responses | problem_responses(502),
+            responses={200: CONTENT, **responses, **problem_responses(502)},
             openapi_extra=_openapi_request(FRONT_BODY),
         )(self.plan_front)
         router.post(
@@ -99,6 +99,8 @@ class PlanRoutes:
 
         Matrices may come as a .npy file of shape (2, n, n) instead: the part `matrices` of a
         multipart/form-data body, beside the part `request` with everything else.
+
+        With `Accept: application/geo+json`, and stops that have locations, the answer is GeoJSON.
 
         With `Prefer: respond-async` the answer is 202 at once, and `Location` says where the front
         will be. A repeat with the same `Idempotency-Key` is answered with the front of the first.
@@ -128,14 +130,15 @@ class PlanRoutes:
         source = await receive_source(request, kind, self._limits.body_bytes, allowance)
         source = replace(source, task=await self._parser.parse(source))
         record = await self._new_record(request, source)
+        check_acceptable(request, record.front.stops)
         if prefers_async(request):
             first = await self._engine.submit(record)
             return _accepted_response(self._engine.state(first).record)
         if record.key is not None:
             first = await self._engine.submit(record)
             record = await record_in_time(self._engine, first, self._seconds)
-            return _finished_response(request, record)
-        return _finished_response(request, await self._run(request, record))
+            return await _finished_response(request, record)
+        return await _finished_response(request, await self._run(request, record))
 
     async def _check_place(self, request: Request) -> None:
         """Raise a refusal, before the body is received, where the engine takes no more work."""
@@ -182,9 +185,9 @@ def _accepted_response(record: Record) -> Response:
     return response
 
 
-def _finished_response(request: Request, record: Record) -> Response:
+async def _finished_response(request: Request, record: Record) -> Response:
     if record.problem is None:
-        return json_bytes(record.json())
+        return await front_response(request, record)
     # The problem may be that of an earlier request, of which this one is a repeat.
     return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
 

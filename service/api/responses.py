@@ -52,6 +52,11 @@ class TourItem(BaseModel):
     balance: float = Field(description="0 at the front's least first length, 1 at its least second")
     lengths: Lengths
     tour: list[int]
+    arrivals: list[Lengths] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="if `arrivals` asked: both lengths up to each stop, the return of closed tours"
+        " included",
+    )
     stops: list[str] | SkipJsonSchema[None] = Field(
         default=None, description="the ids of its stops, where the request has ids"
     )

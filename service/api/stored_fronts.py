@@ -12,6 +12,7 @@ from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
 from service.api.auth import caller_of
+from service.api.geojson import CONTENT, front_response, tour_response
 from service.api.responses import FrontAnswer, TourAnswer, json_bytes, problem_responses
 from service.errors import Expired, NotFound, Refusal
 from service.jobs.engine import Engine, JobState
@@ -35,7 +36,11 @@ class StoredFrontRoutes:
         router = APIRouter(tags=["fronts"])
         missing = problem_responses(404, 410, 503)
         stream: dict[str, Any] = {"description": "The events", "content": {"text/event-stream": {}}}
-        router.get("/front/{id}", response_model=FrontAnswer, responses=missing)(self.front)
+        router.get(
+            "/front/{id}",
+            response_model=FrontAnswer,
+            responses={200: CONTENT, **problem_responses(404, 406, 410, 503)},
+        )(self.front)
         router.delete(
             "/front/{id}",
             response_model=FrontAnswer,
@@ -47,13 +52,15 @@ class StoredFrontRoutes:
             responses={200: stream, **missing},
         )(self.events)
         router.get(
-            "/tour", response_model=TourAnswer, responses=problem_responses(404, 410, 422, 503)
+            "/tour",
+            response_model=TourAnswer,
+            responses={200: CONTENT, **problem_responses(404, 406, 410, 422, 503)},
         )(self.tour)
         return router
 
     async def front(self, request: Request, id: str) -> Response:  # noqa: A002
         """Give a front again, or the best so far of one that is being planned."""
-        return json_bytes((await self._record(request, id)).json())
+        return await front_response(request, await self._record(request, id))
 
     async def forget(self, request: Request, id: str) -> Response:  # noqa: A002
         """Forget a front; one that is being planned ends with what was found, and is kept."""
@@ -73,8 +80,8 @@ class StoredFrontRoutes:
         record = await self._record(request, query.front)
         if not record.front.tours:
             raise Refusal("no-tour", front=record.id)
-        tour = record.front.tour(query.choose(record.front.lengths, record.front.directions))
-        return json_bytes(b'{"front":' + to_json(record.id) + b"," + tour[1:])
+        index = query.choose(record.front.lengths, record.front.directions)
+        return await tour_response(request, record, index)
 
     async def _record(self, request: Request, id: str | None) -> Record:  # noqa: A002
         """Return the caller's record with an id, as of now; without an id its latest."""

@@ -12,6 +12,7 @@ _NONE = ()  # no operation is at fault, but the path, the method or the service
 _PLANS = ("POST /front", "POST /coverage")
 _ROADS = ("POST /front",)
 _TOUR = ("GET /tour",)
+_STORED = "GET /front/{id}"
 
 
 class Problem(NamedTuple):
@@ -40,6 +41,11 @@ PROBLEMS: Mapping[str, Problem] = {
     ),
     "no-tour": Problem(404, "front {front} must have a tour, and has none yet", _TOUR),
     "unknown-front": Problem(404, "there is no front {front}"),
+    "no-locations": Problem(
+        406,
+        "GeoJSON needs a location of every stop, got {came}",
+        (*_PLANS, _STORED, *_TOUR),
+    ),
     "method-not-allowed": Problem(405, "{path} must be asked with {allowed}, got {came}", _NONE),
     "body-too-slow": Problem(408, "the body must arrive within {limit:g} s, and has not"),
     "head-too-slow": Problem(

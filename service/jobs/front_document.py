@@ -162,7 +162,7 @@ _MEMBERS = tuple(field.name for field in _MEMBER_FIELDS)
 _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
 
 
-_TOUR_MEMBERS = ("angle", "balance", "lengths", "tour")
+_TOUR_MEMBERS = ("angle", "balance", "lengths", "tour", "arrivals")
 
 
 def _joined(tours: Iterable[bytes]) -> tuple[bytes, bytes]:
@@ -184,13 +184,16 @@ def encode_front(
     places: list[list[int]] | None = None,
     paths: Iterable[CoveragePath] | None = None,
     labels: Labels | None = None,
+    arrivals: NDArray[np.float64] | None = None,
 ) -> FrontDocument:
-    """Write a front as JSON: with paths the path of each tour, with labels the ids of its stops.
+    """Write a front as JSON: its tours with the ids of labels, and with arrivals and paths if any.
 
-    The actor is left out where it built no tours.
+    The actor is left out where it built no tours. Arrivals have shape (m, stops, 2).
     """
     ids = None if labels is None else [stop.id for stop in labels.stops]
-    columns = (front.angles, balances(front.points), front.points, front.tours)
+    columns = [front.angles, balances(front.points), front.points, front.tours]
+    if arrivals is not None:
+        columns.append(arrivals)
     rows = zip(*(column.tolist() for column in columns), strict=True)
     encoded = [_encode_tour(row, ids) for row in rows]
     if paths is not None:
@@ -219,8 +222,8 @@ def encode_front(
 
 
 def _encode_tour(row: Sequence[Any], ids: Sequence[str] | None) -> bytes:
-    """Return a tour, whose angle, balance, lengths and cities are a row, as JSON."""
-    members = dict(zip(_TOUR_MEMBERS, row, strict=True))
+    """Return a tour as JSON; a row has its members, of which the last may be missing."""
+    members = dict(zip(_TOUR_MEMBERS, row, strict=False))
     if ids is not None:
         members["stops"] = [ids[city] for city in members["tour"]]
     return to_json(members)

@@ -6,13 +6,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from service.actor import ActorInfo, load_actors
 from service.construction.first_tours import Constructor
 from service.coverage import shortest_paths
 from service.coverage.coverage import Coverage
 from service.coverage.survey import CoveragePath, Survey, survey
 from service.errors import Cancelled
-from service.instance import Instance
+from service.instance import Instance, cumulated_lengths
 from service.jobs.front_document import FrontDocument, encode_front
 from service.planner import Front, plan
 from service.requests.limits import Limits, check_reference_point
@@ -93,8 +96,7 @@ class TaskRunner:
             return self._cover(task, task.subject, stop, report)
         if isinstance(task.subject, UnmeasuredStops):
             return self._plan_stops(task, task.subject, stop, report)
-        front = self._plan(task, task.subject, stop, report)
-        return encode_front(front, self._identity(task), labels=task.labels)
+        return self._plan_instance(task, task.subject, stop, report, {})
 
     def terminate(self) -> None:
         """End the running call of a network, if one runs; from any thread."""
@@ -110,9 +112,21 @@ class TaskRunner:
         instance = make_instance(stops)
         check_reference_point(instance, task.options)
         timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
+        return self._plan_instance(task, instance, stop, report, timings)
+
+    def _plan_instance(
+        self,
+        task: Task,
+        instance: Instance,
+        stop: Callable[[], bool],
+        report: Report,
+        timings: Mapping[str, float],
+    ) -> FrontDocument:
+        """Plan the front of an instance, whose costs took these milliseconds to find."""
         front = self._plan(task, instance, stop, report)
-        front = replace(front, timings=timings | front.timings)
-        return encode_front(front, self._identity(task), labels=task.labels)
+        front = replace(front, timings={**timings, **front.timings})
+        arrivals = _arrivals(task, instance, front)
+        return encode_front(front, self._identity(task), labels=task.labels, arrivals=arrivals)
 
     def _cover(
         self, task: Task, coverage: Coverage, stop: Callable[[], bool], report: Report
@@ -131,7 +145,9 @@ class TaskRunner:
             **front.timings,
             "paths": 1000 * (time.perf_counter() - began),
         }
-        return encode_front(replace(front, timings=timings), self._identity(task), places, paths)
+        front = replace(front, timings=timings)
+        arrivals = _arrivals(task, surveyed.instance, front)
+        return encode_front(front, self._identity(task), places, paths, arrivals=arrivals)
 
     def _paths(
         self, surveyed: Survey, front: Front, stop: Callable[[], bool]
@@ -162,6 +178,11 @@ class TaskRunner:
 
     def _identity(self, task: Task) -> dict[str, str]:
         return self.actors[task.actor].info.identity
+
+
+def _arrivals(task: Task, instance: Instance, front: Front) -> NDArray[np.float64] | None:
+    """Return both lengths of each tour up to each of its stops, where the task asks for them."""
+    return cumulated_lengths(instance, front.tours) if task.arrivals else None
 
 
 class Reporter:

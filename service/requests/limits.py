@@ -22,7 +22,7 @@ class Limits:
         body_bytes: Bytes of a body.
         cities: Cities of an instance, or places on a map.
         cells: Cells of a map.
-        path_cells: Cells of all paths of an answer.
+        path_cells: Cells of all paths of an answer, and stops of all its tours with arrivals.
         preferences: Preferences of a front.
         size: Tours to return, or to bring as initial tours.
         seconds: The time limit of planning.
@@ -77,6 +77,8 @@ def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
     for name, (limit, actual) in asked.items():
         if name in request.model_fields_set:
             _check_limit(name, limit, actual)
+    if request.arrivals:
+        _check_arrivals(min(request.size, limits.size), n, limits.path_cells)
     _check_limit("initial_tours", limits.size, len(request.initial_tours))
     for index, tour in enumerate(request.initial_tours):
         if len(tour) != n or sorted(tour) != list(range(n)):
@@ -150,6 +152,13 @@ def limited_schema(
 def reference_to(name: str) -> dict[str, str]:
     """Return the schema that refers to a component of an OpenAPI document."""
     return {"$ref": f"#/components/schemas/{name}"}
+
+
+def _check_arrivals(size: int, n: int, most: int) -> None:
+    """Raise a refusal where tours with arrivals would have too many stops together."""
+    if size * (n + 1) > most:
+        demand = f"must be at most {most // (n + 1)} with arrivals of {n} cities, got {size}"
+        raise invalid("size", demand)
 
 
 def _check_limit(name: str, limit: float, actual: float) -> None:

@@ -71,6 +71,9 @@ class PlanRequest(BaseModel):
         list[Annotated[list[NonNegativeInteger], Field(fail_fast=True)]],
         Field(min_length=1, fail_fast=True),
     ] = Field(default_factory=list, description="tours that the front shall dominate or equal")
+    arrivals: bool = Field(
+        default=False, description="whether each tour comes with both its lengths up to each stop"
+    )
     bound: bool = Field(
         default=False,
         description="whether to prove, in up to 5 s, how large any front's hypervolume can be",

@@ -27,6 +27,7 @@ class Task:
         options: The options for the planner.
         actor: The name of the actor that builds the first tours.
         paths: Whether each tour comes with its path over the map.
+        arrivals: Whether each tour comes with both lengths up to each stop.
         labels: The caller's names of stops and objectives.
         timings: Milliseconds of what was done for it since it was parsed, by name.
     """
@@ -35,6 +36,7 @@ class Task:
     options: PlanOptions
     actor: str
     paths: bool = False
+    arrivals: bool = False
     labels: Labels | None = None
     timings: Mapping[str, float] = field(default_factory=dict)
 
@@ -76,6 +78,7 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
             options=coverage_request.options(),
             actor=choose_actor(actors, coverage_request.kind, coverage_request.requested_actor),
             paths=coverage_request.paths,
+            arrivals=coverage_request.arrivals,
         )
     request = parse_front_request(source.body, limits, source.upload)
     subject, options = request.subject(), request.options()
@@ -86,6 +89,7 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
         options=options,
         actor=choose_actor(actors, request.kind, request.requested_actor),
         labels=request.labels,
+        arrivals=request.arrivals,
     )
 
 

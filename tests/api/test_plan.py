@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from service.actor import OnnxActor
-from service.instance import Instance, tour_lengths
+from service.instance import Instance, step_lengths, tour_lengths
 from service.jobs.runner import load_runner
 from service.server import build
 from service.settings import Settings
@@ -65,6 +65,24 @@ def test_cities_become_a_front(
     phases = {"queue", "construction", "improvement", "selection", "bound", "total"}
     assert set(body["timings_ms"]) == phases
     assert body["terminated"] in ("converged", "time_limit")
+
+
+@pytest.mark.parametrize("member", ["coordinates", "matrices"])
+def test_arrivals_are_both_lengths_up_to_each_stop(client: httpx.Client, member: str) -> None:
+    given = np.array(CITIES) if member == "coordinates" else COSTS
+    request = {member: given.tolist(), "arrivals": True, "size": 5}
+    front = client.post("/front", json=request).json()
+    instance = Instance(**{member: given})
+    for item in front["front"]:
+        arrivals = np.array(item["arrivals"])
+        way = np.array([*item["tour"], item["tour"][0]])
+        assert arrivals.shape == (13, 2)
+        np.testing.assert_array_equal(arrivals[0], 0)
+        steps = step_lengths(instance, way[:-1], way[1:])
+        np.testing.assert_allclose(np.diff(arrivals, axis=0), steps)
+        np.testing.assert_allclose(arrivals[-1], item["lengths"])
+    tour = client.get("/tour", params={"balance": 0, "front": front["id"]}).json()
+    assert tour["arrivals"] == front["front"][0]["arrivals"]
 
 
 def test_size_and_angles_and_reference_point_are_heeded(client: httpx.Client) -> None:

@@ -38,3 +38,12 @@ def test_a_tour_over_a_map_has_its_path() -> None:
     )
     assert tour.path is not None
     assert (tour.path.cells.tolist(), tour.path.metres) == ([[0, 0], [0, 1]], 2.0)
+
+
+def test_arrivals_come_with_the_tours_that_have_them() -> None:
+    arrivals = [[0.0, 0.0], [1.0, 2.0]]
+    items = [{**item, "arrivals": arrivals} for item in FRONT["front"]]  # type: ignore[union-attr]
+    tour = parse_front(FRONT | {"front": items}).choose(balance=0.0)
+    assert tour.arrivals is not None
+    assert tour.arrivals.tolist() == arrivals
+    assert parse_front(FRONT).choose(balance=0.0).arrivals is None

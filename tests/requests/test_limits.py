@@ -31,6 +31,22 @@ def test_more_than_a_limit_names_the_limit(member: str, value: Any, limit: float
     assert refused.value.errors[0].pointer == f"/{member}"
 
 
+def test_arrivals_are_bounded_by_the_stops_of_all_tours() -> None:
+    limits = replace(LIMITS, size=100, path_cells=10 * (N + 1))
+    check_limits(PlanRequest(size=10, arrivals=True), N, limits)
+    check_limits(PlanRequest(size=11), N, limits)
+    with pytest.raises(Refusal, match="size must be at most 10 with arrivals of 12 cities, got 11"):
+        check_limits(PlanRequest(size=11, arrivals=True), N, limits)
+
+
+def test_preferences_that_are_lowered_still_count_as_not_given() -> None:
+    few = replace(LIMITS, preferences=7)
+    silent = lower_defaults(PlanRequest(time_limit=0.1), few).options()
+    assert (len(silent.angles), silent.fewer) == (7, True)
+    asked = lower_defaults(PlanRequest(preferences=5), few).options()
+    assert (len(asked.angles), asked.fewer) == (5, False)
+
+
 @pytest.mark.parametrize("tour", [[0], [*range(1, N), 1], [*range(1, N), N]])
 def test_an_initial_tour_that_is_no_tour_is_named(tour: list[int]) -> None:
     request = PlanRequest(initial_tours=[list(range(N)), tour])

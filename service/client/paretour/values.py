@@ -23,6 +23,7 @@ class PlanRequest(TypedDict, total=False):
     start: int
     reference_point: ArrayLike
     initial_tours: ArrayLike
+    arrivals: bool
     bound: bool
     actor: str
     seed: int
@@ -94,6 +95,8 @@ class Tour:
         balance: 0 at the least first length of the front, 1 at the least second.
         lengths: Its length under each objective, shape (2,).
         tour: Its cities, or over a map its places, in order, shape (n,).
+        arrivals: Both its lengths up to each city, and back at the first where it is closed, shape
+            (n + 1, 2); None where the request did not ask for them.
         path: Its way over a map, where the request asked for paths.
     """
 
@@ -102,6 +105,7 @@ class Tour:
     balance: float
     lengths: Array
     tour: NDArray[np.int64]
+    arrivals: Array | None
     path: Path | None
 
 
@@ -168,6 +172,7 @@ class Front:
             balance=float(self.balances[index]),
             lengths=self.lengths[index],
             tour=self.tours[index],
+            arrivals=_arrivals(self.document["front"][index]),
             path=None if self.paths is None else self.paths[index],
         )
 
@@ -230,8 +235,13 @@ def parse_tour(document: Mapping[str, Any]) -> Tour:
         balance=document["balance"],
         lengths=_floats(document["lengths"]),
         tour=_integers(document["tour"]),
+        arrivals=_arrivals(document),
         path=_parse_path(document),
     )
+
+
+def _arrivals(item: Mapping[str, Any]) -> Array | None:
+    return _floats(item["arrivals"]) if "arrivals" in item else None
 
 
 def _parse_path(item: Mapping[str, Any]) -> Path | None:
