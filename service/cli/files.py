@@ -13,6 +13,7 @@ from paretour import read_ros_map
 
 from service.cli.csv_tables import Ids, Table, parse_table
 from service.cli.errors import UnreadableFile
+from service.cli.geojson import is_collection, read_stops
 from service.cli.tsplib import parse_coordinates, parse_matrix
 
 Array = NDArray[np.float64]
@@ -23,6 +24,7 @@ _TSPLIB = (".tsp", ".atsp")
 _PNG = b"\x89PNG"
 _PGM = (b"P5", b"P2")
 _PICTURES = (".png", ".pgm")
+_JSON = (".json", ".geojson")
 _YAML = (".yaml", ".yml")
 
 
@@ -41,7 +43,8 @@ class _Content:
 def read_request(files: Sequence[Path], *, unrounded: bool = False) -> tuple[Request, Ids | None]:
     """Return the request in one file, or in two, with one objective each; and the cities' ids.
 
-    One file is JSON, a request or its coordinates alone, or CSV, with four numbers for each city.
+    One file is JSON, a request or its coordinates alone, or CSV, with four numbers for each city;
+    or GeoJSON, a FeatureCollection of points, which are stops.
     Two files are CSV, with two columns for cities in a plane or else a matrix of costs; or they
     are TSPLIB's, which become matrices, or coordinates if `unrounded`. A file named - is standard
     input, JSON or CSV. Ids come from a column of CSV, and are None where there is none.
@@ -132,8 +135,9 @@ def _read_cities(content: _Content) -> tuple[Request, Ids | None]:
     """Return the request in a file that holds both objectives, and the cities' ids."""
     if content.suffix in _TSPLIB:
         raise UnreadableFile("a file of TSPLIB is one objective: name another for the other one")
-    if content.suffix == ".json":
-        return _parse_json(content.text), None
+    if content.suffix in _JSON:
+        request = _parse_json(content.text)
+        return read_stops(request) if is_collection(request) else (request, None)
     table = parse_table(content.text)
     columns = table.numbers.shape[1]
     if columns != 4:

@@ -8,9 +8,9 @@ from typer import Argument, Option
 File = Annotated[
     Path,
     Argument(
-        help="JSON: a request, or its coordinates. CSV: four numbers for each city, x and y in the"
-        " plane of either objective, maybe after a column id. Or, with a second file, the first"
-        " objective. - is standard input."
+        help="JSON: a request, or its coordinates. GeoJSON: stops, as points. CSV: four numbers for"
+        " each city, x and y in the plane of either objective, maybe after a column id. Or, with a"
+        " second file, the first objective. - is standard input."
     ),
 ]
 SecondFile = Annotated[
