@@ -147,7 +147,7 @@ def _actor_router(actors: Mapping[str, ActorInfo]) -> APIRouter:
     router = APIRouter(tags=["service"])
 
     @router.get("/actors", response_model=ActorsAnswer)
-    async def actors_there_are() -> Response:
+    async def list_actors() -> Response:
         """List the networks to choose from."""
         return json_response({"actors": [asdict(actors[name]) for name in sorted(actors)]})
 
@@ -160,7 +160,7 @@ def _health_router(engine: Engine) -> APIRouter:
     public: dict[str, Any] = {"security": []}
 
     @router.get("/health/live", response_model=HealthAnswer, openapi_extra=public)
-    async def live() -> Response:
+    async def check_live() -> Response:
         """Say whether the process answers."""
         return json_response({"status": "live"})
 
@@ -170,20 +170,20 @@ def _health_router(engine: Engine) -> APIRouter:
         responses=problem_responses(503),
         openapi_extra=public,
     )
-    async def ready() -> Response:
+    async def check_ready() -> Response:
         """Say whether the process takes work of every kind."""
         await engine.check_ready()
         return json_response({"status": "ready"})
 
     # Some probes ask for the status alone.
-    router.head("/health/live", name="live_head", response_class=Response, openapi_extra=public)(
-        live
-    )
+    router.head(
+        "/health/live", name="check_live_head", response_class=Response, openapi_extra=public
+    )(check_live)
     router.head(
         "/health/ready",
-        name="ready_head",
+        name="check_ready_head",
         response_class=Response,
         responses={503: {"description": "Service Unavailable"}},
         openapi_extra=public,
-    )(ready)
+    )(check_ready)
     return router

@@ -89,7 +89,9 @@ class Metrics:
     def router(self) -> APIRouter:
         """Return the route that Prometheus scrapes."""
         router = APIRouter(tags=["service"])
-        router.get("/metrics", response_class=_Exposition)(self.exposition)
+        router.get("/metrics", operation_id="get_metrics", response_class=_Exposition)(
+            self.exposition
+        )
         return router
 
     async def exposition(self) -> Response:

@@ -16,7 +16,7 @@ from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
 from service.api.body_budget import DEFAULT_BUDGET, BodyAllowance, BodyBudget
 from service.api.geojson import CONTENT, check_acceptable, front_response
-from service.api.request_bodies import COVERAGE_BODY, FRONT_BODY, openapi_body
+from service.api.request_bodies import COVERAGE_BODY, FRONT_BODY
 from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async
 from service.api.responses import (
     AcceptedAnswer,
@@ -201,5 +201,5 @@ def _digest(source: TaskSource) -> str:
     return digest.hexdigest()
 
 
-def _openapi_request(schema: dict[str, Any]) -> dict[str, Any]:
-    return {"parameters": list(PARAMETERS), "requestBody": openapi_body(schema)}
+def _openapi_request(body: Mapping[str, Any]) -> dict[str, Any]:
+    return {"parameters": list(PARAMETERS), "requestBody": body}

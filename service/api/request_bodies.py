@@ -1,22 +1,48 @@
-"""The request bodies of `POST /front` and `POST /coverage` in the OpenAPI document."""
+"""The request bodies of `POST /front` and `POST /coverage` in the OpenAPI document.
+
+Each is JSON, or multipart/form-data of a part `request`, which is JSON, and a file.
+"""
 
 from collections.abc import Iterable
 from typing import Any
 
-from service.requests.coverage import coverage_schema
-from service.requests.front_schemas import JSON_FORMS, front_schemas, one_of
+from service.requests.coverage import coverage_schemas
+from service.requests.front_schemas import FILE_FORMS, JSON_FORMS, front_schemas, one_of
 from service.requests.limits import Limits, reference_to
 
-FRONT_BODY = one_of(JSON_FORMS)
-COVERAGE_BODY = reference_to("CoverageRequest")
+Schema = dict[str, Any]
 
 
-def request_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str, Any]]:
+def request_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     """Return the schemas that bodies refer to, by name, under these limits, with these actors."""
     names = list(actors)
-    return {**front_schemas(limits, names), "CoverageRequest": coverage_schema(limits, names)}
+    file = "a .npy file of shape (2, n, n), as numpy.save writes it"
+    image = "a PNG or PGM file of the map, dark where there is an obstacle"
+    return {
+        **front_schemas(limits, names),
+        **coverage_schemas(limits, names),
+        "FrontForm": _form_schema(one_of(FILE_FORMS), "matrices", file),
+        "CoverageForm": _form_schema(reference_to("CoverageFileRequest"), "map", image),
+    }
 
 
-def openapi_body(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return the entry of a body of JSON with this schema."""
-    return {"required": True, "content": {"application/json": {"schema": schema}}}
+def _body(request: Schema, form: str) -> Schema:
+    """Return the entry of a body of this schema as JSON, or of this one as a form."""
+    parts = {"schema": reference_to(form), "encoding": {"request": {"contentType": _JSON}}}
+    return {"required": True, "content": {_JSON: {"schema": request}, "multipart/form-data": parts}}
+
+
+def _form_schema(request: Schema, file: str, description: str) -> Schema:
+    content = {"type": "string", "format": "binary", "description": description}
+    return {
+        "type": "object",
+        "description": "A request in JSON, and a file beside it.",
+        "properties": {"request": request, file: content},
+        "required": ["request", file],
+        "additionalProperties": False,
+    }
+
+
+_JSON = "application/json"
+FRONT_BODY = _body(one_of(JSON_FORMS), "FrontForm")
+COVERAGE_BODY = _body(reference_to("CoverageRequest"), "CoverageForm")

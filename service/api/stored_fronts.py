@@ -38,21 +38,25 @@ class StoredFrontRoutes:
         stream: dict[str, Any] = {"description": "The events", "content": {"text/event-stream": {}}}
         router.get(
             "/front/{id}",
+            operation_id="get_front",
             response_model=FrontAnswer,
             responses={200: CONTENT, **problem_responses(404, 406, 410, 503)},
         )(self.front)
         router.delete(
             "/front/{id}",
+            operation_id="forget_front",
             response_model=FrontAnswer,
             responses={204: {"description": "Forgotten"}, **missing},
         )(self.forget)
         router.get(
             "/front/{id}/events",
+            operation_id="follow_front",
             response_class=StreamingResponse,
             responses={200: stream, **missing},
         )(self.events)
         router.get(
             "/tour",
+            operation_id="get_tour",
             response_model=TourAnswer,
             responses={200: CONTENT, **problem_responses(404, 406, 410, 422, 503)},
         )(self.tour)

@@ -17,7 +17,7 @@ from service.requests.limits import Limits, check_structure
 from service.requests.task import Task, TaskSource, parse_task
 
 _SHORT = 2**17  # bytes that are parsed here, in a few milliseconds
-_FEW_QUOTES = 200  # no request has as many; a list of faults as long takes a while
+_FEW_QUOTES = 2000  # those of 300 stops; as many faults take a few milliseconds
 _MEDIUM = 2**20  # bytes that take a tenth of a second or two
 _ATTEMPTS = 2
 _MOST_WAITING = 16  # bodies for each process

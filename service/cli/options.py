@@ -28,6 +28,10 @@ Angles = Annotated[
 ]
 Size = Annotated[int | None, Option(help="The most tours to give.", show_default="100")]
 Start = Annotated[int | None, Option(help="The city to report tours from.", show_default="0")]
+StartOrId = Annotated[
+    str | None,
+    Option("--start", help="The city to report tours from, by index or id.", show_default="0"),
+]
 Augment = Annotated[
     int | None, Option(help="How many symmetries of the cities the network sees.", show_default="1")
 ]

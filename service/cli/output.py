@@ -3,7 +3,7 @@
 import csv
 import io
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,13 +13,15 @@ from numpy.typing import NDArray
 from paretour import Actor, Choice, Front, Plan, Tour
 from paretour.choice import the_way
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 from typer import echo
 
 from service.cli.backends import Backend
 from service.cli.csv_tables import Ids
 from service.cli.errors import UsageError, exit_on_error
-from service.cli.terminal_chart import draw_front
+from service.cli.labels import columns_of, ids_of, labels_of, lengths_as_text
+from service.cli.terminal_chart import LABELS, draw_front
 
 BuildPlan = Callable[[], tuple[Plan, Ids | None]]
 
@@ -57,7 +59,7 @@ def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> 
         draw = None if output.plot is None else _drawing_into(output.plot)
         plan, ids = build_plan()
         front = backend.front(plan, _STDERR)
-        _print(front, ids, output, Console())
+        _print(front, ids or ids_of(front), output, Console())
         if draw is not None:
             draw(front, plan)
     _STDERR.print(front_summary(front), highlight=False)
@@ -74,8 +76,8 @@ def run_tour(
         front = backend.front(plan, _STDERR)
         with _usage_errors():
             tour = front.choose(angle, **choice)
-    echo(tour_as_json(tour) if as_json else tour_as_text(tour.tour, ids))
-    _STDERR.print(tour_summary(tour), highlight=False)
+    echo(tour_as_json(tour) if as_json else tour_as_text(tour.tour, ids or ids_of(front)))
+    _STDERR.print(tour_summary(front, tour), highlight=False, markup=False)
 
 
 @contextmanager
@@ -106,7 +108,7 @@ def front_as_csv(front: Front, ids: Ids | None = None) -> str:
     """Return a line for each tour, with spaces between its cities, or between their ids."""
     text = io.StringIO()
     lines = csv.writer(text, lineterminator="\n")
-    lines.writerow(("angle", "length_1", "length_2", "tour"))
+    lines.writerow(("angle", *columns_of(front), "tour"))
     for angle, lengths, tour in zip(front.angles, front.lengths, front.tours, strict=True):
         lines.writerow((float(angle), *lengths.tolist(), tour_as_text(tour, ids)))
     return text.getvalue().rstrip()
@@ -114,7 +116,7 @@ def front_as_csv(front: Front, ids: Ids | None = None) -> str:
 
 def front_as_table(front: Front) -> Table:
     """Return a table with a row for each tour, without its cities."""
-    table = Table("balance", "angle", "first length", "second length")
+    table = Table("balance", "angle", *map(escape, labels_of(front)))
     for column in table.columns:
         column.justify = "right"
     for balance, angle, lengths in zip(front.balances, front.angles, front.lengths, strict=True):
@@ -126,13 +128,16 @@ def front_as_table(front: Front) -> Table:
 def print_chart(front: Front, console: Console) -> None:
     """Print a chart of a front on a console, and the lengths of three of its tours."""
     utf8 = console.encoding.startswith("utf")
-    console.print(draw_front(front.lengths, "•" if utf8 else "o"), highlight=False)
-    table = Table("tour", "balance", "angle", "first length", "second length")
+    point, labels = "•" if utf8 else "o", labels_of(front)
+    console.print(draw_front(front.lengths, point, labels), highlight=False, markup=False)
+    table = Table("tour", "balance", "angle", *map(escape, labels))
     for column in table.columns[1:]:
         column.justify = "right"
-    for name, i in three_tours(front.lengths).items():
+    names = None if front.objectives is None else [each.name for each in front.objectives]
+    for name, i in three_tours(front.lengths, names or LABELS).items():
         lengths = (f"{length:.6g}" for length in front.lengths[i])
-        table.add_row(name, f"{front.balances[i]:.3f}", f"{front.angles[i]:.2f}", *lengths)
+        balance, angle = f"{front.balances[i]:.3f}", f"{front.angles[i]:.2f}"
+        table.add_row(escape(name), balance, angle, *lengths)
     console.print(table)
 
 
@@ -152,7 +157,7 @@ def tour_as_json(tour: Tour) -> str:
         "lengths": tour.lengths.tolist(),
         "tour": tour.tour.tolist(),
     }
-    return json.dumps(members)
+    return json.dumps(members if tour.stops is None else {**members, "stops": tour.stops})
 
 
 def tour_as_text(tour: NDArray[np.int64], ids: Ids | None = None) -> str:
@@ -166,11 +171,11 @@ def tour_as_text(tour: NDArray[np.int64], ids: Ids | None = None) -> str:
     return text.getvalue()
 
 
-def tour_summary(tour: Tour) -> str:
-    """Return a line about the balance, the angle and the lengths of a tour."""
-    first, second = tour.lengths
+def tour_summary(front: Front, tour: Tour) -> str:
+    """Return a line about the balance, the angle and the lengths of a tour of a front."""
+    first, second = tour.lengths.tolist()
     where = f"balance {tour.balance:.3f}, angle {tour.angle:.2f}"
-    return f"{where}, lengths {first:.6g} and {second:.6g}"
+    return f"{where}, {lengths_as_text(front, (first, second))}"
 
 
 def actors_as_json(actors: Iterable[Actor]) -> str:
@@ -186,14 +191,15 @@ def actors_as_table(actors: Iterable[Actor]) -> Table:
     return table
 
 
-def three_tours(lengths: NDArray[np.float64]) -> dict[str, int]:
+def three_tours(lengths: NDArray[np.float64], names: Sequence[str] = LABELS) -> dict[str, int]:
     """Return, of points with shape (m, 2), both ends and the knee: the least sum in their box."""
+    first, second = names
     low, high = lengths.min(axis=0), lengths.max(axis=0)
     box = np.where(high > low, high - low, 1.0)
     return {
-        "least first length": int(np.lexsort((lengths[:, 1], lengths[:, 0]))[0]),
+        f"least {first}": int(np.lexsort((lengths[:, 1], lengths[:, 0]))[0]),
         "knee": int(((lengths - low) / box).sum(axis=1).argmin()),
-        "least second length": int(np.lexsort((lengths[:, 0], lengths[:, 1]))[0]),
+        f"least {second}": int(np.lexsort((lengths[:, 0], lengths[:, 1]))[0]),
     }
 
 

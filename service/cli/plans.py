@@ -1,6 +1,6 @@
 """Build the plan that files and options ask for together."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
@@ -31,7 +31,9 @@ def plan_cities(
         UsageError: `angles` are not numbers with commas between.
     """
     request, ids = read_request([file] if file2 is None else [file, file2], unrounded=unrounded)
-    given = _without_none({**options, "preferences": _parse_numbers(angles, "--angles")})
+    start = _parse_start(options.get("start"), ids or ())
+    preferences = _parse_numbers(angles, "--angles")
+    given = _without_none({**options, "start": start, "preferences": preferences})
     return front_plan(cast(FrontRequest, {**request, **given})), ids
 
 
@@ -64,6 +66,13 @@ def _check_complete(request: Mapping[str, Any]) -> None:
     missing = [need for need, members in needs.items() if not request.keys() & set(members)]
     if missing:
         raise UsageError(f"a map cannot be covered without {', '.join(missing)}")
+
+
+def _parse_start(text: str | None, ids: Sequence[str]) -> int | str | None:
+    """Return the index of a city that is given as such, or by an id of the file; else the text."""
+    if text is None or text in ids:
+        return None if text is None else ids.index(text)
+    return int(text) if text.isdecimal() else text
 
 
 def _parse_numbers(text: str | None, option: str) -> list[float] | None:

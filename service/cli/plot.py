@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from paretour import Front
 
 from service.cli.errors import UsageError
+from service.cli.labels import labels_of
 
 
 def check_path(path: Path) -> None:
@@ -25,8 +26,8 @@ def plot_front(front: Front, path: Path) -> None:
     first, second = front.lengths.T
     axes.step(first, second, where="post", color="0.8", linewidth=1)
     axes.scatter(first, second, s=14)
-    axes.set_xlabel("first length")
-    axes.set_ylabel("second length")
+    for label, text in zip((axes.xaxis.label, axes.yaxis.label), labels_of(front), strict=True):
+        label.set(text=text, parse_math=False)  # a name may have a dollar sign in it
     axes.set_title(f"{len(front.tours)} tours, hypervolume {front.hypervolume:.2%}")
     axes.spines[["top", "right"]].set_visible(False)
     figure.savefig(path, dpi=150)

@@ -1,34 +1,48 @@
 """Draw a front in characters, for a terminal."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 WIDTH = 64  # columns that points are drawn in
 HEIGHT = 12  # lines that points are drawn in, of 15
-_TITLE = "second length"
+LABELS = ("first length", "second length")
 
 
-def draw_front(lengths: NDArray[np.float64], point: str = "•") -> str:
+def draw_front(
+    lengths: NDArray[np.float64], point: str = "•", labels: Sequence[str] = LABELS
+) -> str:
     """Return a chart of points, shape (m, 2), with the first length to the right.
 
-    It has 15 lines at most, none of which is longer than 79 characters. Points so near to each
-    other that they share a character are one.
+    It has 15 lines at most, none of which is longer than 79 characters: labels of both lengths are
+    cut. Points so near to each other that they share a character are one.
     """
     columns, rows = (_places(lengths[:, m], size) for m, size in ((0, WIDTH), (1, HEIGHT)))
     canvas = np.full((HEIGHT, WIDTH), " ")
     canvas[HEIGHT - 1 - rows, columns] = point
     (left, low), (right, high) = lengths.min(axis=0), lengths.max(axis=0)
-    labels = {0: f"{high:.6g}", HEIGHT - 1: f"{low:.6g}"}
-    margin = max(map(len, labels.values()))
+    ticks = {0: f"{high:.6g}", HEIGHT - 1: f"{low:.6g}"}
+    margin = max(map(len, ticks.values()))
     lines = [
-        f"{labels.get(row, ''):>{margin}} |{''.join(canvas[row])}".rstrip() for row in range(HEIGHT)
+        f"{ticks.get(row, ''):>{margin}} |{''.join(canvas[row])}".rstrip() for row in range(HEIGHT)
     ]
     ends = (f"{left:.6g}", f"{right:.6g}")
-    between = "first length".center(WIDTH - sum(map(len, ends)))
+    room = WIDTH - sum(map(len, ends))
+    between = _cut(labels[0], room - 2).center(room)
     indent = " " * (margin + 1)
     return "\n".join(
-        (_TITLE, *lines, f"{indent}+{'-' * WIDTH}", f"{indent} {ends[0]}{between}{ends[1]}")
+        (
+            _cut(labels[1], WIDTH),
+            *lines,
+            f"{indent}+{'-' * WIDTH}",
+            f"{indent} {ends[0]}{between}{ends[1]}",
+        )
     )
+
+
+def _cut(text: str, most: int) -> str:
+    return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
 def _places(values: NDArray[np.float64], size: int) -> NDArray[np.int64]:

@@ -8,7 +8,7 @@ import { read } from "./inputs/files.js";
 import { askedFor, described, kindOf, requestFor } from "./inputs/instance.js";
 import { fragment, linked } from "./result/link.js";
 import { counted } from "./common/numbers.js";
-import { UNNAMED } from "./common/objectives.js";
+import { UNNAMED, namesIn } from "./common/objectives.js";
 import { Placing } from "./inputs/placing.js";
 import { Planning } from "./planning/planning.js";
 import { Result } from "./result/result.js";
@@ -43,7 +43,7 @@ function open(wanted, names = UNNAMED) {
   element("typed").hidden = element("place").hidden = !typed;
   element("brought").hidden = typed;
   element("brought").textContent = typed ? "" : described(wanted);
-  element("order").open = kind === "matrices" || kind === "unknown";
+  element("order").open = !typed && kind !== "grid";
   element("cities").value = textOf(wanted.coordinates ?? []);
   element("rounding").hidden = !wanted.rounded;
   element("rounded").checked = Boolean(wanted.rounded);
@@ -117,6 +117,7 @@ async function run(states) {
 
 function show(state) {
   if (state.answer) {
+    if (state.answer.objectives) result.name((objectives = namesIn(state.answer)));
     result.show(state);
     answered(state.answer);
   }
@@ -241,7 +242,7 @@ element("link").addEventListener("click", (event) => copyLink(event.target));
 element("json").addEventListener("click", () =>
   download("front.json", "application/json", JSON.stringify(answer)),
 );
-element("csv").addEventListener("click", () => download("front.csv", "text/csv", csv(answer.front)));
+element("csv").addEventListener("click", () => download("front.csv", "text/csv", csv(answer)));
 for (const kind of ["dragover", "drop"]) addEventListener(kind, (event) => event.preventDefault());
 addEventListener("dragover", () => element("drop").classList.add("over"));
 addEventListener("dragleave", () => element("drop").classList.remove("over"));

@@ -12,7 +12,7 @@ from service.coverage.coverage import Coverage
 from service.instance import Kind
 from service.requests.arrays import Array, check_costs, square_array
 from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
-from service.requests.maps.fields import Layer, MapRequest, describe_map, empty_array
+from service.requests.maps.fields import ABSENT, Layer, MapRequest, describe_map, empty_array
 from service.requests.schemas import (
     LARGEST,
     ArrayRows,
@@ -95,7 +95,23 @@ class CoverageRequest(MapRequest):
         )
 
 
-def coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
+def coverage_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str, Any]]:
+    """Return the JSON schema of a request, and of one beside a file of the map, by name."""
+    whole = _coverage_schema(limits, actors)
+    maps = ("grid", "occupancy_grid")
+    _, *others = whole["allOf"]
+    file = {
+        **whole,
+        "title": "CoverageFileRequest",
+        "description": "Places on a map that is a file, and the options of their front.",
+        "properties": {k: v for k, v in whole["properties"].items() if k not in maps},
+        "required": ["cell_size"],
+        "allOf": others,
+    }
+    return {"CoverageRequest": whole, "CoverageFileRequest": file}
+
+
+def _coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
     """Return the JSON schema of a request under these limits, with these actors to choose from."""
     schema = limited_schema(CoverageRequest, limits, actors)
     fields = schema["properties"]
@@ -103,7 +119,7 @@ def coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
     del fields["spacing"]["default"]
     fields["places"]["maxItems"] = limits.cities
     in_a_frame = [{"required": ["origin"]}, {"required": ["occupancy_grid"]}]
-    without = dict.fromkeys(("start", "initial_tours"), False)
+    without = dict.fromkeys(("start", "initial_tours"), ABSENT)
     schema["dependentSchemas"] = {"start_pose": {"anyOf": in_a_frame, "properties": without}}
     schema["allOf"] = [
         {"oneOf": forms},

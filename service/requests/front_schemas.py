@@ -33,13 +33,23 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
         _form(_unaugmented(cities), "MatricesFileRequest", "Cities by costs in a file", []),
         _form(file_stops, "StopsFileRequest", "Stops by costs in a file", ["stops", "objectives"]),
     ]
-    named = [parts["StopItem"], *_objectives(parts["ObjectiveItem"], limits), *forms]
+    stop, objective = (_without_null(parts[name]) for name in ("StopItem", "ObjectiveItem"))
+    named = [stop, *_objectives(objective, limits), *forms]
     return {schema["title"]: schema for schema in named}
 
 
 def one_of(names: Sequence[str]) -> Schema:
     """Return the schema of what fits one of the components with these names."""
     return {"oneOf": [reference_to(name) for name in names]}
+
+
+def _without_null(schema: Schema) -> Schema:
+    """Return a schema without defaults of null, from which generators conclude too much."""
+    fields = {
+        name: {k: v for k, v in field.items() if k != "default" or v is not None}
+        for name, field in schema["properties"].items()
+    }
+    return {**schema, "properties": fields}
 
 
 def _limit_cities(fields: Schema, most: int) -> None:

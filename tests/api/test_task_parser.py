@@ -39,7 +39,7 @@ def refusal(source: TaskSource, parser: TaskParser) -> Refusal:
     [
         (
             json.dumps({f"{i:x}": 0 for i in range(1_000_000)}).encode(),
-            "the body must have at most 9000 strings, got 1000000",
+            "the body must have at most 109000 strings, got 1000000",
         ),
         (
             b'{"grid":[' + 4_000_000 * b"[0]," + b"[0]]}",

@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -87,6 +88,26 @@ def test_the_tour_at_an_angle_is_the_nearest_of_the_front(cities: Path) -> None:
     assert "angle" in as_text.stderr
     least = json.loads(paretour("tour", *arguments, "--balance", 1, "--json").stdout)
     assert least == front[-1]
+
+
+def test_stops_come_back_by_their_ids(tmp_path: Path) -> None:
+    costs = np.random.default_rng(0).random((4, 4)).tolist()
+    names = ["depot", "order 1", "c", "d"]
+    stops = [{"id": name, "location": [i / 100, i**2 / 200]} for i, name in enumerate(names)]
+    objectives = [{"name": "way", "from": "great_circle"}, {"name": "risk", "matrix": costs}]
+    file = tmp_path / "stops.json"
+    file.write_text(json.dumps({"stops": stops, "objectives": objectives, "time_limit": 0}))
+    ended = paretour("front", file, "--csv", "--start", "order 1")
+    assert ended.returncode == 0, ended.stderr
+    rows = list(csv.DictReader(ended.stdout.splitlines()))
+    assert rows[0].keys() == {"angle", "way (m)", "risk", "tour"}
+    assert all(row["tour"].startswith('"order 1" ') for row in rows)
+    tour = paretour("tour", file, "--angle", 45)
+    assert sorted(next(csv.reader([tour.stdout], delimiter=" "))) == sorted(names)
+    assert re.search(r"way \S+ m, risk \S+", tour.stderr)
+    refused = paretour("front", file, "--start", "ordr 1")
+    assert refused.returncode == 2
+    assert 'start must be the id of a stop, got "ordr 1"; did you mean "order 1"?' in refused.stderr
 
 
 def test_a_picture_of_a_map_is_covered_as_its_grid_is(tmp_path: Path) -> None:

@@ -12,21 +12,24 @@ from paretour.values import parse_front
 from rich.console import Console
 
 from service.cli.errors import UsageError
+from service.cli.labels import ids_of
 from service.cli.output import (
     OutputFormat,
     front_as_csv,
     front_as_json,
     front_as_table,
     front_summary,
+    print_chart,
     run_front,
     run_tour,
     tour_as_json,
     tour_as_text,
     tour_summary,
 )
-from tests.helpers.answers import FRONT
+from tests.helpers.answers import FRONT, NAMED
 
 THE_FRONT = parse_front(FRONT)
+NAMED_FRONT = parse_front(NAMED)
 
 
 class Prepared:
@@ -58,6 +61,32 @@ def test_csv_has_a_line_for_each_tour() -> None:
     assert len(rows) == 2
 
 
+def test_csv_has_names_units_and_ids_where_the_request_had_them() -> None:
+    ids = ids_of(NAMED_FRONT)
+    rows = list(csv.DictReader(io.StringIO(front_as_csv(NAMED_FRONT, ids))))
+    first = {"angle": "60.0", "way (m)": "1.0", "risk [red]$": "2.0", "tour": 'depot "b 2" c'}
+    assert rows[0] == first
+
+
+def test_a_summary_and_json_of_a_tour_have_names_and_ids() -> None:
+    tour = NAMED_FRONT.nearest(60)
+    assert tour_summary(NAMED_FRONT, tour) == "balance 0.000, angle 60.00, way 1 m, risk [red]$ 2"
+    assert json.loads(tour_as_json(tour)) == NAMED["front"][0]  # type: ignore[index]
+
+
+def test_a_chart_and_tables_have_names_as_they_are() -> None:
+    stream = io.StringIO()
+    console = Console(file=stream, width=100)
+    print_chart(NAMED_FRONT, console)
+    console.print(front_as_table(NAMED_FRONT))
+    printed = stream.getvalue()
+    chart, _, tables = printed.partition("least")
+    assert "way (m)" in chart
+    assert "risk [red]$" in chart
+    assert "risk [red]$" in tables
+    assert "least risk [red]$" in printed
+
+
 def test_a_table_has_a_row_for_each_tour() -> None:
     assert front_as_table(THE_FRONT).row_count == 2
 
@@ -78,7 +107,7 @@ def test_a_tour_is_its_cities_or_an_item_of_the_front() -> None:
     tour = THE_FRONT.nearest(60)
     assert tour_as_text(np.array([0, 1, 2])) == "0 1 2"
     assert json.loads(tour_as_json(tour)) == FRONT["front"][0]  # type: ignore[index]
-    assert tour_summary(tour) == "balance 0.000, angle 60.00, lengths 1 and 2"
+    assert tour_summary(THE_FRONT, tour) == "balance 0.000, angle 60.00, lengths 1 and 2"
 
 
 @pytest.mark.parametrize(

@@ -70,3 +70,21 @@ def test_a_message_lacks_no_cell_size(tmp_path: Path) -> None:
 def test_ids_of_cities_come_beside_the_plan(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("depot,1,2,3,4\nb,5,6,7,8\n")
     assert plan_cities(tmp_path / "a.csv", options={})[1] == ("depot", "b")
+
+
+@pytest.mark.parametrize(
+    ("given", "start"), [("2", 2), ("b", 1), ("5", 0), (None, None), ("x", "x")]
+)
+def test_a_start_is_an_index_or_an_id(tmp_path: Path, given: str | None, start: object) -> None:
+    file = tmp_path / "a.csv"
+    file.write_text("id,x1,y1,x2,y2\n5,1,2,3,4\nb,1,2,3,4\nc,1,2,3,5\n")
+    plan, _ = plan_cities(file, options={"start": given})
+    assert plan.request.get("start") == start
+
+
+def test_a_request_with_stops_is_a_plan(tmp_path: Path) -> None:
+    request = {"stops": [{"id": "depot"}], "objectives": [{"name": "a"}, {"name": "b"}]}
+    (tmp_path / "stops.json").write_text(json.dumps(request))
+    plan, ids = plan_cities(tmp_path / "stops.json", options={"start": "depot"})
+    assert ids is None
+    assert json.loads(plan.json) == {**request, "start": "depot"}

@@ -7,7 +7,7 @@ from paretour.values import parse_front
 
 from service.cli.errors import UsageError
 from service.cli.plot import check_path, plot_front
-from tests.helpers.answers import FRONT
+from tests.helpers.answers import FRONT, NAMED
 
 
 def test_a_front_is_a_picture(tmp_path: Path) -> None:
@@ -15,6 +15,15 @@ def test_a_front_is_a_picture(tmp_path: Path) -> None:
     check_path(path)
     plot_front(parse_front(FRONT), path)
     assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_axes_have_names_and_units_as_they_are(tmp_path: Path) -> None:
+    plot_front(parse_front(NAMED), tmp_path / "front.svg")
+    plot_front(parse_front(FRONT), tmp_path / "short.svg")
+    named, short = ((tmp_path / name).read_text() for name in ("front.svg", "short.svg"))
+    assert "<!-- way (m) -->" in named
+    assert "<!-- risk [red]$ -->" in named
+    assert "<!-- first length -->" in short
 
 
 @pytest.mark.parametrize("name", ["front.txt", "front", "none/front.png"])

@@ -42,3 +42,11 @@ def test_a_chart_fits_a_terminal_whatever_the_lengths(lengths: list[list[float]]
     assert len(lines) == HEIGHT + 3 == 15
     assert WIDTH <= max(map(len, lines)) <= 80
     assert "o" in "".join(lines[1 : HEIGHT + 1])
+
+
+def test_labels_of_any_length_fit() -> None:
+    lengths = np.array([[1e-300, 1e300], [1e300, 1e-300]])
+    lines = draw_front(lengths, "o", ("x" * 200, "y" * 200)).splitlines()
+    assert max(map(len, lines)) <= 80
+    assert lines[0] == "y" * 63 + "…"
+    assert "xxx" in lines[-1]

@@ -27,6 +27,34 @@ def test_matrices_that_are_an_array_travel_as_a_file() -> None:
     np.testing.assert_array_equal(np.load(BytesIO(parts["matrices"][1])), matrices)
 
 
+def test_two_objectives_whose_matrices_are_arrays_travel_as_a_file() -> None:
+    costs = np.arange(9.0).reshape(3, 3)
+    stops: Any = [{"id": "a"}, {"id": "b"}, {"id": "c"}]
+    objectives: Any = [
+        {"name": "time", "unit": "s", "matrix": costs},
+        {"name": "r", "matrix": costs.T},
+    ]
+    parts = front_plan({"stops": stops, "objectives": objectives}).body["files"]
+    named = [{"name": "time", "unit": "s"}, {"name": "r"}]
+    assert json.loads(parts["request"][1]) == {"stops": stops, "objectives": named}
+    np.testing.assert_array_equal(np.load(BytesIO(parts["matrices"][1])), [costs, costs.T])
+
+
+@pytest.mark.parametrize(
+    "second",
+    [
+        {"name": "r", "from": "great_circle"},
+        {"name": "r", "matrix": [[0, 1], [1, 0]]},
+        {"name": "r", "matrix": np.zeros((3, 3))},
+    ],
+)
+def test_other_objectives_travel_as_json(second: Any) -> None:
+    first: Any = {"name": "time", "matrix": np.array([[0.0, 2.0], [2.0, 0.0]])}
+    plan = front_plan({"stops": [{"id": "a"}, {"id": "b"}], "objectives": [first, second]})
+    assert plan.file is None
+    assert json.loads(plan.json)["objectives"][0]["matrix"] == [[0, 2], [2, 0]]
+
+
 def test_a_map_is_a_file_or_a_grid() -> None:
     of_picture, of_grid = coverage_plan({}, b"PNG"), coverage_plan({"grid": [[0]]}, None)
     assert of_picture.path == of_grid.path == "/coverage"

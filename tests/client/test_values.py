@@ -1,9 +1,10 @@
 """Answers become values."""
 
 import pytest
+from paretour import Objective
 from paretour.values import parse_front, parse_tour
 
-from tests.helpers.answers import EMPTY, FRONT
+from tests.helpers.answers import EMPTY, FRONT, NAMED
 
 
 def test_arrays_cannot_be_written_to() -> None:
@@ -47,3 +48,13 @@ def test_arrivals_come_with_the_tours_that_have_them() -> None:
     assert tour.arrivals is not None
     assert tour.arrivals.tolist() == arrivals
     assert parse_front(FRONT).choose(balance=0.0).arrivals is None
+
+
+def test_tours_have_ids_and_objectives_names_where_the_request_had_them() -> None:
+    front = parse_front(NAMED)
+    assert front.stops == (("depot", "b 2", "c"), ("depot", "c", "b 2"))
+    assert front.objectives == (Objective("way", "m"), Objective("risk [red]$", None))
+    assert front.nearest(40).stops == ("depot", "c", "b 2")
+    assert parse_tour({"front": "f", **NAMED["front"][1]}).stops == ("depot", "c", "b 2")
+    unnamed = parse_front(FRONT)
+    assert (unnamed.stops, unnamed.objectives, unnamed.nearest(40).stops) == (None, None, None)

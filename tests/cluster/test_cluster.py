@@ -133,6 +133,23 @@ def test_a_worker_that_is_told_to_end_hands_its_job_back(
     assert machines.state.lost() == lost
 
 
+def test_stops_have_their_ids_and_names_from_another_machine(client: httpx.Client) -> None:
+    stops = [{"id": f"order-{i}", "location": [i / 9, i**2 / 50]} for i in range(8)]
+    plane = [[i % 3, i % 5] for i in range(8)]
+    way = {"name": "way", "from": "great_circle"}
+    objectives = [way, {"name": "risk", "unit": "%", "coordinates": plane}]
+    request = {"stops": stops, "objectives": objectives, "start": "order-5", "time_limit": 0.05}
+    found = client.post("/front", json=request).json()
+    assert found["status"] == "done", found
+    assert found == ended(client, later(client, request)) | {
+        name: found[name] for name in ("id", "timings_ms")
+    }
+    assert (found["stops"], found["objectives"][0]) == (stops, {"name": "way", "unit": "m"})
+    for item in found["front"]:
+        assert item["stops"] == [f"order-{city}" for city in item["tour"]]
+        assert item["stops"][0] == "order-5"
+
+
 def test_a_worker_that_takes_no_work_is_found(machines: Machines, client: httpx.Client) -> None:
     worker, url = machines.workers[-1], machines.redis.url
     assert takes_work(url)

@@ -6,14 +6,15 @@ from typing import Any
 
 import httpx
 
+_TOURS: list[dict[str, Any]] = [
+    {"angle": 60.0, "balance": 0.0, "lengths": [1.0, 2.0], "tour": [0, 1, 2]},
+    {"angle": 30.0, "balance": 1.0, "lengths": [2.0, 1.0], "tour": [0, 2, 1]},
+]
 FRONT = {
     "id": "f",
     "status": "done",
     "cities": 3,
-    "front": [
-        {"angle": 60.0, "balance": 0.0, "lengths": [1.0, 2.0], "tour": [0, 1, 2]},
-        {"angle": 30.0, "balance": 1.0, "lengths": [2.0, 1.0], "tour": [0, 2, 1]},
-    ],
+    "front": _TOURS,
     "points": 2,
     "hypervolume": 0.5,
     "hypervolume_bound": None,
@@ -22,6 +23,14 @@ FRONT = {
     "actor": {"name": "pa-one", "digest": "0"},
     "timings_ms": {},
     "terminated": "converged",
+}
+NAMED = FRONT | {
+    "objectives": [{"name": "way", "unit": "m"}, {"name": "risk [red]$", "unit": None}],
+    "stops": [{"id": "depot", "location": [24.9, 60.1]}, {"id": "b 2"}, {"id": "c"}],
+    "front": [
+        item | {"stops": ids}
+        for item, ids in zip(_TOURS, (["depot", "b 2", "c"], ["depot", "c", "b 2"]), strict=True)
+    ],
 }
 EMPTY = FRONT | {"status": "running", "front": [], "points": 0, "terminated": None}
 

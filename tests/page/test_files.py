@@ -1,5 +1,6 @@
 """Files opened on the page: lists of cities, JSON, TSPLIB, pictures of maps."""
 
+import csv
 import json
 import subprocess
 import sys
@@ -47,12 +48,38 @@ def test_a_picture_of_a_map_is_covered(browser: Browser) -> None:
         page.close()
 
 
+def test_stops_are_planned_under_their_names_and_ids(page: Page) -> None:
+    costs = np.random.default_rng(0).random((4, 4)).tolist()
+    names = ["depot", 'order "1"', "c", "d"]
+    request = {
+        "stops": [{"id": name, "location": [i / 9, i**2 / 9]} for i, name in enumerate(names)],
+        "objectives": [
+            {"name": "way", "from": "great_circle"},
+            {"name": "risk, all", "matrix": costs},
+        ],
+        "start": 'order "1"',
+        "time_limit": 0.1,
+    }
+    open_files(page, {"stops.json": json.dumps(request)})
+    expect(page.get_by_text("4 stops with ids.")).to_be_visible()
+    page.get_by_role("button", name="Plan").click()
+    wait_until_planned(page)
+    expect(page.locator("#order p")).to_contain_text('order "1" →')
+    expect(page.locator("#comparison")).to_contain_text("Way, m")
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save CSV").click()
+    rows = list(csv.DictReader(saved.value.path().read_text().splitlines()))
+    assert rows[0].keys() == {"angle", "way (m)", "risk, all", "tour"}
+    assert all(row["tour"].startswith('"order ""1""" ') for row in rows)
+
+
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
         ("stops.csv", "x,y,u,v\n1,2,3,4\n5,6,7\n", "stops.csv must have four numbers on each line"),
         ("stops.json", '{"coordinates": [', "stops.json must be JSON"),
         ("stops.json", '{"coordinates": [1, 2]}', "coordinates of stops.json must be rows"),
+        ("stops.json", '{"stops": 7}', "stops of stops.json must be a list"),
         ("map.json", '{"grid": []}', "grid of map.json must have a cell or more"),
         ("kroA.tsp", "EDGE_WEIGHT_TYPE: EUC_2D\n", "open it together with the other"),
     ],

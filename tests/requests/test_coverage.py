@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from service.errors import Refusal
-from service.requests.coverage import coverage_schema, parse_coverage_request
+from service.requests.coverage import coverage_schemas, parse_coverage_request
 from tests.helpers.serving import LIMITS
 
 GRID = [
@@ -124,7 +124,7 @@ def test_a_map_may_come_as_a_png_and_not_as_a_grid_as_well() -> None:
 
 
 def test_the_schema_asks_for_places_and_a_second_objective_in_one_form_each() -> None:
-    schema = coverage_schema(LIMITS, ["pa-one-matrix"])
+    schema = coverage_schemas(LIMITS, ["pa-one-matrix"])["CoverageRequest"]
     ways = [[each["required"] for each in choice["oneOf"]] for choice in schema["allOf"]]
     assert ways == [
         [["grid", "cell_size"], ["occupancy_grid"]],

@@ -13,10 +13,11 @@ events of `events`; neither needs anything of the service but its address.
 from paretour.asynchronous import AsyncClient, AsyncJob
 from paretour.choice import Choice
 from paretour.errors import Refused
+from paretour.members import CoverageRequest, FrontRequest, ObjectiveRequest, StopRequest
 from paretour.requests import Plan, coverage_plan, front_plan
 from paretour.ros_maps import read_ros_map
 from paretour.sync import Client, Job
-from paretour.values import Actor, CoverageRequest, Front, FrontRequest, Path, Progress, Tour
+from paretour.values import Actor, Front, Objective, Path, Progress, Tour
 
 __all__ = [
     "Actor",
@@ -28,10 +29,13 @@ __all__ = [
     "Front",
     "FrontRequest",
     "Job",
+    "Objective",
+    "ObjectiveRequest",
     "Path",
     "Plan",
     "Progress",
     "Refused",
+    "StopRequest",
     "Tour",
     "coverage_plan",
     "front_plan",

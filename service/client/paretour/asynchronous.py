@@ -8,8 +8,9 @@ import httpx
 from paretour.calls import Call, Calls, auth_headers
 from paretour.choice import Choice
 from paretour.events import JobEvents
+from paretour.members import CoverageRequest, FrontRequest
 from paretour.requests import Plan, coverage_plan, front_plan
-from paretour.values import Actor, CoverageRequest, Front, FrontRequest, Progress, Tour
+from paretour.values import Actor, Front, Progress, Tour
 
 T = TypeVar("T")
 

@@ -1,15 +1,17 @@
 """Build the requests that have a front planned: JSON, and a file beside it where one is better."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from typing import Any
 
 import numpy as np
-from paretour.values import CoverageRequest, FrontRequest
+from numpy.typing import NDArray
+from paretour.members import CoverageRequest, FrontRequest
 
 _DEFAULT_TIME_LIMIT = 1.0  # seconds, the service's own
+_OBJECTIVES = 2
 _BOUND_SECONDS = 5.0  # that the service takes at most to prove a bound
 
 
@@ -51,13 +53,32 @@ class Plan:
 
 
 def front_plan(request: FrontRequest) -> Plan:
-    """Return the request to POST /front, with matrices that are an array as a NumPy file."""
+    """Return the request to POST /front, with matrices that are arrays as a NumPy file.
+
+    They are `matrices`, or the matrix of each objective where both are arrays.
+    """
     members: dict[str, Any] = dict(request)
-    if not isinstance(members.get("matrices"), np.ndarray):
+    objectives: Sequence[Mapping[str, Any]] = members.get("objectives", ())
+    if isinstance(members.get("matrices"), np.ndarray):
+        return Plan("/front", members, _matrices_file(members.pop("matrices")))
+    matrices = [objective.get("matrix") for objective in objectives]
+    if not _fit_a_file(matrices):
         return Plan("/front", members)
+    named = [{k: v for k, v in each.items() if k != "matrix"} for each in objectives]
+    return Plan("/front", {**members, "objectives": named}, _matrices_file(np.stack(matrices)))
+
+
+def _fit_a_file(matrices: Sequence[Any]) -> bool:
+    """Return whether matrices are two arrays of one shape, as a file must have them."""
+    if len(matrices) != _OBJECTIVES or not all(isinstance(each, np.ndarray) for each in matrices):
+        return False
+    return matrices[0].ndim == 2 and matrices[0].shape == matrices[1].shape
+
+
+def _matrices_file(matrices: NDArray[Any]) -> File:
     content = BytesIO()
-    np.save(content, members.pop("matrices"), allow_pickle=False)
-    return Plan("/front", members, File("matrices", content.getvalue()))
+    np.save(content, matrices, allow_pickle=False)
+    return File("matrices", content.getvalue())
 
 
 def coverage_plan(request: CoverageRequest, png: bytes | None) -> Plan:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast
 
-from paretour.values import CoverageRequest
+from paretour.members import CoverageRequest
 
 _MOST_BYTES = 2**16  # of a map.yaml, which has some hundred
 _REQUIRED = ("image", "resolution", "origin", "occupied_thresh", "free_thresh", "negate")

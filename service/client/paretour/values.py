@@ -1,63 +1,17 @@
-"""Typed requests, and answers as immutable values with arrays."""
+"""Answers as immutable values with arrays."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypedDict, TypeVar, Unpack
+from typing import Any, Literal, TypeVar, Unpack
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from paretour.choice import Choice, choose
 
 Array = NDArray[np.float64]
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
 FINAL_STATUSES = ("done", "cancelled", "failed")
 Status = Literal["queued", "running", "done", "cancelled", "failed"]
-
-
-class PlanRequest(TypedDict, total=False):
-    """The members that every request to plan may have; the service's /docs explains them."""
-
-    preferences: int | ArrayLike
-    time_limit: float
-    size: int
-    start: int
-    reference_point: ArrayLike
-    initial_tours: ArrayLike
-    arrivals: bool
-    bound: bool
-    actor: str
-    seed: int
-
-
-class FrontRequest(PlanRequest, total=False):
-    """The members of a request to POST /front, with either coordinates or matrices."""
-
-    coordinates: ArrayLike
-    matrices: ArrayLike
-    augment: int
-
-
-class CoverageRequest(PlanRequest, total=False):
-    """The members of a request to POST /coverage: map, places, second objective."""
-
-    grid: ArrayLike
-    occupancy_grid: Mapping[str, Any]
-    cell_size: float
-    origin: ArrayLike
-    mode: Literal["trinary", "scale", "raw"]
-    negate: bool
-    occupied_thresh: float
-    free_thresh: float
-    obstacle_from: int
-    unknown: Literal["blocked", "free"]
-    robot_radius: float
-    places: ArrayLike
-    spacing: float
-    start_pose: ArrayLike
-    second_matrix: ArrayLike
-    cost_layer: ArrayLike
-    second_coordinates: ArrayLike
-    paths: bool
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,6 +21,14 @@ class Progress:
     seconds: float
     hypervolume: float
     points: int
+
+
+@dataclass(frozen=True)
+class Objective:
+    """An objective as the request named it, and its unit or None."""
+
+    name: str
+    unit: str | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +60,7 @@ class Tour:
         arrivals: Both its lengths up to each city, and back at the first where it is closed, shape
             (n + 1, 2); None where the request did not ask for them.
         path: Its way over a map, where the request asked for paths.
+        stops: The ids of its stops in order, where the request had ids.
     """
 
     front: str
@@ -107,6 +70,7 @@ class Tour:
     tour: NDArray[np.int64]
     arrivals: Array | None
     path: Path | None
+    stops: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -131,6 +95,8 @@ class Front:
         places: Over a map, the row and column of each city, shape (n, 2).
         paths: Over a map, the way of each tour, where the request asked for paths.
         document: The answer as it came, with every member.
+        stops: The ids of the stops of each tour in order, where the request had ids.
+        objectives: Both objectives, where the request named them.
     """
 
     id: str
@@ -149,6 +115,8 @@ class Front:
     places: NDArray[np.int64] | None
     paths: tuple[Path, ...] | None
     document: Mapping[str, Any]
+    stops: tuple[tuple[str, ...], ...] | None = None
+    objectives: tuple[Objective, ...] | None = None
 
     def nearest(self, angle: float) -> Tour:
         """Return the tour whose direction is nearest to an angle in degrees.
@@ -174,6 +142,7 @@ class Front:
             tour=self.tours[index],
             arrivals=_arrivals(self.document["front"][index]),
             path=None if self.paths is None else self.paths[index],
+            stops=None if self.stops is None else self.stops[index],
         )
 
 
@@ -224,6 +193,8 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         places=_integers(document["places"]) if "places" in document else None,
         paths=paths or None,
         document=document,
+        stops=tuple(tuple(item["stops"]) for item in items) if "stops" in document else None,
+        objectives=_parse_objectives(document),
     )
 
 
@@ -237,11 +208,18 @@ def parse_tour(document: Mapping[str, Any]) -> Tour:
         tour=_integers(document["tour"]),
         arrivals=_arrivals(document),
         path=_parse_path(document),
+        stops=tuple(document["stops"]) if "stops" in document else None,
     )
 
 
 def _arrivals(item: Mapping[str, Any]) -> Array | None:
     return _floats(item["arrivals"]) if "arrivals" in item else None
+
+
+def _parse_objectives(document: Mapping[str, Any]) -> tuple[Objective, ...] | None:
+    if "objectives" not in document:
+        return None
+    return tuple(Objective(each["name"], each.get("unit")) for each in document["objectives"])
 
 
 def _parse_path(item: Mapping[str, Any]) -> Path | None:

@@ -5,6 +5,12 @@ export const UNNAMED = [
   { name: "length 2", unit: "" },
 ];
 
+/** What a request or an answer calls them; UNNAMED where it gives them no names. */
+export function namesIn({ objectives }) {
+  const named = objectives?.length === 2 && objectives.every((each) => each?.name && typeof each.name === "string");
+  return named ? objectives.map(({ name, unit }) => ({ name, unit: typeof unit === "string" ? unit : "" })) : UNNAMED;
+}
+
 export const titled = ({ name }) => name[0].toUpperCase() + name.slice(1);
 
 /** The title with its unit, where there is room for that. */

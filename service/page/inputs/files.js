@@ -2,7 +2,7 @@
 
 import { rowsOf } from "./cities.js";
 import { OBJECTIVES, coverageOf } from "./image.js";
-import { UNNAMED } from "../common/objectives.js";
+import { namesIn } from "../common/objectives.js";
 import { isTsplib, pair } from "./tsplib.js";
 
 /**
@@ -13,7 +13,8 @@ export async function read(files) {
   if (files.length === 1 && files[0].type.startsWith("image/")) {
     return { members: await coverageOf(files[0]), objectives: OBJECTIVES };
   }
-  return { members: membersOf(await textsOf(files)), objectives: UNNAMED };
+  const members = membersOf(await textsOf(files));
+  return { members, objectives: namesIn(members) };
 }
 
 async function textsOf(files) {
@@ -43,8 +44,9 @@ function parsed(name, text) {
 
 /** The members, of which those that are drawn are rows; all else is for the service to check. */
 function drawable(name, members) {
-  const { coordinates, grid, cost_layer } = members ?? {};
+  const { coordinates, grid, cost_layer, stops } = members ?? {};
   if (!members || typeof members !== "object") throw new Error(`${name} must be a request, got ${members}`);
+  if (stops != null && !Array.isArray(stops)) throw new Error(`stops of ${name} must be a list`);
   for (const [member, rows] of Object.entries({ coordinates, grid, cost_layer })) {
     if (rows != null && !isRows(rows)) throw new Error(`${member} of ${name} must be rows of numbers`);
   }

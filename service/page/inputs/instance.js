@@ -1,19 +1,21 @@
-/** The kinds of instance (planes, matrices, grid, or not known) and the requests for them. */
+/** The kinds of instance (planes, matrices, grid, stops, or not known) and the requests for them. */
 
 import { isCity, rowsOf } from "./cities.js";
 import { rounded } from "./distances.js";
+import { counted } from "../common/numbers.js";
 import { Problem } from "../planning/service.js";
 
 // Two matrices of more fill the longest body that a service takes, and the browser's memory.
 const MOST_ROUNDED = 1500;
 
-export const kindOf = ({ grid, matrices, coordinates }) =>
-  grid ? "grid" : matrices ? "matrices" : coordinates ? "coordinates" : "unknown";
+export const kindOf = ({ grid, matrices, coordinates, stops }) =>
+  grid ? "grid" : matrices ? "matrices" : coordinates ? "coordinates" : stops ? "stops" : "unknown";
 
 /** In a few words, what was brought that cannot be typed. */
 export function described(asked) {
-  const { grid, matrices, places } = asked;
+  const { grid, matrices, places, stops } = asked;
   if (kindOf(asked) === "unknown") return "The link names a front alone: where its stops lie is not known here.";
+  if (stops) return `${counted(stops.length, "stop", "stops")} with ids.`;
   if (matrices) return `Two matrices of ${matrices[0]?.length ?? 0} cities.`;
   const where = places ? `${places.length} places` : "places laid out by the spacing";
   return `A grid of ${grid.length} by ${grid[0]?.length ?? 0} cells; ${where}.`;
@@ -32,7 +34,7 @@ export function askedFor(opened, settings, { text, whole }) {
 export function requestFor({ rounded: whole, ...body }) {
   const kind = kindOf(body);
   if (kind === "grid") return { path: "coverage", body: { ...body, paths: true } };
-  if (kind === "matrices" || !whole) return { path: "front", body };
+  if (kind !== "coordinates" || !whole) return { path: "front", body };
   const { coordinates, ...others } = body;
   // A row that is no city is named by the service, which wants to see it for that.
   if (!coordinates.length || !coordinates.every(isCity)) return { path: "front", body };

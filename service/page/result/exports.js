@@ -6,11 +6,19 @@ export function curl({ path, body }) {
   return `curl ${address} -H 'Content-Type: application/json' -d @- <<'END'\n${JSON.stringify(body)}\nEND\n`;
 }
 
-/** A front as CSV: a tour on each line. */
-export function csv(front) {
-  const lines = front.map(({ angle, lengths, tour }) => [angle, ...lengths, tour.join(" ")].join(","));
-  return `angle,length_1,length_2,tour\n${lines.join("\n")}\n`;
+/** A front as CSV: a tour on each line, with the answer's names and ids where it has them. */
+export function csv({ front, objectives }) {
+  const titles = objectives?.map(({ name, unit }) => (unit ? `${name} (${unit})` : name)) ?? ["length_1", "length_2"];
+  const rows = front.map(({ angle, lengths, tour, stops }) => {
+    const places = stops?.map((id) => quoted(id, /[ "]/)) ?? tour;
+    return [angle, ...lengths, places.join(" ")];
+  });
+  const line = (row) => `${row.map((field) => quoted(`${field}`, /[,"]/)).join(",")}\n`;
+  return [["angle", ...titles, "tour"], ...rows].map(line).join("");
 }
+
+/** The text between quotation marks, where it has a character that would end it. */
+const quoted = (text, ending) => (ending.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
 
 /** Lets the browser save a text as a file. */
 export function download(name, type, text) {

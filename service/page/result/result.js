@@ -129,6 +129,6 @@ export class Result {
 
   #order() {
     if (!element("order").open) return;
-    element("order").querySelector("p").textContent = this.#selected?.tour.join(" → ") ?? "";
+    element("order").querySelector("p").textContent = (this.#selected?.stops ?? this.#selected?.tour)?.join(" → ") ?? "";
   }
 }

@@ -167,6 +167,10 @@ class MapRequest(PlanRequest):
         return blocked.astype(np.float64)
 
 
+# Of a member that must not be there: as false, which generators of clients do not read.
+ABSENT: dict[str, Any] = {"not": {}}
+
+
 def describe_map(schema: dict[str, Any], most_cells: int) -> list[dict[str, Any]]:
     """Refine the fields of a map in a JSON schema, and return a schema for each form of a map.
 
@@ -181,7 +185,7 @@ def describe_map(schema: dict[str, Any], most_cells: int) -> list[dict[str, Any]
     data["items"], data["maxItems"] = {"type": "integer", "minimum": -1, "maximum": 100}, most_cells
     required = {"grid": ["grid", "cell_size"], "occupancy_grid": ["occupancy_grid"]}
     return [
-        {"required": required[form], "properties": dict.fromkeys((*useless, *others), False)}
+        {"required": required[form], "properties": dict.fromkeys((*useless, *others), ABSENT)}
         for form, useless in _USELESS.items()
         if (others := _USELESS.keys() - {form})
     ]

@@ -1,0 +1,79 @@
+"""The members of requests, as types of dictionaries."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, Required, TypedDict
+
+from numpy.typing import ArrayLike
+
+
+class PlanRequest(TypedDict, total=False):
+    """The members that every request to plan may have; the service's /docs explains them."""
+
+    preferences: int | ArrayLike
+    time_limit: float
+    size: int
+    reference_point: ArrayLike
+    initial_tours: ArrayLike
+    arrivals: bool
+    bound: bool
+    actor: str
+    seed: int
+
+
+class StopRequest(TypedDict, total=False):
+    """A stop: an id of the caller's own, and maybe longitude and latitude in degrees."""
+
+    id: Required[str]
+    location: ArrayLike | None
+
+
+# Written as a call, for `from` is a keyword. It is great_circle, road_time or road_distance.
+ObjectiveRequest = TypedDict(
+    "ObjectiveRequest",
+    {
+        "name": Required[str],
+        "unit": str | None,
+        "matrix": ArrayLike,
+        "coordinates": ArrayLike,
+        "from": str,
+    },
+    total=False,
+)
+
+
+class FrontRequest(PlanRequest, total=False):
+    """The members of a request to POST /front: coordinates, matrices, or stops with objectives.
+
+    With stops, `start` and `initial_tours` may name them by id.
+    """
+
+    coordinates: ArrayLike
+    matrices: ArrayLike
+    stops: Sequence[StopRequest]
+    objectives: Sequence[ObjectiveRequest]
+    start: int | str
+    augment: int
+
+
+class CoverageRequest(PlanRequest, total=False):
+    """The members of a request to POST /coverage: map, places, second objective."""
+
+    grid: ArrayLike
+    occupancy_grid: Mapping[str, Any]
+    start: int
+    cell_size: float
+    origin: ArrayLike
+    mode: Literal["trinary", "scale", "raw"]
+    negate: bool
+    occupied_thresh: float
+    free_thresh: float
+    obstacle_from: int
+    unknown: Literal["blocked", "free"]
+    robot_radius: float
+    places: ArrayLike
+    spacing: float
+    start_pose: ArrayLike
+    second_matrix: ArrayLike
+    cost_layer: ArrayLike
+    second_coordinates: ArrayLike
+    paths: bool
