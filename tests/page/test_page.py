@@ -7,7 +7,15 @@ import httpx
 import pytest
 from playwright.sync_api import Browser, Locator, Page, Route, expect
 
-from tests.helpers.browsing import DESK, PHONE, curl_body, needs_chromium, wait_for_next_frame
+from tests.helpers.browsing import (
+    DESK,
+    PHONE,
+    curl_body,
+    needs_chromium,
+    open_page,
+    wait_for_next_frame,
+    wait_until_planned,
+)
 
 CITIES = "0, 0, 5, 5\n3.1, 0.4, 9, 1\n5.2, 2, 2, 8\n4, 5.5, 7, 7\n1, 4.2, 1, 2\n2.5, 2.5, 6, 0"
 
@@ -16,7 +24,23 @@ at_both_widths = pytest.mark.parametrize("width", [DESK, PHONE])
 
 
 @at_both_widths
-def test_the_page_opens_with_an_example_and_its_front(page: Page) -> None:
+def test_the_page_opens_with_stops_by_road_and_their_front(
+    browser: Browser, released: str, width: int
+) -> None:
+    with open_page(browser, released, width) as page:
+        wait_until_planned(page)
+        expect(page.get_by_text("60 stops with ids.")).to_be_visible()
+        expect(page.get_by_text("OpenStreetMap contributors (ODbL)")).to_be_visible()
+        expect(page.get_by_role("row", name="People met")).to_be_visible()
+        first, second = page.locator(".plane").all()
+        expect(first).to_be_visible()
+        expect(second).to_be_hidden()
+        body = curl_body(page)
+        assert body["stops"][0]["id"] == "depot"
+
+
+@at_both_widths
+def test_an_example_shows_its_front(page: Page) -> None:
     expect(page.get_by_label("A front of 100 tours: distance from")).to_be_visible()
     expect(page.locator("#count")).to_have_text("61 cities")
     expect(page.locator("#figures")).to_contain_text("Network alone")

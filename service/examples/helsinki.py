@@ -1,0 +1,106 @@
+"""Deliveries in central Helsinki by road: the time of driving beside the people met.
+
+Times and streets are those of a Valhalla whose tiles are built of OpenStreetMap's data,
+(c) OpenStreetMap contributors, under the Open Database License (ODbL).
+"""
+
+import asyncio
+import re
+from collections.abc import Mapping
+from itertools import permutations
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.errors import NoRoad, OffRoad
+from service.roads.client import RoadClient
+from service.roads.great_circle import great_circle_distances
+from service.roads.router import Line, RouterSettings
+from service.roads.trails import Leg
+
+Array = NDArray[np.float64]
+STOPS = 60
+SEED = 3
+SOUTH_WEST, NORTH_EAST = (24.935, 60.1635), (24.955, 60.175)
+# Longitude, latitude, reach in metres, and the people that a driver meets on each metre.
+CROWDS = np.array(
+    [
+        [24.9436, 60.1710, 72.0, 3.0],  # the square before the railway station
+        [24.9421, 60.1664, 60.0, 2.2],  # Erottaja, where six streets meet
+        [24.9518, 60.1694, 60.0, 1.7],  # Senate Square
+        [24.9385, 60.1690, 56.0, 2.0],  # Kamppi
+    ]
+)
+USUAL = 0.004  # people on a metre of any other street
+
+
+def helsinki(router_url: str) -> dict[str, Any]:
+    """Return the request, of the times and streets that the Valhalla at this address tells."""
+    return asyncio.run(_request(router_url))
+
+
+async def reachable_places(router_url: str, n: int, seed: int) -> Array:
+    """Return n places, shape (n, 2), by road in reach of each other.
+
+    They are the first of random ones without those that refusals name.
+    """
+    rng = np.random.default_rng(seed)
+    places = rng.uniform(SOUTH_WEST, NORTH_EAST, (n + n // 4 + 10, 2)).round(5)
+    client = RoadClient(RouterSettings(url=router_url, seconds=120.0))
+    try:
+        while True:
+            try:
+                await client.costs(places, _ids(len(places)))
+            except (NoRoad, OffRoad) as refused:
+                pointers = "".join(fault.pointer or "" for fault in refused.errors)
+                named = {int(index) for index in re.findall(r"\d+", pointers)}
+                places = np.delete(places, sorted(named), axis=0)
+            else:
+                return places[:n]
+    finally:
+        await client.close()
+
+
+async def _request(router_url: str) -> dict[str, Any]:
+    places = await reachable_places(router_url, STOPS, SEED)
+    ids = _ids(STOPS)
+    client = RoadClient(RouterSettings(url=router_url, seconds=120.0))
+    try:
+        costs = await client.costs(places, ids)
+        streets = await client.streets(places, ids, list(permutations(range(STOPS), 2)))
+    finally:
+        await client.close()
+    located = zip(ids, places.tolist(), strict=True)
+    return {
+        "stops": [{"id": id_, "location": place} for id_, place in located],
+        "objectives": [
+            {"name": "time", "unit": "s", "matrix": costs.seconds.astype(np.int64).tolist()},
+            {"name": "people met", "unit": "people", "matrix": _people(streets).tolist()},
+        ],
+        "time_limit": 1.0,
+        "seed": 1,
+    }
+
+
+def _ids(n: int) -> list[str]:
+    return ["depot", *(f"order-{number}" for number in range(1, n))]
+
+
+def _people(streets: Mapping[Leg, Line]) -> NDArray[np.int64]:
+    """Return how many people are met on the way from each stop to each, shape (n, n)."""
+    people = np.zeros((STOPS, STOPS), dtype=np.int64)
+    for leg, line in streets.items():
+        people[leg] = round(_people_along(np.array(line)))
+    return people
+
+
+def _people_along(line: Array) -> float:
+    """Return how many people are met along a line of places, shape (p, 2)."""
+    middles = (line[:-1] + line[1:]) / 2
+    people = np.full(len(middles), USUAL)
+    for lon, lat, reach, most in CROWDS:
+        crowd = np.broadcast_to((lon, lat), middles.shape)
+        squared = great_circle_distances(middles, crowd) ** 2
+        people += most * np.exp(-squared / (2 * reach**2))
+    return float(people @ great_circle_distances(line[:-1], line[1:]))
