@@ -52,7 +52,7 @@ def runner_of(*actors: NamedActor, limits: Limits = LIMITS, warm: Path | None = 
     by_name = {actor.info.name: actor for actor in actors or ACTORS}
     if warm is None:
         return partial(TaskRunner, by_name, limits)
-    return partial(ColdRunner, by_name, limits, warm)
+    return partial(ColdRunner, by_name, limits, warm=warm)
 
 
 def workers_of(
