@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,17 @@ OBJECTIVES = 2  # lengths of a tour
 PLANE = 2  # coordinates of a city in the plane of an objective
 MAX_SYMMETRIES = 8  # of a square
 MOST_SPREAD = 2.0**-1000  # of a matrix's largest cost; below it a scaled cost would vanish
+
+
+class RouteEnds(NamedTuple):
+    """Whether the tours of an instance are closed, and the fixed ends of open ones."""
+
+    closed: bool = True
+    start: int | None = None
+    end: int | None = None
+
+
+CLOSED = RouteEnds()
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +135,11 @@ class Instance:
                 return np.ptp(self.coordinates, axis=0).reshape(OBJECTIVES, PLANE).max(axis=1)
         assert self.matrices is not None
         return self.matrices.max(axis=(1, 2))
+
+    @property
+    def ends(self) -> RouteEnds:
+        """Whether tours are closed, and the fixed ends of open routes."""
+        return RouteEnds(self.closed, self.start, self.end)
 
     @property
     def fixed_ends(self) -> tuple[int, ...]:

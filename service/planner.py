@@ -80,6 +80,7 @@ class Front:
         timings: Milliseconds by phase.
         bound: A hypervolume that no front of the instance exceeds, where it was asked for.
         gained: The hypervolume that the search added to that of the tours it was given.
+        closed: Whether the tours return to where they began.
     """
 
     tours: NDArray[np.integer]
@@ -92,6 +93,7 @@ class Front:
     timings: dict[str, float]
     bound: float | None = None
     gained: float | None = None
+    closed: bool = True
 
     @property
     def n(self) -> int:
@@ -163,6 +165,7 @@ def plan(
         timings=clock.phases,
         bound=bound,
         gained=gained if options.time_limit > 0 else None,
+        closed=instance.closed,
     )
 
 
@@ -250,6 +253,7 @@ def _report_front(
             reference_point=_reference_point(instance, options),
             terminated=None,
             timings={},
+            closed=instance.closed,
         )
 
     report(progress, best_front)

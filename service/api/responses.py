@@ -107,6 +107,9 @@ class FrontAnswer(BaseModel):
         " nothing better in its neighbourhoods, which proves nothing. Where `time_limit` is 0 there"
         " was no search, and it says that all tours asked for were built"
     )
+    closed: bool | SkipJsonSchema[None] = Field(
+        default=None, description="false where tours are open routes, left out where closed"
+    )
     objectives: list[ObjectiveName] | SkipJsonSchema[None] = Field(
         default=None, description="as the request names them"
     )
@@ -123,9 +126,11 @@ class AcceptedAnswer(BaseModel):
 
 
 class PathItem(BaseModel):
-    """A closed way over the map, through all places in the order of a tour."""
+    """A way over the map, through all places in the order of a tour."""
 
-    cells: list[list[int]] = Field(description="row and column of each, the first also last")
+    cells: list[list[int]] = Field(
+        description="row and column of each; of a closed tour the first is also the last"
+    )
     metres: float
     points: list[list[float]] | SkipJsonSchema[None] = Field(
         default=None,

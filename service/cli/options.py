@@ -5,6 +5,9 @@ from typing import Annotated
 
 from typer import Argument, Option
 
+ANY = "any"  # the value of --start where any city will do: null in a request
+
+
 File = Annotated[
     Path,
     Argument(
@@ -30,7 +33,19 @@ Size = Annotated[int | None, Option(help="The most tours to give.", show_default
 Start = Annotated[int | None, Option(help="The city to report tours from.", show_default="0")]
 StartOrId = Annotated[
     str | None,
-    Option("--start", help="The city to report tours from, by index or id.", show_default="0"),
+    Option(
+        "--start",
+        help="The city to report tours from, by index or id; with --open the start, or `any`.",
+        show_default="0",
+    ),
+]
+Open = Annotated[
+    bool | None, Option("--open", help="Plan open routes, which do not return to their start.")
+]
+End = Annotated[int | None, Option(help="The city at which open routes end.", show_default="any")]
+EndOrId = Annotated[
+    str | None,
+    Option("--end", help="The city at which open routes end, by index or id.", show_default="any"),
 ]
 Augment = Annotated[
     int | None, Option(help="How many symmetries of the cities the network sees.", show_default="1")

@@ -9,6 +9,7 @@ from paretour import CoverageRequest, FrontRequest, Plan, coverage_plan, front_p
 from service.cli.csv_tables import Ids
 from service.cli.errors import UsageError
 from service.cli.files import read_layer, read_map, read_request
+from service.cli.options import ANY
 
 _SECOND_OBJECTIVES = ("second_matrix", "cost_layer", "second_coordinates")
 
@@ -31,9 +32,9 @@ def plan_cities(
         UsageError: `angles` are not numbers with commas between.
     """
     request, ids = read_request([file] if file2 is None else [file, file2], unrounded=unrounded)
-    start = _parse_start(options.get("start"), ids or ())
+    ends = {name: _parse_end(options.get(name), ids or ()) for name in ("start", "end")}
     preferences = _parse_numbers(angles, "--angles")
-    given = _without_none({**options, "start": start, "preferences": preferences})
+    given = _without_none({**options, **ends, "preferences": preferences})
     return front_plan(cast(FrontRequest, {**request, **given})), ids
 
 
@@ -68,7 +69,7 @@ def _check_complete(request: Mapping[str, Any]) -> None:
         raise UsageError(f"a map cannot be covered without {', '.join(missing)}")
 
 
-def _parse_start(text: str | None, ids: Sequence[str]) -> int | str | None:
+def _parse_end(text: str | None, ids: Sequence[str]) -> int | str | None:
     """Return the index of a city that is given as such, or by an id of the file; else the text."""
     if text is None or text in ids:
         return None if text is None else ids.index(text)
@@ -84,4 +85,6 @@ def _parse_numbers(text: str | None, option: str) -> list[float] | None:
 
 
 def _without_none(options: Options) -> dict[str, Any]:
-    return {name: value for name, value in options.items() if value is not None}
+    """Return the options that were given, with null for `any`."""
+    given = {name: value for name, value in options.items() if value is not None}
+    return {**given, "start": None} if given.get("start") == ANY else given

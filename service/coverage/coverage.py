@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from service.coverage.frame import MapFrame
 from service.errors import InvalidCoverage
+from service.instance import CLOSED, RouteEnds
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -28,7 +29,8 @@ class Coverage:
         places: Rows and columns of the places, shape (n, 2).
         spacing: In metres. The places cover the region of the start pose, or without one the
             largest free region: one in each square of this side.
-        start: The place from which all tours are reported.
+        start: The place from which all tours are reported, and all others must be reachable.
+        ends: Whether tours are closed, and the places at which open routes start and end.
         start_pose: Instead, x and y in the frame of the map, and maybe more, which is disregarded:
             a place of its own, if none is there.
         second_matrix: Costs between places, shape (n, n).
@@ -47,6 +49,7 @@ class Coverage:
     places: Cells | None = None
     spacing: float | None = None
     start: int = 0
+    ends: RouteEnds = CLOSED
     start_pose: Sequence[float] | None = None
     second_matrix: Array | None = None
     cost_layer: Array | None = None

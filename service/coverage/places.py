@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from service.coverage.coverage import Coverage
 from service.coverage.grid import covering_places, largest_region, region_of, regions
 from service.errors import InvalidCoverage, TooManyPlaces
+from service.instance import RouteEnds
 
 Mask = NDArray[np.bool_]
 Cells = NDArray[np.int64]
@@ -16,10 +17,14 @@ Cells = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Places:
-    """The places that tours go through: rows and columns, shape (n, 2), and the one to start at."""
+    """The places that tours go through: rows and columns, shape (n, 2), and the one to start at.
+
+    `ends` says whether tours are closed, and at which places open routes start and end.
+    """
 
     cells: Cells
     start: int
+    ends: RouteEnds
 
 
 def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
@@ -38,7 +43,7 @@ def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
     pose = _pose_cell(coverage, free)
     cells = _given_or_laid_out(coverage, free, pose)
     names = [f"places/{i}" for i in range(len(cells))]
-    start = coverage.start
+    start, ends = coverage.start, coverage.ends
     if pose is not None:
         found = np.flatnonzero((cells == pose).all(axis=1))
         start = int(found[0]) if len(found) else len(cells)
@@ -47,7 +52,9 @@ def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
             cells, names = np.vstack((cells, pose)), [*names, "start_pose"]
     if coverage.spacing is not None and len(cells) > max_places:
         raise TooManyPlaces(max_places, len(cells))
-    places = Places(cells, start)
+    if pose is not None and not ends.closed:
+        ends = ends._replace(start=start)
+    places = Places(cells, start, ends)
     _raise_any(_miscounted(coverage, places))
     _raise_any(_unreachable(places, names, free))
     return places
@@ -101,8 +108,12 @@ def _check_costs_anywhere(coverage: Coverage) -> None:
 
 def _miscounted(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
     n = len(places.cells)
-    if places.start >= n:
-        yield "start", f"must be a place, 0 to {n - 1}, got {places.start}"
+    end = places.ends.end
+    for name, place in (("start", places.start), ("end", end)):
+        if place is not None and place >= n:
+            yield name, f"must be a place, 0 to {n - 1}, got {place}"
+    if n > 1 and places.ends.start == end is not None:
+        yield "end", f"must not be the start, or tours are closed, got {end}"
     for name in ("second_matrix", "second_coordinates"):
         rows = getattr(coverage, name)
         if rows is not None and len(rows) != n:

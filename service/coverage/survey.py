@@ -27,7 +27,7 @@ from service.coverage.shortest_paths import (
     trace_path,
 )
 from service.errors import Cancelled, InvalidCoverage, Refusal
-from service.instance import Instance
+from service.instance import Instance, tour_lengths, tour_steps
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -36,7 +36,7 @@ Cells = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class CoveragePath:
-    """The closed path of a tour: rows and columns, shape (m, 2), the first also last.
+    """The path of a tour: rows and columns, shape (m, 2); of a closed one, the first also last.
 
     The frame is that of the map, where it is known.
     """
@@ -78,18 +78,18 @@ class Survey:
             Refusal: The paths have more cells than that.
             Cancelled: `stop` returned True.
         """
-        following = np.roll(tours, -1, axis=1)
-        cells = self.steps[tours, following].sum(axis=1, dtype=np.int64) + 1
+        origins, ends = tour_steps(self.instance, tours)
+        cells = self.steps[origins, ends].sum(axis=1, dtype=np.int64) + 1
         if most_cells is not None and cells.sum() > most_cells:
             raise _paths_too_long(most_cells, cells)
-        steps = np.unique(np.sort(np.stack((tours.ravel(), following.ravel()), axis=1)), axis=0)
+        steps = np.unique(np.sort(np.stack((origins.ravel(), ends.ravel()), axis=1)), axis=0)
         paths = dict(self._paths_of_steps(steps.tolist(), stop))
-        assert self.instance.matrices is not None
-        for tour, successors in zip(tours.tolist(), following.tolist(), strict=True):
+        lengths = tour_lengths(self.instance, tours)[:, 0].tolist()
+        each = zip(tours, origins.tolist(), ends.tolist(), lengths, strict=True)
+        for tour, begins, stops, metres in each:
             _check(stop)
-            legs = [paths[step] for step in zip(tour, successors, strict=True)]
-            cells = np.concatenate([legs[0], *(leg[1:] for leg in legs[1:])])
-            metres = float(self.instance.matrices[0, tour, successors].sum())
+            legs = [paths[step][1:] for step in zip(begins, stops, strict=True)]
+            cells = np.concatenate([self.places[tour[:1]], *legs])
             yield CoveragePath(cells, metres, self.frame)
 
     def _paths_of_steps(
@@ -139,7 +139,7 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
     lengths, costs = pairwise_paths(grid, cell_numbers(grid, cells), stop, steps)
     _check(stop)
     matrices = np.stack((coverage.cell_size * lengths, _second_objective(coverage, costs)))
-    instance = Instance(matrices=matrices)
+    instance = Instance(matrices=matrices, **places.ends._asdict())
     return Survey(cells, places.start, instance, grid, steps, coverage.frame)
 
 

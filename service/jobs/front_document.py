@@ -61,6 +61,7 @@ class FrontDocument:
         scale: The same.
         actor: Name and digest of the network; None where it built no tours.
         places: Row and column of each place of a coverage task.
+        closed: False where tours are open routes; None where they are closed.
         objectives: Name and unit of each objective, where the caller named them.
         stops: Id and location of each stop, where the caller named them.
         tours: The JSON of all tours, with commas between, without brackets.
@@ -79,6 +80,7 @@ class FrontDocument:
     terminated: Termination | None
     actor: Mapping[str, str] | None
     places: list[list[int]] | None = None
+    closed: bool | None = None
     objectives: list[dict[str, Any]] | None = None
     stops: list[dict[str, Any]] | None = None
     tours: bytes = b""
@@ -213,6 +215,7 @@ def encode_front(
         terminated=front.terminated,
         actor=actor if front.constructed else None,
         places=places,
+        closed=None if front.closed else False,
         **_named(labels),
         tours=tours,
         ends=ends,
@@ -272,5 +275,6 @@ def empty_front(task: Task) -> FrontDocument:
         terminated=None,
         actor=None,
         places=places,
+        closed=None if subject.ends.closed else False,
         **_named(task.labels),
     )

@@ -9,7 +9,7 @@ from pydantic import Field, GetPydanticSchema, ValidationInfo
 from pydantic_core.core_schema import with_info_after_validator_function
 
 from service.coverage.coverage import Coverage
-from service.instance import Kind
+from service.instance import Kind, RouteEnds
 from service.requests.arrays import Array, check_costs, square_array
 from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
 from service.requests.maps.fields import ABSENT, Layer, MapRequest, describe_map, empty_array
@@ -77,6 +77,12 @@ class CoverageRequest(MapRequest):
         """The kind of instance that an actor has to read."""
         return "matrices"
 
+    @property
+    def ends(self) -> RouteEnds:
+        """Whether tours are closed, and where open routes start and end, if not at the pose."""
+        given = super().ends
+        return given._replace(start=None) if self.start_pose else given
+
     def coverage(self) -> Coverage:
         """Return the map and its places as a coverage task."""
         points = self.second_coordinates
@@ -87,7 +93,8 @@ class CoverageRequest(MapRequest):
             robot_radius=self.robot_radius,
             places=np.array(self.places, dtype=np.int64) if self.places else None,
             spacing=self.spacing or None,
-            start=self.start,
+            start=self.start or 0,
+            ends=self.ends,
             start_pose=self.start_pose or None,
             second_matrix=self.second_matrix if self.second_matrix.size else None,
             cost_layer=self.cost_layer if self.cost_layer.size else None,

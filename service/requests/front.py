@@ -12,7 +12,7 @@ from pydantic_core.core_schema import no_info_after_validator_function
 from service.instance import MAX_SYMMETRIES, OBJECTIVES, Instance, Kind
 from service.planner import PlanOptions
 from service.requests.arrays import stack_matrices
-from service.requests.schemas import ArrayRows, AsInteger, Number, PlanRequest
+from service.requests.schemas import END, START, ArrayRows, AsInteger, Number, PlanRequest
 from service.requests.stop_fields import (
     ObjectiveItem,
     StopItem,
@@ -69,8 +69,11 @@ class FrontRequest(PlanRequest):
         Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
     ] = Field(default_factory=list, description="both, each with the costs between the stops")
     # Once a request is checked these hold indexes alone, as those of every PlanRequest do.
-    start: StopReference = Field(  # type: ignore[assignment]
-        default=0, description="the city that every tour is reported from, by index or id"
+    start: StopReference | None = Field(  # type: ignore[assignment]
+        default=0, description=f"{START}; by index or id"
+    )
+    end: StopReference | None = Field(  # type: ignore[assignment]
+        default=None, description=f"{END}; by index or id"
     )
     initial_tours: Annotated[
         list[Annotated[list[StopReference], Field(fail_fast=True)]],
@@ -114,10 +117,13 @@ class FrontRequest(PlanRequest):
     def subject(self) -> Instance | UnmeasuredStops:
         """Return the cities as an instance, or the stops whose costs are still to be measured."""
         if self.stops:
-            return make_instance(self.unmeasured) if self.unmeasured.measured else self.unmeasured
+            # Only a checked request has the indexes of its ends.
+            stops = replace(self.unmeasured, ends=self.ends)
+            return make_instance(stops) if stops.measured else stops
+        ends = self.ends._asdict()
         if self.kind == "matrices":
-            return Instance(matrices=self.matrices)
-        return Instance(coordinates=np.array(self.coordinates, dtype=np.float64))
+            return Instance(matrices=self.matrices, **ends)
+        return Instance(coordinates=np.array(self.coordinates, dtype=np.float64), **ends)
 
     def options(self) -> PlanOptions:
         """Return the options for the planner."""

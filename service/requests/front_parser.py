@@ -84,7 +84,11 @@ def _by_index(request: FrontRequest) -> FrontRequest:
         _indexes(tour, ids, f"initial_tours/{number}")
         for number, tour in enumerate(request.initial_tours)
     ]
-    found = {"start": find_index(request.start, ids, "start"), "initial_tours": tours}
+    ends = {
+        name: None if reference is None else find_index(reference, ids, name)
+        for name, reference in (("start", request.start), ("end", request.end))
+    }
+    found = {**ends, "initial_tours": tours}
     given = request.model_fields_set
     return request.model_copy(update={name: found[name] for name in found if name in given})
 

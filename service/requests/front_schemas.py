@@ -61,12 +61,17 @@ def _limit_cities(fields: Schema, most: int) -> None:
 def _by_index(schema: Schema) -> Schema:
     """Return the schema of a request whose cities have indexes alone, and no ids."""
     fields = schema["properties"]
-    start, tours = fields["start"], fields["initial_tours"]
-    index, _ = start["oneOf"]
+    tours = fields["initial_tours"]
     place, _ = tours["items"]["items"]["oneOf"]
-    start = {**{k: v for k, v in start.items() if k != "oneOf"}, **index}
     tours = {**tours, "items": {**tours["items"], "items": place}}
-    return _with(schema, start=start, initial_tours=tours)
+    start, end = (_by_index_or_null(fields[name]) for name in ("start", "end"))
+    return _with(schema, start=start, end=end, initial_tours=tours)
+
+
+def _by_index_or_null(field: Schema) -> Schema:
+    reference, null = field["anyOf"]
+    index, _ = reference["oneOf"]
+    return {**field, "anyOf": [index, null]}
 
 
 def _unaugmented(schema: Schema) -> Schema:

@@ -67,8 +67,7 @@ def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
     Raises:
         Refusal: Over a limit, or a start or an initial tour that does not fit n cities.
     """
-    if request.start >= n:
-        raise invalid("start", f"must be a city, 0 to {n - 1}, got {request.start}")
+    _check_ends(request, n)
     asked = {
         "preferences": (limits.preferences, request.preference_count),
         "size": (limits.size, request.size),
@@ -80,10 +79,28 @@ def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
     if request.arrivals:
         _check_arrivals(min(request.size, limits.size), n, limits.path_cells)
     _check_limit("initial_tours", limits.size, len(request.initial_tours))
+    ends = request.ends
     for index, tour in enumerate(request.initial_tours):
         if len(tour) != n or sorted(tour) != list(range(n)):
             demand = f"must visit each city, 0 to {n - 1}, once"
             raise invalid(f"initial_tours/{index}", demand)
+        for name, place, city in (("start", 0, ends.start), ("end", -1, ends.end)):
+            if city is not None and tour[place] != city:
+                demand = f"must {name} at city {city}, got {tour[place]}"
+                raise invalid(f"initial_tours/{index}", demand)
+
+
+def _check_ends(request: PlanRequest, n: int) -> None:
+    """Raise a refusal where the ends of open routes do not fit n cities, or tours are closed."""
+    for name, city in (("start", request.start), ("end", request.end)):
+        if city is not None and city >= n:
+            raise invalid(name, f"must be a city, 0 to {n - 1}, got {city}")
+    if request.closed and request.end is not None:
+        raise invalid("end", f"is for open routes, with closed false, got {request.end}")
+    if request.closed and request.start is None:
+        raise invalid("start", "must be a city where tours are closed, got null")
+    if not request.closed and n > 1 and request.ends.start == request.end is not None:
+        raise invalid("end", f"must not be the start, or tours are closed, got {request.end}")
 
 
 def check_reference_point(instance: Instance, options: PlanOptions) -> None:
@@ -140,8 +157,10 @@ def limited_schema(
     for name, default in defaults(limits).items():
         fields[name]["default"] = default
     del fields["preferences"]["default"]  # it depends on the time limit
-    index, *_ = fields["start"].get("oneOf", [fields["start"]])
-    index["maximum"] = limits.cities - 1
+    for name in ("start", "end"):
+        reference, _ = fields[name]["anyOf"]  # the other is null
+        index, *_ = reference.get("oneOf", [reference])
+        index["maximum"] = limits.cities - 1
     del fields["actor"]["default"]
     fields["actor"]["enum"] = sorted(actors)
     fields["time_limit"]["maximum"] = limits.seconds

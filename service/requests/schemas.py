@@ -5,7 +5,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
-from service.instance import OBJECTIVES
+from service.instance import CLOSED, OBJECTIVES, RouteEnds
 from service.planner import PlanOptions
 from service.preferences import fan
 
@@ -16,6 +16,13 @@ _MOST_INTEGER = 2**31 - 1
 LONGEST_TEXT = 100  # characters of an id, a name or a unit
 # No controls, no ends of lines, nothing that turns the direction of the text around it, no BOM.
 PRINTABLE = r"^[^\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069\ufeff]+$"
+
+
+START = (
+    "the city that every tour is reported from; of open routes the one at which they start, or null"
+    " where that may be any"
+)
+END = "of open routes, the city at which they end; null where that may be any"
 
 
 def _integer(value: object) -> object:
@@ -58,9 +65,12 @@ class PlanRequest(BaseModel):
         description="seconds of all planning, at most; 0 asks for the network's tours alone",
     )
     size: PositiveInteger = Field(default=100, description="the most tours to return")
-    start: NonNegativeInteger = Field(
-        default=0, description="the city that every tour is reported from"
+    closed: bool = Field(
+        default=True,
+        description="whether tours return to where they began; if not, they are open routes",
     )
+    start: NonNegativeInteger | None = Field(default=0, description=START)
+    end: NonNegativeInteger | None = Field(default=None, description=END)
     reference_point: list[PositiveNumber] = Field(
         default_factory=list,
         min_length=OBJECTIVES,
@@ -97,6 +107,13 @@ class PlanRequest(BaseModel):
         """The number of preferences, given as such or as angles."""
         return self.preferences if isinstance(self.preferences, int) else len(self.preferences)
 
+    @property
+    def ends(self) -> RouteEnds:
+        """Whether tours are closed, and where open routes start and end."""
+        if self.closed:
+            return CLOSED
+        return RouteEnds(closed=False, start=self.start, end=self.end)
+
     def options(self) -> PlanOptions:
         """Return the options for the planner."""
         angles = self.preferences
@@ -104,7 +121,7 @@ class PlanRequest(BaseModel):
             angles=fan(angles) if isinstance(angles, int) else np.array(angles),
             fewer="preferences" not in self.model_fields_set,
             size=self.size,
-            start=self.start,
+            start=self.start or 0,
             reference_point=np.array(self.reference_point) if self.reference_point else None,
             time_limit=self.time_limit,
             initial_tours=np.array(self.initial_tours) if self.initial_tours else None,

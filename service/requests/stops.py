@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import OBJECTIVES, Instance, Kind
+from service.instance import CLOSED, OBJECTIVES, Instance, Kind, RouteEnds
 from service.roads.great_circle import great_circle_matrix
 
 Array = NDArray[np.float64]
@@ -74,10 +74,12 @@ class UnmeasuredStops:
         locations: Longitude and latitude of each stop in degrees, shape (n, 2); NaN where a stop
             has none, which no measure allows.
         sources: The source of the costs of each objective.
+        ends: Whether tours are closed, and the fixed ends of open routes.
     """
 
     locations: Array
     sources: Sequence[Source]
+    ends: RouteEnds = CLOSED
 
     @property
     def n(self) -> int:
@@ -125,10 +127,11 @@ def make_instance(stops: UnmeasuredStops) -> Instance:
         InvalidInstance: The costs are too large, or too far apart, to be planned.
     """
     planes = [source.points for source in stops.sources if isinstance(source, Plane)]
+    ends = stops.ends._asdict()
     if len(planes) == OBJECTIVES:
-        return Instance(coordinates=np.concatenate(planes, axis=1))
+        return Instance(coordinates=np.concatenate(planes, axis=1), **ends)
     costs = [_costs(source, stops.locations) for source in stops.sources]
-    return Instance(matrices=np.stack(costs))
+    return Instance(matrices=np.stack(costs), **ends)
 
 
 def _costs(source: Source, locations: Array) -> Array:

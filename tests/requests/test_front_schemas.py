@@ -39,8 +39,10 @@ def test_every_form_is_there_and_every_reference_leads_to_a_schema() -> None:
 
 def test_an_id_may_stand_for_an_index_among_stops_alone() -> None:
     def types(form: str) -> list[Any]:
-        start = SCHEMAS[form]["properties"]["start"]
-        return [each["type"] for each in start.get("oneOf", [start])]
+        for end in ("start", "end"):
+            reference, null = SCHEMAS[form]["properties"][end]["anyOf"]
+            assert null == {"type": "null"}
+        return [each["type"] for each in reference.get("oneOf", [reference])]
 
     assert types("StopsRequest") == types("StopsFileRequest") == ["integer", "string"]
     assert types("CoordinatesRequest") == types("MatricesRequest") == ["integer"]

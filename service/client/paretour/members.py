@@ -11,6 +11,7 @@ class PlanRequest(TypedDict, total=False):
 
     preferences: int | ArrayLike
     time_limit: float
+    closed: bool
     size: int
     reference_point: ArrayLike
     initial_tours: ArrayLike
@@ -51,7 +52,8 @@ class FrontRequest(PlanRequest, total=False):
     matrices: ArrayLike
     stops: Sequence[StopRequest]
     objectives: Sequence[ObjectiveRequest]
-    start: int | str
+    start: int | str | None
+    end: int | str | None
     augment: int
 
 
@@ -60,7 +62,8 @@ class CoverageRequest(PlanRequest, total=False):
 
     grid: ArrayLike
     occupancy_grid: Mapping[str, Any]
-    start: int
+    start: int | None
+    end: int | None
     cell_size: float
     origin: ArrayLike
     mode: Literal["trinary", "scale", "raw"]
