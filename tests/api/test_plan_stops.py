@@ -135,3 +135,45 @@ def test_nothing_of_the_stops_is_logged(
     assert "/front" in logged
     assert "order-" not in logged
     assert "24.9" not in logged
+
+
+def test_an_open_route_leads_from_one_id_to_another(client: httpx.Client) -> None:
+    request = {**REQUEST, "closed": False, "end": "depot", "bound": True}
+    front = client.post("/front", json=request).json()
+    assert front["closed"] is False
+    assert {(item["stops"][0], item["stops"][-1]) for item in front["front"]} == {
+        ("order-3", "depot")
+    }
+    matrices = np.stack((great_circle_matrix(LOCATIONS), COSTS))
+    instance = Instance(matrices=matrices, closed=False, start=3, end=0)
+    tours = np.array([item["tour"] for item in front["front"]])
+    lengths = [item["lengths"] for item in front["front"]]
+    np.testing.assert_allclose(lengths, tour_lengths(instance, tours))
+    assert front["hypervolume"] <= front["hypervolume_bound"] * (1 + 1e-9)
+
+
+def test_an_open_route_may_start_and_end_anywhere(client: httpx.Client) -> None:
+    free = client.post("/front", json={**REQUEST, "closed": False, "start": None}).json()
+    fixed = client.post("/front", json={**REQUEST, "closed": False}).json()
+    closed = client.post("/front", json=REQUEST).json()
+    assert "closed" not in closed
+    assert closed["hypervolume"] < fixed["hypervolume"] < free["hypervolume"]
+    assert len({item["stops"][0] for item in free["front"]}) > 1
+
+
+@pytest.mark.parametrize(
+    ("members", "detail"),
+    [
+        ({"end": "depot"}, "end is for open routes, with closed false, got 0"),
+        ({"closed": False, "end": "order-3"}, "end must not be the start"),
+        ({"closed": False, "end": "order-33"}, "end must be the id of a stop"),
+        ({"closed": False, "end": 9}, "end must be a city, 0 to 8, got 9"),
+        ({"closed": "no"}, "closed must be a valid boolean"),
+        ({"closed": None}, "closed must be a valid boolean"),
+    ],
+)
+def test_ends_that_no_route_can_have_are_named(
+    client: httpx.Client, members: dict[str, Any], detail: str
+) -> None:
+    refused = problem(client.post("/front", json={**REQUEST, **members}), 422, "invalid-request")
+    assert refused["detail"].startswith(detail)

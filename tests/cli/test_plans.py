@@ -23,6 +23,17 @@ def test_options_stand_over_the_file_where_they_are_given(tmp_path: Path) -> Non
     }
 
 
+def test_any_start_is_null_in_the_request(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("1,2,3,4\n")
+    plan, _ = plan_cities(tmp_path / "a.csv", options={"start": "any", "closed": False, "end": 2})
+    assert plan.request == {
+        "coordinates": [[1, 2, 3, 4]],
+        "start": None,
+        "end": 2,
+        "closed": False,
+    }
+
+
 def test_two_files_are_one_plan(tmp_path: Path) -> None:
     for name in ("a.csv", "b.csv"):
         (tmp_path / name).write_text("0,1,2\n3,0,4\n5,6,0\n")

@@ -8,7 +8,7 @@ import pytest
 
 from service.coverage.survey import Coverage, survey
 from service.errors import Cancelled, InvalidCoverage, Refusal, TooManyPlaces
-from service.instance import tour_lengths
+from service.instance import RouteEnds, tour_lengths
 
 ROOT2 = np.sqrt(2)
 # A room with a wall that leaves a way round on the right: 1 is an obstacle.
@@ -98,6 +98,34 @@ def test_paths_go_from_place_to_place_and_are_as_long_as_they_say() -> None:
         assert 0.5 * np.hypot(*steps.T).sum() == pytest.approx(path.metres)
         visited = [path.cells.tolist().index(place) for place in PLACES[tour].tolist()]
         assert visited == sorted(visited)
+
+
+def test_the_path_of_an_open_route_leads_from_its_start_to_its_end() -> None:
+    found = survey(room(ends=RouteEnds(closed=False, start=1, end=0)), 10, never)
+    assert found.instance.fixed_ends == (1, 0)
+    tour = np.array([[1, 2, 0]])
+    [path] = found.paths(tour)
+    np.testing.assert_array_equal(path.cells[[0, -1]], PLACES[[1, 0]])
+    assert path.metres == pytest.approx(tour_lengths(found.instance, tour)[0, 0])
+    assert 0.5 * np.hypot(*np.diff(path.cells, axis=0).T).sum() == pytest.approx(path.metres)
+    assert len(list(found.paths(tour, len(path.cells)))) == 1
+    with pytest.raises(Refusal, match="cells"):
+        list(found.paths(tour, len(path.cells) - 1))
+
+
+def test_an_open_route_through_one_place_is_a_path_of_one_cell() -> None:
+    only = {"places": PLACES[:1], "second_matrix": np.zeros((1, 1))}
+    found = survey(room(**only, ends=RouteEnds(closed=False, start=0)), 10, never)
+    [path] = found.paths(np.array([[0]]))
+    assert (path.cells.tolist(), path.metres) == (PLACES[:1].tolist(), 0.0)
+
+
+@pytest.mark.parametrize(
+    ("end", "sentence"), [(3, "end must be a place, 0 to 2, got 3"), (1, "must not be the start")]
+)
+def test_an_end_that_no_route_can_have_is_refused(end: int, sentence: str) -> None:
+    with pytest.raises(InvalidCoverage, match=sentence):
+        survey(room(ends=RouteEnds(closed=False, start=1, end=end)), 10, never)
 
 
 def test_paths_of_too_many_cells_are_refused_before_any_is_traced(

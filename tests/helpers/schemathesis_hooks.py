@@ -23,7 +23,7 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
     """Make a request that the schema allows one that the service accepts.
 
     The rules: a matrix is square; its costs are not negative but on the diagonal; some actors read
-    no matrices; a start is one of the cities; a tour visits each of them once; stops have ids of
+    no matrices; an end is one of the cities, and of open routes; a tour visits each of them once; stops have ids of
     their own, and costs as many as they are; places are free cells of a grid; an idempotency key
     belongs to one body.
     """
@@ -55,6 +55,7 @@ def _make_coverable(body: dict[str, Any]) -> None:
     body.pop("start_pose", None)
     if "grid" in body:
         body["grid"] = [[0, 0], [0, 0]]
+    body.pop("end", None)
     n = 2 if "places" in body else 1
     fit = {
         "places": [[0, 0], [1, 1]],
@@ -77,16 +78,30 @@ def _make_plannable(body: dict[str, Any]) -> None:
         for m, objective in enumerate(body["objectives"])
     ]
     body |= {"start": "0", "augment": 1, "actor": "pa-one-matrix"}
+    body.pop("end", None)
     if "initial_tours" in body:
         body["initial_tours"] = [[f"{i}" for i in range(n)]]
 
 
 def _fit_to_cities(body: dict[str, Any], n: int) -> None:
-    """Replace a start and initial tours by such as fit n cities."""
+    """Replace ends and initial tours by such as fit n cities."""
     if isinstance(body.get("start"), int | float) and body["start"] >= n:
         body["start"] = 0
+    _fit_ends(body, n)
     if _are_tours(body.get("initial_tours")):
         body["initial_tours"] = [list(range(n))]
+
+
+def _fit_ends(body: dict[str, Any], n: int) -> None:
+    """Replace ends by such as n cities can have; routes of initial tours start anywhere."""
+    start, end = body.get("start", 0), body.get("end")
+    closed = body.get("closed", True)
+    if closed is True and start is None:
+        body["start"] = 0
+    if _is_city(end) and (closed is True or end >= n or end == start):
+        body["end"] = None
+    if closed is False and _are_tours(body.get("initial_tours")):
+        body |= {"start": None, "end": None}
 
 
 def _are_matrices(value: list[Any]) -> bool:

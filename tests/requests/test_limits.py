@@ -60,6 +60,42 @@ def test_a_start_must_be_a_city() -> None:
         check_limits(PlanRequest(start=N), N, LIMITS)
 
 
+@pytest.mark.parametrize(
+    ("members", "sentence"),
+    [
+        ({"end": 1}, "end is for open routes, with closed false, got 1"),
+        ({"start": None}, "start must be a city where tours are closed, got null"),
+        ({"closed": False, "end": N}, "end must be a city, 0 to 11, got 12"),
+        ({"closed": False, "end": 0}, "end must not be the start, or tours are closed, got 0"),
+        ({"closed": False, "start": 3, "end": 3}, "end must not be the start"),
+        (
+            {"closed": False, "initial_tours": [[*range(N)][::-1]]},
+            "initial_tours/0 must start at city 0, got 11",
+        ),
+        (
+            {"closed": False, "end": 4, "initial_tours": [[*range(N)]]},
+            "initial_tours/0 must end at city 4, got 11",
+        ),
+    ],
+)
+def test_ends_that_no_route_can_have_are_refused(members: Any, sentence: str) -> None:
+    with pytest.raises(Refusal, match=sentence):
+        check_limits(PlanRequest.model_validate(members), N, LIMITS)
+
+
+@pytest.mark.parametrize("ends", [(None, None), (0, None), (None, N - 1), (0, N - 1)])
+def test_ends_that_a_route_can_have_are_those_of_the_request(ends: tuple[Any, Any]) -> None:
+    start, end = ends
+    request = PlanRequest(closed=False, start=start, end=end, initial_tours=[list(range(N))])
+    check_limits(request, N, LIMITS)
+    assert request.ends == (False, start, end)
+
+
+def test_of_one_city_both_ends_are_the_same_and_closed_tours_have_none() -> None:
+    check_limits(PlanRequest(closed=False, start=0, end=0), 1, LIMITS)
+    assert PlanRequest(start=3).ends == (True, None, None)
+
+
 def test_a_default_over_a_limit_is_lowered_and_what_was_asked_for_is_not() -> None:
     silent = lower_defaults(PlanRequest(), LIMITS)
     assert (silent.preferences, silent.size) == (LIMITS.preferences, LIMITS.size)
@@ -72,5 +108,6 @@ def test_the_schema_has_the_limits_and_the_actors() -> None:
     fields = limited_schema(PlanRequest, LIMITS, ["b", "a"])["properties"]
     assert fields["size"]["maximum"] == fields["size"]["default"] == LIMITS.size
     assert fields["time_limit"]["maximum"] == LIMITS.seconds
-    assert fields["start"]["maximum"] == LIMITS.cities - 1
+    for name in ("start", "end"):
+        assert fields[name]["anyOf"][0]["maximum"] == LIMITS.cities - 1
     assert fields["actor"]["enum"] == ["a", "b"]
