@@ -23,9 +23,9 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
     """Make a request that the schema allows one that the service accepts.
 
     The rules: a matrix is square; its costs are not negative but on the diagonal; some actors read
-    no matrices; an end is one of the cities, and of open routes; a tour visits each of them once; stops have ids of
-    their own, and costs as many as they are; places are free cells of a grid; an idempotency key
-    belongs to one body.
+    no matrices; an end is one of the cities, and of open routes; a tour visits each of them once;
+    stops have ids of their own, and costs as many as they are; places are free cells of a grid; an
+    idempotency key belongs to one body.
     """
     if _is_key((case.headers or {}).get("Idempotency-Key")):
         case.headers["Idempotency-Key"] = uuid.uuid4().hex

@@ -99,6 +99,22 @@ def test_the_search_is_stopped_before_the_service_has_taken_it(page: Page) -> No
     expect(page.get_by_role("button", name="Plan")).to_be_enabled()
 
 
+def test_open_routes_lead_from_the_start_to_the_end(page: Page) -> None:
+    page.locator("#more > summary").click()
+    page.get_by_label("End city").fill("7")
+    page.get_by_label("Open routes").check()
+    page.get_by_label("Seconds of search").fill("0.2")
+    page.get_by_role("button", name="Plan").click()
+    expect(page.locator("#status")).to_contain_text("Done")
+    body = curl_body(page)
+    assert (body["closed"], body["start"], body["end"]) == (False, 0, 7)
+    page.locator("#order > summary").click()
+    expect(page.locator("#order p")).to_have_text(re.compile("^0 → .* → 7$"))
+    page.get_by_label("End city").fill("")
+    page.get_by_label("Start city").fill("")
+    assert curl_body(page)["start"] is None
+
+
 def test_what_the_service_refuses_is_said_at_the_field(page: Page) -> None:
     page.get_by_label("Seconds of planning").fill("soon")
     page.get_by_role("button", name="Plan").click()

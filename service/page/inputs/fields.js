@@ -8,6 +8,8 @@ const FIELDS = [
   { name: "size", label: "Tours", value: "100" },
   { name: "preferences", label: "Directions of the network", where: "more" },
   { name: "start", label: "Start city", value: "0", where: "more" },
+  { name: "end", label: "End city", where: "more" },
+  { name: "open", label: "Open routes: no way back to the start", where: "more", box: true },
   { name: "seed", label: "Seed", value: "0", where: "more" },
 ];
 
@@ -20,24 +22,33 @@ export class Fields {
     this.#coverage = form.querySelector("#coverage-fields");
     for (const field of FIELDS) {
       const place = field.where ? `#${field.where}-fields` : "#fields";
-      form.querySelector(place).append(made(field));
+      form.querySelector(place).append(field.box ? madeBox(field) : made(field));
     }
   }
 
   /** What is filled in. What is no number stays as it is, for the service to name. */
   get members() {
     const asked = FIELDS.filter(({ where }) => where !== "coverage" || !this.#coverage.hidden);
-    const given = asked.map(({ name }) => [name, this.#form[name].value.trim()]);
-    return Object.fromEntries(
-      given.filter(([, text]) => text).map(([name, text]) => [name, numberOr(text)]),
-    );
+    const texts = asked.filter(({ box }) => !box).map(({ name }) => [name, this.#form[name].value.trim()]);
+    const given = texts.filter(([, text]) => text).map(([name, text]) => [name, numberOr(text)]);
+    return { ...Object.fromEntries(given), ...this.#ends(given.map(([name]) => name)) };
+  }
+
+  /** What open routes need: that they are, and that an empty start leaves it to them. */
+  #ends(given) {
+    if (!this.#form.open.checked) return {};
+    return { closed: false, ...(given.includes("start") ? {} : { start: null }) };
   }
 
   /** Takes the settings that a request names, and gives back its other members. */
   take(request, kind) {
     const rest = { ...request };
     this.#coverage.hidden = kind !== "grid";
-    for (const { name, where } of FIELDS) {
+    this.#form.open.checked = request.closed === false;
+    delete rest.closed;
+    if (request.start === null) this.#form.start.value = "";
+    for (const { name, where, box } of FIELDS) {
+      if (box) continue;
       if (where === "coverage") this.#form[name].value = "";
       // What is there and no number, as a list of angles, is left as it is, unless one is typed.
       if (request[name] != null) this.#form[name].value = "";
@@ -52,6 +63,13 @@ export class Fields {
 function numberOr(text) {
   const number = Number(text);
   return Number.isNaN(number) ? text : number;
+}
+
+function madeBox({ name, label }) {
+  const caption = Object.assign(document.createElement("label"), { className: "box" });
+  const input = Object.assign(document.createElement("input"), { id: name, name, type: "checkbox" });
+  caption.append(input, label);
+  return caption;
 }
 
 function made({ name, label, value = "" }) {

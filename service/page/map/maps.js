@@ -43,9 +43,9 @@ export class Maps {
     if (this.#kind === "grid" && places) this.#grid.place(places);
   }
 
-  /** Draws a tour as "selected" or "pinned"; null takes it away. */
-  draw(name, item) {
+  /** Draws a tour as "selected" or "pinned", closed or open; null takes it away. */
+  draw(name, item, closed = true) {
     if (this.#kind === "grid") this.#grid.draw(name, item);
-    else if (this.#drawn) this.#planes.draw(name, item?.tour ?? null);
+    else if (this.#drawn) this.#planes.draw(name, item?.tour ?? null, closed);
   }
 }

@@ -48,10 +48,10 @@ export class Plane {
     this.#colour();
   }
 
-  /** Draws a tour as "selected" or "pinned"; null takes it away. */
-  draw(name, tour) {
-    const closed = tour ? [...tour, tour[0]] : [];
-    this.#lines[name].show(closed.map((city) => this.#frame.latlng(this.#places[city])));
+  /** Draws a tour as "selected" or "pinned", closed or open; null takes it away. */
+  draw(name, tour, closed = true) {
+    const stops = tour && closed ? [...tour, tour[0]] : (tour ?? []);
+    this.#lines[name].show(stops.map((city) => this.#frame.latlng(this.#places[city])));
     if (name === "selected") this.#mark(this.#start, tour?.[0]);
   }
 

@@ -22,9 +22,9 @@ export class Planes {
   }
 
   /** Draws a tour as "selected" or "pinned"; null takes it away. */
-  draw(name, tour) {
+  draw(name, tour, closed = true) {
     if (name === "selected") this.#tour = tour;
-    this.#maps.forEach((map) => map.draw(name, tour));
+    this.#maps.forEach((map) => map.draw(name, tour, closed));
   }
 
   #highlight(city) {

@@ -20,6 +20,7 @@ export class Result {
   #growth;
   #slider;
   #front = [];
+  #closed = true;
   #balance = MIDDLE; // wanted by the viewer
   #selected = null;
   #pinned = null;
@@ -70,6 +71,7 @@ export class Result {
   /** The front of the network alone, where it is known, and the best so far. */
   show({ alone, answer, growth }) {
     this.#front = answer.front;
+    this.#closed = answer.closed !== false;
     // Until the search has found something, the best front so far is the network's.
     const improved = answer.front === alone?.front ? [] : answer.front;
     this.#chart.show(alone?.front ?? [], improved);
@@ -105,7 +107,7 @@ export class Result {
     element("pin").textContent = this.#pinned ? "Unpin" : "Pin to compare";
     this.#legend("pinned", this.#pinned !== null);
     this.#chart.mark("pinned", this.#pinned?.lengths ?? null);
-    this.#maps.draw("pinned", this.#pinned);
+    this.#maps.draw("pinned", this.#pinned, this.#closed);
   }
 
   #draw() {
@@ -113,7 +115,7 @@ export class Result {
     element("pin").disabled = !selected;
     this.#legend("selected", selected !== null);
     this.#chart.mark("selected", selected?.lengths ?? null);
-    this.#maps.draw("selected", selected);
+    this.#maps.draw("selected", selected, this.#closed);
     compare(element("comparison"), this.#objectives, selected, this.#pinned);
     for (const objective of [0, 1]) {
       const said = selected ? length(selected.lengths[objective]) : "";
