@@ -25,7 +25,7 @@ def test_options_stand_over_the_file_where_they_are_given(tmp_path: Path) -> Non
 
 def test_any_start_is_null_in_the_request(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("1,2,3,4\n")
-    plan, _ = plan_cities(tmp_path / "a.csv", options={"start": "any", "closed": False, "end": 2})
+    plan, _ = plan_cities(tmp_path / "a.csv", options={"start": "any", "closed": False, "end": "2"})
     assert plan.request == {
         "coordinates": [[1, 2, 3, 4]],
         "start": None,
