@@ -24,6 +24,7 @@ from service.cli.options import (
     CostLayer,
     End,
     EndOrId,
+    EndPose,
     File,
     FirstAtMost,
     Knee,
@@ -174,6 +175,7 @@ def coverage(  # noqa: PLR0913  an option each
     spacing: Spacing = None,
     cost_layer: CostLayer = None,
     start_pose: StartPose = None,
+    end_pose: EndPose = None,
     unknown: Unknown = None,
     paths: Paths = None,
     time_limit: TimeLimit = None,
@@ -211,7 +213,9 @@ def coverage(  # noqa: PLR0913  an option each
         "actor": actor,
     }
     run_front(
-        partial(plan_map, file, cost_layer, options, start_pose=start_pose),
+        partial(
+            plan_map, file, cost_layer, options, {"start_pose": start_pose, "end_pose": end_pose}
+        ),
         backend_for(url, api_key),
         OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
     )

@@ -111,6 +111,7 @@ CellSize = Annotated[
 StartPose = Annotated[
     str | None, Option(help="Where the robot is, as -2.0,-0.5: x and y in the frame of the map.")
 ]
+EndPose = Annotated[str | None, Option(help="Where the robot shall end, likewise; with --open.")]
 Unknown = Annotated[
     str | None,
     Option(help="free: the robot may go through unknown cells.", show_default="blocked"),

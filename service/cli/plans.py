@@ -39,20 +39,26 @@ def plan_cities(
 
 
 def plan_map(
-    file: Path, cost_layer: Path | None, options: Options, *, start_pose: str | None = None
+    file: Path,
+    cost_layer: Path | None,
+    options: Options,
+    poses: Mapping[str, str | None] | None = None,
 ) -> tuple[Plan, None]:
     """Return the plan for places on the map in a file, maybe with costs in another; and no ids.
 
     Raises:
         UnreadableFile: A file is not of its format.
         OSError: There is no such file.
-        UsageError: Something that a plan needs is missing, and the message names all of it; or the
+        UsageError: Something that a plan needs is missing, and the message names all of it; or a
             pose is not numbers with commas between.
     """
-    pose = _parse_numbers(start_pose, "--start-pose")
+    parsed = {
+        name: _parse_numbers(pose, f"--{name.replace('_', '-')}")
+        for name, pose in (poses or {}).items()
+    }
     request, picture = read_map(file)
     costs = None if cost_layer is None else read_layer(cost_layer)
-    given = _without_none({**options, "cost_layer": costs, "start_pose": pose})
+    given = _without_none({**options, **parsed, "cost_layer": costs})
     whole = {**request, **given}
     _check_complete(whole)
     return coverage_plan(cast(CoverageRequest, whole), picture), None

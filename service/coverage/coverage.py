@@ -29,10 +29,11 @@ class Coverage:
         places: Rows and columns of the places, shape (n, 2).
         spacing: In metres. The places cover the region of the start pose, or without one the
             largest free region: one in each square of this side.
-        start: The place from which all tours are reported, and all others must be reachable.
+        start: The place from which all others must be reachable.
         ends: Whether tours are closed, and the places at which open routes start and end.
-        start_pose: Instead, x and y in the frame of the map, and maybe more, which is disregarded:
-            a place of its own, if none is there.
+        start_pose: Instead of both starts, x and y in the frame of the map, and maybe more, which
+            is disregarded: a place of its own, if none is there.
+        end_pose: Instead of the end of open routes, likewise.
         second_matrix: Costs between places, shape (n, n).
         cost_layer: Costs on the grid, shape (rows, columns).
         second_coordinates: Coordinates of the places in a plane, shape (n, 2).
@@ -51,6 +52,7 @@ class Coverage:
     start: int = 0
     ends: RouteEnds = CLOSED
     start_pose: Sequence[float] | None = None
+    end_pose: Sequence[float] | None = None
     second_matrix: Array | None = None
     cost_layer: Array | None = None
     second_coordinates: Array | None = None
@@ -69,8 +71,9 @@ class Coverage:
         if sum(source is not None for source in second) != 1:
             demand = "or cost_layer or second_coordinates is required, and only one of them"
             raise InvalidCoverage(("second_matrix", demand))
-        if self.start_pose is not None and self.frame is None:
-            raise InvalidCoverage(("start_pose", "must be in the frame of a map with an origin"))
+        for name in self.poses:
+            if self.frame is None:
+                raise InvalidCoverage((name, "must be in the frame of a map with an origin"))
         self._check_layer()
 
     @property
@@ -79,6 +82,12 @@ class Coverage:
         if self.origin is None:
             return None
         return MapFrame(origin=self.origin, cell_size=self.cell_size, rows=len(self.blocked))
+
+    @property
+    def poses(self) -> dict[str, Sequence[float]]:
+        """The poses at which tours start and end, by name, as far as they are given."""
+        poses = {"start_pose": self.start_pose, "end_pose": self.end_pose}
+        return {name: pose for name, pose in poses.items() if pose is not None}
 
     @property
     def size(self) -> str:

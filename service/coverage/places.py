@@ -1,6 +1,6 @@
 """The places of a coverage task: the caller's, or those that cover a region, and their checks."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,9 +17,9 @@ Cells = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Places:
-    """The places that tours go through: rows and columns, shape (n, 2), and the one to start at.
+    """The places that tours go through: rows and columns, shape (n, 2).
 
-    `ends` says whether tours are closed, and at which places open routes start and end.
+    Tours are reported from `start`, and the places at which open routes start and end are `ends`.
     """
 
     cells: Cells
@@ -40,27 +40,34 @@ def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
             is not of as many places.
         TooManyPlaces: A spacing gives more than `max_places`.
     """
-    pose = _pose_cell(coverage, free)
-    cells = _given_or_laid_out(coverage, free, pose)
+    poses = _pose_cells(coverage, free)
+    cells = _given_or_laid_out(coverage, free, poses)
     names = [f"places/{i}" for i in range(len(cells))]
-    start, ends = coverage.start, coverage.ends
-    if pose is not None:
-        found = np.flatnonzero((cells == pose).all(axis=1))
-        start = int(found[0]) if len(found) else len(cells)
-        if not len(found):
-            _check_costs_anywhere(coverage)
-            cells, names = np.vstack((cells, pose)), [*names, "start_pose"]
+    found: dict[str, int] = {}
+    for name, cell in poses.items():
+        there = np.flatnonzero((cells == cell).all(axis=1))
+        found[name] = int(there[0]) if len(there) else len(cells)
+        if not len(there):
+            _check_costs_anywhere(coverage, name)
+            cells, names = np.vstack((cells, cell)), [*names, name]
     if coverage.spacing is not None and len(cells) > max_places:
         raise TooManyPlaces(max_places, len(cells))
-    if pose is not None and not ends.closed:
-        ends = ends._replace(start=start)
-    places = Places(cells, start, ends)
+    places = _with_ends(coverage, cells, found)
     _raise_any(_miscounted(coverage, places))
     _raise_any(_unreachable(places, names, free))
     return places
 
 
-def _given_or_laid_out(coverage: Coverage, free: Mask, pose: Cells | None) -> Cells:
+def _with_ends(coverage: Coverage, cells: Cells, poses: Mapping[str, int]) -> Places:
+    """Return the places with the ends of tours; `poses` are the places of the poses, by name."""
+    start, ends = poses.get("start_pose", coverage.start), coverage.ends
+    if not ends.closed:
+        at_start, at_end = poses.get("start_pose", ends.start), poses.get("end_pose", ends.end)
+        ends = RouteEnds(closed=False, start=at_start, end=at_end)
+    return Places(cells, start, ends)
+
+
+def _given_or_laid_out(coverage: Coverage, free: Mask, poses: Mapping[str, Cells]) -> Cells:
     if coverage.places is not None:
         faults = (
             (f"places/{i}", demand)
@@ -70,20 +77,22 @@ def _given_or_laid_out(coverage: Coverage, free: Mask, pose: Cells | None) -> Ce
         _raise_any(faults)
         return coverage.places
     assert coverage.spacing is not None
+    pose = next(iter(poses.values()), None)
     region = largest_region(free) if pose is None else region_of(free, pose)
     return covering_places(region, coverage.spacing / coverage.cell_size)
 
 
-def _pose_cell(coverage: Coverage, free: Mask) -> Cells | None:
-    """Return the row and column, shape (2,), of the cell that the start pose is in."""
-    if coverage.start_pose is None:
-        return None
-    assert coverage.frame is not None
-    cell = coverage.frame.cell(*coverage.start_pose[:2])
-    demand = _misplaced(coverage, cell, free)
-    if demand is not None:
-        raise InvalidCoverage(("start_pose", demand))
-    return np.array(cell, dtype=np.int64)
+def _pose_cells(coverage: Coverage, free: Mask) -> dict[str, Cells]:
+    """Return the row and column, shape (2,), of the cell that each pose is in."""
+    cells = {}
+    for name, (x, y, *_) in coverage.poses.items():
+        assert coverage.frame is not None
+        cell = coverage.frame.cell(x, y)
+        demand = _misplaced(coverage, cell, free)
+        if demand is not None:
+            raise InvalidCoverage((name, demand))
+        cells[name] = np.array(cell, dtype=np.int64)
+    return cells
 
 
 def _misplaced(coverage: Coverage, cell: Sequence[int], free: Mask) -> str | None:
@@ -99,21 +108,22 @@ def _misplaced(coverage: Coverage, cell: Sequence[int], free: Mask) -> str | Non
     return None
 
 
-def _check_costs_anywhere(coverage: Coverage) -> None:
+def _check_costs_anywhere(coverage: Coverage, name: str) -> None:
     """Raise InvalidCoverage unless there are costs from and to any cell, not of places alone."""
     if coverage.cost_layer is None:
         demand = "must be in the cell of a place, as only a cost_layer has costs of other cells"
-        raise InvalidCoverage(("start_pose", demand))
+        raise InvalidCoverage((name, demand))
 
 
 def _miscounted(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
     n = len(places.cells)
-    end = places.ends.end
+    _, start, end = places.ends
     for name, place in (("start", places.start), ("end", end)):
         if place is not None and place >= n:
             yield name, f"must be a place, 0 to {n - 1}, got {place}"
-    if n > 1 and places.ends.start == end is not None:
-        yield "end", f"must not be the start, or tours are closed, got {end}"
+    if n > 1 and start == end is not None:
+        name = "end" if coverage.end_pose is None else "end_pose"
+        yield name, f"must not be the start, or tours are closed, got place {end}"
     for name in ("second_matrix", "second_coordinates"):
         rows = getattr(coverage, name)
         if rows is not None and len(rows) != n:

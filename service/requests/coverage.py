@@ -59,6 +59,9 @@ class CoverageRequest(MapRequest):
         description="instead of start: x and y, and maybe yaw, of the robot in the frame of the"
         " map; the tours begin in this cell, which is a place of its own if none is there",
     )
+    end_pose: RobotPose = Field(
+        default_factory=list, description="instead of end, of open routes: where they end, likewise"
+    )
     second_matrix: Matrix = Field(
         default_factory=empty_array,
         description="the second objective: its costs from each place (row) to each (column)",
@@ -96,6 +99,7 @@ class CoverageRequest(MapRequest):
             start=self.start or 0,
             ends=self.ends,
             start_pose=self.start_pose or None,
+            end_pose=self.end_pose or None,
             second_matrix=self.second_matrix if self.second_matrix.size else None,
             cost_layer=self.cost_layer if self.cost_layer.size else None,
             second_coordinates=np.array(points, dtype=np.float64) if points else None,
@@ -126,8 +130,17 @@ def _coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
     del fields["spacing"]["default"]
     fields["places"]["maxItems"] = limits.cities
     in_a_frame = [{"required": ["origin"]}, {"required": ["occupancy_grid"]}]
-    without = dict.fromkeys(("start", "initial_tours"), ABSENT)
-    schema["dependentSchemas"] = {"start_pose": {"anyOf": in_a_frame, "properties": without}}
+    schema["dependentSchemas"] = {
+        "start_pose": {
+            "anyOf": in_a_frame,
+            "properties": {"start": ABSENT, "initial_tours": ABSENT},
+        },
+        "end_pose": {
+            "anyOf": in_a_frame,
+            "required": ["closed"],
+            "properties": {"closed": {"const": False}, "end": ABSENT, "initial_tours": ABSENT},
+        },
+    }
     schema["allOf"] = [
         {"oneOf": forms},
         {"oneOf": [{"required": ["places"]}, {"required": ["spacing"]}]},
@@ -152,18 +165,21 @@ def parse_coverage_request(
     request = parse_json(CoverageRequest, body).with_map(picture, limits.cells)
     if len(request.places) > limits.cities:
         raise too_many_cities("places", limits.cities, len(request.places))
-    _check_start(request)
+    _check_poses(request)
     check_costs(request.second_matrix, "second_matrix", LARGEST)
     # With a spacing, the number of places is not known before the survey.
     check_limits(request, len(request.places) or limits.cities, limits)
     return lower_defaults(request, limits)
 
 
-def _check_start(request: CoverageRequest) -> None:
+def _check_poses(request: CoverageRequest) -> None:
     given = request.model_fields_set
     if request.initial_tours and not request.places:
         raise invalid("initial_tours", "must be of places, and none are given")
-    if "start_pose" in given and "start" in given:
-        raise invalid("start_pose", "or start must be left out")
-    if "start_pose" in given and request.initial_tours:
-        raise invalid("initial_tours", "must be left out where a pose may become a place")
+    for pose, place in (("start_pose", "start"), ("end_pose", "end")):
+        if pose in given and place in given:
+            raise invalid(pose, f"or {place} must be left out")
+        if pose in given and request.initial_tours:
+            raise invalid("initial_tours", "must be left out where a pose may become a place")
+    if request.closed and request.end_pose:
+        raise invalid("end_pose", "is for open routes, with closed false")

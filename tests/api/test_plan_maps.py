@@ -115,6 +115,20 @@ def test_tours_begin_and_end_at_the_pose_of_the_robot(client: httpx.Client) -> N
         np.testing.assert_allclose(item["path"]["points"][-1], pose, atol=1e-6)
 
 
+def test_open_routes_go_from_one_pose_to_the_other(client: httpx.Client) -> None:
+    start, end = point_of(3, 5), point_of(1, 1)
+    poses = {"closed": False, "start_pose": start, "end_pose": end}
+    answer = with_picture(client, {**OF_PICTURE, "spacing": 0.2, **poses})
+    assert answer.status_code == 200, answer.text
+    n = answer.json()["cities"]
+    for item in answer.json()["front"]:
+        assert sorted(item["tour"]) == list(range(n))
+        np.testing.assert_allclose(item["path"]["points"][0], start, atol=1e-6)
+        np.testing.assert_allclose(item["path"]["points"][-1], end, atol=1e-6)
+        walked = np.hypot(*np.diff(item["path"]["points"], axis=0).T).sum()
+        assert walked == pytest.approx(item["path"]["metres"]) == pytest.approx(item["lengths"][0])
+
+
 def test_unknown_cells_are_free_where_that_is_asked_for(client: httpx.Client) -> None:
     answer = with_picture(client, {**OF_PICTURE, "unknown": "free", "start_pose": point_of(0, 0)})
     assert answer.status_code == 200, answer.text
@@ -143,6 +157,17 @@ def test_a_stored_tour_has_its_points(client: httpx.Client) -> None:
     ("change", "pointer", "sentence"),
     [
         ({"start": 0}, "/start_pose", "start_pose or start must be left out"),
+        (
+            {"end_pose": [0, 0]},
+            "/end_pose",
+            "end_pose is for open routes, with closed false",
+        ),
+        (
+            {"closed": False, "end": 1, "end_pose": [0, 0]},
+            "/end_pose",
+            "end_pose or end must be left out",
+        ),
+        ({"closed": False, "end_pose": [0, 0]}, "/end_pose", "end_pose must be a cell of the grid"),
         ({"origin": None}, "/origin", "origin must be a valid array, got null"),
         (
             {"initial_tours": [[0, 1]], "places": [[1, 1], [1, 2]]},

@@ -72,7 +72,8 @@ def test_a_message_lacks_no_cell_size(tmp_path: Path) -> None:
     (tmp_path / "map.json").write_text('{"info": {}, "data": [0]}')
     options = {"spacing": 2.0, "unknown": None, "cell_size": None}
     (tmp_path / "costs.csv").write_text("1\n")
-    plan, _ = plan_map(tmp_path / "map.json", tmp_path / "costs.csv", options, start_pose="-1,2.5")
+    poses = {"start_pose": "-1,2.5", "end_pose": None}
+    plan, _ = plan_map(tmp_path / "map.json", tmp_path / "costs.csv", options, poses)
     assert plan.request.keys() == {"occupancy_grid", "spacing", "cost_layer", "start_pose"}
     assert plan.request["occupancy_grid"] == {"info": {}, "data": [0]}
     assert plan.request["start_pose"] == [-1.0, 2.5]

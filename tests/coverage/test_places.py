@@ -9,6 +9,7 @@ from service.coverage.coverage import Coverage
 from service.coverage.grid import free_cells, regions
 from service.coverage.places import Places, find_places
 from service.errors import InvalidCoverage, TooManyPlaces
+from service.instance import RouteEnds
 
 # Two rooms with a wall between, the smaller one at the left: 1 is an obstacle.
 ROOMS = np.array(
@@ -86,6 +87,36 @@ def test_without_a_pose_a_spacing_covers_the_largest_region() -> None:
 )
 def test_a_pose_where_no_tour_can_begin_is_named(members: dict[str, Any], sentence: str) -> None:
     assert fault(**{"places": GIVEN, **members}) == ("start_pose", sentence)
+
+
+def test_the_poses_are_the_ends_of_open_routes() -> None:
+    anywhere = RouteEnds(closed=False, start=None, end=None)
+    found = places(
+        places=GIVEN, ends=anywhere, start_pose=(14.5, 21.5), end_pose=(15.5, 20.5, 1.57)
+    )
+    assert found.cells.tolist() == [*GIVEN.tolist(), [1, 4]]
+    assert (found.start, found.ends) == (3, RouteEnds(closed=False, start=3, end=1))
+    found = places(places=GIVEN, ends=anywhere, end_pose=(14.5, 21.5))
+    assert found.ends == RouteEnds(closed=False, start=None, end=3)
+    found = places(spacing=1.0, ends=anywhere, end_pose=(10.5, 20.5))
+    assert (len(found.cells), found.cells[found.ends.end].tolist()) == (6, [2, 0])
+
+
+def test_an_open_route_does_not_end_in_the_cell_where_it_starts() -> None:
+    ends = RouteEnds(closed=False, start=0, end=None)
+    poses = {"start_pose": (14.5, 21.5), "end_pose": (14.4, 21.4)}
+    assert fault(places=GIVEN, ends=ends, **poses) == (
+        "end_pose",
+        "must not be the start, or tours are closed, got place 3",
+    )
+
+
+def test_an_end_that_the_robot_cannot_reach_is_named() -> None:
+    ends = RouteEnds(closed=False, start=0, end=None)
+    assert fault(places=GIVEN, ends=ends, end_pose=(10.5, 20.5)) == (
+        "end_pose",
+        "must be reachable from places/0, and no path leads there",
+    )
 
 
 def test_a_place_that_the_robot_cannot_reach_is_named() -> None:

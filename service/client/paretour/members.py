@@ -76,6 +76,7 @@ class CoverageRequest(PlanRequest, total=False):
     places: ArrayLike
     spacing: float
     start_pose: ArrayLike
+    end_pose: ArrayLike
     second_matrix: ArrayLike
     cost_layer: ArrayLike
     second_coordinates: ArrayLike

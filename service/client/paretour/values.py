@@ -36,7 +36,8 @@ class Path:
     """The way of a tour over a map, and its length.
 
     Attributes:
-        cells: Rows and columns, shape (m, 2), from the first place back to it.
+        cells: Rows and columns, shape (m, 2), from the first place back to it; of an
+            open route to the last place.
         metres: The length.
         points: x and y of each cell's middle in the frame of the map, in metres, shape (m, 2);
             None where its origin is not known.

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from service.errors import Refusal
-from service.requests.coverage import CoverageRequest, coverage_schema, parse_coverage_request
+from service.requests.coverage import CoverageRequest, coverage_schemas, parse_coverage_request
 from tests.helpers.serving import LIMITS
 from tests.requests.maps.test_occupancy_grid import MESSAGE
 
@@ -106,7 +106,7 @@ def test_what_does_not_go_together_is_named(
 
 
 def test_the_schema_refers_to_nothing_outside_itself() -> None:
-    schema = coverage_schema(LIMITS, ["pa-one-matrix"])
+    schema = coverage_schemas(LIMITS, ["pa-one-matrix"])["CoverageRequest"]
     assert "$ref" not in json.dumps(schema)
     data = schema["properties"]["occupancy_grid"]["properties"]["data"]
     assert data["maxItems"] == LIMITS.cells
