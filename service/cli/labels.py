@@ -2,7 +2,7 @@
 
 from paretour import Front
 
-from service.cli.csv_tables import Ids
+from service.cli.inputs.csv_tables import Ids
 from service.cli.terminal_chart import LABELS
 
 

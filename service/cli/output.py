@@ -18,8 +18,8 @@ from rich.table import Table
 from typer import echo
 
 from service.cli.backends import Backend
-from service.cli.csv_tables import Ids
 from service.cli.errors import UsageError, exit_on_error
+from service.cli.inputs.csv_tables import Ids
 from service.cli.labels import columns_of, ids_of, labels_of, lengths_as_text
 from service.cli.terminal_chart import LABELS, draw_front
 

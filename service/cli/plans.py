@@ -6,9 +6,9 @@ from typing import Any, cast
 
 from paretour import CoverageRequest, FrontRequest, Plan, coverage_plan, front_plan
 
-from service.cli.csv_tables import Ids
 from service.cli.errors import UsageError
-from service.cli.files import read_layer, read_map, read_request
+from service.cli.inputs.csv_tables import Ids
+from service.cli.inputs.files import read_layer, read_map, read_request
 from service.cli.options import ANY
 
 _SECOND_OBJECTIVES = ("second_matrix", "cost_layer", "second_coordinates")

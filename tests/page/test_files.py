@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Browser, Page, expect
 
-from service.cli.tsplib import parse_matrix
+from service.cli.inputs.tsplib import parse_matrix
 from service.settings import Settings
 from tests.helpers.browsing import (
     curl_body,

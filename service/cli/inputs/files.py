@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from paretour import read_ros_map
 
-from service.cli.csv_tables import Ids, Table, parse_table
 from service.cli.errors import UnreadableFile
-from service.cli.geojson import is_collection, read_stops
-from service.cli.tsplib import parse_coordinates, parse_matrix
+from service.cli.inputs.csv_tables import Ids, Table, parse_table
+from service.cli.inputs.geojson import is_collection, read_stops
+from service.cli.inputs.tsplib import parse_coordinates, parse_matrix
 
 Array = NDArray[np.float64]
 Request = dict[str, Any]

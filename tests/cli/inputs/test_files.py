@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from service.cli.errors import UnreadableFile
-from service.cli.files import read_layer, read_map, read_request
+from service.cli.inputs.files import read_layer, read_map, read_request
 from tests.helpers.tsplib_files import EUCLIDEAN, EXPLICIT
 
 

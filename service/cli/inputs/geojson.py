@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from service.cli.csv_tables import Ids
 from service.cli.errors import UnreadableFile
+from service.cli.inputs.csv_tables import Ids
 
 _STRUCTURE = ("type", "features", "bbox")  # members of every collection; others are the request's
 

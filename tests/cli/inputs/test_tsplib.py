@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from service.cli.errors import UnreadableFile
-from service.cli.tsplib import parse_coordinates, parse_matrix
+from service.cli.inputs.tsplib import parse_coordinates, parse_matrix
 from tests.helpers.tsplib_files import EUCLIDEAN, EXPLICIT
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from service.cli.errors import UnreadableFile
-from service.cli.files import read_request
+from service.cli.inputs.files import read_request
 
 OBJECTIVES = [{"name": name, "from": "great_circle"} for name in ("way", "again")]
 

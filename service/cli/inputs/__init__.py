@@ -1,0 +1,1 @@
+"""The files that the command reads, as members of a request."""
