@@ -1,8 +1,7 @@
-"""Instances: cities and the costs between them; the lengths of tours; symmetries."""
+"""Instances: cities and the costs between them; the lengths of their tours."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, NamedTuple
 
@@ -15,7 +14,6 @@ Array = NDArray[np.float64]
 Kind = Literal["coordinates", "matrices"]
 OBJECTIVES = 2  # lengths of a tour
 PLANE = 2  # coordinates of a city in the plane of an objective
-MAX_SYMMETRIES = 8  # of a square
 MOST_SPREAD = 2.0**-1000  # of a matrix's largest cost; below it a scaled cost would vanish
 
 
@@ -228,22 +226,6 @@ def cumulated_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
     """
     steps = step_lengths(instance, *tour_steps(instance, tours))
     return np.pad(steps.cumsum(axis=1), ((0, 0), (1, 0), (0, 0)))
-
-
-def symmetries(instance: Instance, count: int) -> Iterator[Instance]:
-    """Yield the instance, then its images under `count` - 1 more of the 8 symmetries of a square.
-
-    Tours have the same lengths in all of them. Both planes are mirrored and turned alike. An
-    instance made from matrices is yielded once, whatever the count.
-    """
-    yield instance
-    if instance.coordinates is None:
-        return
-    for number in range(1, count):
-        planes = instance.coordinates.reshape(-1, OBJECTIVES, PLANE)
-        mirrored = planes * np.where([number & 1, number & 2], -1.0, 1.0)
-        turned = mirrored[..., ::-1] if number & 4 else mirrored
-        yield replace(instance, coordinates=turned.reshape(-1, OBJECTIVES * PLANE))
 
 
 def _check_ends(instance: Instance) -> None:

@@ -212,10 +212,7 @@ def _improved(
     stop: Callable[[], bool],
     report: Callable[[Progress, Callable[[int], SearchResult]], None],
 ) -> SearchResult:
-    """Return nondominated tours, their points, and why the search for them ended.
-
-    The search leaves as much time as the selection from what it found is going to take.
-    """
+    """Return what the search finds until the time that selecting from it is going to take."""
     if options.time_limit == 0:
         points = tour_lengths(instance, tours)
         front = nondominated(points)

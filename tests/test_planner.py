@@ -11,8 +11,9 @@ from hypothesis.extra.numpy import arrays
 
 from service.actor import OnnxActor
 from service.construction.call_estimate import CallEstimate
+from service.construction.symmetries import symmetries
 from service.errors import Cancelled
-from service.instance import Instance, symmetries, tour_lengths
+from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.planner import Front, PlanOptions, plan
 from service.preferences import fan

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.construction.call_estimate import CallEstimate
+from service.construction.symmetries import symmetries
 from service.errors import Cancelled
-from service.instance import Instance, symmetries
+from service.instance import Instance
 from service.preferences import fan, from_angles
 from service.search.open_routes import built_tours
 

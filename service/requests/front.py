@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from pydantic import Field, GetPydanticSchema
 from pydantic_core.core_schema import no_info_after_validator_function
 
-from service.instance import MAX_SYMMETRIES, OBJECTIVES, Instance, Kind
+from service.construction.symmetries import MAX_SYMMETRIES
+from service.instance import OBJECTIVES, Instance, Kind
 from service.planner import PlanOptions
 from service.requests.arrays import stack_matrices
 from service.requests.schemas import END, START, ArrayRows, AsInteger, Number, PlanRequest
