@@ -10,14 +10,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import torch
 from numpy.random import Generator
 from numpy.typing import NDArray
 from tqdm import tqdm
 
 from models.data.dataset import Shard
-from models.data.generators import PLANES, coverage_matrices
-from models.data.instances import closed, distance_matrices
+from models.data.generators import PLANES
+from models.data.matrices import MATRICES, SHARES
 from models.options import add_options, from_options, setting
 from service.instance import Instance
 from service.preferences import from_angles, weights
@@ -36,7 +35,7 @@ class ExpertConfig:
     least_cities: int = setting(20, "least cities of an instance; all of a shard have as many")
     most_cities: int = setting(100, "most cities of an instance")
     shaped: float = setting(
-        0.5, "share of planes that are clusters, boxes or streets; the others are uniform"
+        0.5, "share of coordinates' planes that are clusters, boxes or streets; others are uniform"
     )
     iterations_per_city: int = setting(50, "iterations of the search for each city")
     seed: int = setting(1, "of the instances and the search")
@@ -54,8 +53,7 @@ def make_shard(config: ExpertConfig, number: int) -> Shard:
     n = int(generator.integers(config.least_cities, config.most_cities + 1))
     shares = (np.arange(config.preferences) + generator.random(config.preferences)) * 90
     preferences = from_angles(shares / config.preferences)
-    draw = _cities if config.kind == "coordinates" else _matrices
-    instances = np.stack([draw(n, config.shaped, generator) for _ in range(config.instances)])
+    instances = np.stack([_instance(n, config, generator) for _ in range(config.instances)])
     iterations = config.iterations_per_city * n
     tours = [expert_tours(costs, preferences, iterations, number) for costs in instances]
     return Shard(
@@ -80,31 +78,18 @@ def expert_tours(
     return front.tours[sums.argmin(axis=0)]
 
 
+def _instance(n: int, config: ExpertConfig, generator: Generator) -> Array:
+    if config.kind == "coordinates":
+        return _cities(n, config.shaped, generator)
+    return MATRICES[generator.choice(list(MATRICES), p=SHARES)](n, generator)
+
+
 def _cities(n: int, shaped: float, generator: Generator) -> Array:
     """Draw cities in the unit squares of both planes, each plane of a kind of its own."""
     names = list(PLANES)
     shares = [1 - shaped] + [shaped / (len(names) - 1)] * (len(names) - 1)
     kinds = generator.choice(names, p=shares, size=2)
     return np.concatenate([PLANES[kind](n, generator) for kind in kinds], axis=1)
-
-
-def _matrices(n: int, shaped: float, generator: Generator) -> Array:
-    """Draw costs of every step: distances in planes or on maps, or entries without a plane."""
-    match generator.choice(("planes", "map", "entries", "closed"), p=(0.4, 0.3, 0.15, 0.15)):
-        case "planes":
-            cities = torch.from_numpy(_cities(n, shaped, generator))
-            return distance_matrices(cities[None])[0].numpy()
-        case "map":
-            return coverage_matrices(generator, n)
-        case "closed":
-            return closed(torch.from_numpy(_entries(n, generator))).numpy()
-    return _entries(n, generator)
-
-
-def _entries(n: int, generator: Generator) -> Array:
-    entries = generator.random((2, n, n))
-    entries[:, np.arange(n), np.arange(n)] = 0.0
-    return entries
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -56,14 +56,6 @@ def distance_matrices(cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b 2 n n"
     return squares.sqrt()
 
 
-def closed(matrices: Float[Tensor, "*b n n"]) -> Float[Tensor, "*b n n"]:
-    """Return the least costs of getting from city to city over any others (Floyd, 1962)."""
-    for k in range(matrices.shape[-1]):
-        by_way_of_k = matrices[..., :, k, None] + matrices[..., None, k, :]
-        matrices = torch.minimum(matrices, by_way_of_k)
-    return matrices
-
-
 def tour_lengths(instances: Tensor, tours: Int[Tensor, "b r n"]) -> Float[Tensor, "b r 2"]:
     """Return both lengths of each closed tour."""
     b, r, n = tours.shape
