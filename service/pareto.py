@@ -115,7 +115,7 @@ def balances(points: Array) -> Array:
         points: Shape (m, 2), in any order and unit.
 
     >>> balances(np.array([[2.0, 70.0], [3.0, 40.0], [6.0, 30.0]]))
-    array([0.   , 0.5  , 1.   ])
+    array([0. , 0.5, 1. ])
     >>> balances(np.array([[5.0, 5.0]]))
     array([0.5])
     """

@@ -82,7 +82,7 @@ def test_a_front_of_places_can_be_asked_for_again(client: httpx.Client) -> None:
 
 def test_paths_come_only_where_they_are_asked_for(client: httpx.Client) -> None:
     answer = client.post("/coverage", json=TASK).json()
-    assert all(set(item) == {"angle", "lengths", "tour"} for item in answer["front"])
+    assert all(set(item) == {"angle", "balance", "lengths", "tour"} for item in answer["front"])
 
 
 @pytest.mark.parametrize(

@@ -108,4 +108,5 @@ def test_memory_counts_the_pages_of_children_and_shared_ones_once() -> None:
         child = context.Process(target=hold)
         child.start()
         child.join()
-    assert 0.9 * before + 45 * 2**20 < memory.largest < before + 90 * 2**20
+    # Twice would be as much again: the child shares all that this process has.
+    assert 0.9 * before + 45 * 2**20 < memory.largest < 1.8 * before

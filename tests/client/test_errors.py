@@ -19,12 +19,12 @@ def test_what_is_no_problem_document_is_refused_all_the_same(connect: Connect) -
 
 
 @pytest.mark.parametrize(
-    ("written", "least", "most"),
-    [
-        (format_datetime(datetime.now(UTC) + timedelta(hours=1), usegmt=True), 3000, 3600),
-        (format_datetime(datetime.now(UTC) - timedelta(hours=1), usegmt=True), 0.1, 0.1),
-        ("soon", 1, 1),
-    ],
+    ("hours", "least", "most"), [(1, 3000, 3600), (-1, 0.1, 0.1)], ids=["ahead", "gone"]
 )
-def test_a_pause_may_be_written_as_a_date(written: str, least: float, most: float) -> None:
+def test_a_pause_may_be_written_as_a_date(hours: int, least: float, most: float) -> None:
+    written = format_datetime(datetime.now(UTC) + timedelta(hours=hours), usegmt=True)
     assert least <= retry_after(problem(503, "busy", **{"Retry-After": written})) <= most
+
+
+def test_a_pause_that_is_neither_seconds_nor_a_date_is_a_second() -> None:
+    assert retry_after(problem(503, "busy", **{"Retry-After": "soon"})) == 1

@@ -10,6 +10,7 @@ _MESSAGE = {
     "info": {"resolution": 1, "width": 2, "height": 2, "origin": _POSE},
     "data": [0, 0, 0, 0],
 }
+_CHOICES = ("angle", "balance", "first_at_most", "second_at_most", "knee")
 
 
 @schemathesis.hook
@@ -24,26 +25,33 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
 
     The rules: a matrix is square; its costs are not negative but on the diagonal; some actors read
     no matrices; an end is one of the cities, and of open routes; a tour visits each of them once;
-    stops have ids of their own, and costs as many as they are; places are free cells of a grid; an
-    idempotency key belongs to one body.
+    stops have ids of their own, and costs as many as they are; places are free cells of a grid; a
+    reference point is beyond some tour; a tour is chosen in one way; an idempotency key belongs to
+    one body.
     """
+    if case.path == "/tour" and case.meta.generation.mode.is_positive:
+        _choose_in_one_way(case)
     if _is_key((case.headers or {}).get("Idempotency-Key")):
         case.headers["Idempotency-Key"] = uuid.uuid4().hex
-    match case.body:
-        case {"grid": _} as body if case.meta.generation.mode.is_positive:
+    _correct_body(case.body, positive=case.meta.generation.mode.is_positive)
+
+
+def _correct_body(body: Any, *, positive: bool) -> None:
+    match body:
+        case {"grid": _} | {"occupancy_grid": _} if positive:
             _make_coverable(body)
-        case {"stops": _, "objectives": _} as body if case.meta.generation.mode.is_positive:
+        case {"stops": _, "objectives": _} if positive:
             _make_plannable(body)
-        case {"occupancy_grid": _} as body if case.meta.generation.mode.is_positive:
-            body["occupancy_grid"] = _MESSAGE
-            _make_coverable(body)
         case {"coordinates": [_, *_] as rows}:
-            _fit_to_cities(case.body, len(rows))
+            if _is_point(body.get("reference_point")):
+                del body["reference_point"]
+            _fit_to_cities(body, len(rows))
         case {"matrices": [[_, *_] as rows, _] as matrices} if _are_matrices(matrices):
-            case.body["matrices"] = [[[1.0] * len(rows)] * len(rows)] * 2
-            if case.body.get("actor") == "pa-one":
-                case.body["actor"] = "pa-one-matrix"
-            _fit_to_cities(case.body, len(rows))
+            body["matrices"] = [[[1.0] * len(rows)] * len(rows)] * 2
+            if body.get("actor") == "pa-one":
+                body["actor"] = "pa-one-matrix"
+            _reach(body)
+            _fit_to_cities(body, len(rows))
 
 
 def _make_coverable(body: dict[str, Any]) -> None:
@@ -53,8 +61,12 @@ def _make_coverable(body: dict[str, Any]) -> None:
         body["cell_size"] = 1
     body.pop("initial_tours", None)
     body.pop("start_pose", None)
+    body.pop("end_pose", None)
+    _reach(body)
     if "grid" in body:
         body["grid"] = [[0, 0], [0, 0]]
+    if "occupancy_grid" in body:
+        body["occupancy_grid"] = _MESSAGE
     body.pop("end", None)
     n = 2 if "places" in body else 1
     fit = {
@@ -78,9 +90,24 @@ def _make_plannable(body: dict[str, Any]) -> None:
         for m, objective in enumerate(body["objectives"])
     ]
     body |= {"start": "0", "augment": 1, "actor": "pa-one-matrix"}
+    _reach(body)
     body.pop("end", None)
     if "initial_tours" in body:
         body["initial_tours"] = [[f"{i}" for i in range(n)]]
+
+
+def _choose_in_one_way(case: Any) -> None:
+    """Leave one choice of a tour in the query, an angle where there is none."""
+    choices = [name for name in _CHOICES if name in (case.query or {})]
+    case.query = {k: v for k, v in (case.query or {}).items() if k not in choices[1:]}
+    if not choices:
+        case.query["angle"] = 45
+
+
+def _reach(body: dict[str, Any]) -> None:
+    """Replace a reference point by one beyond all tours."""
+    if _is_point(body.get("reference_point")):
+        body["reference_point"] = [1e100, 1e100]
 
 
 def _fit_to_cities(body: dict[str, Any], n: int) -> None:
@@ -102,6 +129,15 @@ def _fit_ends(body: dict[str, Any], n: int) -> None:
         body["end"] = None
     if closed is False and _are_tours(body.get("initial_tours")):
         body |= {"start": None, "end": None}
+
+
+def _is_point(value: Any) -> bool:
+    """Whether the schema allows the value as a reference point."""
+    return (
+        isinstance(value, list)
+        and len(value) == 2
+        and all(_is_number(length) and 1e-150 <= length <= 1e150 for length in value)
+    )
 
 
 def _are_matrices(value: list[Any]) -> bool:

@@ -114,6 +114,8 @@ def test_cities_and_tours_stand_out_from_the_maps(
 def test_the_maps_follow_when_the_page_turns_dark(browser: Browser, released: str) -> None:
     with open_page(browser, released) as page:
         wait_until_planned(page)
+        page.get_by_label("Example").select_option("City deliveries")
+        wait_until_planned(page)
         wait_for_next_frame(page)
         before = page.evaluate(LINES)
         page.emulate_media(color_scheme="dark")
@@ -126,6 +128,7 @@ def test_a_thousand_cities_and_a_hundred_tours_are_shown(browser: Browser, relea
     cities = np.random.default_rng(0).random((1000, 4)).round(4)
     with open_page(browser, released) as page:
         wait_until_planned(page)
+        page.get_by_label("Example").select_option("City deliveries")
         page.get_by_label("x1, y1, x2, y2").fill("\n".join(",".join(map(str, r)) for r in cities))
         expect(page.locator("#count")).to_have_text("1,000 cities")
         page.get_by_label("Seconds of planning").fill("2")

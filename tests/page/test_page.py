@@ -103,7 +103,7 @@ def test_open_routes_lead_from_the_start_to_the_end(page: Page) -> None:
     page.locator("#more > summary").click()
     page.get_by_label("End city").fill("7")
     page.get_by_label("Open routes").check()
-    page.get_by_label("Seconds of search").fill("0.2")
+    page.get_by_label("Seconds of planning").fill("0.2")
     page.get_by_role("button", name="Plan").click()
     expect(page.locator("#status")).to_contain_text("Done")
     body = curl_body(page)
