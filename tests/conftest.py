@@ -19,8 +19,8 @@ settings.register_profile("project", deadline=None, derandomize="CI" in os.envir
 settings.load_profile("project")
 
 
-def pytest_configure() -> None:
-    """Prepare what child processes inherit: the signal of Ctrl-C, threads, certificates."""
+def pytest_configure(config: pytest.Config) -> None:
+    """Prepare what child processes inherit: Ctrl-C, threads, certificates, the compiled search."""
     # A shell starts background jobs, and nohup its command, with SIGINT ignored.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     # Tests run side by side; torch's threads spin while they wait, and take the cores from others.
@@ -28,6 +28,8 @@ def pytest_configure() -> None:
     # No test calls https, and httpx takes 40 ms to load certificates at each httpx.get.
     os.environ.pop("SSL_CERT_FILE", None)
     os.environ["SSL_CERT_DIR"] = str(NO_CERTIFICATES)
+    if config.getoption("numprocesses") and not hasattr(config, "workerinput"):
+        warm_up()  # once, before the processes of the tests and of their servers all do it at once
 
 
 @pytest.fixture(scope="session")
