@@ -70,7 +70,7 @@ class Embedded:
         make_runner = runner_of(*actors, limits=PATIENT)
         workers = workers_of(make_runner, self.workers, queue, SECONDS, share)
         path = IN_MEMORY if folder is None else str(folder / "fronts.sqlite")
-        store = SqliteStore(path, entries=100, max_age=SECONDS)
+        store = SqliteStore(path, entries=1000, max_age=SECONDS)
         app = app_of(*actors, limits=PATIENT, store=store, workers=workers, edge=edge)
         with serving(app) as url, httpx.Client(base_url=url, timeout=60) as client:
             planning = partial(_first_pid, workers)
@@ -108,7 +108,7 @@ class Clustered:
         while not state.workers():
             time.sleep(0.02)
         store, engine = connect(
-            url, entries=100, max_age=SECONDS, queue=queue, share=share, seconds=seconds
+            url, entries=1000, max_age=SECONDS, queue=queue, share=share, seconds=seconds
         )
         app = engine_app(store, engine, *actors, limits=PATIENT, edge=edge)
         with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:
