@@ -19,7 +19,7 @@ from service.pareto import best_subset, hypervolume, nondominated, selection_sec
 from service.preferences import angles
 from service.search.bound import hypervolume_bound
 from service.search.improve import Progress, SearchResult, Termination, improve
-from service.search.open_routes import oriented, plain_tours
+from service.search.open_routes import oriented, plain_tours, rotated
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
@@ -140,12 +140,13 @@ def plan(
     options = replace(options, reference_point=reference_point)
     constructed = _constructed(constructor, instance, options, deadline, stop)
     first = _first_tours(instance, constructed, options)
-    before = hypervolume(tour_lengths(instance, first), reference_point)
+    searched = options.time_limit > 0
+    before = hypervolume(tour_lengths(instance, first), reference_point) if searched else None
     clock.ends("construction")
     report_front = partial(_report_front, instance, options, len(constructed), report)
     found = _improved(instance, first, options, deadline, stop, report_front)
     clock.ends("improvement")
-    gained = hypervolume(found.points, reference_point) - before
+    gained = None if before is None else hypervolume(found.points, reference_point) - before
     chosen = best_subset(found.points, options.size, reference_point, stop)
     tours = found.tours[chosen].astype(np.int64)
     clock.ends("selection")
@@ -164,7 +165,7 @@ def plan(
         terminated=found.terminated,
         timings=clock.phases,
         bound=bound,
-        gained=gained if options.time_limit > 0 else None,
+        gained=gained,
         closed=instance.closed,
     )
 
@@ -260,9 +261,7 @@ def _as_reported(instance: Instance, start: int, tours: NDArray[np.integer]) -> 
     """Return closed tours rotated so that they begin at a city; open routes in their direction."""
     if not instance.closed:
         return oriented(instance, tours)
-    n = tours.shape[1]
-    first = (tours == start).argmax(axis=1)
-    return np.take_along_axis(tours, (first[:, np.newaxis] + np.arange(n)) % n, axis=1)
+    return rotated(tours, (tours == start).argmax(axis=1))
 
 
 class _Clock:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.jit import inlined
-from service.search.open_routes import oriented
+from service.search.open_routes import oriented, rotated
 
 Array = NDArray[np.float64]
 
@@ -44,9 +44,7 @@ def close_routes(routes: NDArray[np.integer]) -> NDArray[np.int32]:
 
 def open_tours(instance: Instance, tours: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return closed tours, shape (k, n + 1), as open routes of an instance, shape (k, n)."""
-    size = tours.shape[1]
-    following = (tours == 0).argmax(axis=1)[:, np.newaxis] + np.arange(1, size)
-    routes = np.take_along_axis(tours, following % size, axis=1) - np.int32(1)
+    routes = rotated(tours, (tours == 0).argmax(axis=1))[:, 1:] - np.int32(1)
     return oriented(instance, routes).astype(np.int32)
 
 

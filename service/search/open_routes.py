@@ -45,6 +45,12 @@ def plain_tours(instance: Instance) -> Tours:
     return moved_ends(instance, np.concatenate((order, order[:, ::-1])))
 
 
+def rotated(tours: Tours, places: NDArray[np.intp]) -> Tours:
+    """Return closed tours, shape (k, n), each from another place on, shape (k,)."""
+    n = tours.shape[1]
+    return np.take_along_axis(tours, (places[:, np.newaxis] + np.arange(n)) % n, axis=1)
+
+
 def moved_ends(instance: Instance, tours: Tours) -> Tours:
     """Return tours, shape (k, n), with each fixed end taken out and put where it belongs."""
     place = np.ones(instance.n, np.intp)
@@ -87,7 +93,7 @@ def opened(instance: Instance, tours: Tours, weights: Array) -> Tours:
         return opened(_turned(instance), tours[:, ::-1], weights)[:, ::-1]
     if instance.start is None:
         steps = _weighted(instance, tours, np.roll(tours, -1, axis=1), weights)
-        return oriented(instance, _rotated(tours, steps.argmax(axis=1) + 1))
+        return oriented(instance, rotated(tours, steps.argmax(axis=1) + 1))
     routes = _from_start(instance, tours, weights)
     if not instance.symmetric:
         return routes
@@ -114,14 +120,14 @@ def _with_ends_joined(instance: Instance) -> Instance:
 def _with_ends_apart(instance: Instance, tours: Tours) -> Tours:
     """Return closed tours, shape (k, n - 1), through joined ends as routes, shape (k, n)."""
     others = np.delete(np.arange(instance.n), instance.end or 0)[tours]
-    routes = _rotated(others, (others == instance.start).argmax(axis=1))
+    routes = rotated(others, (others == instance.start).argmax(axis=1))
     return np.pad(routes, ((0, 0), (0, 1)), constant_values=instance.end or 0)
 
 
 def _from_start(instance: Instance, tours: Tours, weights: Array) -> Tours:
     """Return closed tours opened to routes from an instance's start on, in their direction."""
     places = (tours == instance.start).argmax(axis=1)
-    routes = moved_ends(instance, _rotated(tours, places))
+    routes = moved_ends(instance, rotated(tours, places))
     size = instance.n if instance.end is None else instance.n - 1
     if size == 1:
         return routes
@@ -162,12 +168,6 @@ def _weighted(instance: Instance, origins: Tours, destinations: Tours, weights: 
     """Return the weighted, scaled costs of steps, shape (k, m), weights of shape (k, 2)."""
     lengths = step_lengths(instance, origins, destinations) / instance.scale
     return (lengths * weights[:, np.newaxis]).sum(axis=-1)
-
-
-def _rotated(tours: Tours, places: NDArray[np.intp]) -> Tours:
-    """Return closed tours, shape (k, n), each from another place on, shape (k,)."""
-    n = tours.shape[1]
-    return np.take_along_axis(tours, (places[:, np.newaxis] + np.arange(n)) % n, axis=1)
 
 
 def _turned(instance: Instance) -> Instance:
