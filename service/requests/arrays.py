@@ -3,14 +3,30 @@
 Every function raises a refusal that points at the row or the number at fault.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import GetPydanticSchema, ValidationInfo
 from pydantic_core import to_json
+from pydantic_core.core_schema import with_info_after_validator_function
 
+from service.requests.schemas import ArrayRows
 from service.requests.validation import invalid
 
 Array = NDArray[np.float64]
 Rows = list[list[float]]
+
+
+def array_field(parse: Callable[[Rows, str], Array]) -> GetPydanticSchema:
+    """Return the schema of a field of rows that is parsed with its name into an array."""
+
+    def parse_named(rows: Rows, info: ValidationInfo) -> Array:
+        return parse(rows, str(info.field_name))
+
+    return GetPydanticSchema(
+        lambda _, handler: with_info_after_validator_function(parse_named, handler(ArrayRows))
+    )
 
 
 def stack_matrices(matrices: list[Rows]) -> Array:

@@ -5,17 +5,15 @@ from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, GetPydanticSchema, ValidationInfo
-from pydantic_core.core_schema import with_info_after_validator_function
+from pydantic import Field
 
 from service.coverage.coverage import Coverage
 from service.instance import Kind, RouteEnds
-from service.requests.arrays import Array, check_costs, square_array
+from service.requests.arrays import array_field, check_costs, square_array
 from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
 from service.requests.maps.fields import ABSENT, Layer, MapRequest, describe_map, empty_array
 from service.requests.schemas import (
     LARGEST,
-    ArrayRows,
     NonNegativeInteger,
     Number,
     PlanePoint,
@@ -23,15 +21,7 @@ from service.requests.schemas import (
 )
 from service.requests.validation import invalid, parse_json, too_many_cities
 
-
-def _as_matrix(rows: list[list[float]], info: ValidationInfo) -> Array:
-    return square_array(rows, str(info.field_name))
-
-
-Matrix = Annotated[
-    NDArray[np.float64],
-    GetPydanticSchema(lambda _, h: with_info_after_validator_function(_as_matrix, h(ArrayRows))),
-]
+Matrix = Annotated[NDArray[np.float64], array_field(square_array)]
 Cell = Annotated[list[NonNegativeInteger], Field(min_length=2, max_length=2, fail_fast=True)]
 RobotPose = Annotated[list[Number], Field(min_length=2, max_length=3, fail_fast=True)]
 

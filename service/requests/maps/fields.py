@@ -9,10 +9,9 @@ from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, GetPydanticSchema, ValidationInfo
-from pydantic_core.core_schema import with_info_after_validator_function
+from pydantic import Field
 
-from service.requests.arrays import Array, rectangular_array
+from service.requests.arrays import Array, array_field, rectangular_array
 from service.requests.maps.occupancy_grid import OccupancyGrid
 from service.requests.maps.pictures import (
     UNKNOWN,
@@ -22,18 +21,10 @@ from service.requests.maps.pictures import (
     occupancy,
     read_picture,
 )
-from service.requests.schemas import ArrayRows, AsInteger, Number, PlanRequest, PositiveNumber
+from service.requests.schemas import AsInteger, Number, PlanRequest, PositiveNumber
 from service.requests.validation import invalid, too_many_cells
 
-
-def _as_layer(rows: list[list[float]], info: ValidationInfo) -> Array:
-    return rectangular_array(rows, str(info.field_name))
-
-
-Layer = Annotated[
-    NDArray[np.float64],
-    GetPydanticSchema(lambda _, h: with_info_after_validator_function(_as_layer, h(ArrayRows))),
-]
+Layer = Annotated[NDArray[np.float64], array_field(rectangular_array)]
 _Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 _Pose = Annotated[list[Number], Field(min_length=3, max_length=3, fail_fast=True)]
 
