@@ -101,9 +101,7 @@ class TaskRunner:
     def terminate(self) -> None:
         """End the running call of a network, if one runs; from any thread."""
         for actor in self.actors.values():
-            terminate = getattr(actor, "terminate", None)
-            if terminate is not None:
-                terminate()
+            actor.terminate()
 
     def _plan_stops(
         self, task: Task, stops: UnmeasuredStops, stop: Callable[[], bool], report: Report

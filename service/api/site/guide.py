@@ -44,6 +44,7 @@ class Guide:
         self._folder = folder
         names = {path.stem for path in folder.glob("*.md")}
         self.pages = {name: self._render(name, names) for name in sorted(names)}
+        self._entries = _GROUP.findall((folder / "index.md").read_text())
         self._template = Template((folder / "site/template.html").read_text())
 
     def document(self, name: str) -> str:
@@ -74,7 +75,7 @@ class Guide:
     def _navigation(self, current: str) -> str:
         """Return the list of pages as HTML, in the index's groups."""
         lines = []
-        for group, question, name in _GROUP.findall((self._folder / "index.md").read_text()):
+        for group, question, name in self._entries:
             if group:
                 lines.append(f"<h2>{escape(group)}</h2>")
             else:
