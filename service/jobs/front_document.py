@@ -128,22 +128,17 @@ class FrontDocument:
     @property
     def lengths(self) -> NDArray[np.float64]:
         """The lengths of each tour, shape (m, 2)."""
-        lengths = [_lengths(self.tours, begin) for begin, _ in self._bounds()]
-        return np.array(lengths).reshape(-1, OBJECTIVES)
+        return np.array([_lengths(tour) for tour in self.split()]).reshape(-1, OBJECTIVES)
 
     def split(self) -> list[bytes]:
         """Return the JSON of each tour."""
-        return [self.tours[begin:end] for begin, end in self._bounds()]
+        ends = np.frombuffer(self.ends, np.int64).tolist()
+        begins = [0, *(end + 1 for end in ends)]
+        return [self.tours[begin:end] for begin, end in zip(begins, ends, strict=False)]
 
     def tour(self, index: int) -> bytes:
         """Return the JSON of one tour."""
-        begin, end = self._bounds()[index]
-        return self.tours[begin:end]
-
-    def _bounds(self) -> list[tuple[int, int]]:
-        """Return where the JSON of each tour begins and ends in that of all."""
-        ends = np.frombuffer(self.ends, np.int64).tolist()
-        return list(zip([0, *(end + 1 for end in ends)], ends, strict=False))
+        return self.split()[index]
 
     def without_tours(self) -> Self:
         """Return the front with none of its tours."""
@@ -179,9 +174,9 @@ def _joined(tours: Iterable[bytes]) -> tuple[bytes, bytes]:
     return b",".join(each), ends.tobytes()
 
 
-def _lengths(tours: bytes, begin: int) -> list[float]:
-    """Return the lengths of the tour whose JSON begins there, after numbers alone."""
-    lengths: list[float] = from_json(tours[begin : tours.index(b"]", begin) + 1] + b"}")["lengths"]
+def _lengths(tour: bytes) -> list[float]:
+    """Return the lengths in the JSON of a tour, whose first members are numbers and they."""
+    lengths: list[float] = from_json(tour[: tour.index(b"]") + 1] + b"}")["lengths"]
     return lengths
 
 
