@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 from typing import Any, get_args
@@ -11,6 +10,7 @@ import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
+from service.actor_info import ActorInfo
 from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled
 from service.instance import PLANE, Instance, Kind
@@ -24,42 +24,6 @@ _FEW = 100  # cities or preferences, up to which a session keeps less than 20 MB
 _MIN_PLACES = 3  # of fewer there is one tour, and no network was trained on them
 _RESOLUTION = 2.0**20  # of a plane: cities whose coordinates round to the same are at one place
 _LEAST_PREFERENCE = 1e-3  # for an objective: else all cities that coincide in the other are alike
-
-
-@dataclass(frozen=True, kw_only=True)
-class ActorInfo:
-    """The metadata of an actor's ONNX file.
-
-    Args:
-        name: As requests name it.
-        digest: SHA-256 of the file, in hex.
-        commit: Of the code that wrote the file.
-        inputs: The kind of instance that it reads: `coordinates`, shape (n, 4), each plane moved
-            and scaled into the unit square; or `matrices`, shape (2, n, n), in units of the
-            scale, with zeros on the diagonal.
-        sizes: Least and greatest number of cities that it was trained on.
-        angles: Least and greatest angle that it was trained on, in degrees.
-        config: Of the training run.
-        figures: Hypervolumes measured after training, by number of cities.
-    """
-
-    name: str
-    digest: str
-    commit: str
-    inputs: Kind
-    sizes: Any
-    angles: Any
-    config: Any
-    figures: Any
-
-    @property
-    def identity(self) -> dict[str, str]:
-        """The name and digest, as answers report them."""
-        return {"name": self.name, "digest": self.digest}
-
-    def serves(self, kind: Kind) -> bool:
-        """Return whether it builds tours for instances of a kind: matrices serve both kinds."""
-        return self.inputs in ("matrices", kind)
 
 
 class OnnxActor:

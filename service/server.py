@@ -17,7 +17,8 @@ from fastapi import FastAPI
 from uvicorn.config import STARTUP_FAILURE
 
 from service import installed_version
-from service.actor import ActorInfo, load_actors
+from service.actor import load_actors
+from service.actor_info import ActorInfo
 from service.api.app import Edge, create_app
 from service.api.auth import Access, Rates
 from service.api.metrics import Metrics

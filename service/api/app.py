@@ -10,7 +10,7 @@ from starlette.middleware import Middleware
 from starlette.middleware.cors import CORSMiddleware
 from starlette.responses import Response
 
-from service.actor import ActorInfo
+from service.actor_info import ActorInfo
 from service.api.auth import Access
 from service.api.exception_handlers import HANDLED, answer_refusal
 from service.api.metrics import Metrics

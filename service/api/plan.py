@@ -11,7 +11,7 @@ from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
-from service.actor import ActorInfo
+from service.actor_info import ActorInfo
 from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
 from service.api.body_budget import DEFAULT_BUDGET, BodyAllowance, BodyBudget

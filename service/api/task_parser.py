@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
 
-from service.actor import ActorInfo
+from service.actor_info import ActorInfo
 from service.errors import QueueFull, Refusal
 from service.requests.limits import Limits, check_structure
 from service.requests.task import Task, TaskSource, parse_task

@@ -9,7 +9,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from service.actor import ActorInfo, load_actors
+from service.actor import load_actors
+from service.actor_info import ActorInfo
 from service.construction.first_tours import Constructor
 from service.coverage import shortest_paths
 from service.coverage.coverage import Coverage

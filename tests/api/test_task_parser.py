@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from service.actor import ActorInfo
+from service.actor_info import ActorInfo
 from service.api.task_parser import ParserBounds, TaskParser
 from service.errors import QueueFull, Refusal
 from service.instance import Kind

@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 
 import httpx
 
-from service.actor import ActorInfo
+from service.actor_info import ActorInfo
 from service.errors import PROBLEMS, Refusal
 from service.requests.limits import Limits
 from service.requests.task import TaskSource, parse_task

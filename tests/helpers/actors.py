@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from service.actor import ActorInfo
+from service.actor_info import ActorInfo
 from service.construction.call_estimate import CallEstimate
 from service.instance import Instance, Kind
 
