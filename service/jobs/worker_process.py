@@ -10,7 +10,7 @@ import traceback
 from asyncio import StreamReader, StreamWriter
 from collections.abc import AsyncIterator
 from contextlib import suppress
-from multiprocessing.context import SpawnProcess
+from multiprocessing.context import ForkServerProcess
 from queue import SimpleQueue
 from socket import socket, socketpair
 from threading import Lock, Thread
@@ -35,8 +35,17 @@ from service.requests.task import Task, TaskSource
 NICENESS = 5  # of a worker: the event loop comes first, and needs little
 _TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin a call
 
-# A fork would copy the threads' locks but not the threads, and onnxruntime does not survive it.
-_CONTEXT = multiprocessing.get_context("spawn")
+# Workers are forked from a process that has imported this, and else would do it each anew. Not the
+# service nor ONNX Runtime: a fork copies the locks of their threads but not the threads.
+_FORKED_WITH = [
+    "scipy.linalg",  # numba imports it when it first loads compiled code
+    "service.coverage.survey",
+    "service.jobs.messages",
+    "service.planner",
+    "service.requests.road_measurer",
+]
+_CONTEXT = multiprocessing.get_context("forkserver")
+_CONTEXT.set_forkserver_preload(_FORKED_WITH)
 _BUFFER = 2**20  # bytes
 
 
@@ -141,7 +150,9 @@ class WorkerProcess:
     When the service is gone, the process ends; when the process is gone, `messages` ends.
     """
 
-    def __init__(self, process: SpawnProcess, reader: StreamReader, writer: StreamWriter) -> None:
+    def __init__(
+        self, process: ForkServerProcess, reader: StreamReader, writer: StreamWriter
+    ) -> None:
         self._process = process
         self._reader = reader
         self._writer = writer

@@ -5,7 +5,7 @@ between what they reach are filled. Every nondominated tour that is visited is k
 """
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import Literal
@@ -140,18 +140,20 @@ def _front(instance: Instance, tours: NDArray[np.integer], terminated: Terminati
 
 def warm_up() -> None:
     """Compile all that a request can need, or load it from the cache of an earlier process."""
-    cities = np.arange(12.0)
-    coordinates = np.stack([cities, cities**2 % 11, cities**2 % 7, cities], axis=1)
-    matrices = np.outer(cities, cities)[None] % np.array([7, 5]).reshape(2, 1, 1)
-    none = np.empty((0, 12), np.int32)
-    points = np.stack([cities, 12 - cities], axis=1)
-    best_subset(points, 3, np.full(2, 13.0))
-    for instance in (
-        Instance(coordinates=coordinates),
-        Instance(matrices=np.triu(matrices)),
-        Instance(coordinates=coordinates, closed=False),
-        Instance(matrices=np.triu(matrices), closed=False),
-    ):
+    best_subset(np.array([[1.0, 2.0], [2.0, 1.0]]), 1, np.full(2, 3.0))
+    for instance in _instances(5):
         exact_tours(instance)
+    none = np.empty((0, 12), np.int32)
+    for instance in _instances(12):
         improve(instance, none, iterations=5_000)
         hypervolume_bound(instance, 12 * instance.scale)
+
+
+def _instances(n: int) -> Iterator[Instance]:
+    """Yield an instance of n cities of every kind that is compiled apart."""
+    cities = np.arange(float(n))
+    coordinates = np.stack([cities, cities**2 % 11, cities**2 % 7, cities], axis=1)
+    matrices = np.triu(np.outer(cities, cities)[None] % np.array([7, 5]).reshape(2, 1, 1))
+    for closed in (True, False):
+        yield Instance(coordinates=coordinates, closed=closed)
+        yield Instance(matrices=matrices, closed=closed)

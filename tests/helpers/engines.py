@@ -139,7 +139,7 @@ def celery_worker(
     url: str, make_runner: MakeRunner, seconds: float, workers: int
 ) -> Iterator[BaseProcess]:
     """A worker of the cluster, with so many processes."""
-    context = multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
     worker = context.Process(target=_work, args=(url, make_runner, seconds, workers))
     worker.start()
     try:
