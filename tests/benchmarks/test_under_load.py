@@ -17,7 +17,7 @@ from tests.benchmarks.traffic import (
     when_due,
 )
 from tests.benchmarks.under_load import section
-from tests.helpers.serving import app_of, serving
+from tests.helpers.serving import app_of, serving, workers_of
 
 WHERE = {"cpu": "abacus", "threads": 2, "date": "today", "commit": "none"}
 QUICK = {"median_ms": 1.0, "p99_ms": 2.0, "worst_ms": 50.0}
@@ -169,7 +169,9 @@ def test_the_page_shows_what_was_found_and_what_does_not_hold(
 
 
 def test_clients_tell_each_status_and_how_long_it_took() -> None:
-    with serving(app_of()) as url:
+    # More than it is asked at once, however slow the machine.
+    workers = workers_of(queue=100)
+    with serving(app_of(workers=workers)) as url:
         address = ("127.0.0.1", int(url.rpartition(":")[2]))
         client = Client(address)
         asked = [("GET", "/openapi.json"), ("GET", "/nowhere"), ("POST", "/front")]
