@@ -19,7 +19,7 @@ from tests.helpers.processes import serve_process
 
 
 def test_every_line_of_the_log_is_an_object_and_each_request_has_one() -> None:
-    with serve_process({}) as service:
+    with serve_process({"PARETOUR_WORKERS": "1"}) as service:
         httpx.get(f"{service.url}/front/none?secret=1", headers={"X-Request-ID": "the-one"})
     lines = [json.loads(line) for line in service.log.splitlines()]
     assert {"time", "level", "logger", "message"} <= set.intersection(*map(set, lines))
@@ -77,7 +77,9 @@ def collector() -> Iterator[tuple[str, list[ExportTraceServiceRequest]]]:
 
 def test_each_request_is_a_span_at_the_collector() -> None:
     with collector() as (endpoint, received):
-        with serve_process({"OTEL_EXPORTER_OTLP_ENDPOINT": endpoint}) as service:
+        with serve_process(
+            {"OTEL_EXPORTER_OTLP_ENDPOINT": endpoint, "PARETOUR_WORKERS": "1"}
+        ) as service:
             httpx.get(f"{service.url}/front/none")
         resources = [each for request in received for each in request.resource_spans]
     named = {

@@ -138,7 +138,11 @@ def test_an_address_of_ipv6_is_the_network_that_a_client_has(
 
 
 def test_the_header_of_a_proxy_that_is_not_trusted_counts_for_nothing() -> None:
-    settings = {"PARETOUR_RATE": "2/hour", "FORWARDED_ALLOW_IPS": "192.0.2.1"}
+    settings = {
+        "PARETOUR_RATE": "2/hour",
+        "FORWARDED_ALLOW_IPS": "192.0.2.1",
+        "PARETOUR_WORKERS": "1",
+    }
     with serve_process(settings) as service:
         answers = [
             httpx.get(f"{service.url}/actors", headers={"X-Forwarded-For": f"203.0.113.{last}"})
@@ -175,7 +179,8 @@ def test_the_command_makes_a_key_that_its_entry_lets_in() -> None:
         check=True,
     )
     key, entry = made.stdout.splitlines()
-    with serve_process({"PARETOUR_API_KEYS": f" {entry} , lab:{LAB_HASH}"}) as service:
+    keys = f" {entry} , lab:{LAB_HASH}"
+    with serve_process({"PARETOUR_API_KEYS": keys, "PARETOUR_WORKERS": "1"}) as service:
         for shown in (key, LAB):
             assert httpx.get(f"{service.url}/actors", headers=bearing(shown)).status_code == 200
         assert httpx.get(f"{service.url}/actors").status_code == 401

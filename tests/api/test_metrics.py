@@ -74,7 +74,7 @@ def test_the_workers_are_asked_whenever_prometheus_asks() -> None:
 
 
 def test_fronts_are_counted_by_phase_and_size_class() -> None:
-    with serve_process({}, ready=True) as service:
+    with serve_process({"PARETOUR_WORKERS": "1"}, ready=True) as service:
         for n, seconds in [(12, 1.0), (12, 0.0), (60, 0.0)]:
             cities = np.random.default_rng(n).random((n, 4)).tolist()
             request = {"coordinates": cities, "time_limit": seconds, "preferences": 5}
