@@ -52,8 +52,9 @@ def build(settings: Settings) -> FastAPI:
     actors = load_actors(settings.actors, settings.threads, settings.own_actors)
     infos = {name: actor.info for name, actor in actors.items()}
     metrics = Metrics()
+    roads = None if settings.roads is None else RoadClient(settings.roads, metrics.routed)
     if settings.redis_url is None:
-        store, engine = _local_engine(settings, metrics, infos)
+        store, engine = _local_engine(settings, metrics, infos, roads)
     else:
         store, engine = _redis_engine(settings, metrics)
     metrics.watch(engine)
@@ -73,6 +74,7 @@ def build(settings: Settings) -> FastAPI:
                 under_way=settings.bodies_bytes,
                 parser=ParserBounds(seconds=settings.parse_seconds, memory=settings.parse_bytes),
             ),
+            streets=roads,
         ),
     )
     if settings.traces:
@@ -169,7 +171,10 @@ def takes_work(settings: Settings) -> bool:
 
 
 def _local_engine(
-    settings: Settings, metrics: Metrics, actors: Mapping[str, ActorInfo]
+    settings: Settings,
+    metrics: Metrics,
+    actors: Mapping[str, ActorInfo],
+    roads: RoadClient | None,
 ) -> tuple[Store, Engine]:
     """Return the store in SQLite, and the engine in this process and its children."""
     workers = WorkerPool(
@@ -187,9 +192,9 @@ def _local_engine(
         max_bytes=settings.store_bytes,
     )
     measurer = None
-    if settings.roads is not None:
+    if roads is not None:
         parse = partial(parse_task, limits=settings.limits, actors=actors)
-        measurer = RoadMeasurer(RoadClient(settings.roads, metrics.routed), parse)
+        measurer = RoadMeasurer(roads, parse)
     return store, LocalEngine(workers, store, measurer)
 
 

@@ -160,16 +160,26 @@ class Settings(BaseSettings):
         250.0, gt=0, le=10_000, description="metres that a stop may lie from a road"
     )
     router_seconds: float = Field(
-        20.0, gt=0, description="how long it may take for the costs of a request"
+        20.0,
+        gt=0,
+        description="how long it may take for the costs of a request, or its streets",
     )
     router_pairs: int = Field(
         2500, ge=1, le=10_000, description="the most pairs of stops that it is asked about at once"
     )
     router_cache_bytes: int = Field(
-        2**26, ge=0, description="bytes of costs that are remembered, so that it is asked once"
+        2**26,
+        ge=0,
+        description="bytes of costs and streets that are remembered, so that it is asked once",
     )
     router_cache_seconds: float = Field(
-        3600.0, gt=0, description="how long costs by road are remembered"
+        3600.0, gt=0, description="how long costs and streets are remembered"
+    )
+    router_legs: int = Field(
+        5000, ge=1, description="the most ways from stop to stop whose streets an answer draws"
+    )
+    router_positions: int = Field(
+        2**20, ge=2, description="the most positions of all lines along streets of an answer"
     )
 
     # Access.
@@ -205,6 +215,8 @@ class Settings(BaseSettings):
             pairs=self.router_pairs,
             cache_bytes=self.router_cache_bytes,
             cache_seconds=self.router_cache_seconds,
+            legs=self.router_legs,
+            positions=self.router_positions,
         )
 
     @property

@@ -13,6 +13,7 @@ from starlette.responses import Response
 from service.actor_info import ActorInfo
 from service.api.auth import Access
 from service.api.exception_handlers import HANDLED, answer_refusal
+from service.api.geojson.answers import FrontAnswers, Streets
 from service.api.metrics import Metrics
 from service.api.middleware import (
     BodyTimeoutMiddleware,
@@ -45,6 +46,7 @@ class Edge:
         body_seconds: The time that a body may take to arrive.
         request_seconds: The time after which a request is answered with the best front so far.
         bodies: What the bodies of all requests may take together.
+        streets: The streets that lines of GeoJSON may follow; by default there are none.
     """
 
     access: Access = field(default_factory=Access)
@@ -53,6 +55,7 @@ class Edge:
     body_seconds: float = 30.0
     request_seconds: float = 90.0
     bodies: BodyBounds = field(default_factory=BodyBounds)
+    streets: Streets | None = None
 
     @property
     def guard(self) -> dict[str, Any]:
@@ -93,6 +96,7 @@ def create_app(
 ) -> FastAPI:
     """Return the application, which starts the engine and closes engine and store at its end."""
     edge = edge or Edge()
+    answers = FrontAnswers(edge.streets)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -100,6 +104,7 @@ def create_app(
         yield
         await engine.close()
         await store.close()
+        await answers.close()
 
     app = _DocumentedApp(
         request_schemas(limits, actors),
@@ -115,9 +120,9 @@ def create_app(
         docs_url=None,
         redoc_url=None,
     )
-    plans = PlanRoutes(actors, engine, limits, edge.bodies, edge.request_seconds)
+    plans = PlanRoutes(actors, engine, limits, edge.bodies, edge.request_seconds, answers)
     app.include_router(plans.router(), **edge.guard)
-    app.include_router(StoredFrontRoutes(store, engine).router(), **edge.guard)
+    app.include_router(StoredFrontRoutes(store, engine, answers).router(), **edge.guard)
     app.include_router(_actor_router(actors), **edge.guard)
     app.include_router(edge.metrics.router(), **edge.guard)
     app.include_router(_health_router(engine))

@@ -2,6 +2,7 @@
 
 import asyncio
 import hashlib
+import time
 import uuid
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -15,7 +16,8 @@ from service.actor_info import ActorInfo
 from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
 from service.api.body_budget import DEFAULT_BUDGET, BodyAllowance, BodyBudget
-from service.api.geojson import CONTENT, check_acceptable, front_response
+from service.api.disconnect import disconnected
+from service.api.geojson.answers import CONTENT, FrontAnswers
 from service.api.request_bodies import COVERAGE_BODY, FRONT_BODY
 from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async
 from service.api.responses import (
@@ -31,6 +33,7 @@ from service.jobs.engine import Engine, record_in_time
 from service.jobs.front_document import empty_front
 from service.jobs.record import Record
 from service.requests.limits import Limits
+from service.requests.schemas import Geometry
 from service.requests.task import TaskKind, TaskSource
 
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
@@ -65,12 +68,14 @@ class PlanRoutes:
         limits: Limits,
         bodies: BodyBounds,
         seconds: float,
+        answers: FrontAnswers,
     ) -> None:
         self._actors = actors
         self._engine = engine
         self._limits = limits
         self._seconds = seconds
         self._budget = BodyBudget(bodies.under_way)
+        self._answers = answers
         self._parser = TaskParser(limits, actors, bodies.parser)
 
     def router(self) -> APIRouter:
@@ -101,6 +106,7 @@ class PlanRoutes:
         multipart/form-data body, beside the part `request` with everything else.
 
         With `Accept: application/geo+json`, and stops that have locations, the answer is GeoJSON.
+        Its lines follow the streets where `geometry` says `roads`.
 
         With `Prefer: respond-async` the answer is 202 at once, and `Location` says where the front
         will be. A repeat with the same `Idempotency-Key` is answered with the front of the first.
@@ -128,17 +134,23 @@ class PlanRoutes:
         self, request: Request, kind: TaskKind, allowance: BodyAllowance
     ) -> Response:
         source = await receive_source(request, kind, self._limits.body_bytes, allowance)
-        source = replace(source, task=await self._parser.parse(source))
-        record = await self._new_record(request, source)
-        check_acceptable(request, record.front.stops)
+        began = time.monotonic()
+        task = await self._parser.parse(source)
+        record = await self._new_record(request, replace(source, task=task))
+        self._answers.check(request, record.front.stops, task.geometry)
         if prefers_async(request):
             first = await self._engine.submit(record)
-            return _accepted_response(self._engine.state(first).record)
-        if record.key is not None:
+            return _accepted_response(self._engine.state(first).record, task.geometry)
+        if record.key is None:
+            record = await self._run(request, record)
+        else:
             first = await self._engine.submit(record)
             record = await record_in_time(self._engine, first, self._seconds)
-            return await _finished_response(request, record)
-        return await _finished_response(request, await self._run(request, record))
+        if record.problem is None:
+            left = self._seconds - (time.monotonic() - began)
+            return await self._answers.front(request, record, task.geometry, left)
+        # The problem may be that of an earlier request, of which this one is a repeat.
+        return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
 
     async def _check_place(self, request: Request) -> None:
         """Raise a refusal, before the body is received, where the engine takes no more work."""
@@ -165,31 +177,19 @@ class PlanRoutes:
         )
 
     async def _run(self, request: Request, record: Record) -> Record:
-        disconnect = asyncio.ensure_future(_disconnect(request))
+        disconnect = asyncio.ensure_future(disconnected(request))
         try:
             return await self._engine.run(record, disconnect)
         finally:
             disconnect.cancel()
 
 
-async def _disconnect(request: Request) -> None:
-    """Wait until the client goes away."""
-    while (await request.receive())["type"] != "http.disconnect":
-        pass
-
-
-def _accepted_response(record: Record) -> Response:
+def _accepted_response(record: Record, geometry: Geometry) -> Response:
     response = json_response({"id": record.id, "status": record.status}, 202)
-    response.headers["Location"] = f"/front/{record.id}"
+    query = "" if geometry == "straight" else f"?geometry={geometry}"
+    response.headers["Location"] = f"/front/{record.id}{query}"
     response.headers["Preference-Applied"] = "respond-async"
     return response
-
-
-async def _finished_response(request: Request, record: Record) -> Response:
-    if record.problem is None:
-        return await front_response(request, record)
-    # The problem may be that of an earlier request, of which this one is a repeat.
-    return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
 
 
 def _digest(source: TaskSource) -> str:

@@ -12,12 +12,13 @@ from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
 from service.api.auth import caller_of
-from service.api.geojson import CONTENT, front_response, tour_response
+from service.api.geojson.answers import CONTENT, FrontAnswers
 from service.api.responses import FrontAnswer, TourAnswer, json_bytes, problem_responses
 from service.errors import Expired, NotFound, Refusal
 from service.jobs.engine import Engine, JobState
 from service.jobs.record import Record
 from service.jobs.store import Store
+from service.requests.schemas import GEOMETRY, Geometry
 from service.requests.tour import TourQuery
 from service.search.improve import Progress
 
@@ -27,9 +28,10 @@ HEARTBEAT = 15.0  # seconds of silence before a comment says that the stream is 
 class StoredFrontRoutes:
     """Answers each caller about its own fronts alone."""
 
-    def __init__(self, store: Store, engine: Engine) -> None:
+    def __init__(self, store: Store, engine: Engine, answers: FrontAnswers) -> None:
         self._store = store
         self._engine = engine
+        self._answers = answers
 
     def router(self) -> APIRouter:
         """Return the routes with their entries in the OpenAPI document."""
@@ -40,7 +42,7 @@ class StoredFrontRoutes:
             "/front/{id}",
             operation_id="get_front",
             response_model=FrontAnswer,
-            responses={200: CONTENT, **problem_responses(404, 406, 410, 503)},
+            responses={200: CONTENT, **problem_responses(404, 406, 410, 422, 502, 503, 504)},
         )(self.front)
         router.delete(
             "/front/{id}",
@@ -58,13 +60,18 @@ class StoredFrontRoutes:
             "/tour",
             operation_id="get_tour",
             response_model=TourAnswer,
-            responses={200: CONTENT, **problem_responses(404, 406, 410, 422, 503)},
+            responses={200: CONTENT, **problem_responses(404, 406, 410, 422, 502, 503, 504)},
         )(self.tour)
         return router
 
-    async def front(self, request: Request, id: str) -> Response:  # noqa: A002
+    async def front(
+        self,
+        request: Request,
+        id: str,  # noqa: A002
+        geometry: Annotated[Geometry, Query(description=GEOMETRY)] = "straight",
+    ) -> Response:
         """Give a front again, or the best so far of one that is being planned."""
-        return await front_response(request, await self._record(request, id))
+        return await self._answers.front(request, await self._record(request, id), geometry)
 
     async def forget(self, request: Request, id: str) -> Response:  # noqa: A002
         """Forget a front; one that is being planned ends with what was found, and is kept."""
@@ -85,7 +92,7 @@ class StoredFrontRoutes:
         if not record.front.tours:
             raise Refusal("no-tour", front=record.id)
         index = query.choose(record.front.lengths, record.front.directions)
-        return await tour_response(request, record, index)
+        return await self._answers.tour(request, record, index, query.geometry)
 
     async def _record(self, request: Request, id: str | None) -> Record:  # noqa: A002
         """Return the caller's record with an id, as of now; without an id its latest."""

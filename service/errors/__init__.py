@@ -27,6 +27,7 @@ from service.errors.roads import (
     RouterTooSlow,
     RouterUnavailable,
     RouterUnusable,
+    StreetsTooLong,
 )
 
 __all__ = [
@@ -51,6 +52,7 @@ __all__ = [
     "ShareFull",
     "ShuttingDown",
     "StoreUnavailable",
+    "StreetsTooLong",
     "TooManyPlaces",
     "WarmingUp",
     "WorkerLost",

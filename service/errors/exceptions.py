@@ -16,6 +16,7 @@
     │   ├── IdempotencyMismatch   a key was used for another body
     │   ├── OffRoad, NoRoad       stops without a road, or a way to another; see `roads.py`
     │   ├── RouterUnavailable, RouterUnusable, RouterTooSlow
+    │   ├── StreetsTooLong        lines along streets are too many, or too long
     │   └── StoreUnavailable      the store does not answer
     └── LookupError
         ├── NotFound              the store has no front with this id

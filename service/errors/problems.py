@@ -10,9 +10,9 @@ from typing import NamedTuple
 _ALL = ("*",)
 _NONE = ()  # no operation is at fault, but the path, the method or the service
 _PLANS = ("POST /front", "POST /coverage")
-_ROADS = ("POST /front",)
 _TOUR = ("GET /tour",)
 _STORED = "GET /front/{id}"
+_ROADS = ("POST /front", _STORED, *_TOUR)
 
 
 class Problem(NamedTuple):
@@ -70,10 +70,10 @@ PROBLEMS: Mapping[str, Problem] = {
     ),
     "invalid-instance": Problem(422, "{reason}", _PLANS),
     "invalid-parts": Problem(422, "{reason}", _PLANS),
-    "invalid-request": Problem(422, "{detail}", (*_PLANS, *_TOUR)),
+    "invalid-request": Problem(422, "{detail}", (*_PLANS, _STORED, *_TOUR)),
     "no-actor": Problem(422, "{kind} need an actor that reads them, and none is loaded", _PLANS),
     "no-router": Problem(
-        422, "{name} {measure} needs a routing engine, and none is configured", ("POST /front",)
+        422, "{name} {measure} needs a routing engine, and none is configured", _ROADS
     ),
     "no-road": Problem(422, "{detail}", _ROADS),
     "off-road": Problem(422, "{detail}", _ROADS),
@@ -81,6 +81,11 @@ PROBLEMS: Mapping[str, Problem] = {
         422, "paths must have at most {limit} cells, got {actual}: {advice}", ("POST /coverage",)
     ),
     "over-limit": Problem(422, "{name} must be at most {limit:g}, got {actual:g}", _PLANS),
+    "streets-too-long": Problem(
+        422,
+        "the streets of an answer must have at most {limit} {parts}: ask for fewer tours, or one",
+        _ROADS,
+    ),
     "unfit-actor": Problem(
         422, "actor must read {kind}, as {among}; {name} reads {inputs} alone", _PLANS
     ),

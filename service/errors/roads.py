@@ -60,5 +60,12 @@ class RouterTooSlow(Refusal):
         super().__init__("router-too-slow", limit=seconds)
 
 
+class StreetsTooLong(Refusal):
+    """Lines along streets have more parts, as different legs, than one answer may have."""
+
+    def __init__(self, parts: str, limit: int, actual: int | None = None) -> None:
+        super().__init__("streets-too-long", parts=parts, limit=limit, actual=actual)
+
+
 def _quoted(name: str) -> str:
     return repr(name[:_LONGEST_NAME])

@@ -13,7 +13,16 @@ from service.construction.symmetries import MAX_SYMMETRIES
 from service.instance import OBJECTIVES, Instance, Kind
 from service.planner import PlanOptions
 from service.requests.arrays import stack_matrices
-from service.requests.schemas import END, START, ArrayRows, AsInteger, Number, PlanRequest
+from service.requests.schemas import (
+    END,
+    GEOMETRY,
+    START,
+    ArrayRows,
+    AsInteger,
+    Geometry,
+    Number,
+    PlanRequest,
+)
 from service.requests.stop_fields import (
     ObjectiveItem,
     StopItem,
@@ -88,6 +97,7 @@ class FrontRequest(PlanRequest):
         description="how many times the network is called: each time it sees the coordinates under"
         " another symmetry of the square, and aims between the angles of the other calls",
     )
+    geometry: Geometry = Field(default="straight", description=GEOMETRY)
 
     @property
     def kind(self) -> Kind:

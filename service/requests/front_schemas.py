@@ -23,6 +23,8 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     whole = limited_schema(FrontRequest, limits, actors)
     parts = whole.pop("$defs")
     _limit_cities(whole["properties"], limits.cities)
+    if not limits.roads:
+        whole["properties"]["geometry"]["enum"].remove("roads")
     cities = _by_index(whole)
     stops = _with_objectives(whole, ["MatrixObjective", "PlaneObjective", "MeasuredObjective"])
     file_stops = _unaugmented(_with_objectives(whole, ["NamedObjective"]))
@@ -65,7 +67,9 @@ def _by_index(schema: Schema) -> Schema:
     place, _ = tours["items"]["items"]["oneOf"]
     tours = {**tours, "items": {**tours["items"], "items": place}}
     start, end = (_by_index_or_null(fields[name]) for name in ("start", "end"))
-    return _with(schema, start=start, end=end, initial_tours=tours)
+    found = _with(schema, start=start, end=end, initial_tours=tours)
+    del found["properties"]["geometry"]  # cities without stops have no locations
+    return found
 
 
 def _by_index_or_null(field: Schema) -> Schema:

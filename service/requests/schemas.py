@@ -1,6 +1,6 @@
 """The types of fields in requests, and the fields that all requests for a front share."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
@@ -23,6 +23,11 @@ START = (
     " where that may be any"
 )
 END = "of open routes, the city at which they end; null where that may be any"
+Geometry = Literal["straight", "roads"]
+GEOMETRY = (
+    "of answers in GeoJSON, what the lines of tours follow: nothing, straight from stop to stop, or"
+    " the streets that a routing engine knows"
+)
 
 
 def _integer(value: object) -> object:

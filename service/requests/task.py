@@ -12,6 +12,7 @@ from service.planner import PlanOptions
 from service.requests.coverage import parse_coverage_request
 from service.requests.front_parser import parse_front_request
 from service.requests.limits import Limits, check_reference_point, check_structure
+from service.requests.schemas import Geometry
 from service.requests.stops import Labels, UnmeasuredStops
 
 TaskKind = Literal["front", "coverage"]
@@ -28,6 +29,7 @@ class Task:
         actor: The name of the actor that builds the first tours.
         paths: Whether each tour comes with its path over the map.
         arrivals: Whether each tour comes with both lengths up to each stop.
+        geometry: What the lines of the answer follow, where that is GeoJSON.
         labels: The caller's names of stops and objectives.
         timings: Milliseconds of what was done for it since it was parsed, by name.
     """
@@ -37,6 +39,7 @@ class Task:
     actor: str
     paths: bool = False
     arrivals: bool = False
+    geometry: Geometry = "straight"
     labels: Labels | None = None
     timings: Mapping[str, float] = field(default_factory=dict)
 
@@ -90,6 +93,7 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
         actor=choose_actor(actors, request.kind, request.requested_actor),
         labels=request.labels,
         arrivals=request.arrivals,
+        geometry=request.geometry,
     )
 
 

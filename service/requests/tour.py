@@ -9,7 +9,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from service.errors import Refusal
 from service.pareto import balances, knee
-from service.requests.schemas import Angle
+from service.requests.schemas import GEOMETRY, Angle, Geometry
 
 Array = NDArray[np.float64]
 _BUDGETS = ("first_at_most", "second_at_most")  # of objectives 0 and 1
@@ -43,6 +43,7 @@ class TourQuery(BaseModel):
     front: str | SkipJsonSchema[None] = Field(
         default=None, description="the front's id; by default the latest"
     )
+    geometry: Geometry = Field(default="straight", description=GEOMETRY)
 
     def check(self) -> None:
         """Raise a refusal unless exactly one way to choose a tour was given."""

@@ -1,4 +1,4 @@
-"""A cache of matrices in memory, bounded in bytes and in age."""
+"""A cache of arrays in memory, bounded in bytes and in age."""
 
 import time
 from collections import OrderedDict
@@ -6,8 +6,10 @@ from collections.abc import Callable
 
 from service.roads.router import Array
 
+BYTES_OF_ENTRY = 512  # what an array, its key and its place take beside its numbers
 
-class MatrixCache:
+
+class ArrayCache:
     """Arrays by their keys; when there is no room, the one longest unused makes way.
 
     Args:
@@ -40,13 +42,17 @@ class MatrixCache:
         """Keep an array, unless it alone is too large. It must not be changed any more."""
         if key in self._entries:
             self._drop(key)
-        if array.nbytes > self._most_bytes:
+        if _size(array) > self._most_bytes:
             return
         self._entries[key] = self._clock(), array
-        self._bytes += array.nbytes
+        self._bytes += _size(array)
         while self._bytes > self._most_bytes:
             self._drop(next(iter(self._entries)))
 
     def _drop(self, key: bytes) -> None:
         _, array = self._entries.pop(key)
-        self._bytes -= array.nbytes
+        self._bytes -= _size(array)
+
+
+def _size(array: Array) -> int:
+    return array.nbytes + BYTES_OF_ENTRY

@@ -1,23 +1,34 @@
-"""Costs and streets between stops by road, from a routing engine, within bounds of time."""
+"""Costs and lines between stops by road, from a routing engine, within bounds of time."""
 
 import asyncio
 import hashlib
 import logging
-from collections.abc import Awaitable, Iterable, Sequence
+import math
+from collections import Counter
+from collections.abc import Awaitable, Iterable, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from service.errors import Refusal, RouterTooSlow, RouterUnavailable, RouterUnusable
-from service.roads.cache import MatrixCache
+from service.errors import (
+    Refusal,
+    RouterTooSlow,
+    RouterUnavailable,
+    RouterUnusable,
+    StreetsTooLong,
+)
+from service.roads.cache import ArrayCache
 from service.roads.osrm import Osrm
 from service.roads.questions import Questions
 from service.roads.router import Array, Line, RouterInterface, RouterSettings
+from service.roads.streets import Indices, LegLines, count_legs, join_legs
 from service.roads.trails import Leg
 from service.roads.transport import Observe, RouterTransport
 from service.roads.valhalla import Valhalla
 
 _DECIMALS = 6  # of a degree that the engine is told: 0.1 m
+_DRAWN_AT_ONCE = 2  # answers with lines, so that questions about costs never wait for many
+_LEG = b"leg"  # before the places of one, in its key
 _LOG = logging.getLogger("paretour")
 _Result = TypeVar("_Result")
 
@@ -30,7 +41,7 @@ class RoadCosts(NamedTuple):
 
 
 class RoadClient:
-    """A client of a routing engine, for one event loop, which remembers the matrices it was told.
+    """A client of a routing engine, for one event loop, which remembers what it was told.
 
     Args:
         settings: Which engine to ask, and what may be spent on it.
@@ -41,7 +52,8 @@ class RoadClient:
         self._settings = settings
         self._router = _interface(settings)
         self._transport = RouterTransport(settings.url, observe)
-        self._cache = MatrixCache(settings.cache_bytes, settings.cache_seconds)
+        self._cache = ArrayCache(settings.cache_bytes, settings.cache_seconds)
+        self._drawing = asyncio.Semaphore(_DRAWN_AT_ONCE)
 
     async def costs(self, locations: Array, ids: Sequence[str]) -> RoadCosts:
         """Return the costs between all stops. The arrays must not be changed.
@@ -61,18 +73,33 @@ class RoadClient:
         key = hashlib.sha256(places.tobytes()).digest()
         costs = self._cache.get(key)
         if costs is None:
-            costs = await self._in_time(self._asked(places, ids))
+            costs = await self._in_time(self._asked(places, ids), self._settings.seconds)
             self._cache.put(key, costs)
         return RoadCosts(*costs)
+
+    async def lines(
+        self, locations: Array, ids: Sequence[str], ways: Indices, seconds: float = math.inf
+    ) -> list[Line]:
+        """Return the line along the streets of each way. Legs of several are asked for once.
+
+        Args:
+            locations: As of `costs`.
+            ids: As of `costs`.
+            ways: Indices of stops in the order of their visits, shape (k, m), m at least 2.
+            seconds: The time that is left, where that is less than the settings allow.
+
+        Raises:
+            StreetsTooLong: The ways have too many legs, or their lines too many positions.
+            Refusal: As of `costs`.
+        """
+        lines = await self._drawn(locations, ids, count_legs(ways), seconds)
+        return await asyncio.to_thread(join_legs, ways, lines)
 
     async def streets(
         self, locations: Array, ids: Sequence[str], legs: Iterable[Leg]
     ) -> dict[Leg, Line]:
-        """Return the line along the streets of each leg, a pair of indices of stops.
-
-        The other arguments and the exceptions are those of `costs`, except OffRoad.
-        """
-        return await self._in_time(self._questions(locations, ids).streets(legs))
+        """Return the line along the streets of each leg; else as of `lines`."""
+        return await self._drawn(locations, ids, Counter(legs), math.inf)
 
     async def close(self) -> None:
         """Close the connections to the engine."""
@@ -84,16 +111,47 @@ class RoadClient:
         await questions.check_snapped(self._settings.snap)
         return await questions.costs(self._settings.pairs)
 
-    def _questions(self, locations: Array, ids: Sequence[str]) -> Questions:
-        return Questions(self._router, self._transport, np.round(locations, _DECIMALS), ids)
+    async def _drawn(
+        self, locations: Array, ids: Sequence[str], counts: Mapping[Leg, int], seconds: float
+    ) -> dict[Leg, Line]:
+        """Return the line of each leg, which occurs as often as it counts."""
+        if len(counts) > self._settings.legs:
+            raise StreetsTooLong("different legs", self._settings.legs, len(counts))
+        places = np.round(locations, _DECIMALS)
+        seconds = max(0.0, min(seconds, self._settings.seconds))
+        return await self._in_time(self._streets(places, ids, counts), seconds)
 
-    async def _in_time(self, answers: Awaitable[_Result]) -> _Result:
-        """Return answers within the time of the settings, or log why there are none."""
+    async def _streets(
+        self, places: Array, ids: Sequence[str], counts: Mapping[Leg, int]
+    ) -> dict[Leg, Line]:
+        """Return the line of each leg, as it is remembered or the engine answers now."""
+        keys = {leg: _LEG + places[list(leg)].tobytes() for leg in counts}
+        found = LegLines(counts, self._settings.positions)
+        for leg, key in keys.items():
+            if (line := self._cache.get(key)) is not None:
+                found.add(leg, line)
+
+        def keep(leg: Leg, line: Line) -> None:
+            self._cache.put(keys[leg], line)
+            found.add(leg, line)
+
+        if missing := found.missing:
+            async with self._drawing:
+                questions = self._questions(places, ids)
+                await questions.check_snapped(self._settings.snap)
+                await questions.streets(missing, self._settings.snap, keep)
+        return found.lines
+
+    def _questions(self, places: Array, ids: Sequence[str]) -> Questions:
+        return Questions(self._router, self._transport, places, ids)
+
+    async def _in_time(self, answers: Awaitable[_Result], seconds: float) -> _Result:
+        """Return answers within so many seconds, or log why there are none."""
         try:
-            async with asyncio.timeout(self._settings.seconds):
+            async with asyncio.timeout(seconds):
                 return await answers
         except TimeoutError:
-            failure: Refusal = RouterTooSlow(self._settings.seconds)
+            failure: Refusal = RouterTooSlow(seconds)
         except (RouterUnavailable, RouterUnusable) as error:
             failure = error
         # Neither sentence has anything of the stops.

@@ -133,12 +133,9 @@ def _check(answer: Answer) -> None:
 
 
 def _line(leg: _Leg) -> Line:
-    """Return the line of a leg: that of its steps, each of which begins where the last ended."""
-    line: Line = []
-    for step in leg.steps:
-        places = decode_polyline(step.geometry, _PRECISION)
-        line += places[1:] if line and places[:1] == line[-1:] else places
-    return line
+    """Return the line of a leg: the lines of its steps, one after another."""
+    lines = [decode_polyline(step.geometry, _PRECISION) for step in leg.steps]
+    return np.concatenate(lines) if lines else np.empty((0, 2))
 
 
 def _joined(indices: range) -> str:

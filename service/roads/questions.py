@@ -1,6 +1,6 @@
 """The questions of one request to a routing engine, and what their answers come to."""
 
-from asyncio import TaskGroup
+from asyncio import TaskGroup, to_thread
 from collections.abc import Awaitable, Callable, Iterable, Iterator, Sequence
 from itertools import pairwise
 from math import ceil, isqrt
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import NoRoad, OffRoad, RouterUnusable
+from service.roads.great_circle import great_circle_distances
 from service.roads.reachability import MissingWay, missing_ways
 from service.roads.router import Array, Line, Location, NoWay, RouterInterface, Unintelligible
 from service.roads.trails import Leg, trails
@@ -62,19 +63,28 @@ class Questions:
         self._costs.setflags(write=False)
         return self._costs
 
-    async def streets(self, legs: Iterable[Leg]) -> dict[Leg, Line]:
-        """Return the line along the streets of each leg.
+    async def streets(
+        self, legs: Iterable[Leg], snap: float, keep: Callable[[Leg, Line], None]
+    ) -> None:
+        """Find the line along the streets of each leg, of stops that `check_snapped` let pass.
+
+        Args:
+            legs: Each from one stop to another.
+            snap: As of `check_snapped`.
+            keep: Called with each leg and its line, which is not empty, as they come.
 
         Raises:
             NoRoad: There is no way along some leg.
+            RouterUnusable: Some line does not lead from stop to stop.
         """
-        lines: dict[Leg, Line] = {}
 
         async def follow(trail: list[int]) -> None:
-            lines.update(zip(pairwise(trail), await self._route(trail), strict=True))
+            lines = await self._route(trail)
+            self._check_ends(trail, lines, snap)
+            for leg, line in zip(pairwise(trail), lines, strict=True):
+                keep(leg, line)
 
         await _for_each(trails(legs, self._router.most_route_stops), follow)
-        return lines
 
     async def _fill(self, block: tuple[_Indices, _Indices]) -> None:
         sources, targets = block
@@ -84,12 +94,26 @@ class Questions:
         """Return the line of each leg of a trail, of which halves are asked for if it has none."""
         answer = await self._transport.ask(self._router.ask_route(self._places_of(trail)))
         try:
-            return _understood(lambda: self._router.read_route(answer, len(trail) - 1))
+            # In a thread, because of ten thousands of small lines that it may be of.
+            return await to_thread(
+                _understood, lambda: self._router.read_route(answer, len(trail) - 1)
+            )
         except NoWay:
             if len(trail) == 2:
                 raise self._no_road([MissingWay(trail[0], trail[1], trail[0])]) from None
         middle = len(trail) // 2
         return [*await self._route(trail[: middle + 1]), *await self._route(trail[middle:])]
+
+    def _check_ends(self, trail: Sequence[int], lines: Sequence[Line], snap: float) -> None:
+        """Raise RouterUnusable unless each line begins and ends near its stops."""
+        if not all(map(len, lines)):
+            raise RouterUnusable("a line must have places")
+        places = np.array(self._places_of(trail))
+        for stops, end in ((places[:-1], 0), (places[1:], -1)):
+            ends = np.array([line[end] for line in lines])
+            # A table and a route may choose different roads of those near a stop.
+            if (great_circle_distances(stops, ends) > 2 * snap).any():
+                raise RouterUnusable("a line must begin and end at its stops")
 
     async def _snapped(self, part: _Indices) -> Array:
         """Return how many metres places lie from a road, infinity where there is none."""

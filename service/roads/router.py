@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Location = tuple[float, float]  # longitude and latitude in degrees, WGS84
-Line = list[Location]
+Line = Array  # the places along a street, shape (m, 2), longitude first
 RouterName = Literal["valhalla", "osrm"]
 DEFAULT_PROFILES: Mapping[RouterName, str] = {"valhalla": "auto", "osrm": "driving"}
 
@@ -25,8 +25,10 @@ class RouterSettings:
         snap: Metres that a stop may lie from a road.
         seconds: The time for all matrices of one request, or all streets of one.
         pairs: The most pairs of stops that the engine answers at once.
-        cache_bytes: Bytes of matrices that are remembered.
+        cache_bytes: Bytes of matrices and streets that are remembered.
         cache_seconds: How long these are remembered.
+        legs: The most legs of one answer whose streets are asked for.
+        positions: The most positions of all lines along streets of one answer.
     """
 
     url: str
@@ -37,6 +39,8 @@ class RouterSettings:
     pairs: int = 2500
     cache_bytes: int = 2**26
     cache_seconds: float = 3600.0
+    legs: int = 5000
+    positions: int = 2**20
 
 
 class Question(NamedTuple):

@@ -97,6 +97,18 @@ def test_the_tour_at_an_angle_is_that_of_the_front(url: str, connect: Connect) -
         np.testing.assert_array_equal(asked.lengths, nearest.lengths)
 
 
+def test_a_front_of_stops_is_given_as_geojson(url: str, connect: Connect) -> None:
+    client = connect(url)
+    stops = [{"id": name, "location": [24.9 + k, 60.2]} for k, name in enumerate("ab")]
+    objectives = [{"name": name, "from": "great_circle"} for name in ("way", "again")]
+    found = client.front(stops=stops, objectives=objectives, time_limit=0)
+    [line, *points] = client.geojson(found.id)["features"]
+    assert line["geometry"]["coordinates"] == [[24.9, 60.2], [25.9, 60.2], [24.9, 60.2]]
+    assert [point["id"] for point in points] == ["a", "b"]
+    with pytest.raises(Refused, match="no-router"):
+        client.geojson(found.id, geometry="roads")
+
+
 def test_the_actors_are_named(url: str, connect: Connect) -> None:
     named = {actor.name: actor.inputs for actor in connect(url).actors()}
     assert named["pa-one"] == "coordinates"

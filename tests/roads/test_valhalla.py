@@ -102,6 +102,36 @@ def test_the_streets_of_a_leg_lead_from_stop_to_stop_and_are_as_long_as_its_cost
         assert length == pytest.approx(costs.metres[i, j], rel=0.01, abs=5)
 
 
+def test_the_line_of_a_tour_goes_along_the_road_by_all_its_stops(
+    valhalla: RunningValhalla, stops: Array
+) -> None:
+    places = np.vstack((stops[:20], stops[3]))  # two stops are at one place
+    rng = np.random.default_rng(2)
+    routes = np.array([rng.permutation(20) for _ in range(5)])
+    fronts = [routes, np.hstack((routes, routes[:, :1])), np.array([[4, 4], [3, 20]])]
+
+    async def ask() -> list[list[Array]]:
+        client = RoadClient(RouterSettings(url=valhalla.url))
+        try:
+            return [await client.lines(places, _ids(21), ways) for ways in fronts]
+        finally:
+            await client.close()
+
+    opened, closed, alone = asyncio.run(ask())
+    for ways, lines in zip(fronts, (opened, closed, alone), strict=True):
+        for way, line in zip(ways, lines, strict=True):
+            assert (great_circle_distances(line[[0, -1]], places[way[[0, -1]]]) < 250).all()
+            for stop in places[way]:
+                nearest = great_circle_distances(line, np.tile(stop, (len(line), 1)))
+                assert nearest.min() < 250
+    for line, whole in zip(opened, closed, strict=True):
+        np.testing.assert_array_equal(whole[: len(line)], line)
+
+
+def _ids(n: int) -> list[str]:
+    return [f"order-{i}" for i in range(n)]
+
+
 @pytest.fixture
 def mortal(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningValhalla]:
     with valhalla_service(tmp_path_factory.mktemp("mortal")) as running:

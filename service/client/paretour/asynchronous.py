@@ -2,10 +2,10 @@
 
 import asyncio
 from collections.abc import AsyncIterator
-from typing import Self, TypeVar, Unpack
+from typing import Any, Self, TypeVar, Unpack
 
 import httpx
-from paretour.calls import Call, Calls, auth_headers
+from paretour.calls import Call, Calls, Geometry, auth_headers
 from paretour.choice import Choice
 from paretour.events import JobEvents
 from paretour.members import CoverageRequest, FrontRequest
@@ -79,6 +79,16 @@ class AsyncClient:
     ) -> Tour:
         """Return a tour of a front by its id, or of the latest, as `Front.choose` does."""
         return await self._connection.run(self._calls.tour(angle, front, choice))
+
+    async def geojson(self, front: str, geometry: Geometry = "straight") -> dict[str, Any]:
+        """Return a front by its id as a FeatureCollection (RFC 7946), if its stops have locations.
+
+        Args:
+            front: The front's id.
+            geometry: Whether its lines are straight, or follow the streets where the service has a
+                routing engine.
+        """
+        return await self._connection.run(self._calls.geojson(front, geometry))
 
     async def actors(self) -> tuple[Actor, ...]:
         """Return the actors that the service has loaded."""

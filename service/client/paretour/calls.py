@@ -6,7 +6,7 @@ Both clients run the same calls, one waiting for responses and one awaiting them
 
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import httpx
 from paretour.choice import Choice, parameters
@@ -16,6 +16,7 @@ from paretour.requests import Plan
 from paretour.values import FINAL_STATUSES, Actor, Front, Tour, parse_front, parse_tour
 
 T = TypeVar("T")
+Geometry = Literal["straight", "roads"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,6 +97,12 @@ class Calls:
         params = parameters(angle, choice) | ({} if front_id is None else {"front": front_id})
         return parse_tour((yield from self._get("/tour", params)).json())
 
+    def geojson(self, front_id: str, geometry: Geometry) -> Call[dict[str, Any]]:
+        """Return a front as GeoJSON."""
+        headers = {"Accept": "application/geo+json"}
+        response = yield from self._get(_path(front_id), {"geometry": geometry}, headers)
+        return response.json()
+
     def actors(self) -> Call[tuple[Actor, ...]]:
         """Return the actors that the service has loaded."""
         response = yield from self._get("/actors")
@@ -121,8 +128,13 @@ class Calls:
             return response
         raise refused(response)
 
-    def _get(self, path: str, params: Mapping[str, Any] | None = None) -> Call[httpx.Response]:
-        content = {"params": params}
+    def _get(
+        self,
+        path: str,
+        params: Mapping[str, Any] | None = None,
+        headers: Mapping[str, str] | None = None,
+    ) -> Call[httpx.Response]:
+        content = {"params": params, "headers": headers}
         request = HttpRequest(method="GET", path=path, content=content, timeout=self.timeout)
         return (yield from self._send(request))
 

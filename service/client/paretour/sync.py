@@ -2,10 +2,10 @@
 
 import time
 from collections.abc import Iterator
-from typing import Self, TypeVar, Unpack
+from typing import Any, Self, TypeVar, Unpack
 
 import httpx
-from paretour.calls import Call, Calls, auth_headers
+from paretour.calls import Call, Calls, Geometry, auth_headers
 from paretour.choice import Choice
 from paretour.events import JobEvents
 from paretour.members import CoverageRequest, FrontRequest
@@ -85,6 +85,16 @@ class Client:
     ) -> Tour:
         """Return a tour of a front by its id, or of the latest, as `Front.choose` does."""
         return self._connection.run(self._calls.tour(angle, front, choice))
+
+    def geojson(self, front: str, geometry: Geometry = "straight") -> dict[str, Any]:
+        """Return a front by its id as a FeatureCollection (RFC 7946), if its stops have locations.
+
+        Args:
+            front: The front's id.
+            geometry: Whether its lines are straight, or follow the streets where the service has a
+                routing engine.
+        """
+        return self._connection.run(self._calls.geojson(front, geometry))
 
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors that the service has loaded."""

@@ -1,16 +1,12 @@
 """Fronts and tours as GeoJSON, against a live server, by the rules of RFC 7946."""
 
 from collections.abc import Iterator
-from itertools import pairwise
 from typing import Any
 
 import httpx
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from service.api.geojson import straight_line
 from tests.helpers.serving import app_of, problem, serving
 
 ACCEPT = {"Accept": "application/geo+json"}
@@ -22,8 +18,6 @@ OBJECTIVES = [
     {"name": "risk", "unit": "%", "matrix": RISK},
 ]
 REQUEST: dict[str, Any] = {"stops": STOPS, "objectives": OBJECTIVES, "time_limit": 0.1}
-LONGITUDES = st.one_of(st.floats(-180, 180), st.sampled_from([-180.0, 179.5, -179.5, 180.0, 0.0]))
-WAYS = st.lists(st.tuples(LONGITUDES, st.floats(-90, 90)), min_size=2, max_size=8)
 
 
 @pytest.fixture(scope="module")
@@ -122,29 +116,3 @@ def test_one_stop_is_a_line_back_to_itself(client: httpx.Client) -> None:
     [line, point] = client.post("/front", json=request, headers=ACCEPT).json()["features"]
     assert line["geometry"]["coordinates"] == [LOCATIONS[0]] * 2
     assert point["geometry"]["coordinates"] == LOCATIONS[0]
-
-
-@given(WAYS)
-def test_no_line_goes_more_than_half_way_round_the_earth(way: list[tuple[float, float]]) -> None:
-    geometry = straight_line(way)
-    lines = geometry["coordinates"]
-    if geometry["type"] == "LineString":
-        lines = [lines]
-    assert len(lines) == 1 + sum(abs(b[0] - a[0]) > 180 for a, b in pairwise(way))
-    assert all(len(line) > 1 for line in lines)
-    assert all(abs(b[0] - a[0]) <= 180 for line in lines for a, b in pairwise(line))
-    visited = [lines[0][0]]
-    for number, line in enumerate(lines):
-        last = number == len(lines) - 1
-        visited += line[1:] if last else line[1:-1]
-        if not last:
-            (end, latitude), (begin, same) = line[-1], lines[number + 1][0]
-            assert (abs(end), begin, same) == (180, -end, latitude)
-    assert visited == way
-
-
-def test_a_step_over_longitude_180_is_cut_where_it_crosses() -> None:
-    assert straight_line([(179.0, 10.0), (-178.0, 16.0)]) == {
-        "type": "MultiLineString",
-        "coordinates": [[(179.0, 10.0), (180.0, 12.0)], [(-180.0, 12.0), (-178.0, 16.0)]],
-    }

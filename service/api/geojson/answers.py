@@ -1,0 +1,157 @@
+"""Answers of fronts and tours: in JSON, or in GeoJSON where the request accepts that.
+
+Lines of tours are straight from stop to stop, or follow the streets as a routing engine knows them.
+"""
+
+import asyncio
+import math
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import to_json
+from starlette.requests import Request
+from starlette.responses import Response
+
+from service.api.disconnect import unless_disconnected
+from service.api.geojson.accept import GEOJSON, accepts_geojson
+from service.api.geojson.features import Drawing
+from service.api.geojson.lines import Line
+from service.api.responses import json_bytes
+from service.errors import Fault, Refusal
+from service.jobs.record import Record
+from service.requests.schemas import Geometry
+
+VARY = {"Vary": "Accept"}
+# For the OpenAPI document.
+CONTENT: dict[str, Any] = {
+    "content": {
+        GEOJSON: {
+            "schema": {
+                "title": "FeatureCollection",
+                "description": "a line for each tour, then a point for each stop (RFC 7946)",
+                "type": "object",
+                "required": ["type", "features"],
+                "properties": {
+                    "type": {"const": "FeatureCollection"},
+                    "features": {"type": "array", "items": {"type": "object"}},
+                },
+            }
+        }
+    }
+}
+Stops = Sequence[dict[str, Any]]
+
+
+class Streets(Protocol):
+    """Knows lines along the streets; see RoadClient."""
+
+    async def lines(
+        self,
+        locations: NDArray[np.float64],
+        ids: Sequence[str],
+        ways: NDArray[np.int64],
+        seconds: float,
+    ) -> list[Line]:
+        """Return the line along the streets of each way through stops."""
+
+    async def close(self) -> None:
+        """Close the connections to the engine."""
+
+
+class FrontAnswers:
+    """Answers requests with fronts and tours.
+
+    Args:
+        streets: The routing engine's streets, None where none is configured.
+    """
+
+    def __init__(self, streets: Streets | None = None) -> None:
+        self._streets = streets
+
+    def check(self, request: Request, stops: Stops | None, geometry: Geometry) -> None:
+        """Raise a refusal where a request accepts GeoJSON, and there can be no such lines.
+
+        Raises:
+            Refusal: There are no stops with ids, or some have no location; or streets are asked
+                for without GeoJSON, or without a routing engine.
+        """
+        if geometry == "roads":
+            self._check_roads(request)
+        if accepts_geojson(request):
+            _check_located(stops)
+
+    async def front(
+        self, request: Request, record: Record, geometry: Geometry, seconds: float = math.inf
+    ) -> Response:
+        """Return a front as GeoJSON where the request accepts that, else as JSON.
+
+        Args:
+            request: The request to answer.
+            record: The front's record.
+            geometry: What the lines follow.
+            seconds: The time that is left for this.
+
+        Raises:
+            Refusal: As of `check`, and of RoadClient.lines.
+        """
+        self.check(request, record.front.stops, geometry)
+        if not accepts_geojson(request):
+            return json_bytes(record.json())
+        tours = b"[" + record.front.tours + b"]"
+        return await self._drawn(request, record, tours, geometry, seconds)
+
+    async def tour(
+        self, request: Request, record: Record, index: int, geometry: Geometry
+    ) -> Response:
+        """Return one tour of a front, in the same way."""
+        self.check(request, record.front.stops, geometry)
+        tour = record.front.tour(index)
+        if not accepts_geojson(request):
+            return json_bytes(b'{"front":' + to_json(record.id) + b"," + tour[1:])
+        return await self._drawn(request, record, b"[" + tour + b"]", geometry, math.inf)
+
+    async def close(self) -> None:
+        """Close the connections to the routing engine."""
+        if self._streets is not None:
+            await self._streets.close()
+
+    def _check_roads(self, request: Request) -> None:
+        if not accepts_geojson(request):
+            sentence = f"geometry roads is of answers in GeoJSON: send Accept: {GEOJSON}"
+            raise Refusal("invalid-request", detail=sentence, errors=[_fault(request, sentence)])
+        if self._streets is None:
+            refusal = Refusal("no-router", name="geometry", measure="roads")
+            refusal.errors = (_fault(request, refusal.detail),)
+            raise refusal
+
+    async def _drawn(
+        self, request: Request, record: Record, tours: bytes, geometry: Geometry, seconds: float
+    ) -> Response:
+        drawing = await asyncio.to_thread(Drawing.of, record, tours)
+        if geometry == "roads" and drawing.tours:
+            assert self._streets is not None
+            asked = self._streets.lines(drawing.locations, drawing.ids, drawing.ways, seconds)
+            lines = await unless_disconnected(request, asked)
+        else:
+            lines = drawing.straight_lines
+        collection = await asyncio.to_thread(drawing.encode, lines)
+        return Response(collection, media_type=GEOJSON, headers=VARY)
+
+
+def _fault(request: Request, sentence: str) -> Fault:
+    """Return what is wrong with the geometry, which is in the body or in the query."""
+    if request.method == "POST":
+        return Fault(sentence, pointer="/geometry")
+    return Fault(sentence, parameter="geometry")
+
+
+def _check_located(stops: Stops | None) -> None:
+    """Raise a refusal unless there are stops, and all have locations."""
+    if stops is None:
+        raise Refusal("no-locations", came="a front of cities without stops")
+    without = [stop["id"] for stop in stops if stop["location"] is None]
+    if without:
+        more = f" and {len(without) - 1} more" if len(without) > 1 else ""
+        raise Refusal("no-locations", came=f"none of stop {without[0]!r}{more}")

@@ -1,0 +1,74 @@
+"""Lines of tours along the streets, joined of the lines of their legs."""
+
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.errors import StreetsTooLong
+from service.roads.router import Line
+from service.roads.trails import Leg
+
+Indices = NDArray[np.int64]
+
+
+def count_legs(ways: Indices) -> dict[Leg, int]:
+    """Return how often each leg occurs in ways through stops, shape (k, m), m at least 2.
+
+    They are in the order of the ways, of which `trails` then makes few.
+
+    >>> count_legs(np.array([[0, 1, 2, 0], [0, 2, 0, 1]]))
+    {(0, 1): 2, (1, 2): 1, (2, 0): 2, (0, 2): 1}
+    """
+    legs = np.stack((ways[:, :-1], ways[:, 1:]), axis=-1).reshape(-1, 2)
+    distinct, first, counts = np.unique(legs, axis=0, return_index=True, return_counts=True)
+    order = np.argsort(first)
+    pairs = zip(distinct[order].tolist(), counts[order].tolist(), strict=True)
+    return {(i, j): n for (i, j), n in pairs}
+
+
+class LegLines:
+    """The lines of legs as they are found, each of which counts as often as its leg occurs.
+
+    Args:
+        counts: How often each leg occurs.
+        most: The most positions of all of them.
+    """
+
+    def __init__(self, counts: Mapping[Leg, int], most: int) -> None:
+        self.lines: dict[Leg, Line] = {}
+        self._counts = counts
+        self._most = most
+        self._positions = 0
+
+    def add(self, leg: Leg, line: Line) -> None:
+        """Add the line of a leg.
+
+        Raises:
+            StreetsTooLong: All have too many positions.
+        """
+        self.lines[leg] = line
+        self._positions += self._counts[leg] * len(line)
+        if self._positions > self._most:
+            raise StreetsTooLong("positions", self._most)
+
+    @property
+    def missing(self) -> list[Leg]:
+        """The legs that have no line yet."""
+        return [leg for leg in self._counts if leg not in self.lines]
+
+
+def join_legs(ways: Indices, lines: Mapping[Leg, Line]) -> list[Line]:
+    """Return the whole line of each way, shape (k, m), of the lines of its legs, none empty.
+
+    It has two places at least, and none twice in a row where it is longer.
+    """
+    return [_join(way, lines) for way in ways.tolist()]
+
+
+def _join(way: list[int], lines: Mapping[Leg, Line]) -> Line:
+    line = np.concatenate([lines[leg] for leg in pairwise(way)])
+    moves = (line[1:] != line[:-1]).any(axis=1)
+    line = line[np.concatenate(([True], moves))]
+    return line if len(line) > 1 else line.repeat(2, axis=0)
