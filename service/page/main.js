@@ -4,7 +4,7 @@ import { isCity, rowsOf, textOf } from "./inputs/cities.js";
 import { csv, curl, download } from "./result/exports.js";
 import { clearFaults, showFault, showFaults } from "./planning/faults.js";
 import { Fields } from "./inputs/fields.js";
-import { read } from "./inputs/files.js";
+import { isRequest, read, readPasted } from "./inputs/files.js";
 import { askedFor, described, kindOf, requestFor } from "./inputs/instance.js";
 import { fragment, linked } from "./result/link.js";
 import { counted } from "./common/numbers.js";
@@ -157,15 +157,25 @@ function fail(error) {
   showFaults(error);
 }
 
-async function openFiles(files) {
-  if (!files.length) return;
+const openFiles = (files) => files.length && openBrought(() => read(files));
+
+/** Opens what `reading` gives, or says why it gives nothing. */
+async function openBrought(reading) {
   try {
-    const { members, objectives: names } = await read(files);
+    const { members, objectives: names } = await reading();
     open(members, names);
     forgetExample();
   } catch (error) {
     showFault("file", error.message);
   }
+}
+
+/** Text that is a request is opened, wherever it is pasted; rows of cities go into their box. */
+function pasted(event) {
+  const text = event.clipboardData.getData("text");
+  if (!isRequest(text)) return;
+  event.preventDefault();
+  openBrought(() => readPasted(text));
 }
 
 async function openExample() {
@@ -250,6 +260,7 @@ addEventListener("drop", (event) => {
   element("drop").classList.remove("over");
   openFiles([...event.dataTransfer.files]);
 });
+addEventListener("paste", pasted);
 addEventListener("hashchange", openLinked);
 
 const examples = await service.get("examples/index.json");

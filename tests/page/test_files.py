@@ -6,12 +6,14 @@ import subprocess
 import sys
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
 from playwright.sync_api import Browser, Page, expect
 
+from service.cli.inputs.files import read_request
 from service.cli.inputs.tsplib import parse_matrix
 from service.settings import Settings
 from tests.helpers.browsing import (
@@ -73,6 +75,54 @@ def test_stops_are_planned_under_their_names_and_ids(page: Page) -> None:
     assert all(row["tour"].startswith('"order ""1""" ') for row in rows)
 
 
+OBJECTIVES = [
+    {"name": "way", "from": "great_circle"},
+    {"name": "risk", "matrix": [[0, 4, 5], [1, 0, 5], [2, 2, 0]]},
+]
+
+
+def collection(**members: Any) -> str:
+    """Return three points as GeoJSON, with other members of the collection."""
+    points: list[dict[str, Any]] = [
+        {"geometry": {"type": "Point", "coordinates": [24.941 + k / 100, 60.171 - k**2 / 500]}}
+        for k in range(3)
+    ]
+    named = [{"id": "depot"}, {"properties": {"name": "order-17"}}, {"properties": {"id": 18}}]
+    features = [{"type": "Feature", **one, **two} for one, two in zip(points, named, strict=True)]
+    return json.dumps({"type": "FeatureCollection", "features": features, **members})
+
+
+@pytest.mark.parametrize("pasted", [False, True], ids=["opened", "pasted"])
+def test_points_of_geojson_are_stops_as_on_the_command_line(
+    page: Page, tmp_path: Path, pasted: bool
+) -> None:
+    text = collection(objectives=OBJECTIVES, time_limit=0.2)
+    if pasted:
+        page.get_by_label("x1, y1, x2, y2").focus()
+        page.evaluate("text => navigator.clipboard.writeText(text)", text)
+        page.keyboard.press("Control+V")
+    else:
+        open_files(page, {"stops.geojson": text})
+    expect(page.get_by_text("3 stops with ids.")).to_be_visible()
+    (tmp_path / "stops.geojson").write_text(text)
+    request, ids = read_request([tmp_path / "stops.geojson"])
+    body = curl_body(page)
+    assert ids == ("depot", "order-17", "18")
+    assert {name: body[name] for name in request} == request
+    page.get_by_role("button", name="Plan").click()
+    wait_until_planned(page)
+    expect(page.locator("#order p")).to_contain_text("depot →")
+
+
+def test_rows_that_are_pasted_go_into_their_box(page: Page) -> None:
+    box = page.get_by_label("x1, y1, x2, y2")
+    box.fill("")
+    page.evaluate("text => navigator.clipboard.writeText(text)", "1, 2, 3, 4")
+    box.focus()
+    page.keyboard.press("Control+V")
+    expect(page.locator("#count")).to_have_text("1 city")
+
+
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
@@ -80,6 +130,12 @@ def test_stops_are_planned_under_their_names_and_ids(page: Page) -> None:
         ("stops.json", '{"coordinates": [', "stops.json must be JSON"),
         ("stops.json", '{"coordinates": [1, 2]}', "coordinates of stops.json must be rows"),
         ("stops.json", '{"stops": 7}', "stops of stops.json must be a list"),
+        ("points.geojson", collection(), "points.geojson must have a member objectives"),
+        (
+            "points.geojson",
+            collection(objectives=OBJECTIVES, features=[{"geometry": None}]),
+            "features/0 of points.geojson must be a Point",
+        ),
         ("map.json", '{"grid": []}', "grid of map.json must have a cell or more"),
         ("kroA.tsp", "EDGE_WEIGHT_TYPE: EUC_2D\n", "open it together with the other"),
     ],

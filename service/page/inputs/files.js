@@ -1,6 +1,7 @@
 /** Read the files that people open or drop into the members of a request. */
 
 import { rowsOf } from "./cities.js";
+import { isCollection, stopsOf } from "./geojson.js";
 import { OBJECTIVES, coverageOf } from "./image.js";
 import { namesIn } from "../common/objectives.js";
 import { isTsplib, pair } from "./tsplib.js";
@@ -13,7 +14,17 @@ export async function read(files) {
   if (files.length === 1 && files[0].type.startsWith("image/")) {
     return { members: await coverageOf(files[0]), objectives: OBJECTIVES };
   }
-  const members = membersOf(await textsOf(files));
+  return request(await textsOf(files));
+}
+
+/** The same of text that was pasted. */
+export const readPasted = (text) => request([{ name: "what was pasted", text }]);
+
+/** Whether text is a request, and no rows of cities. */
+export const isRequest = (text) => /^\s*{/.test(text);
+
+function request(texts) {
+  const members = membersOf(texts);
   return { members, objectives: namesIn(members) };
 }
 
@@ -39,6 +50,7 @@ function parsed(name, text) {
   } catch (error) {
     throw new Error(`${name} must be JSON, and is not: ${error.message}`);
   }
+  if (isCollection(given)) return stopsOf(name, given);
   return drawable(name, Array.isArray(given) ? { coordinates: given } : given);
 }
 
