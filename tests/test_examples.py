@@ -1,5 +1,6 @@
 """The examples can be posted as they are, and are what their script makes."""
 
+import asyncio
 import json
 import subprocess
 import sys
@@ -11,7 +12,12 @@ import httpx
 import numpy as np
 import pytest
 
+from service.instance import Instance
+from service.planner import PlanOptions, plan
+from service.roads.client import RoadClient, RoadCosts
+from service.roads.router import RouterSettings
 from service.settings import Settings
+from tests.helpers.actors import Shuffler
 from tests.helpers.serving import app_of, serving
 from tests.helpers.valhalla import RunningValhalla
 
@@ -51,6 +57,28 @@ def test_the_script_makes_the_examples(tmp_path: Path, valhalla: RunningValhalla
         assert _without_numbers(made) == _without_numbers(kept)
         # Another processor may round the last digit otherwise.
         np.testing.assert_allclose(_numbers(made), _numbers(kept), atol=1.01)
+
+
+def test_time_against_distance_of_the_same_stops_leaves_little_to_choose(
+    valhalla: RunningValhalla,
+) -> None:
+    stops = json.loads((EXAMPLES / "helsinki-deliveries.json").read_text())["stops"]
+    places = np.array([stop["location"] for stop in stops])
+
+    async def ask() -> RoadCosts:
+        client = RoadClient(RouterSettings(url=valhalla.url))
+        try:
+            return await client.costs(places, [stop["id"] for stop in stops])
+        finally:
+            await client.close()
+
+    instance = Instance(matrices=np.stack(asyncio.run(ask())))
+    options = PlanOptions(angles=np.array([45.0]), size=100, time_limit=2.0, seed=1)
+    points = plan(Shuffler(), instance, options).points
+    # The guide gives these: the fastest tour is nearly the shortest.
+    assert len(points) == pytest.approx(10, abs=5)
+    np.testing.assert_allclose(points.min(axis=0), (1945, 12_964), rtol=0.005)
+    assert (points.max(axis=0) < 1.02 * points.min(axis=0)).all()
 
 
 def test_without_a_routing_engine_the_script_says_what_it_leaves(tmp_path: Path) -> None:
