@@ -14,7 +14,8 @@ from tests.helpers.engines import Served, engine_of
 from tests.helpers.jobs import CITIES, check, ended, later
 from tests.helpers.serving import problem
 
-REQUEST = {"coordinates": CITIES[:60], "time_limit": 0.4}
+# Long enough for a report on the fastest machine.
+REQUEST = {"coordinates": CITIES[:100], "time_limit": 0.8}
 CALLERS = 3
 
 
