@@ -16,7 +16,7 @@ def main() -> None:
     """Plan the first example, pin a tour of its front, select another, and take the picture."""
     with serving_released() as address, chromium() as browser, open_page(browser, address) as page:
         wait_until_planned(page)
-        slider = page.get_by_role("slider", name="Angle")
+        slider = page.get_by_role("slider", name="Balance")
         slider.press("Home")
         page.get_by_role("button", name="Pin to compare").click()
         for _ in range(5):

@@ -62,6 +62,49 @@ def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> N
     expect(slider).to_have_attribute("aria-valuetext", re.compile("tour 99 of 100"))
 
 
+def test_the_page_says_what_a_tour_gives_up_and_what_it_gains(page: Page) -> None:
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save JSON").click()
+    front = [item["lengths"] for item in json.loads(saved.value.path().read_text())["front"]]
+    slider, choice = page.get_by_role("slider", name="Balance"), page.locator("#choice")
+    slider.press("Home")
+    expect(choice).to_contain_text("The least distance.")
+    (shortest, most), (longest, least) = front[0], front[-1]
+    slider.press("End")
+    cost, gain = (f"{100 * share:.0f}" for share in (longest / shortest - 1, 1 - least / most))
+    expect(choice).to_have_text(
+        re.compile(f"^{cost} % more distance .* than the least, for {gain} % less risk: the least")
+    )
+
+
+def test_a_name_on_the_chart_previews_its_tour_and_selects_it(page: Page) -> None:
+    slider, drawn = page.get_by_role("slider", name="Balance"), page.locator("canvas.selected")
+    slider.press("End")
+    wait_for_next_frame(page)
+    last = drawn.first.evaluate("canvas => canvas.toDataURL()")
+    name = page.get_by_role("button", name="least distance")
+    name.focus()
+    expect(page.locator("#choice")).to_contain_text("The least distance.")
+    expect(page.locator("#front-chart .marker.previewed")).to_be_visible()
+    assert drawn.first.evaluate("canvas => canvas.toDataURL()") != last
+    page.get_by_label("Seconds of planning").focus()
+    expect(page.locator("#choice")).to_contain_text("the least risk there is")
+    wait_for_next_frame(page)
+    assert drawn.first.evaluate("canvas => canvas.toDataURL()") == last
+    page.get_by_role("button", name="knee").click()
+    knee = httpx.get(
+        f"{page.url.partition('#')[0]}tour", params={"knee": "", "front": shown_id(page)}
+    )
+    place = f"distance {knee.json()['lengths'][0]:,.6g}"
+    expect(slider).to_have_attribute("aria-valuetext", re.compile(place))
+    marker = page.locator("#front-chart .marker.selected").bounding_box()
+    slider.press("Home")
+    page.mouse.move(marker["x"] + marker["width"] / 2, marker["y"] + marker["height"] / 2)
+    expect(page.locator("#choice")).to_contain_text("more distance")
+    page.mouse.move(0, 0)
+    expect(page.locator("#choice")).to_contain_text("The least distance.")
+
+
 def test_a_pinned_tour_stays_beside_the_selected_one(page: Page) -> None:
     slider = page.get_by_role("slider", name="Balance")
     slider.press("Home")
@@ -187,3 +230,10 @@ def figure(page: Page, name: str) -> float:
 
 def number(cell: Locator) -> float:
     return float(cell.inner_text().replace(",", ""))
+
+
+def shown_id(page: Page) -> str:
+    """Return the id of the front that is shown."""
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save JSON").click()
+    return json.loads(saved.value.path().read_text())["id"]

@@ -4,6 +4,7 @@ import uPlot from "../vendor/uplot/uPlot.esm.js";
 import { colour, onSchemeChange } from "../common/colours.js";
 import { counted, length } from "../common/numbers.js";
 import { UNNAMED, withUnit } from "../common/objectives.js";
+import { Labels } from "./labels.js";
 import { drawnNearest } from "../result/tours.js";
 
 const FONT = "12px system-ui, sans-serif";
@@ -13,22 +14,30 @@ export class FrontChart {
   #element;
   #chart;
   #front = [];
+  #labels;
   #markers = {};
   #marked = {};
   #objectives = UNNAMED;
 
-  /** @param {(index: number) => void} onSelect told which point was clicked */
-  constructor(element, onSelect) {
+  /**
+   * @param {HTMLElement} names holds the names of both ends and the knee, over the chart
+   * @param {(index: number) => void} onSelect told which point was clicked
+   * @param {(index: number | null) => void} onPreview told which point is pointed at
+   */
+  constructor(element, names, onSelect, onPreview) {
     this.#element = element;
+    this.#labels = new Labels(names, onSelect, onPreview);
     this.#chart = new uPlot(options(element), [[], [], []], element);
-    for (const name of ["pinned", "selected"]) {
+    for (const name of ["pinned", "selected", "previewed"]) {
       const marker = document.createElement("i");
       marker.className = `marker ${name}`;
       marker.hidden = true;
       this.#chart.over.append(marker);
       this.#markers[name] = marker;
     }
-    this.#chart.over.addEventListener("click", (event) => this.#clicked(event, onSelect));
+    this.#chart.over.addEventListener("click", (event) => this.#at(event, onSelect));
+    this.#chart.over.addEventListener("pointermove", (event) => this.#at(event, onPreview, () => onPreview(null)));
+    this.#chart.over.addEventListener("pointerleave", () => onPreview(null));
     new ResizeObserver(() => this.#resize()).observe(element);
     onSchemeChange(() => this.#chart.redraw(false, true));
   }
@@ -36,18 +45,20 @@ export class FrontChart {
   name(objectives) {
     this.#objectives = objectives;
     objectives.forEach((objective, axis) => (this.#chart.axes[axis].label = withUnit(objective)));
+    this.#labels.show(this.#front, objectives);
   }
 
   /** Shows the network's front, the improved one, and lets the points of the latter be clicked. */
   show(alone, improved) {
     this.#front = improved.length ? improved : alone;
+    this.#labels.show(this.#front, this.#objectives);
     this.#chart.setData(uPlot.join([columns(alone), columns(improved)]));
     this.#element.classList.toggle("empty", !this.#front.length);
     this.#element.setAttribute("aria-label", described(this.#front, this.#objectives));
     this.#place();
   }
 
-  /** Marks a point as "selected" or "pinned"; null takes the mark away. */
+  /** Marks a point as "selected", "pinned" or "previewed"; null takes the mark away. */
   mark(name, lengths) {
     this.#marked[name] = lengths;
     this.#place();
@@ -61,19 +72,26 @@ export class FrontChart {
       const [x, y] = this.#position(lengths);
       marker.style.transform = `translate(${x}px, ${y}px)`;
     }
+    const { offsetLeft, offsetTop } = this.#chart.over;
+    this.#labels.place(this.#front, (lengths) => {
+      const [x, y] = this.#position(lengths);
+      return [x + offsetLeft, y + offsetTop];
+    });
   }
 
   #position([first, second]) {
     return [this.#chart.valToPos(first, "x"), this.#chart.valToPos(second, "y")];
   }
 
-  #clicked(event, onSelect) {
+  /** Tells which point is within reach of a pointer, or that there is none. */
+  #at(event, onPoint, onNone = () => {}) {
     if (!this.#front.length) return;
     const box = this.#chart.over.getBoundingClientRect();
     const place = [event.clientX - box.left, event.clientY - box.top];
     const index = drawnNearest(this.#front, place, (lengths) => this.#position(lengths));
     const [x, y] = this.#position(this.#front[index].lengths);
-    if (Math.hypot(x - place[0], y - place[1]) <= REACH) onSelect(index);
+    if (Math.hypot(x - place[0], y - place[1]) <= REACH) onPoint(index);
+    else onNone();
   }
 
   #resize() {

@@ -1,6 +1,6 @@
 /** A slider from the least first length of a front to the least second; arrow keys go tour by tour. */
 
-import { degrees, length } from "../common/numbers.js";
+import { length } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
 import { nearest } from "../result/tours.js";
 
@@ -32,9 +32,9 @@ export class BalanceSlider {
 
   /** Stands at a tour of the front. A hand that drags the slider is not pulled back. */
   select(index) {
-    const { balance, angle, lengths } = this.#front[index];
+    const { balance, lengths } = this.#front[index];
     if (nearest(this.#front, Number(this.#input.value)) !== index) this.#input.value = balance;
-    const at = `${balance.toFixed(2)}, ${degrees(angle)}`;
+    const at = balance.toFixed(2);
     this.#shown.textContent = at;
     const place = `tour ${index + 1} of ${this.#front.length}`;
     const said = this.#objectives.map(({ name }, axis) => `${name} ${length(lengths[axis])}`);

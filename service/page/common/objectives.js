@@ -13,6 +13,9 @@ export function namesIn({ objectives }) {
 
 export const titled = ({ name }) => name[0].toUpperCase() + name.slice(1);
 
+/** The unit, where it is short enough to stand beside a number. */
+export const shortUnit = ({ unit }) => (unit && unit.length < 10 ? unit : "");
+
 /** The title with its unit, where there is room for that. */
 export const withUnit = (objective) =>
-  objective.unit && objective.unit.length < 10 ? `${titled(objective)}, ${objective.unit}` : titled(objective);
+  shortUnit(objective) ? `${titled(objective)}, ${objective.unit}` : titled(objective);

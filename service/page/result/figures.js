@@ -1,16 +1,19 @@
-/** Show a front's hypervolume and the times that it took. */
+/** Show a front's hypervolume, the angle of a tour, and the times that the front took. */
 
-import { length, share } from "../common/numbers.js";
+import { degrees, length, share } from "../common/numbers.js";
 
-/** Fills two lists: what the front is worth, and what else is known of it. */
-export function showFigures(list, more, alone, answer) {
-  list.replaceChildren(...worth(alone, answer).flatMap(pair));
-  more.replaceChildren(...(answer ? known(answer) : []).flatMap(pair));
-}
+/** Fills a list with what is known of a front, if there is one. */
+export const showFigures = (list, alone, answer) =>
+  list.replaceChildren(...(answer ? [...worth(alone, answer), ...known(answer)] : []).flatMap(pair));
+
+/** Fills a list with what else is known of a tour, if there is one. */
+export const showTourFigures = (list, tour) =>
+  list.replaceChildren(...(tour ? [["Angle of the tour", degrees(tour.angle)]] : []).flatMap(pair));
 
 const worth = (alone, answer) => [
-  ["Front", answer ? share(answer.hypervolume) : "–"],
+  ["Hypervolume", share(answer.hypervolume)],
   ...(alone ? [["Network alone", share(alone.hypervolume)]] : []),
+  ...(answer.hypervolume_bound == null ? [] : [["No front has more than", share(answer.hypervolume_bound)]]),
 ];
 
 const known = (answer) => [

@@ -1,8 +1,9 @@
 /** Show a front: chart, slider, figures and maps, which select a tour together. */
 
 import { FrontChart } from "../chart/chart.js";
+import { choiceOf } from "./choice.js";
 import { compare } from "./comparison.js";
-import { showFigures } from "./figures.js";
+import { showFigures, showTourFigures } from "./figures.js";
 import { Growth } from "../chart/growth.js";
 import { Maps } from "../map/maps.js";
 import { length } from "../common/numbers.js";
@@ -23,6 +24,7 @@ export class Result {
   #closed = true;
   #balance = MIDDLE; // wanted by the viewer
   #selected = null;
+  #previewed = null; // pointed at on the chart
   #pinned = null;
   #frame = 0;
   #objectives = UNNAMED;
@@ -31,7 +33,8 @@ export class Result {
   constructor(onClick) {
     const onSelect = (index) => this.#choose(index);
     this.#maps = new Maps(onClick);
-    this.#chart = new FrontChart(element("front-chart"), onSelect);
+    const onPreview = (index) => this.#preview(index);
+    this.#chart = new FrontChart(element("front-chart"), element("front-labels"), onSelect, onPreview);
     this.#growth = new Growth(element("growth"), element("growth-help"));
     this.#slider = new BalanceSlider(element("balance"), element("balance-shown"), onSelect);
     element("pin").addEventListener("click", () => this.#pin());
@@ -57,7 +60,7 @@ export class Result {
     element("shade").textContent = instance.cost_layer ? `shaded: ${this.#objectives[1].name}` : "";
     this.#front = [];
     this.#balance = MIDDLE;
-    this.#selected = this.#pinned = null;
+    this.#selected = this.#pinned = this.#previewed = null;
     this.#chart.show([], []);
     this.#legend("alone", false);
     this.#legend("improved", false);
@@ -65,12 +68,13 @@ export class Result {
     this.#slider.show([]);
     this.#drawPin();
     this.#draw();
-    showFigures(element("figures"), element("more-figures"), null, null);
+    showFigures(element("figures"), null, null);
   }
 
   /** The front of the network alone, where it is known, and the best so far. */
   show({ alone, answer, growth }) {
     this.#front = answer.front;
+    this.#previewed = null;
     this.#closed = answer.closed !== false;
     // Until the search has found something, the best front so far is the network's.
     const improved = answer.front === alone?.front ? [] : answer.front;
@@ -81,7 +85,7 @@ export class Result {
     this.#slider.show(answer.front);
     this.#maps.place(answer.places);
     if (this.#front.length) this.#select(nearest(this.#front, this.#balance));
-    showFigures(element("figures"), element("more-figures"), alone, answer);
+    showFigures(element("figures"), alone, answer);
   }
 
   #choose(index) {
@@ -91,8 +95,21 @@ export class Result {
 
   #select(index) {
     this.#selected = this.#front[index];
+    this.#previewed = null;
     this.#slider.select(index);
-    // However often the slider moves between two frames, it is drawn once.
+    this.#drawSoon();
+  }
+
+  /** Shows a tour in the selected one's place, until it is selected or left. */
+  #preview(index) {
+    const previewed = index === null ? null : this.#front[index];
+    if (previewed === this.#previewed) return;
+    this.#previewed = previewed;
+    this.#drawSoon();
+  }
+
+  /** However often the slider or the pointer moves between two frames, it is drawn once. */
+  #drawSoon() {
     cancelAnimationFrame(this.#frame);
     this.#frame = requestAnimationFrame(() => this.#draw());
   }
@@ -111,14 +128,17 @@ export class Result {
   }
 
   #draw() {
-    const selected = this.#selected;
-    element("pin").disabled = !selected;
-    this.#legend("selected", selected !== null);
-    this.#chart.mark("selected", selected?.lengths ?? null);
-    this.#maps.draw("selected", selected, this.#closed);
-    compare(element("comparison"), this.#objectives, selected, this.#pinned);
+    const shown = this.#previewed ?? this.#selected;
+    element("pin").disabled = !this.#selected;
+    this.#legend("selected", shown !== null);
+    this.#chart.mark("selected", this.#selected?.lengths ?? null);
+    this.#chart.mark("previewed", this.#previewed?.lengths ?? null);
+    this.#maps.draw("selected", shown, this.#closed);
+    compare(element("comparison"), this.#objectives, shown, this.#pinned);
+    showTourFigures(element("tour-figures"), shown);
+    element("choice").textContent = shown ? choiceOf(this.#front, shown, this.#objectives) : "";
     for (const objective of [0, 1]) {
-      const said = selected ? length(selected.lengths[objective]) : "";
+      const said = shown ? length(shown.lengths[objective]) : "";
       element(`length-${objective + 1}`).textContent = said;
     }
     this.#order();

@@ -1,0 +1,65 @@
+/** Names on the chart for both ends of a front and its knee: buttons that preview and select their tours. */
+
+const APART = 48; // pixels between the knee and an end, under which their names would touch
+const BESIDE = 6; // pixels from a point to its name
+
+export class Labels {
+  #element;
+  #places;
+  #buttons;
+  #indices = [];
+
+  /**
+   * @param {(index: number) => void} onSelect told which tour is wanted
+   * @param {(index: number | null) => void} onPreview told which tour is to be previewed
+   */
+  constructor(element, onSelect, onPreview) {
+    this.#element = element;
+    this.#buttons = ["first", "knee", "last"].map((name, which) => {
+      const button = Object.assign(document.createElement("button"), { type: "button", className: `label ${name}` });
+      button.addEventListener("click", () => onSelect(this.#indices[which]));
+      for (const kind of ["focus", "pointerenter"]) button.addEventListener(kind, () => onPreview(this.#indices[which]));
+      for (const kind of ["blur", "pointerleave"]) button.addEventListener(kind, () => onPreview(null));
+      element.append(button);
+      return button;
+    });
+  }
+
+  /** Names the tours of a front; where it has fewer than three, or the knee is an end, fewer names. */
+  show(front, objectives) {
+    this.#indices = front.length > 1 ? [0, kneeOf(front), front.length - 1] : [];
+    const said = [`least ${objectives[0].name}`, "knee", `least ${objectives[1].name}`];
+    this.#buttons.forEach((button, which) => (button.textContent = said[which]));
+  }
+
+  /** Puts the names beside their points; `place` gives the pixels of a tour's. */
+  place(front, place) {
+    this.#places = this.#indices.map((index) => place(front[index].lengths));
+    this.#buttons.forEach((button, which) => {
+      button.hidden = !this.#places.length || (which === 1 && !this.#apart());
+      if (!button.hidden) this.#put(button, this.#places[which]);
+    });
+  }
+
+  /** The knee's name stands below its point, where no tour can be; those of the ends above. */
+  #put(button, [x, y]) {
+    const { offsetWidth: width, offsetHeight: height } = button;
+    const below = button.classList.contains("knee");
+    const left = below ? x - width : Math.min(x - BESIDE, this.#element.clientWidth - width);
+    button.style.translate = `${Math.max(0, left)}px ${below ? y + BESIDE : Math.max(0, y - height - BESIDE)}px`;
+  }
+
+  #apart() {
+    const [first, knee, last] = this.#places;
+    return [first, last].every((end) => Math.hypot(end[0] - knee[0], end[1] - knee[1]) > APART);
+  }
+}
+
+/** The tour with the least sum of both lengths, each in the front's own box. */
+export function kneeOf(front) {
+  const ends = [front[0], front.at(-1)].map(({ lengths }) => lengths);
+  const [low, high] = [Math.min, Math.max].map((pick) => [0, 1].map((axis) => pick(ends[0][axis], ends[1][axis])));
+  const sum = ({ lengths }) => lengths.reduce((all, at, axis) => all + (at - low[axis]) / (high[axis] - low[axis] || 1), 0);
+  const sums = front.map(sum);
+  return sums.indexOf(Math.min(...sums));
+}

@@ -1,0 +1,28 @@
+/** Say in a sentence what the selected tour gives up of one objective, and what it gains of the other. */
+
+import { length } from "../common/numbers.js";
+import { shortUnit } from "../common/objectives.js";
+
+/** The sentence about a tour of a front, whose tours go from the least first length to the least second. */
+export function choiceOf(front, tour, objectives) {
+  if (front.length < 2) return "This tour is the best under both objectives.";
+  const [first, second] = objectives.map(({ name }) => name);
+  const least = front[0];
+  const gain = step(least, tour, 1, objectives, "less");
+  if (tour.lengths[0] === least.lengths[0]) return `The least ${first}. Every other tour has less ${second}, for more ${first}.`;
+  const cost = step(least, tour, 0, objectives, "more");
+  const most = tour.lengths[1] === front.at(-1).lengths[1] ? `: the least ${second} there is` : "";
+  return `${cost} than the least, for ${gain}${most}.`;
+}
+
+/** How much more or less of an objective one tour has than another: in per cent, and in its unit. */
+function step(from, to, axis, objectives, word) {
+  const { name } = objectives[axis];
+  const unit = shortUnit(objectives[axis]);
+  const [before, after] = [from.lengths[axis], to.lengths[axis]];
+  const amount = `${length(Number(Math.abs(after - before).toPrecision(3)))}${unit ? ` ${unit}` : ""}`;
+  const share = Math.abs(before) > 0 ? (100 * Math.abs(after - before)) / before : null;
+  return share === null ? `${amount} ${word} ${name}` : `${percent(share)} ${word} ${name}${unit && ` (${amount})`}`;
+}
+
+const percent = (share) => `${share < 0.1 ? "under 0.1" : share.toFixed(share < 10 ? 1 : 0)} %`;
