@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.benchmarks import beyond, printed, under_load
+from tests.benchmarks import beyond, open_routes, printed, roads, under_load
 from tests.benchmarks.cells import mean_seconds, mean_share, of, share_in_seconds
 from tests.benchmarks.instances import SIZES, reference_points
 from tests.benchmarks.markdown import table
@@ -41,7 +41,8 @@ taken while other programs wanted the same processor, which makes them too long.
 def page() -> str:
     """Return the whole page as Markdown."""
     paper = (_main(), _training(), _coverage(), _layers(), _concave(), _fronts())
-    return "\n".join((INTRODUCTION, *paper, beyond.section(), under_load.section()))
+    ours = (open_routes.section(), roads.section())
+    return "\n".join((INTRODUCTION, *paper, beyond.section(), *ours, under_load.section()))
 
 
 def _main() -> str:
