@@ -17,8 +17,7 @@ end
 
 function verbs.put(now)
   local id, fields, work = ARGV[3], split(4)
-  put(now, id, fields)
-  keep_work(id, work)
+  put(now, id, fields, work)
 end
 
 -- The reply to a repeat; nil for a record that is none, or repeats one that failed.
@@ -41,8 +40,7 @@ local function admit(now, first)
   if reply then return reply end
   local failed = key ~= '' and redis.call('GET', key_of(caller, key))
   if failed then redis.call('HDEL', front_of(failed), 'key') end
-  put(now, id, fields)
-  keep_work(id, work)
+  put(now, id, fields, work)
   return 'new'
 end
 
@@ -62,6 +60,8 @@ function verbs.latest(_)
   if id then return {id, redis.call('HGETALL', front_of(id))} end
   return redis.call('EXISTS', gone_of(caller)) == 1 and 'expired' or 'unknown'
 end
+
+function verbs.source(_) return redis.call('HGETALL', work_of(ARGV[3])) end
 
 function verbs.forget(_) forget(ARGV[3]) end
 
@@ -248,12 +248,14 @@ function verbs.stop(_)
   if redis.call('EXISTS', front_of(id)) == 1 then redis.call('HSETNX', front_of(id), 'stop', why) end
 end
 
--- Whatever ends it first ends it.
+-- Whatever ends it first ends it. Its source is there already, and stays unless it failed.
 function verbs.finish(now)
   local id, fields = ARGV[3], split(4)
   local status = redis.call('HGET', front_of(id), 'status')
   if status and not is_finished(status) then
-    put(now, id, fields)
+    local work = redis.call('HGETALL', work_of(id))
+    put(now, id, fields, work)
+    if redis.call('HGET', front_of(id), 'status') == 'failed' then drop_source(id) end
     tell(id)
   end
 end

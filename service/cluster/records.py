@@ -22,7 +22,9 @@ from service.jobs.store import (
     front_columns,
     record_columns,
     record_from,
+    source_from,
 )
+from service.requests.task import TaskSource
 from service.search.improve import Progress
 
 SCRIPT = "".join(
@@ -94,6 +96,14 @@ def stored_record(*hashes: Iterable[bytes]) -> StoredRecord:
         return _decode(*hashes)
     except (ArithmeticError, LookupError, TypeError, ValueError) as error:
         raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error
+
+
+def stored_source(source: Iterable[bytes]) -> TaskSource | None:
+    """Return the source in a hash, as HGETALL gives it; None where it is empty or damaged."""
+    try:
+        return source_from(_fields(source))
+    except (LookupError, ValueError):
+        return None
 
 
 def _decode(*hashes: Iterable[bytes]) -> StoredRecord:

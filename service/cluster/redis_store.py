@@ -15,6 +15,7 @@ from service.cluster.records import (
     StoredRecord,
     record_arguments,
     stored_record,
+    stored_source,
 )
 from service.errors import (
     Expired,
@@ -26,6 +27,7 @@ from service.errors import (
 )
 from service.jobs.record import Record
 from service.jobs.store import STORE_BYTES, UnreadableRecord, log_dropped
+from service.requests.task import TaskSource
 
 
 class RedisStore:
@@ -91,6 +93,10 @@ class RedisStore:
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
         """Return the caller's record with this id."""
         return (await self.find("get", caller, id)).record
+
+    async def source(self, record: Record) -> TaskSource | None:
+        """Return what a finished record was planned from; None where that is not kept."""
+        return stored_source(await self.call("source", record.id))
 
     async def latest(self, caller: str) -> Record:
         """Return the caller's record that was finished last."""

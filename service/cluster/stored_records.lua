@@ -50,7 +50,12 @@ local function size_of(fields)
   return size
 end
 
-local function put(now, id, fields)
+local function keep_work(id, fields)
+  if #fields > 0 then redis.call('HSET', work_of(id), unpack(fields)) end
+end
+
+-- The source comes as the fields `work`.
+local function put(now, id, fields, work)
   forget(id)
   local number = redis.call('INCR', NUMBER)
   redis.call('HSET', front_of(id), 'number', number, 'kept', now, unpack(fields))
@@ -59,17 +64,14 @@ local function put(now, id, fields)
   if is_finished(status) then
     redis.call('ZADD', FINISHED, number, id)
     redis.call('ZADD', all_of(caller), number, id)
-    local size = size_of(fields)
+    local size = size_of(fields) + size_of(work)
     redis.call('HSET', front_of(id), 'size', size)
     count(caller, 1, size)
   else
     redis.call('ZADD', UNFINISHED, number, id)
   end
   if key then redis.call('SET', key_of(caller, key), id) end
-end
-
-local function keep_work(id, fields)
-  if #fields > 0 then redis.call('HSET', work_of(id), unpack(fields)) end
+  keep_work(id, work)
 end
 
 -- Remember that a record was there, and forget all else of it.
@@ -127,13 +129,25 @@ end
 
 local function total() return tonumber(redis.call('GET', TOTAL) or 0) end
 
--- Drop records that no store of so many bytes could hold.
+local function drop_source(id)
+  local source = size_of(redis.call('HGETALL', work_of(id)))
+  redis.call('DEL', work_of(id))
+  redis.call('HINCRBY', front_of(id), 'size', -source)
+  count(redis.call('HGET', front_of(id), 'caller'), 0, -source)
+end
+
+local function size_of_record(id) return tonumber(redis.call('HGET', front_of(id), 'size')) or 0 end
+
+-- Drop sources that would take more than a quarter of the store, and records that no store of so
+-- many bytes could hold.
 local function drop_too_large(bytes)
-  for _, caller in ipairs(redis.call('ZREVRANGEBYSCORE', BYTES, '+inf', '(' .. bytes)) do
+  local most = math.floor(bytes / 4)
+  for _, caller in ipairs(redis.call('ZREVRANGEBYSCORE', BYTES, '+inf', '(' .. most)) do
     for _, id in ipairs(redis.call('ZRANGE', all_of(caller), 0, -1)) do
-      if (tonumber(redis.call('HGET', front_of(id), 'size')) or 0) > bytes then
-        drop(id, caller)
+      if size_of_record(id) > most and size_of(redis.call('HGETALL', work_of(id))) > most then
+        drop_source(id)
       end
+      if size_of_record(id) > bytes then drop(id, caller) end
     end
   end
 end

@@ -1,6 +1,7 @@
 """A worker's access to the records in Redis, and the check whether this machine takes work."""
 
 from contextlib import suppress
+from dataclasses import replace
 from socket import gethostname
 from time import monotonic, sleep, time
 from typing import Any
@@ -94,7 +95,9 @@ class WorkerStore:
 
     def finish(self, record: Record) -> None:
         """Store a finished record, unless it was finished before."""
-        self._call_until_answered("finish", record.id, *record_arguments(record))
+        # Its source is in Redis already.
+        arguments = record_arguments(replace(record, source=None))
+        self._call_until_answered("finish", record.id, *arguments)
 
     def hand_back(self, id: str) -> None:  # noqa: A002
         """Queue a record again, for another worker."""

@@ -5,7 +5,6 @@ import logging
 from asyncio import Future
 from collections.abc import AsyncIterator, Coroutine
 from contextlib import suppress
-from dataclasses import replace
 
 from service.errors import (
     Cancelled,
@@ -101,7 +100,7 @@ class LocalEngine:
             await submission.wait(disconnected)
         finally:
             self._workers.stop(submission)
-        record = replace(record, status="done", front=await submission.front(), source=None)
+        record = as_finished(record, await submission.front(), None)
         try:
             await self._store.put(record)
         except Exception as error:

@@ -7,25 +7,34 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
 from time import time
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from service.errors import Expired, IdempotencyMismatch, NotFound
 from service.jobs.record import Record
 from service.jobs.sqlite_schema import IN_MEMORY, UNFINISHED, open_file
 from service.jobs.store import (
     COLUMNS,
+    SOURCE_COLUMNS,
+    SOURCE_SHARE,
     STORE_BYTES,
     UnreadableRecord,
     log_dropped,
     record_columns,
     record_from,
     record_size,
+    source_from,
 )
+from service.requests.task import TaskSource
 
 __all__ = ["IN_MEMORY", "SqliteStore"]
 
 T = TypeVar("T")
 _COLUMNS = ", ".join(COLUMNS)
+# The source of a finished record is not read with it: it may be long.
+_READ = ", ".join(
+    f"CASE WHEN {UNFINISHED} THEN {name} END" if name in SOURCE_COLUMNS else name
+    for name in COLUMNS
+)
 _FINISHED = f"NOT {UNFINISHED}"
 _SUMS = f"SELECT count(*), total(size) FROM front WHERE {_FINISHED}"
 # The oldest record of the caller that has most; of those with one alone where nobody has two.
@@ -85,6 +94,10 @@ class SqliteStore:
         """Return the caller's record with this id."""
         return await self._found("caller = ? AND id = ?", caller, id)
 
+    async def source(self, record: Record) -> TaskSource | None:
+        """Return what a finished record was planned from; None where that is not kept."""
+        return await self._in_thread(self._source, record.id)
+
     async def latest(self, caller: str) -> Record:
         """Return the caller's record that was finished last."""
         return await self._found(f"caller = ? AND {_FINISHED}", caller)
@@ -122,6 +135,8 @@ class SqliteStore:
     def _put(self, record: Record) -> None:
         self._delete(record.id)
         columns = record_columns(record)
+        if record.finished and _source_size(columns) > self._max_bytes // SOURCE_SHARE:
+            columns |= dict.fromkeys(SOURCE_COLUMNS)
         places = ", ".join("?" * (len(columns) + 2))
         insert = f"INSERT INTO front (kept, size, {_COLUMNS}) VALUES ({places})"
         self._database.execute(insert, (self._clock(), record_size(columns), *columns.values()))
@@ -166,7 +181,7 @@ class SqliteStore:
 
     def _select(self, where: str, *values: str) -> list[Record]:
         """Return the records that can be read; the others are dropped."""
-        query = f"SELECT number, {_COLUMNS} FROM front WHERE {where}"
+        query = f"SELECT number, {_READ} FROM front WHERE {where}"
         rows = self._database.execute(query, values).fetchall()
         found = (self._read(number, dict(zip(COLUMNS, row, strict=True))) for number, *row in rows)
         return [record for record in found if record is not None]
@@ -181,6 +196,12 @@ class SqliteStore:
             self._drop("number = ?", number)
             return None
         return record
+
+    def _source(self, id: str) -> TaskSource | None:  # noqa: A002
+        query = f"SELECT {', '.join(SOURCE_COLUMNS)} FROM front WHERE id = ?"
+        row = self._database.execute(query, (id,)).fetchone()
+        columns = dict(zip(SOURCE_COLUMNS, row or (None,), strict=False))
+        return source_from(columns) if columns["kind"] else None
 
     def _delete(self, id: str) -> None:  # noqa: A002
         self._database.execute("DELETE FROM front WHERE id = ?", (id,))
@@ -205,3 +226,8 @@ class SqliteStore:
             self._database.execute(f"DELETE FROM front WHERE {where}", values)
             forget = "DELETE FROM gone WHERE number <= (SELECT max(number) FROM gone) - ?"
             self._database.execute(forget, (self._tombstones,))
+
+
+def _source_size(columns: dict[str, Any]) -> int:
+    """Return the bytes that the source of a record takes, given all its columns."""
+    return record_size({name: columns[name] for name in SOURCE_COLUMNS})

@@ -24,6 +24,8 @@ class UnreadableRecord(Exception):
 class Store(Protocol):
     """Keeps records. Unfinished ones are never dropped, but where they cannot be decoded.
 
+    Finished ones are returned without their source, which `source` alone reads.
+
     When finished ones are too many, or take too many bytes, the oldest of the caller that has
     most makes way: a caller's last one only where nobody has two, or where no store could hold it.
     """
@@ -55,6 +57,13 @@ class Store(Protocol):
             Expired: It was dropped, or cannot be decoded and is dropped now.
         """
 
+    async def source(self, record: Record) -> TaskSource | None:
+        """Return what a finished record was planned from; None where that is not kept.
+
+        It is not of records of earlier releases, of failed ones, and where it would take more than
+        the share of a store that one source may.
+        """
+
     async def latest(self, caller: str) -> Record:
         """Return the caller's record that was finished last.
 
@@ -74,6 +83,7 @@ class Store(Protocol):
 
 
 STORE_BYTES = 2**28  # of finished records, by default
+SOURCE_SHARE = 4  # of a store, one part in so many may be the source of one finished record
 FRONT_COLUMNS = ("members", "tours", "ends", "angles")
 SOURCE_COLUMNS = ("kind", "body", "upload")
 COLUMNS = (
@@ -134,6 +144,11 @@ def record_from(columns: Mapping[str, Any]) -> Record:
         raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error
 
 
+def source_from(columns: Mapping[str, Any]) -> TaskSource:
+    """Return the source in these columns, of which `upload` may be missing."""
+    return TaskSource(columns["kind"], columns["body"], columns.get("upload"))
+
+
 def log_dropped(id: str, error: UnreadableRecord) -> None:  # noqa: A002
     """Log that a record was dropped because it cannot be decoded."""
     logging.getLogger("paretour").warning("front %s cannot be read and is dropped: %s", id, error)
@@ -155,7 +170,7 @@ def _decode(columns: Mapping[str, Any]) -> Record:
             ends=columns["ends"],
             angles=columns["angles"],
         ),
-        source=TaskSource(kind, columns["body"], columns.get("upload")) if kind else None,
+        source=source_from(columns) if kind else None,
     )
     _check(record)
     return record

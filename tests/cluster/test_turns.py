@@ -114,3 +114,19 @@ def test_jobs_of_the_last_release_have_no_turn_and_come_first(redis: Redis) -> N
     asyncio.run(put())
     worker = WorkerStore(redis.url, "host:1:aa")
     assert [begun(worker, each) for each in ("a1", "old")] == ["old", "a1"]
+
+
+def test_what_a_worker_finishes_keeps_its_source_unless_it_failed(redis: Redis) -> None:
+    worker = WorkerStore(redis.url, "host:1:aa")
+    submitted(redis.url, "a", "b")
+    for id_, status in (("a", "done"), ("b", "failed")):
+        assert begun(worker, id_) == id_
+        worker.finish(record(id_, status=status))
+
+    async def sources() -> list[Any]:
+        store = RedisStore(AsyncRedis.from_url(redis.url), entries=9, max_age=60)
+        found = [await store.source(record(id_)) for id_ in "ab"]
+        await store.close()
+        return found
+
+    assert asyncio.run(sources()) == [job("a").source, None]

@@ -11,7 +11,7 @@ import pytest
 
 from service.errors import Expired, IdempotencyMismatch, NotFound
 from service.jobs.record import Record
-from service.jobs.store import Store
+from service.jobs.store import SOURCE_SHARE, Store
 from service.requests.task import TaskSource
 from tests.helpers.stores import job, record, redis_store, sqlite_store
 
@@ -251,3 +251,37 @@ def test_a_key_gives_the_record_that_it_was_first_used_for(run: Run) -> None:
         assert (await store.get("us", "f")).status == "failed"
 
     run(test)
+
+
+def test_a_finished_record_has_its_source_beside_it(run: Run) -> None:
+    async def test(store: Store) -> None:
+        source = TaskSource("front", b"{}", b"\0")
+        await store.put(record("a", source=source))
+        await store.put(record("b"))
+        a, b = await store.get("us", "a"), await store.get("us", "b")
+        assert (a.source, await store.source(a), await store.source(b)) == (None, source, None)
+        await store.delete(a)
+        assert await store.source(a) is None
+
+    run(test)
+
+
+def test_a_source_too_large_for_its_share_is_not_kept_and_its_record_is(run: Run) -> None:
+    async def test(store: Store) -> None:
+        most = 100_000 // SOURCE_SHARE
+        small = TaskSource("front", b" " * (most - 5), None)
+        await store.put(record("a", source=small))
+        await store.put(record("b", source=TaskSource("front", b" " * most, b" ")))
+        a, b = await store.get("us", "a"), await store.get("us", "b")
+        assert (await store.source(a), await store.source(b)) == (small, None)
+
+    run(test, max_bytes=100_000)
+
+
+def test_sources_count_among_the_bytes_of_a_store(run: Run) -> None:
+    async def test(store: Store) -> None:
+        for id_ in "abcdef":
+            await store.put(record(id_, source=TaskSource("front", b" " * 24_900, None)))
+        assert await kept(store, "us", "abcdef") == ["d", "e", "f"]
+
+    run(test, entries=9, max_bytes=100_000)
