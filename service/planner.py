@@ -81,6 +81,7 @@ class Front:
         bound: A hypervolume that no front of the instance exceeds, where it was asked for.
         gained: The hypervolume that the search added to that of the tours it was given.
         closed: Whether the tours return to where they began.
+        kept: The share of a driven tour's legs that each tour keeps, shape (m,), when replanned.
     """
 
     tours: NDArray[np.integer]
@@ -94,6 +95,7 @@ class Front:
     bound: float | None = None
     gained: float | None = None
     closed: bool = True
+    kept: Array | None = None
 
     @property
     def n(self) -> int:

@@ -21,7 +21,7 @@ async def receive_source(
     """Receive the body of a request for a front.
 
     The body is JSON; or multipart/form-data with the part `request`, which is JSON, and the file
-    `matrices` or `map`.
+    `matrices` or `map`. That of a request to replan is JSON alone.
 
     Raises:
         Refusal: The body is too long, of another type, or of other parts; or all bodies under way
@@ -31,6 +31,8 @@ async def receive_source(
     body = await _receive(request, most_bytes, allowance)
     if not content_type.lower().startswith(_MULTIPART):
         return TaskSource(kind, body)
+    if kind not in _UPLOADS:
+        raise Refusal("not-json", came=content_type)
     upload = _UPLOADS[kind]
     # In a thread, beside the event loop: of many megabytes it takes a tenth of a second.
     parts = await asyncio.to_thread(split_parts, content_type, body, ("request", upload))

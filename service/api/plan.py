@@ -1,4 +1,4 @@
-"""The routes that plan fronts: `POST /front` and `POST /coverage`."""
+"""The routes that plan fronts: `POST /front`, `POST /coverage` and `POST /front/{id}/replan`."""
 
 import asyncio
 import hashlib
@@ -15,10 +15,10 @@ from starlette.responses import Response
 from service.actor_info import ActorInfo
 from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
-from service.api.body_budget import DEFAULT_BUDGET, BodyAllowance, BodyBudget
+from service.api.body_budget import DEFAULT_BUDGET, BodyBudget
 from service.api.disconnect import disconnected
 from service.api.geojson.answers import CONTENT, FrontAnswers
-from service.api.request_bodies import COVERAGE_BODY, FRONT_BODY
+from service.api.request_bodies import COVERAGE_BODY, FRONT_BODY, REPLAN_BODY
 from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async
 from service.api.responses import (
     AcceptedAnswer,
@@ -28,11 +28,15 @@ from service.api.responses import (
     problem_bytes,
     problem_responses,
 )
+from service.api.stored_fronts import find_record
 from service.api.task_parser import ParserBounds, TaskParser
 from service.jobs.engine import Engine, record_in_time
 from service.jobs.front_document import empty_front
 from service.jobs.record import Record
+from service.jobs.store import Store
 from service.requests.limits import Limits
+from service.requests.replan.earlier_front import StoredFront, not_replannable
+from service.requests.replan.parser import ReplanSource
 from service.requests.schemas import Geometry
 from service.requests.task import TaskKind, TaskSource
 
@@ -53,6 +57,15 @@ class BodyBounds:
     parser: ParserBounds = field(default_factory=ParserBounds)
 
 
+@dataclass(frozen=True)
+class _Body:
+    """A body as it came, when, and the id of the front that is replanned, if one is."""
+
+    source: TaskSource
+    front: str | None
+    received: float  # by time.monotonic()
+
+
 class PlanRoutes:
     """Parses a request for a front, has the engine plan it, and answers at once or when it is done.
 
@@ -65,13 +78,14 @@ class PlanRoutes:
         self,
         actors: Mapping[str, ActorInfo],
         engine: Engine,
+        store: Store,
         limits: Limits,
         bodies: BodyBounds,
         seconds: float,
         answers: FrontAnswers,
     ) -> None:
-        self._actors = actors
         self._engine = engine
+        self._store = store
         self._limits = limits
         self._seconds = seconds
         self._budget = BodyBudget(bodies.under_way)
@@ -97,6 +111,13 @@ class PlanRoutes:
             responses=responses,
             openapi_extra=_openapi_request(COVERAGE_BODY),
         )(self.plan_coverage)
+        router.post(
+            "/front/{id}/replan",
+            operation_id="replan_front",
+            response_model=FrontAnswer,
+            responses={200: CONTENT, **responses, **problem_responses(404, 410, 502)},
+            openapi_extra=_openapi_request(REPLAN_BODY),
+        )(self.replan_front)
         return router
 
     async def plan_front(self, request: Request) -> Response:
@@ -124,31 +145,63 @@ class PlanRoutes:
         """
         return await self._plan(request, "coverage")
 
-    async def _plan(self, request: Request, kind: TaskKind) -> Response:
+    async def replan_front(self, request: Request, id: str) -> Response:  # noqa: A002
+        """Plan the rest of the way of a front, from what has changed.
+
+        Stops are done, added or removed, the vehicle is somewhere else, costs have changed. The
+        answer is a front of open routes from the position through what is left to the old end, or
+        of a closed tour back to its start. Each tour has `kept`, the share of the remaining legs of
+        the tour being driven that it keeps. The front that is replanned stays as it is.
+
+        Headers are as of `POST /front`. The answer is a front of its own, to be replanned again.
+        """
+        return await self._plan(request, "replan", id)
+
+    async def _plan(self, request: Request, kind: TaskKind, front: str | None = None) -> Response:
         await self._check_place(request)
         # Until there is an answer: what waits for a worker, or is planned, has its body as well.
         with self._budget.open() as allowance:
-            return await self._plan_within(request, kind, allowance)
+            received = await receive_source(request, kind, self._limits.body_bytes, allowance)
+            body = _Body(received, front, time.monotonic())
+            if front is None:
+                source = replace(received, task=await self._parser.parse(received))
+            else:
+                source = await self._rest(request, received, front)
+            return await self._planned(request, source, body)
 
-    async def _plan_within(
-        self, request: Request, kind: TaskKind, allowance: BodyAllowance
-    ) -> Response:
-        source = await receive_source(request, kind, self._limits.body_bytes, allowance)
-        began = time.monotonic()
-        task = await self._parser.parse(source)
-        record = await self._new_record(request, replace(source, task=task))
-        self._answers.check(request, record.front.stops, task.geometry)
+    async def _rest(self, request: Request, body: TaskSource, front: str) -> TaskSource:
+        """Return the rest of the way of a stored front, with its task.
+
+        Raises:
+            Refusal: There is no such front, it cannot be replanned, or not as the body says.
+        """
+        record = await find_record(self._store, request, front)
+        if not record.finished:
+            raise not_replannable(record.id, "it is still being planned")
+        source = await self._store.source(record)
+        if source is None:
+            reason = "what it was planned from is not kept; plan what is left with POST /front"
+            raise not_replannable(record.id, reason)
+        stored = StoredFront(record.id, source, record.front.tours)
+        return await self._parser.replan(ReplanSource(body.body, stored))
+
+    async def _planned(self, request: Request, source: TaskSource, body: _Body) -> Response:
+        """Have the engine plan a task, and answer as the request's headers ask for."""
+        assert source.task is not None
+        geometry = source.task.geometry
+        record = await self._new_record(request, source, body)
+        self._answers.check(request, record.front.stops, geometry)
         if prefers_async(request):
             first = await self._engine.submit(record)
-            return _accepted_response(self._engine.state(first).record, task.geometry)
+            return _accepted_response(self._engine.state(first).record, geometry)
         if record.key is None:
             record = await self._run(request, record)
         else:
             first = await self._engine.submit(record)
             record = await record_in_time(self._engine, first, self._seconds)
         if record.problem is None:
-            left = self._seconds - (time.monotonic() - began)
-            return await self._answers.front(request, record, task.geometry, left)
+            left = self._seconds - (time.monotonic() - body.received)
+            return await self._answers.front(request, record, geometry, left)
         # The problem may be that of an earlier request, of which this one is a repeat.
         return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
 
@@ -159,7 +212,7 @@ class PlanRoutes:
         if idempotency_key(request) is None:
             await self._engine.check_place(client_of(request))
 
-    async def _new_record(self, request: Request, source: TaskSource) -> Record:
+    async def _new_record(self, request: Request, source: TaskSource, body: _Body) -> Record:
         assert source.task is not None
         if source.task.needs_compiled_code:
             await self._engine.check_warm()
@@ -172,7 +225,7 @@ class PlanRoutes:
             front=empty_front(source.task),
             source=source,
             key=key,
-            digest=await asyncio.to_thread(_digest, source) if key else "",
+            digest=await asyncio.to_thread(_digest, body) if key else "",
             client=client_of(request),
         )
 
@@ -192,10 +245,14 @@ def _accepted_response(record: Record, geometry: Geometry) -> Response:
     return response
 
 
-def _digest(source: TaskSource) -> str:
+def _digest(body: _Body) -> str:
     """Return the SHA-256 of a body, by which one idempotency key is held to one body."""
     digest = hashlib.sha256()
-    for part in (source.kind.encode(), source.body, source.upload or b""):
+    source = body.source
+    parts = [source.kind.encode(), source.body, source.upload or b""]
+    if body.front is not None:
+        parts.append(body.front.encode())
+    for part in parts:
         digest.update(b"%d:" % len(part))
         digest.update(part)
     return digest.hexdigest()

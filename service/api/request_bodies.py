@@ -1,4 +1,4 @@
-"""The request bodies of `POST /front` and `POST /coverage` in the OpenAPI document.
+"""The request bodies of the operations that plan, in the OpenAPI document.
 
 Each is JSON, or multipart/form-data of a part `request`, which is JSON, and a file.
 """
@@ -9,6 +9,7 @@ from typing import Any
 from service.requests.coverage import coverage_schemas
 from service.requests.front_schemas import FILE_FORMS, JSON_FORMS, front_schemas, one_of
 from service.requests.limits import Limits, reference_to
+from service.requests.replan.schema import replan_schemas
 
 Schema = dict[str, Any]
 
@@ -21,6 +22,7 @@ def request_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     return {
         **front_schemas(limits, names),
         **coverage_schemas(limits, names),
+        **replan_schemas(limits, names),
         "FrontForm": _form_schema(one_of(FILE_FORMS), "matrices", file),
         "CoverageForm": _form_schema(reference_to("CoverageFileRequest"), "map", image),
     }
@@ -45,4 +47,8 @@ def _form_schema(request: Schema, file: str, description: str) -> Schema:
 
 _JSON = "application/json"
 FRONT_BODY = _body(one_of(JSON_FORMS), "FrontForm")
+REPLAN_BODY = {
+    "required": True,
+    "content": {_JSON: {"schema": reference_to("ReplanRequest")}},
+}
 COVERAGE_BODY = _body(reference_to("CoverageRequest"), "CoverageForm")

@@ -50,6 +50,11 @@ class TourItem(BaseModel):
 
     angle: float = Field(description="direction of the scaled lengths, in degrees")
     balance: float = Field(description="0 at the front's least first length, 1 at its least second")
+    kept: float | SkipJsonSchema[None] = Field(
+        default=None,
+        description="of a front that was replanned: the share of the remaining legs of the tour"
+        " being driven that this one keeps, in either direction where costs are symmetric",
+    )
     lengths: Lengths
     tour: list[int]
     arrivals: list[Lengths] | SkipJsonSchema[None] = Field(

@@ -96,17 +96,25 @@ class StoredFrontRoutes:
 
     async def _record(self, request: Request, id: str | None) -> Record:  # noqa: A002
         """Return the caller's record with an id, as of now; without an id its latest."""
-        caller, store = caller_of(request), self._store
-        try:
-            record = await (store.latest(caller) if id is None else store.get(caller, id))
-        except NotFound:
-            if id is None:
-                raise Refusal("no-front") from None
-            raise Refusal("unknown-front", front=repr(id[:80])) from None
-        except Expired:
-            name = "the latest" if id is None else repr(id[:80])
-            raise Refusal("front-expired", front=name) from None
-        return self._engine.state(record).record
+        return self._engine.state(await find_record(self._store, request, id)).record
+
+
+async def find_record(store: Store, request: Request, id: str | None) -> Record:  # noqa: A002
+    """Return the caller's record with an id, as it is stored; without an id its latest.
+
+    Raises:
+        Refusal: There is none, or none any more.
+    """
+    caller = caller_of(request)
+    try:
+        return await (store.latest(caller) if id is None else store.get(caller, id))
+    except NotFound:
+        if id is None:
+            raise Refusal("no-front") from None
+        raise Refusal("unknown-front", front=repr(id[:80])) from None
+    except Expired:
+        name = "the latest" if id is None else repr(id[:80])
+        raise Refusal("front-expired", front=name) from None
 
 
 def event_stream(states: AsyncIterator[JobState]) -> StreamingResponse:

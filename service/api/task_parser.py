@@ -4,16 +4,17 @@ import asyncio
 import logging
 import resource
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
 
 from service.actor_info import ActorInfo
 from service.errors import QueueFull, Refusal
 from service.requests.limits import Limits, check_structure
+from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.task import Task, TaskSource, parse_task
 
 _SHORT = 2**17  # bytes that are parsed here, in a few milliseconds
@@ -39,10 +40,15 @@ class ParserBounds:
     memory: int = 2**29 + 2**28
 
 
-class _Outcome(NamedTuple):
+S = TypeVar("S")
+T = TypeVar("T")
+_Parse = Callable[[S, Limits, Mapping[str, ActorInfo]], T]
+
+
+class _Outcome(NamedTuple, Generic[T]):
     """What a process made of a body, and the warnings of Python on the way."""
 
-    task: Task | Refusal
+    result: T | Refusal
     warnings: list[str]
 
 
@@ -105,16 +111,28 @@ class TaskParser:
         """
         check_structure(source.body, self._limits)
         length = len(source.body) + len(source.upload or b"")
-        if length <= _SHORT and source.upload is None and source.body.count(b'"') <= _FEW_QUOTES:
+        short = length <= _SHORT and source.upload is None
+        if short and source.body.count(b'"') <= _FEW_QUOTES:
             return parse_task(source, self._limits, self._actors)
+        return await self._in_turn(parse_task, source, length)
+
+    async def replan(self, source: ReplanSource) -> TaskSource:
+        """Return the rest of the way of a request to replan, with its task; errors as of parse."""
+        check_structure(source.body, self._limits)
+        quotes = source.body.count(b'"') + source.front.source.body.count(b'"')
+        if source.length <= _SHORT and quotes <= _FEW_QUOTES:
+            return parse_replan(source, self._limits, self._actors)
+        return await self._in_turn(parse_replan, source, source.length)
+
+    async def _in_turn(self, parse: _Parse[S, T], source: S, length: int) -> T:
         lane = self._medium if length <= _MEDIUM else self._long
         await lane.enter(self._bounds.seconds)
         try:
-            return await self._parse_in_process(source)
+            return await self._parse_in_process(parse, source)
         finally:
             lane.leave()
 
-    async def _parse_in_process(self, source: TaskSource) -> Task:
+    async def _parse_in_process(self, parse: _Parse[S, T], source: S) -> T:
         seconds = self._bounds.seconds
         for _ in range(_ATTEMPTS):
             # To join the body took a while, and to send it will: let other requests in between.
@@ -124,6 +142,7 @@ class TaskParser:
                 async with asyncio.timeout(seconds):
                     outcome = await to_process.run_sync(
                         _parse_bounded,
+                        parse,
                         source,
                         self._limits,
                         self._actors,
@@ -139,29 +158,29 @@ class TaskParser:
         raise _too_complex("without the loss of its process, and two were lost")
 
 
-def _checked(outcome: _Outcome) -> Task:
-    """Log the warnings, as the process has no log, and return the task or raise the refusal."""
+def _checked(outcome: _Outcome[T]) -> T:
+    """Log the warnings, as the process has no log, and return the result or raise the refusal."""
     for warning in outcome.warnings:
         _LOG.warning("%s", warning)
-    if isinstance(outcome.task, Refusal):
-        raise outcome.task
-    return outcome.task
+    if isinstance(outcome.result, Refusal):
+        raise outcome.result
+    return outcome.result
 
 
 def _parse_bounded(
-    source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo], memory: int
-) -> _Outcome:
+    parse: _Parse[S, T], source: S, limits: Limits, actors: Mapping[str, ActorInfo], memory: int
+) -> _Outcome[T]:
     """Parse a body in a process that may take so many bytes more than when it was idle."""
     _bound_memory(memory)
     with warnings.catch_warnings(record=True) as caught:
-        task: Task | Refusal
+        result: T | Refusal
         try:
-            task = parse_task(source, limits, actors)
+            result = parse(source, limits, actors)
         except MemoryError:
-            task = _too_complex(f"in {memory} bytes of memory, and was not")
+            result = _too_complex(f"in {memory} bytes of memory, and was not")
         except Refusal as refusal:
-            task = refusal
-    return _Outcome(task, [_warning_text(each) for each in caught[:_MOST_WARNINGS]])
+            result = refusal
+    return _Outcome(result, [_warning_text(each) for each in caught[:_MOST_WARNINGS]])
 
 
 def _warning_text(caught: warnings.WarningMessage) -> str:

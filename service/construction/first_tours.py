@@ -52,7 +52,7 @@ def construct(
     Args:
         constructor: Builds the tours.
         instance: The instance; of fewer than three cities no tour is built.
-        angles: Of the preferences in degrees, shape (k,).
+        angles: Of the preferences in degrees, shape (k,); k may be 0.
         augment: How often the constructor is called, each time with another symmetry of the
             coordinates and with angles between those of the other calls.
         within: Seconds for all calls together: then it is at most k evenly spread preferences, as
@@ -64,7 +64,7 @@ def construct(
         Cancelled: The constructor was told to stop before it had a tour.
     """
     tours = [np.empty((0, instance.n), np.int64)]
-    if instance.n < MIN_CONSTRUCTED:
+    if instance.n < MIN_CONSTRUCTED or not len(angles):
         return tours[0]
     if within is not None:
         within /= augment

@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 _ALL = ("*",)
 _NONE = ()  # no operation is at fault, but the path, the method or the service
-_PLANS = ("POST /front", "POST /coverage")
+_REPLAN = ("POST /front/{id}/replan",)
+_PLANS = ("POST /front", "POST /coverage", *_REPLAN)
 _TOUR = ("GET /tour",)
 _STORED = "GET /front/{id}"
-_ROADS = ("POST /front", _STORED, *_TOUR)
+_ROADS = ("POST /front", *_REPLAN, _STORED, *_TOUR)
 
 
 class Problem(NamedTuple):
@@ -85,6 +86,14 @@ PROBLEMS: Mapping[str, Problem] = {
         422,
         "the streets of an answer must have at most {limit} {parts}: ask for fewer tours, or one",
         _ROADS,
+    ),
+    "not-replannable": Problem(
+        422, "front {front} must be one that can be replanned, and is not: {reason}", _REPLAN
+    ),
+    "too-different": Problem(
+        422,
+        "a tour must keep at least {limit:.6g} of the driven one's legs: the most is {actual:.6g}",
+        _REPLAN,
     ),
     "unfit-actor": Problem(
         422, "actor must read {kind}, as {among}; {name} reads {inputs} alone", _PLANS

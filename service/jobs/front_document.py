@@ -164,9 +164,6 @@ _MEMBERS = tuple(field.name for field in _MEMBER_FIELDS)
 _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
 
 
-_TOUR_MEMBERS = ("angle", "balance", "lengths", "tour", "arrivals")
-
-
 def _joined(tours: Iterable[bytes]) -> tuple[bytes, bytes]:
     """Return the JSON of all tours in one, and where each ends in it."""
     each = list(tours)
@@ -193,11 +190,17 @@ def encode_front(
     The actor is left out where it built no tours. Arrivals have shape (m, stops, 2).
     """
     ids = None if labels is None else [stop.id for stop in labels.stops]
-    columns = [front.angles, balances(front.points), front.points, front.tours]
-    if arrivals is not None:
-        columns.append(arrivals)
-    rows = zip(*(column.tolist() for column in columns), strict=True)
-    encoded = [_encode_tour(row, ids) for row in rows]
+    columns = {
+        "angle": front.angles,
+        "balance": balances(front.points),
+        "kept": front.kept,
+        "lengths": front.points,
+        "tour": front.tours,
+        "arrivals": arrivals,
+    }
+    given = {name: column.tolist() for name, column in columns.items() if column is not None}
+    rows = (dict(zip(given, row, strict=True)) for row in zip(*given.values(), strict=True))
+    encoded = [to_json(_with_stops(row, ids)) for row in rows]
     if paths is not None:
         encoded = [
             b"".join((tour[:-1], b',"path":', _encode_path(path), b"}"))
@@ -224,12 +227,9 @@ def encode_front(
     )
 
 
-def _encode_tour(row: Sequence[Any], ids: Sequence[str] | None) -> bytes:
-    """Return a tour as JSON; a row has its members, of which the last may be missing."""
-    members = dict(zip(_TOUR_MEMBERS, row, strict=False))
-    if ids is not None:
-        members["stops"] = [ids[city] for city in members["tour"]]
-    return to_json(members)
+def _with_stops(members: dict[str, Any], ids: Sequence[str] | None) -> dict[str, Any]:
+    """Return the members of a tour, with the ids of its stops where they have any."""
+    return members if ids is None else members | {"stops": [ids[i] for i in members["tour"]]}
 
 
 def _named(labels: Labels | None) -> dict[str, Any]:

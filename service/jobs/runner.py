@@ -19,6 +19,8 @@ from service.errors import Cancelled
 from service.instance import Instance, cumulated_lengths
 from service.jobs.front_document import FrontDocument, encode_front
 from service.planner import Front, plan
+from service.replanning import earlier_tours
+from service.replanning.replan import replan
 from service.requests.limits import Limits, check_reference_point
 from service.requests.road_measurer import BlockingMeasurer, needs_roads
 from service.requests.stops import UnmeasuredStops, make_instance
@@ -173,7 +175,10 @@ class TaskRunner:
                 lambda size: encode_front(best(size), identity, places, labels=task.labels),
             )
 
-        return plan(self.actors[task.actor], instance, task.options, stop, report_encoded)
+        actor = self.actors[task.actor]
+        if task.earlier is not None:
+            return replan(actor, instance, task.options, task.earlier, stop, report_encoded)
+        return plan(actor, instance, task.options, stop, report_encoded)
 
     def _identity(self, task: Task) -> dict[str, str]:
         return self.actors[task.actor].info.identity
@@ -204,6 +209,7 @@ class Reporter:
 def warm_up() -> None:
     """Compile everything that is compiled, or load it from the cache, unless it is there."""
     improve.warm_up()
+    earlier_tours.warm_up()
     shortest_paths.warm_up()
 
 

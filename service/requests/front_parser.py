@@ -1,6 +1,7 @@
 """Parse and check the requests of `POST /front`, in each of their forms."""
 
 from collections.abc import Mapping, Sequence
+from typing import TypeVar
 
 from service.errors import Refusal
 from service.requests.arrays import check_costs
@@ -9,17 +10,24 @@ from service.requests.limits import Limits, check_limits, lower_defaults
 from service.requests.npy import read_npy
 from service.requests.schemas import LARGEST
 from service.requests.stop_fields import find_index
-from service.requests.stops import ROAD_MEASURES, Measured, UnmeasuredStops
+from service.requests.stops import ROAD_MEASURES, Measured, UnmeasuredStops, base_of
 from service.requests.validation import invalid, parse_json, too_many_cities
 
+AnyFrontRequest = TypeVar("AnyFrontRequest", bound=FrontRequest)
 
-def parse_front_request(body: bytes, limits: Limits, npy: bytes | None = None) -> FrontRequest:
+
+def parse_front_request(
+    body: bytes,
+    limits: Limits,
+    npy: bytes | None = None,
+    model: type[AnyFrontRequest] = FrontRequest,  # type: ignore[assignment]
+) -> AnyFrontRequest:
     """Return the request in a JSON body, with the matrices of a .npy file where one came with it.
 
     Raises:
         Refusal: The body is not JSON, misses the schema or is over a limit.
     """
-    request = parse_json(FrontRequest, body)
+    request = parse_json(model, body)
     _check_form(request, npy is not None)
     if npy is not None:
         request = request.model_copy(update={"matrices": read_npy(npy, limits.cities)})
@@ -70,13 +78,13 @@ def _check_matrices(request: FrontRequest) -> None:
 def _check_router(stops: UnmeasuredStops, limits: Limits) -> None:
     if limits.roads:
         return
-    for m, source in enumerate(stops.sources):
+    for m, source in enumerate(map(base_of, stops.sources)):
         if isinstance(source, Measured) and source.measure in ROAD_MEASURES:
             part = f"objectives/{m}/from"
             raise Refusal("no-router", name=part, measure=source.measure, pointer=f"/{part}")
 
 
-def _by_index(request: FrontRequest) -> FrontRequest:
+def _by_index(request: AnyFrontRequest) -> AnyFrontRequest:
     """Return the request with the index of a stop in place of every id."""
     stops = request.labels.stops if request.labels else ()
     ids = {stop.id: index for index, stop in enumerate(stops)}

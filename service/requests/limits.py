@@ -7,11 +7,11 @@ from typing import Any, TypeVar
 from service.errors import Refusal
 from service.instance import Instance, least_lengths
 from service.planner import PlanOptions
-from service.requests.schemas import PlanRequest
+from service.requests.schemas import PlanFields, PlanRequest
 from service.requests.validation import invalid
 
 _TOURS_BY_ID = 100  # initial tours that may name every stop by its id
-AnyPlanRequest = TypeVar("AnyPlanRequest", bound=PlanRequest)
+AnyPlanRequest = TypeVar("AnyPlanRequest", bound=PlanFields)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,13 +61,8 @@ def check_structure(body: bytes, limits: Limits) -> None:
             raise Refusal("body-too-complex", demand=demand, limit=limit, actual=actual)
 
 
-def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
-    """Raise a refusal where the fields of a request about n cities go beyond these or the limits.
-
-    Raises:
-        Refusal: Over a limit, or a start or an initial tour that does not fit n cities.
-    """
-    _check_ends(request, n)
+def check_amounts(request: PlanFields, n: int, limits: Limits) -> None:
+    """Raise a refusal where a request about n cities asks for more than the limits allow."""
     asked = {
         "preferences": (limits.preferences, request.preference_count),
         "size": (limits.size, request.size),
@@ -78,6 +73,16 @@ def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
             _check_limit(name, limit, actual)
     if request.arrivals:
         _check_arrivals(min(request.size, limits.size), n, limits.path_cells)
+
+
+def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
+    """Raise a refusal where the fields of a request about n cities go beyond these or the limits.
+
+    Raises:
+        Refusal: Over a limit, or a start or an initial tour that does not fit n cities.
+    """
+    _check_ends(request, n)
+    check_amounts(request, n, limits)
     _check_limit("initial_tours", limits.size, len(request.initial_tours))
     ends = request.ends
     for index, tour in enumerate(request.initial_tours):
@@ -138,12 +143,12 @@ def defaults(limits: Limits) -> dict[str, float]:
         "size": limits.size,
         "time_limit": limits.seconds,
     }
-    fields = PlanRequest.model_fields
+    fields = PlanFields.model_fields
     return {name: min(fields[name].default, limit) for name, limit in most.items()}
 
 
 def limited_schema(
-    model: type[PlanRequest], limits: Limits, actors: Iterable[str]
+    model: type[PlanFields], limits: Limits, actors: Iterable[str]
 ) -> dict[str, Any]:
     """Return the JSON schema of a request under these limits, with these actors to choose from.
 
@@ -157,14 +162,15 @@ def limited_schema(
     for name, default in defaults(limits).items():
         fields[name]["default"] = default
     del fields["preferences"]["default"]  # it depends on the time limit
-    for name in ("start", "end"):
+    for name in {"start", "end"}.intersection(fields):
         reference, _ = fields[name]["anyOf"]  # the other is null
         index, *_ = reference.get("oneOf", [reference])
         index["maximum"] = limits.cities - 1
     del fields["actor"]["default"]
     fields["actor"]["enum"] = sorted(actors)
     fields["time_limit"]["maximum"] = limits.seconds
-    fields["initial_tours"]["maxItems"] = limits.size
+    if "initial_tours" in fields:
+        fields["initial_tours"]["maxItems"] = limits.size
     return schema
 
 

@@ -1,5 +1,6 @@
 """The types of fields in requests, and the fields that all requests for a front share."""
 
+from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
@@ -49,7 +50,7 @@ Text = Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT, pattern=PRINT
 ArrayRows = Annotated[list[Annotated[list[float], Field(fail_fast=True)]], Field(fail_fast=True)]
 
 
-class PlanRequest(BaseModel):
+class PlanFields(BaseModel):
     """The fields of every request for a front: how to plan it, and what of it to return."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -70,22 +71,12 @@ class PlanRequest(BaseModel):
         description="seconds of all planning, at most; 0 asks for the network's tours alone",
     )
     size: PositiveInteger = Field(default=100, description="the most tours to return")
-    closed: bool = Field(
-        default=True,
-        description="whether tours return to where they began; if not, they are open routes",
-    )
-    start: NonNegativeInteger | None = Field(default=0, description=START)
-    end: NonNegativeInteger | None = Field(default=None, description=END)
     reference_point: list[PositiveNumber] = Field(
         default_factory=list,
         min_length=OBJECTIVES,
         max_length=OBJECTIVES,
         description="of the hypervolume; by default the number of cities times the scale",
     )
-    initial_tours: Annotated[
-        list[Annotated[list[NonNegativeInteger], Field(fail_fast=True)]],
-        Field(min_length=1, fail_fast=True),
-    ] = Field(default_factory=list, description="tours that the front shall dominate or equal")
     arrivals: bool = Field(
         default=False, description="whether each tour comes with both its lengths up to each stop"
     )
@@ -112,6 +103,34 @@ class PlanRequest(BaseModel):
         """The number of preferences, given as such or as angles."""
         return self.preferences if isinstance(self.preferences, int) else len(self.preferences)
 
+    def options(self) -> PlanOptions:
+        """Return the options for the planner."""
+        angles = self.preferences
+        return PlanOptions(
+            angles=fan(angles) if isinstance(angles, int) else np.array(angles),
+            fewer="preferences" not in self.model_fields_set,
+            size=self.size,
+            reference_point=np.array(self.reference_point) if self.reference_point else None,
+            time_limit=self.time_limit,
+            bound=self.bound,
+            seed=self.seed,
+        )
+
+
+class PlanRequest(PlanFields):
+    """A request for a front of a new instance: where its tours begin and end, and first ones."""
+
+    closed: bool = Field(
+        default=True,
+        description="whether tours return to where they began; if not, they are open routes",
+    )
+    start: NonNegativeInteger | None = Field(default=0, description=START)
+    end: NonNegativeInteger | None = Field(default=None, description=END)
+    initial_tours: Annotated[
+        list[Annotated[list[NonNegativeInteger], Field(fail_fast=True)]],
+        Field(min_length=1, fail_fast=True),
+    ] = Field(default_factory=list, description="tours that the front shall dominate or equal")
+
     @property
     def ends(self) -> RouteEnds:
         """Whether tours are closed, and where open routes start and end."""
@@ -121,15 +140,5 @@ class PlanRequest(BaseModel):
 
     def options(self) -> PlanOptions:
         """Return the options for the planner."""
-        angles = self.preferences
-        return PlanOptions(
-            angles=fan(angles) if isinstance(angles, int) else np.array(angles),
-            fewer="preferences" not in self.model_fields_set,
-            size=self.size,
-            start=self.start or 0,
-            reference_point=np.array(self.reference_point) if self.reference_point else None,
-            time_limit=self.time_limit,
-            initial_tours=np.array(self.initial_tours) if self.initial_tours else None,
-            bound=self.bound,
-            seed=self.seed,
-        )
+        first = np.array(self.initial_tours) if self.initial_tours else None
+        return replace(super().options(), start=self.start or 0, initial_tours=first)

@@ -63,7 +63,22 @@ class Measured:
     measure: Measure
 
 
-Source = Matrix | Plane | Measured
+@dataclass(frozen=True, eq=False)
+class Changed:
+    """A source of costs: another one, of which the costs of some steps have changed.
+
+    Args:
+        base: The other source.
+        steps: Where each step begins and ends, shape (m, 2).
+        costs: The cost of each step, shape (m,).
+    """
+
+    base: Plane | Measured
+    steps: NDArray[np.int64]
+    costs: Array
+
+
+Source = Matrix | Plane | Measured | Changed
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,12 +110,13 @@ class UnmeasuredStops:
     @property
     def measured(self) -> bool:
         """Whether nothing has to be measured any more."""
-        return not any(isinstance(source, Measured) for source in self.sources)
+        return not any(isinstance(base_of(source), Measured) for source in self.sources)
 
     @property
     def road_measures(self) -> frozenset[RoadMeasure]:
         """The measures that a routing engine has to be asked for."""
-        measures = {source.measure for source in self.sources if isinstance(source, Measured)}
+        bases = [base_of(source) for source in self.sources]
+        measures = {source.measure for source in bases if isinstance(source, Measured)}
         return frozenset(measure for measure in ROAD_MEASURES if measure in measures)
 
     def measured_by_road(self, costs: Mapping[RoadMeasure, Array]) -> "UnmeasuredStops":
@@ -110,9 +126,23 @@ class UnmeasuredStops:
             match source:
                 case Measured("road_time" | "road_distance" as measure):
                     return Matrix(costs[measure])
+                case Changed(Measured("road_time" | "road_distance" as measure)):
+                    return Matrix(changed_costs(costs[measure], source.steps, source.costs))
             return source
 
         return replace(self, sources=[measured(source) for source in self.sources])
+
+
+def base_of(source: Source) -> Source:
+    """Return the source without what has changed."""
+    return source.base if isinstance(source, Changed) else source
+
+
+def changed_costs(matrix: Array, steps: NDArray[np.int64], costs: Array) -> Array:
+    """Return a copy of a matrix with the costs of some steps, shape (m, 2), set to these."""
+    changed = matrix.copy()
+    changed[steps[:, 0], steps[:, 1]] = costs
+    return changed
 
 
 def locations_of(stops: Sequence[Stop]) -> Array:
@@ -144,5 +174,7 @@ def _costs(source: Source, locations: Array) -> Array:
             return np.hypot(steps[..., 0], steps[..., 1])
         case Measured("great_circle"):
             return great_circle_matrix(locations)
+        case Changed(base):
+            return changed_costs(_costs(base, locations), source.steps, source.costs)
         case Measured(measure):
             raise ValueError(f"{measure} must be measured before, by a routing engine")

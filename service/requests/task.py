@@ -9,13 +9,16 @@ from service.coverage.coverage import Coverage
 from service.errors import Refusal
 from service.instance import Instance, Kind
 from service.planner import PlanOptions
+from service.replanning.earlier_tours import EarlierTours
 from service.requests.coverage import parse_coverage_request
+from service.requests.front import FrontRequest
 from service.requests.front_parser import parse_front_request
 from service.requests.limits import Limits, check_reference_point, check_structure
+from service.requests.replan.rest_request import RestRequest
 from service.requests.schemas import Geometry
 from service.requests.stops import Labels, UnmeasuredStops
 
-TaskKind = Literal["front", "coverage"]
+TaskKind = Literal["front", "coverage", "replan"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -32,6 +35,7 @@ class Task:
         geometry: What the lines of the answer follow, where that is GeoJSON.
         labels: The caller's names of stops and objectives.
         timings: Milliseconds of what was done for it since it was parsed, by name.
+        earlier: What is left of the tours of the front that is replanned, if one is.
     """
 
     subject: Instance | Coverage | UnmeasuredStops
@@ -42,6 +46,7 @@ class Task:
     geometry: Geometry = "straight"
     labels: Labels | None = None
     timings: Mapping[str, float] = field(default_factory=dict)
+    earlier: EarlierTours | None = None
 
     @property
     def needs_compiled_code(self) -> bool:
@@ -55,7 +60,7 @@ class TaskSource:
 
     Args:
         kind: The kind of request, named after its path.
-        body: The request as JSON.
+        body: The request as JSON; of kind replan, as the service writes it (see `RestRequest`).
         upload: The .npy file of matrices, or the PNG or PGM file of a map, where one came with it.
         task: The parsed task, where this process has it, so that no worker parses it again.
     """
@@ -83,7 +88,8 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
             paths=coverage_request.paths,
             arrivals=coverage_request.arrivals,
         )
-    request = parse_front_request(source.body, limits, source.upload)
+    model = RestRequest if source.kind == "replan" else FrontRequest
+    request = parse_front_request(source.body, limits, source.upload, model)
     subject, options = request.subject(), request.options()
     if isinstance(subject, Instance):
         check_reference_point(subject, options)
@@ -94,6 +100,7 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
         labels=request.labels,
         arrivals=request.arrivals,
         geometry=request.geometry,
+        earlier=request.earlier if isinstance(request, RestRequest) else None,
     )
 
 

@@ -147,6 +147,7 @@ def test_every_operation_and_every_form_has_a_name_of_its_own(document: Path) ->
         "list_actors",
         "plan_coverage",
         "plan_front",
+        "replan_front",
     ]
     for path, form in (("/front", "FrontForm"), ("/coverage", "CoverageForm")):
         body = content["paths"][path]["post"]["requestBody"]["content"]["multipart/form-data"]

@@ -1,0 +1,112 @@
+"""First tours made of those of an earlier front: what is left of each, with new cities in it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.instance import Instance, tour_lengths
+from service.jit import compiled
+from service.search.closing import close_routes, open_tours
+from service.search.costs import Costs, make_costs, step_costs
+
+Array = NDArray[np.float64]
+Tours = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class EarlierTours:
+    """What is left of the tours of an earlier front.
+
+    Args:
+        tours: The cities of an instance that were in the earlier front already, in the order of
+            each of its tours, shape (m, k), m at least 1. The first is the tour being driven. All
+            begin and end at the fixed ends of the instance, if it has any.
+        min_kept: The least share of the driven tour's legs that a tour shall keep.
+    """
+
+    tours: Tours
+    min_kept: float = 0.0
+
+    @property
+    def driven(self) -> NDArray[np.int64]:
+        """What is left of the tour being driven, shape (k,)."""
+        return self.tours[0]
+
+
+def completed(instance: Instance, earlier: EarlierTours) -> Tours:
+    """Return the earlier tours with the other cities of an instance inserted, shape (m, n).
+
+    Each city goes, one after another, where it costs least under a weighted sum of the lengths: of
+    the tour whose first length is the least, that is the first length, and so on to the second. A
+    route between two fixed ends is turned round first where that is shorter under its weights, but
+    for the driven one. O(m n (n - k)).
+    """
+    costs = make_costs(instance)
+    weights = _weights(instance, earlier.tours)
+    routes = _better_way_round(instance, earlier.tours, weights)
+    known = np.isin(np.arange(instance.n), routes[0])
+    added = np.flatnonzero(~known)
+    tours = np.concatenate((routes, np.tile(added, (len(routes), 1))), axis=1).astype(np.int32)
+    if not instance.closed:
+        tours = close_routes(tours)
+    scaled = weights / np.ldexp(instance.scale, instance.shifts)
+    insert_cheapest(costs, tours, tours.shape[1] - len(added), scaled)
+    return (tours if instance.closed else open_tours(instance, tours)).astype(np.int64)
+
+
+def _weights(instance: Instance, routes: Tours) -> Array:
+    """Return weights of scaled lengths, shape (m, 2), by the rank of each route in balance."""
+    lengths = tour_lengths(instance, routes) / instance.scale
+    rank = (lengths[:, 0] - lengths[:, 1]).argsort(kind="stable").argsort(kind="stable")
+    share = rank / max(1, len(routes) - 1)
+    return np.stack((1 - share, share), axis=1)
+
+
+def _better_way_round(instance: Instance, routes: Tours, weights: Array) -> Tours:
+    if instance.closed or not instance.symmetric:
+        return routes
+    begin = int(instance.start is not None)
+    end = routes.shape[1] - int(instance.end is not None)
+    turned = routes.copy()
+    turned[:, begin:end] = routes[:, begin:end][:, ::-1]
+    lengths, others = (
+        (tour_lengths(instance, each) / instance.scale * weights).sum(axis=1)
+        for each in (routes, turned)
+    )
+    better = others < lengths
+    better[0] = False
+    return np.where(better[:, np.newaxis], turned, routes)
+
+
+@compiled
+def insert_cheapest(costs: Costs, tours: NDArray[np.int32], begun: int, weights: Array) -> None:
+    """Insert the last cities of closed tours, shape (m, n), into their first `begun`, in place."""
+    for k in range(len(tours)):
+        tour = tours[k]
+        for size in range(begun, len(tour)):
+            city = tour[size]
+            least, place = np.inf, size
+            for i in range(size):
+                before, after = tour[i], tour[i + 1 if i + 1 < size else 0]
+                to, on, direct = (
+                    step_costs(costs, before, city),
+                    step_costs(costs, city, after),
+                    step_costs(costs, before, after),
+                )
+                more = weights[k, 0] * (to[0] + on[0] - direct[0])
+                more += weights[k, 1] * (to[1] + on[1] - direct[1])
+                if more < least:
+                    least, place = more, i + 1
+            for i in range(size, place, -1):
+                tour[i] = tour[i - 1]
+            tour[place] = city
+
+
+def warm_up() -> None:
+    """Compile what is compiled, or load it from the cache of an earlier process."""
+    cities = np.arange(4.0)
+    coordinates = np.stack([cities, cities**2, cities**2, cities], axis=1)
+    begun = EarlierTours(np.array([[0, 1, 2]]))
+    for closed in (True, False):
+        completed(Instance(coordinates=coordinates, closed=closed), begun)

@@ -1,0 +1,53 @@
+"""The legs of a driven tour that other tours keep, and the choice of tours that keep many."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.instance import Instance, tour_lengths, tour_steps
+
+Array = NDArray[np.float64]
+Tours = NDArray[np.integer]
+_EQUAL = 1e-12  # lengths whose relative difference is less count as equal, as in the search
+
+
+def kept_shares(instance: Instance, tours: Tours, driven: NDArray[np.int64]) -> Array:
+    """Return the share of a driven tour's legs that each tour keeps, shape (m,). O(m n).
+
+    A leg leads from a city to the next one. Where costs are the same in both directions it is kept
+    in either. Of a driven tour without legs everything is kept.
+
+    Args:
+        instance: The instance.
+        tours: Shape (m, n).
+        driven: The cities of the instance that the driven tour has, in its order, shape (k,).
+
+    >>> corners = np.array([[0, 0, 0, 0], [3, 0, 0, 1], [3, 4, 2, 1], [0, 4, 2, 0]])
+    >>> square = Instance(coordinates=corners)
+    >>> kept_shares(square, np.array([[0, 3, 2, 1], [0, 2, 1, 3]]), np.array([0, 1, 2, 3]))
+    array([1. , 0.5])
+    """
+    origins, destinations = (each[0] for each in tour_steps(instance, driven[np.newaxis]))
+    legs = origins != destinations
+    if not legs.any():
+        return np.ones(len(tours))
+    following = np.full((len(tours), instance.n), -1)
+    np.put_along_axis(following, *tour_steps(instance, tours), axis=1)
+    kept = following[:, origins] == destinations
+    if instance.symmetric:
+        kept |= following[:, destinations] == origins
+    return kept[:, legs].mean(axis=1)
+
+
+def most_like_driven(
+    instance: Instance, tours: Tours, others: Tours, driven: NDArray[np.int64]
+) -> Tours:
+    """Return tours, each replaced by that of equal lengths among others which keeps more legs."""
+    kept, kept_of_others = (kept_shares(instance, each, driven) for each in (tours, others))
+    points, points_of_others = (tour_lengths(instance, each) for each in (tours, others))
+    chosen = tours.copy()
+    for k in range(len(tours)):
+        equal = np.isclose(points_of_others, points[k], rtol=_EQUAL, atol=0).all(axis=1)
+        best = int(np.where(equal, kept_of_others, -1.0).argmax())
+        if equal[best] and kept_of_others[best] > kept[k]:
+            chosen[k] = others[best]
+    return chosen

@@ -1,0 +1,106 @@
+"""replan(...): the front of the rest of the way, from the tours of an earlier front."""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from service.construction.first_tours import Constructor
+from service.errors import Refusal
+from service.instance import Instance, tour_lengths
+from service.pareto import best_subset, nondominated
+from service.planner import Front, PlanOptions, Report, plan
+from service.replanning.earlier_tours import EarlierTours, Tours, completed
+from service.replanning.kept_legs import kept_shares, most_like_driven
+from service.search.improve import Progress
+
+_LEAST_SECONDS = 1e-3  # that are left for the search when the earlier tours took all of its time
+_ROUNDING = 1e-9  # of a share
+
+
+def replan(
+    constructor: Constructor,
+    instance: Instance,
+    options: PlanOptions,
+    earlier: EarlierTours,
+    stop: Callable[[], bool] = lambda: False,
+    report: Report = lambda *_: None,
+) -> Front:
+    """Return the best front found for an instance whose cities were in an earlier front, mostly.
+
+    The search sets out from the earlier tours. Where it has time, the network builds tours only if
+    preferences are asked for: from tours that are nearly right the search gains nothing by more.
+    Of tours of equal lengths an earlier one that keeps more of the driven tour's legs is returned.
+
+    Args:
+        constructor: Builds further tours.
+        instance: The rest of the way.
+        options: What front is wanted, and how much may be spent on it.
+        earlier: What is left of the tours of the earlier front.
+        stop: As of plan(...).
+        report: As of plan(...).
+
+    Raises:
+        Cancelled: As of plan(...).
+        Refusal: No tour found keeps as much of the driven tour as it shall.
+    """
+    began = time.perf_counter()
+    first = _first_tours(instance, earlier)
+    wanted = _without_network(options) if len(first) else options
+    spent = time.perf_counter() - began
+    if wanted.time_limit > 0:
+        wanted = replace(wanted, time_limit=max(_LEAST_SECONDS, wanted.time_limit - spent))
+    if earlier.min_kept > 0:
+        wanted = replace(wanted, size=2**31)
+
+    def report_kept(progress: Progress, best: Callable[[int], Front]) -> None:
+        report(progress, lambda size: _with_kept(instance, best(size), earlier))
+
+    wanted = replace(wanted, initial_tours=first)
+    front = plan(constructor, instance, wanted, stop, report_kept)
+    timings = {**front.timings, "construction": front.timings["construction"] + 1000 * spent}
+    front = replace(front, timings=timings)
+    if earlier.min_kept > 0:
+        front = _keeping(instance, front, first, earlier, options.size)
+    elif len(first):
+        tours = most_like_driven(instance, front.tours, first, earlier.driven)
+        front = replace(front, tours=tours)
+    return _with_kept(instance, front, earlier)
+
+
+def _first_tours(instance: Instance, earlier: EarlierTours) -> Tours:
+    """Return the earlier tours, complete, those first that keep most of the driven one."""
+    if earlier.tours.shape[1] == 0:
+        return np.empty((0, instance.n), np.int64)
+    tours = completed(instance, earlier)
+    kept = kept_shares(instance, tours, earlier.driven)
+    return tours[np.argsort(-kept, kind="stable")]
+
+
+def _without_network(options: PlanOptions) -> PlanOptions:
+    if options.fewer and options.time_limit > 0:
+        return replace(options, angles=np.empty(0))
+    return options
+
+
+def _keeping(
+    instance: Instance, front: Front, first: Tours, earlier: EarlierTours, size: int
+) -> Front:
+    """Return the best of a front and the first tours that keep enough of the driven tour."""
+    tours = np.concatenate((first, front.tours))
+    kept = kept_shares(instance, tours, earlier.driven)
+    enough = kept >= earlier.min_kept - _ROUNDING
+    if not enough.any():
+        most = float(kept.max())
+        pointer = "/min_kept"
+        raise Refusal("too-different", pointer=pointer, limit=earlier.min_kept, actual=most)
+    tours = tours[enough]
+    tours = tours[nondominated(tour_lengths(instance, tours))]
+    chosen = best_subset(tour_lengths(instance, tours), size, front.reference_point)
+    points = tour_lengths(instance, tours[chosen])
+    return replace(front, tours=tours[chosen], points=points, found=len(tours))
+
+
+def _with_kept(instance: Instance, front: Front, earlier: EarlierTours) -> Front:
+    return replace(front, kept=kept_shares(instance, front.tours, earlier.driven))

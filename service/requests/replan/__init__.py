@@ -1,0 +1,1 @@
+"""Requests of `POST /front/{id}/replan`: from what changed to the rest of the way."""

@@ -1,0 +1,211 @@
+"""Costs between the stops of a front and new ones, with what has changed, as sources."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.requests.replan.earlier_front import EarlierFront
+from service.requests.replan.fields import CostEntry, NewStop, ReplanRequest
+from service.requests.stop_fields import find_index, read_objectives
+from service.requests.stops import (
+    Changed,
+    Matrix,
+    Measured,
+    Objective,
+    Plane,
+    Source,
+    Stop,
+    changed_costs,
+)
+from service.requests.validation import invalid, show
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class AllStops:
+    """The stops of a front, those added, and maybe a place where the way goes on, in this order.
+
+    Args:
+        stops: All of them, the first n those of the front.
+        n: How many are the front's.
+        new: The others as the request has them, by where in it they are, as add/0 or position.
+    """
+
+    stops: tuple[Stop, ...]
+    n: int
+    new: Mapping[str, NewStop]
+
+    @property
+    def ids(self) -> dict[str, int]:
+        """The index of each stop by its id."""
+        return {stop.id: index for index, stop in enumerate(self.stops)}
+
+
+def all_stops(front: EarlierFront, request: ReplanRequest) -> AllStops:
+    """Return the stops of a front, and those that a request brings.
+
+    Raises:
+        Refusal: Two have the same id.
+    """
+    new = {f"add/{index}": item for index, item in enumerate(request.add)}
+    if isinstance(request.position, NewStop):
+        new["position"] = request.position
+    seen = {stop.id for stop in front.labels.stops}
+    for part, item in new.items():
+        if item.id in seen:
+            raise invalid(f"{part}/id", f"must be that of no other stop, got {show(item.id)}")
+        seen.add(item.id)
+    stops = (*front.labels.stops, *(Stop(item.id, item.location) for item in new.values()))
+    return AllStops(stops, front.n, new)
+
+
+def all_costs(
+    front: EarlierFront, request: ReplanRequest, stops: AllStops
+) -> tuple[tuple[Objective, ...], list[Source]]:
+    """Return the objectives, and the source of the costs of each between all stops.
+
+    Raises:
+        Refusal: Costs of a new stop are missing, or are given where they are not asked for; or a
+            changed cost is of no objective or stop.
+    """
+    if request.objectives:
+        objectives = read_objectives(request.objectives)
+        for part, item in stops.new.items():
+            for name in {"coordinates", "costs"} & item.model_fields_set:
+                raise invalid(f"{part}/{name}", "must not be given beside objectives")
+        items = enumerate(request.objectives)
+        sources = [item.source(f"objectives/{m}", stops.stops) for m, item in items]
+    else:
+        objectives = front.labels.objectives
+        sources = [
+            _extended(source, m, objective.name, stops)
+            for m, (source, objective) in enumerate(zip(front.sources, objectives, strict=True))
+        ]
+    return objectives, _with_entries(sources, objectives, request.costs, stops)
+
+
+def between(source: Source, chosen: NDArray[np.int64]) -> Source:
+    """Return the source of the costs between some of the stops, in this order."""
+    match source:
+        case Matrix(costs):
+            return Matrix(costs[np.ix_(chosen, chosen)])
+        case Plane(points):
+            return Plane(points[chosen])
+        case Changed(base, steps, costs):
+            place = np.full(max(int(steps.max()), int(chosen.max())) + 1, -1)
+            place[chosen] = np.arange(len(chosen))
+            left = (place[steps] >= 0).all(axis=1)
+            rest = between(base, chosen)
+            assert isinstance(rest, Plane | Measured)
+            return Changed(rest, place[steps[left]], costs[left]) if left.any() else rest
+    return source
+
+
+def _extended(source: Source, m: int, name: str, stops: AllStops) -> Source:
+    """Return the source of an objective between all stops."""
+    for part, item in stops.new.items():
+        _check_given(source, part, item, m, name)
+    match source:
+        case Matrix(costs):
+            return Matrix(_extended_matrix(costs, m, stops))
+        case Plane(points):
+            new = [item.coordinates[m] for item in stops.new.values()]
+            return Plane(np.concatenate((points, np.array(new, np.float64).reshape(-1, 2))))
+        case Changed(base, steps, costs):
+            extended = _extended(base, m, name, stops)
+            assert isinstance(extended, Plane | Measured)
+            return Changed(extended, steps, costs)
+    return source
+
+
+def _check_given(source: Source, part: str, item: NewStop, m: int, name: str) -> None:
+    """Raise a refusal unless a new stop has what an objective needs of it, and nothing else."""
+    base = source.base if isinstance(source, Changed) else source
+    given = {
+        "costs": bool(item.costs) and item.costs[m] is not None,
+        "coordinates": bool(item.coordinates) and item.coordinates[m] is not None,
+    }
+    needed = {Matrix: "costs", Plane: "coordinates"}.get(type(base))
+    for member, there in given.items():
+        if member == needed and not there:
+            raise invalid(f"{part}/{member}", f"is required, with an entry for {show(name)}")
+        if there and member != needed:
+            kind = "measured" if needed is None else f"given by {needed}"
+            raise invalid(f"{part}/{member}/{m}", f"must be null: {show(name)} is {kind}")
+    if needed is None and item.location is None:
+        raise invalid(f"{part}/location", f"is required, as {show(name)} is measured")
+
+
+def _extended_matrix(costs: Array, m: int, stops: AllStops) -> Array:
+    n, size = stops.n, len(stops.stops)
+    matrix = np.zeros((size, size))
+    matrix[:n, :n] = costs
+    for index, (part, item) in enumerate(stops.new.items(), start=n):
+        entry = item.costs[m]
+        assert entry is not None
+        to = _row(entry.to, f"{part}/costs/{m}/to", index, size)
+        back = _row(entry.back, f"{part}/costs/{m}/from", index, size) if entry.back else to
+        matrix[index] = to
+        matrix[:n, index] = back[:n]
+    return matrix
+
+
+def _row(costs: Sequence[float], part: str, own: int, size: int) -> Array:
+    """Return a row of costs, in which that of the stop to itself is 0."""
+    if len(costs) != size:
+        raise invalid(part, f"must have {size} costs, one for each stop, got {len(costs)}")
+    row = np.array(costs, np.float64)
+    row[own] = 0.0
+    return row
+
+
+def _with_entries(
+    sources: list[Source],
+    objectives: Sequence[Objective],
+    entries: Sequence[CostEntry],
+    stops: AllStops,
+) -> list[Source]:
+    """Return the sources with single costs changed; of several for one step the last counts."""
+    changed: list[dict[tuple[int, int], float]] = [{} for _ in sources]
+    names = [objective.name for objective in objectives]
+    ids = stops.ids
+    for index, entry in enumerate(entries):
+        part = f"costs/{index}"
+        origin = _stop(entry.origin, ids, stops, f"{part}/from")
+        destination = _stop(entry.destination, ids, stops, f"{part}/to")
+        if origin == destination:
+            raise invalid(f"{part}/to", "must not be the stop that the step leads from")
+        changed[_objective(entry.objective, names, part)][origin, destination] = entry.cost
+    return [
+        _changed(source, steps) if steps else source
+        for source, steps in zip(sources, changed, strict=True)
+    ]
+
+
+def _changed(source: Source, entries: Mapping[tuple[int, int], float]) -> Source:
+    if isinstance(source, Changed):
+        known = zip(source.steps.tolist(), source.costs.tolist(), strict=True)
+        return _changed(source.base, {(i, j): cost for (i, j), cost in known} | dict(entries))
+    steps, costs = np.array(list(entries), np.int64), np.array(list(entries.values()))
+    if isinstance(source, Matrix):
+        return Matrix(changed_costs(source.costs, steps, costs))
+    return Changed(source, steps, costs)
+
+
+def _objective(objective: int | str, names: Sequence[str], part: str) -> int:
+    if isinstance(objective, int):
+        return objective
+    if objective not in names:
+        demand = f"must be 0, 1 or {' or '.join(map(show, names))}"
+        raise invalid(f"{part}/objective", f"{demand}, got {show(objective)}")
+    return names.index(objective)
+
+
+def _stop(reference: int | str, ids: Mapping[str, int], stops: AllStops, part: str) -> int:
+    index = find_index(reference, ids, part)
+    if isinstance(reference, int) and index >= stops.n:
+        raise invalid(part, f"must be a stop of the front, 0 to {stops.n - 1}, got {index}")
+    return index

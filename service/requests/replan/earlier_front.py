@@ -1,0 +1,124 @@
+"""The front that is replanned: its stops, costs, ends and tours, from what was stored of it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import from_json
+
+from service.errors import Refusal
+from service.instance import PLANE, RouteEnds
+from service.pareto import knee
+from service.requests.front import FrontRequest
+from service.requests.front_parser import parse_front_request
+from service.requests.limits import Limits
+from service.requests.replan.rest_request import RestRequest
+from service.requests.stops import Labels, Matrix, Objective, Plane, Source, Stop
+from service.requests.task import TaskSource
+
+Array = NDArray[np.float64]
+MOST_TOURS = 100  # of an earlier front, from which the search sets out
+_NAMES = ("first", "second")  # of objectives that the front's request did not name
+_MODELS: Mapping[str, type[FrontRequest]] = {"front": FrontRequest, "replan": RestRequest}
+
+
+@dataclass(frozen=True, eq=False)
+class StoredFront:
+    """A front as it is stored.
+
+    Args:
+        id: Its id.
+        source: What it was planned from.
+        tours: The JSON of its tours, with commas between, without brackets.
+    """
+
+    id: str
+    source: TaskSource
+    tours: bytes
+
+
+@dataclass(frozen=True, eq=False)
+class EarlierFront:
+    """A front that is replanned.
+
+    Args:
+        labels: The names of its stops and objectives; of a front without, their numbers.
+        sources: The source of the costs of each objective.
+        ends: Whether its tours are closed, and the ends of open routes.
+        start: The stop that closed tours are reported from.
+        tours: The stops of each tour in order, shape (m, n), evenly spread over the front where
+            it has more than MOST_TOURS.
+        knee: The tour with the least sum of lengths, each in the front's own box, shape (n,).
+    """
+
+    labels: Labels
+    sources: tuple[Source, ...]
+    ends: RouteEnds
+    start: int
+    tours: NDArray[np.int64]
+    knee: NDArray[np.int64]
+
+    @property
+    def n(self) -> int:
+        """The number of stops."""
+        return len(self.labels.stops)
+
+
+def read_earlier_front(stored: StoredFront, limits: Limits) -> EarlierFront:
+    """Return the front that was stored.
+
+    Raises:
+        Refusal: It is of a kind that cannot be replanned, or cannot be read under these limits.
+    """
+    source = stored.source
+    if source.kind not in _MODELS:
+        reason = f"it is of POST /{source.kind}, and only those of POST /front can be"
+        raise not_replannable(stored.id, reason)
+    try:
+        model = _MODELS[source.kind]
+        request = parse_front_request(source.body, limits, source.upload, model)
+    except Refusal as refusal:
+        reason = f"what it was planned from is refused now ({refusal.detail})"
+        raise not_replannable(stored.id, reason) from None
+    tours, lengths = _read_tours(stored, request.n)
+    chosen = np.linspace(0, len(tours) - 1, min(len(tours), MOST_TOURS)).astype(np.intp)
+    return EarlierFront(
+        labels=request.labels or _numbered(request.n),
+        sources=_sources(request),
+        ends=request.ends,
+        start=request.start if isinstance(request.start, int) else 0,
+        tours=tours[chosen],
+        knee=tours[knee(lengths)],
+    )
+
+
+def not_replannable(front: str, reason: str) -> Refusal:
+    """Return the refusal of a front that cannot be replanned."""
+    return Refusal("not-replannable", front=front, reason=reason)
+
+
+def _read_tours(stored: StoredFront, n: int) -> tuple[NDArray[np.int64], Array]:
+    """Return the stops of all tours, shape (m, n), and their lengths, shape (m, 2)."""
+    items = from_json(b"[" + stored.tours + b"]")
+    if not items:
+        raise not_replannable(stored.id, "it has no tour")
+    tours = np.array([item["tour"] for item in items], np.int64)
+    if tours.shape[1] != n:
+        raise not_replannable(stored.id, "its tours are not of its stops")
+    return tours, np.array([item["lengths"] for item in items], np.float64)
+
+
+def _numbered(n: int) -> Labels:
+    """Return labels for stops and objectives without names."""
+    stops = tuple(Stop(str(index)) for index in range(n))
+    return Labels(stops, tuple(Objective(name) for name in _NAMES))
+
+
+def _sources(request: FrontRequest) -> tuple[Source, ...]:
+    if request.stops:
+        return tuple(request.unmeasured.sources)
+    if request.kind == "matrices":
+        return tuple(Matrix(matrix) for matrix in request.matrices)
+    planes = np.array(request.coordinates, np.float64)
+    return tuple(Plane(planes[:, m : m + PLANE]) for m in range(0, planes.shape[1], PLANE))

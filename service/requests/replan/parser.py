@@ -1,0 +1,120 @@
+"""Parse requests to replan: from an earlier front and a body to the source of a task."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import to_json
+
+from service.actor import ActorInfo
+from service.instance import PLANE
+from service.requests.limits import Limits, check_amounts
+from service.requests.replan.costs import all_costs, all_stops, between
+from service.requests.replan.earlier_front import StoredFront, read_earlier_front
+from service.requests.replan.fields import ReplanRequest
+from service.requests.replan.way import RestOfWay, left_of_tours, rest_of_way
+from service.requests.schemas import PlanFields
+from service.requests.stops import Changed, Matrix, Measured, Objective, Plane, Source
+from service.requests.task import TaskSource, parse_task
+from service.requests.validation import parse_json, too_many_cities
+
+
+@dataclass(frozen=True, eq=False)
+class ReplanSource:
+    """A request to replan, as it came, and the stored front that it is about."""
+
+    body: bytes
+    front: StoredFront
+
+    @property
+    def length(self) -> int:
+        """The bytes to parse; those of the tours, which are the service's own, are quick to."""
+        earlier = self.front.source
+        upload = len(earlier.upload or b"")
+        return len(self.body) + len(earlier.body) + upload + len(self.front.tours) // 8
+
+
+def parse_replan(
+    source: ReplanSource, limits: Limits, actors: Mapping[str, ActorInfo]
+) -> TaskSource:
+    """Return the rest of the way as a source with its task.
+
+    Raises:
+        Refusal: The request is malformed or over a limit, no actor serves it, or the front cannot
+            be replanned so.
+    """
+    rest = rest_source(source, limits)
+    return replace(rest, task=parse_task(rest, limits, actors))
+
+
+def rest_source(source: ReplanSource, limits: Limits) -> TaskSource:
+    """Return the rest of the way as the source of a task, which stands by itself.
+
+    Raises:
+        Refusal: The body is malformed or over a limit, or the front cannot be replanned so.
+    """
+    request = parse_json(ReplanRequest, source.body)
+    front = read_earlier_front(source.front, limits)
+    stops = all_stops(front, request)
+    rest = rest_of_way(front, request, stops)
+    if len(rest.stops) > limits.cities:
+        raise too_many_cities("add", limits.cities, len(rest.stops))
+    check_amounts(request, len(rest.stops), limits)
+    objectives, sources = all_costs(front, request, stops)
+    sources = [between(each, rest.stops) for each in sources]
+    place = np.full(len(stops.stops), -1)
+    place[rest.stops] = np.arange(len(rest.stops))
+    tours = place[left_of_tours(front, request, rest)]
+    file = _matrices_file(sources)
+    members = {
+        "stops": [asdict(stops.stops[index]) for index in rest.stops],
+        "objectives": [
+            _objective(objective, each, file is not None)
+            for objective, each in zip(objectives, sources, strict=True)
+        ],
+        **_ends(rest, place),
+        "earlier_tours": tours.tolist(),
+        "min_kept": request.min_kept,
+        **request.model_dump(include=set(PlanFields.model_fields) & request.model_fields_set),
+    }
+    return TaskSource("replan", to_json(members), file)
+
+
+def _ends(rest: RestOfWay, place: NDArray[np.int64]) -> dict[str, Any]:
+    """Return the members that say where the rest of the way begins and ends."""
+    begin = None if rest.start is None else int(place[rest.start])
+    if rest.ends.closed:
+        return {"closed": True, "start": begin}
+    end = rest.ends.end
+    return {"closed": False, "start": begin, "end": None if end is None else int(place[end])}
+
+
+def _matrices_file(sources: list[Source]) -> bytes | None:
+    """Return both matrices as a .npy file, if both objectives have one: as JSON they are long."""
+    matrices = [source.costs for source in sources if isinstance(source, Matrix)]
+    if len(matrices) < len(sources):
+        return None
+    content = BytesIO()
+    np.save(content, np.stack(matrices), allow_pickle=False)
+    return content.getvalue()
+
+
+def _objective(objective: Objective, source: Source, in_file: bool) -> dict[str, Any]:
+    """Return an objective as JSON, without its matrix where that is in the file."""
+    return asdict(objective) | ({} if in_file else _costs(source))
+
+
+def _costs(source: Source) -> dict[str, Any]:
+    match source:
+        case Matrix(costs):
+            return {"matrix": costs.tolist()}
+        case Plane(points):
+            return {"coordinates": points.reshape(-1, PLANE).tolist()}
+        case Measured(measure):
+            return {"from": measure}
+        case Changed(base, steps, costs):
+            entries = zip(*steps.T.tolist(), costs.tolist(), strict=True)
+            return {**_costs(base), "changed": [list(entry) for entry in entries]}

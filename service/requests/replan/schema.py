@@ -1,0 +1,35 @@
+"""The JSON schemas of requests to replan a front."""
+
+from collections.abc import Iterable
+from typing import Any
+
+from service.requests.limits import Limits, limited_schema
+from service.requests.replan.fields import ReplanRequest
+
+_SHARED = "ObjectiveItem"  # of which each form has a name of its own, as in `front_schemas`
+_OBJECTIVES = ("MatrixObjective", "PlaneObjective", "MeasuredObjective")
+
+
+def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str, Any]]:
+    """Return the schema of a request to replan, and of what is in it, by name.
+
+    Its objectives are of the kinds that `front_schemas` has.
+    """
+    schema = limited_schema(ReplanRequest, limits, actors)
+    parts = schema.pop("$defs")
+    fields = schema["properties"]
+    kinds = [{"$ref": f"#/components/schemas/{name}"} for name in _OBJECTIVES]
+    fields["objectives"] = {**fields["objectives"], "items": {"oneOf": kinds}}
+    for name in ("done", "remove", "tour", "add"):
+        fields[name]["maxItems"] = limits.cities
+    named = {name: part for name, part in parts.items() if name != _SHARED}
+    return {**{name: _without_null(part) for name, part in named.items()}, "ReplanRequest": schema}
+
+
+def _without_null(schema: dict[str, Any]) -> dict[str, Any]:
+    """Return a schema without defaults of null, from which generators conclude too much."""
+    fields = {
+        name: {k: v for k, v in field.items() if k != "default" or v is not None}
+        for name, field in schema["properties"].items()
+    }
+    return {**schema, "properties": fields}

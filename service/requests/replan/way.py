@@ -1,0 +1,168 @@
+"""The rest of a way: where it goes on, through which stops, and where it ends."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.instance import CLOSED, RouteEnds
+from service.requests.replan.costs import AllStops
+from service.requests.replan.earlier_front import EarlierFront
+from service.requests.replan.fields import NewStop, ReplanRequest
+from service.requests.stop_fields import find_index
+from service.requests.validation import invalid, show
+
+Tours = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class RestOfWay:
+    """The rest of a way, in indexes of all stops: those of a front and new ones.
+
+    Args:
+        stops: Those that it has, ascending, shape (k,).
+        ends: Whether it leads back to where it goes on, and its ends if it does not.
+        start: The stop at which it goes on; None where any may be the first.
+        done: The stops visited, in order.
+        left: The stops of the front that it has, but the ends, as a set.
+    """
+
+    stops: NDArray[np.int64]
+    ends: RouteEnds
+    start: int | None
+    done: tuple[int, ...]
+    left: frozenset[int]
+
+
+def rest_of_way(front: EarlierFront, request: ReplanRequest, stops: AllStops) -> RestOfWay:
+    """Return what is left of the way through a front's stops.
+
+    A closed tour leads back to its start, and an open route to its end if that is fixed. A fixed
+    start counts as visited once the way goes on anywhere else.
+
+    Raises:
+        Refusal: A stop is not known, named twice, done and removed, or needed as an end and done
+            or removed; or no stop is left.
+    """
+    ids = {stop.id: index for index, stop in enumerate(front.labels.stops)}
+    done = _indexes(request.done, ids, "done")
+    removed = _indexes(request.remove, ids, "remove")
+    begin, end = _ends(front)
+    start = _start(request, ids, stops, done[-1] if done else begin)
+    for index, stop in enumerate(removed):
+        if stop in done:
+            raise invalid(f"remove/{index}", f"must not be done, got {show(_name(front, stop))}")
+        if stop in (start, end):
+            where = "goes on" if stop == start else "ends"
+            demand = f"must not be where the way {where}, got {show(_name(front, stop))}"
+            raise invalid(f"remove/{index}", demand)
+    visited = {*done, *removed} if begin is None or start == begin else {*done, *removed, begin}
+    left = frozenset(range(front.n)) - visited - {start, end}
+    added = range(front.n, front.n + len(request.add))
+    if not front.ends.closed and end is not None and (end == start or end in done):
+        if left or added:
+            part = f"done/{done.index(end)}" if end in done else "position"
+            demand = "must not be where the way ends while stops are left"
+            raise invalid(part, f"{demand}, got {show(_name(front, end))}")
+        end = None
+    chosen = {*left, *added} | {stop for stop in (start, end) if stop is not None}
+    if not chosen:
+        raise invalid("remove", "must leave a stop to visit, and leaves none")
+    back = front.ends.closed and start == front.start
+    ends = CLOSED if back else RouteEnds(False, start, end if end != start else None)
+    return RestOfWay(np.array(sorted(chosen), np.int64), ends, start, done, left)
+
+
+def left_of_tours(front: EarlierFront, request: ReplanRequest, rest: RestOfWay) -> Tours:
+    """Return what is left of the earlier tours, in indexes of all stops, shape (m, k).
+
+    The first is left of the tour being driven. One that begins with its last stops, more of which
+    are done than of its first, is driven the other way round.
+
+    Raises:
+        Refusal: The tour being driven has not all stops of the front once.
+    """
+    driven = _driven(front, request)
+    if front.ends.closed:
+        driven = np.roll(driven, -int((driven == front.start).argmax()))
+    tours = np.concatenate((_as_driven(front, driven, rest.done)[np.newaxis], _begun(front)))
+    is_left = np.zeros(front.n, np.bool_)
+    is_left[list(rest.left)] = True
+    kept = tours[is_left[tours]].reshape(len(tours), -1)
+    first = [] if rest.start is None else [rest.start]
+    last = [] if rest.ends.closed or rest.ends.end is None else [rest.ends.end]
+    sides = (np.tile(np.array(side, np.int64), (len(tours), 1)) for side in (first, last))
+    before, after = sides
+    return np.concatenate((before, kept, after), axis=1)
+
+
+def _ends(front: EarlierFront) -> tuple[int | None, int | None]:
+    """Return the stops at which a front's tours begin, and to which they lead, None where any."""
+    if front.ends.closed:
+        return front.start, front.start
+    return front.ends.start, front.ends.end
+
+
+def _start(
+    request: ReplanRequest, ids: Mapping[str, int], stops: AllStops, default: int | None
+) -> int | None:
+    """Return the stop at which the way goes on, None where any may be the first."""
+    if request.position is None:
+        return default
+    if isinstance(request.position, NewStop):
+        return len(stops.stops) - 1
+    return _index(request.position, ids, "position")
+
+
+def _driven(front: EarlierFront, request: ReplanRequest) -> NDArray[np.int64]:
+    if not request.tour:
+        return front.knee
+    ids = {stop.id: index for index, stop in enumerate(front.labels.stops)}
+    tour = _indexes(request.tour, ids, "tour")
+    if len(tour) != front.n:
+        raise invalid("tour", f"must have all {front.n} stops of the front, got {len(tour)}")
+    return np.array(tour, np.int64)
+
+
+def _begun(front: EarlierFront) -> Tours:
+    """Return a front's tours, the closed ones from their start on."""
+    if not front.ends.closed:
+        return front.tours
+    places = (front.tours == front.start).argmax(axis=1)[:, np.newaxis]
+    return np.take_along_axis(front.tours, (places + np.arange(front.n)) % front.n, axis=1)
+
+
+def _as_driven(
+    front: EarlierFront, tour: NDArray[np.int64], done: Sequence[int]
+) -> NDArray[np.int64]:
+    """Return a tour in the direction in which it is driven, as the stops that are done show."""
+    around = tour[::-1]
+    if front.ends.closed:
+        around = np.roll(around, 1)
+    elif front.ends.start is not None or front.ends.end is not None:
+        return tour
+    forward, backward = (np.isin(each[: len(done)], done).sum() for each in (tour, around))
+    return around if backward > forward else tour
+
+
+def _indexes(references: Sequence[int | str], ids: Mapping[str, int], part: str) -> tuple[int, ...]:
+    """Return the stops of a front that are named, each once."""
+    found: dict[int, int] = {}
+    for index, reference in enumerate(references):
+        stop = _index(reference, ids, f"{part}/{index}")
+        if (other := found.setdefault(stop, index)) != index:
+            demand = f"must not be {part}/{other} again, got {show(reference)}"
+            raise invalid(f"{part}/{index}", demand)
+    return tuple(found)
+
+
+def _index(reference: int | str, ids: Mapping[str, int], part: str) -> int:
+    index = find_index(reference, ids, part)
+    if index >= len(ids):
+        raise invalid(part, f"must be a stop of the front, 0 to {len(ids) - 1}, got {index}")
+    return index
+
+
+def _name(front: EarlierFront, stop: int) -> str:
+    return front.labels.stops[stop].id

@@ -1,0 +1,145 @@
+"""Replanned fronts against brute force on the remaining problem, over random changes."""
+
+import json
+
+import numpy as np
+import pytest
+
+from service.errors import Refusal
+from service.instance import Instance
+from service.pareto import nondominated
+from service.planner import Front, PlanOptions
+from service.replanning.earlier_tours import EarlierTours, completed
+from service.replanning.kept_legs import kept_shares
+from service.replanning.replan import replan
+from service.requests.limits import Limits
+from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.stops import UnmeasuredStops, make_instance
+from service.requests.task import Task
+from tests.helpers.actors import Shuffler, info_of
+from tests.helpers.changes import Change, random_change
+
+CHANGES, PARTS = 300, 10
+LIMITS = Limits(body_bytes=2**20, cities=50, cells=100, preferences=99, size=9999, seconds=9)
+INFOS = {"any": info_of("any", "matrices")}
+
+
+def task_of(change: Change, **more: object) -> Task:
+    body = json.dumps({**change.request, "size": 9999, **more}).encode()
+    task = parse_replan(ReplanSource(body, change.front), LIMITS, INFOS).task
+    assert task is not None
+    return task
+
+
+def instance_of(task: Task) -> Instance:
+    subject = task.subject
+    if isinstance(subject, UnmeasuredStops):
+        return make_instance(subject)
+    assert isinstance(subject, Instance)
+    return subject
+
+
+def replanned(task: Task) -> Front:
+    assert task.earlier is not None
+    return replan(Shuffler(), instance_of(task), task.options, task.earlier)
+
+
+def ways(task: Task, front: Front, change: Change) -> list[tuple[int, ...]]:
+    """The tours of a front in indexes of all stops."""
+    assert task.labels is not None
+    index = [change.ids.index(stop.id) for stop in task.labels.stops]
+    return [tuple(index[city] for city in tour) for tour in front.tours.tolist()]
+
+
+@pytest.mark.parametrize("part", range(PARTS))
+def test_up_to_nine_stops_the_front_of_the_rest_is_that_of_all_ways(part: int) -> None:
+    for seed in range(part, CHANGES, PARTS):
+        change = random_change(seed)
+        task = task_of(change)
+        front = replanned(task)
+        points = np.array([change.point(way) for way in change.ways()])
+        expected = points[nondominated(points.round(9))]
+        np.testing.assert_allclose(front.points, expected, rtol=1e-9, err_msg=f"seed {seed}")
+        found = ways(task, front, change)
+        np.testing.assert_allclose([change.point(way) for way in found], front.points)
+        assert front.kept is not None
+        np.testing.assert_allclose(front.kept, [change.kept(way) for way in found])
+
+
+def test_tours_that_keep_enough_are_no_worse_than_the_earlier_ones_that_do() -> None:
+    for seed in range(40):
+        change = random_change(seed)
+        task = task_of(change, min_kept=0.5)
+        enough = [way for way in _completions(task, change) if change.kept(way) >= 0.5]
+        if not enough:
+            continue
+        front = replanned(task)
+        assert front.kept is not None
+        assert (front.kept >= 0.5).all()
+        for way in enough:
+            no_worse = front.points <= np.array(change.point(way)) * (1 + 1e-9)
+            assert no_worse.all(axis=1).any()
+
+
+def test_a_share_that_no_tour_keeps_is_refused_with_the_most_that_one_does() -> None:
+    rng = np.random.default_rng(3)
+    instance = Instance(coordinates=rng.random((9, 4)))
+    earlier = EarlierTours(np.array([[0, 4, 2, 5, 1, 3]]), min_kept=1.0)
+    options = PlanOptions(angles=np.zeros(1), fewer=True, size=9, time_limit=0.2)
+    with pytest.raises(Refusal, match="at least 1 of the driven") as refused:
+        replan(Shuffler(), instance, options, earlier)
+    assert refused.value.code == "too-different"
+    assert refused.value.actual is not None
+    assert 0 <= refused.value.actual < 1
+
+
+def _completions(task: Task, change: Change) -> list[tuple[int, ...]]:
+    """The ways that the earlier tours become with what was added."""
+    assert task.earlier is not None
+    if not task.earlier.tours.shape[1]:
+        return []
+    tours = completed(instance_of(task), task.earlier)
+    return ways(task, _FrontOf(tours), change)  # type: ignore[arg-type]
+
+
+class _FrontOf:
+    def __init__(self, tours: np.ndarray) -> None:
+        self.tours = tours
+
+
+def test_earlier_tours_are_completed_where_it_costs_least() -> None:
+    rng = np.random.default_rng(5)
+    for closed in (True, False):
+        cities = rng.random((7, 4))
+        instance = Instance(coordinates=cities, closed=closed, start=None if closed else 2)
+        begun = np.array([[2, 0, 1, 3, 4, 5]])
+        [tour] = completed(instance, EarlierTours(begun)).tolist()
+        assert [city for city in tour if city != 6] == begun[0].tolist()
+        steps = np.hypot(*(cities[:, None, :2] - cities[None, :, :2]).transpose(2, 0, 1))
+
+        def length(way: list[int], steps: np.ndarray = steps, closed: bool = closed) -> float:
+            return sum(steps[i, j] for i, j in zip(way, way[1:] + way[: int(closed)], strict=False))
+
+        others = [[*begun[0, :k], 6, *begun[0, k:]] for k in range(1, 7)]
+        assert length(tour) == pytest.approx(min(map(length, others)))
+
+
+def test_of_equal_lengths_the_tour_most_like_the_driven_one_is_returned() -> None:
+    """On a line in both planes, many routes have equal lengths."""
+    line = np.repeat(np.arange(12.0)[:, np.newaxis] * 0, 4, axis=1)
+    instance = Instance(coordinates=line, closed=False, start=0)
+    driven = np.array([0, *np.random.default_rng(1).permutation(np.arange(1, 12))])
+    options = PlanOptions(angles=np.zeros(1), fewer=True, size=9, time_limit=0.2)
+    front = replan(Shuffler(), instance, options, EarlierTours(driven[np.newaxis]))
+    assert front.kept is not None
+    assert front.kept.tolist() == [1.0]
+
+
+def test_legs_count_in_one_direction_where_costs_differ_by_direction() -> None:
+    matrices = np.arange(32.0).reshape(2, 4, 4)
+    driven = np.array([0, 1, 2, 3])
+    turned = np.array([[3, 2, 1, 0]])
+    there = Instance(matrices=matrices)
+    both = Instance(matrices=matrices + matrices.transpose(0, 2, 1))
+    assert kept_shares(there, turned, driven).tolist() == [0.0]
+    assert kept_shares(both, turned, driven).tolist() == [1.0]
