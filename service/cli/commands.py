@@ -48,6 +48,7 @@ from service.cli.options import (
     Url,
     Workers,
 )
+from service.cli.replan import replan
 
 app = Typer(
     name="paretour",
@@ -165,6 +166,9 @@ def tour(  # noqa: PLR0913  an option each
         "knee": knee,
     }
     run_tour(build_plan, backend_for(url, api_key), angle, choice, as_json)
+
+
+app.command()(replan)
 
 
 @app.command()

@@ -125,4 +125,24 @@ Paths = Annotated[
     bool | None,
     Option("--paths", help="Have the path of each tour, in cells and metres, with --json."),
 ]
+FrontId = Annotated[str, Argument(metavar="FRONT", help="The id of a front of the service.")]
+Changes = Annotated[
+    Path | None,
+    Argument(
+        help="JSON: what has changed, as `add`, `costs` or any other member of a request to replan."
+        " - is standard input."
+    ),
+]
+Done = Annotated[str | None, Option(help="The stops visited, in order, as depot,order-17.")]
+Position = Annotated[
+    str | None, Option(help="The stop where the way goes on.", show_default="the last done")
+]
+Remove = Annotated[str | None, Option(help="Stops not to visit any more, with commas between.")]
+MinKept = Annotated[
+    float | None,
+    Option(min=0, max=1, help="Only tours that keep this share of the driven one's legs."),
+]
+ServiceUrl = Annotated[
+    str, Option("--url", help="The service that has the front; as localhost:8000.")
+]
 Workers = Annotated[int | None, Option(help="Plans made at a time.", show_default=False)]

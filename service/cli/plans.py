@@ -4,11 +4,19 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
-from paretour import CoverageRequest, FrontRequest, Plan, coverage_plan, front_plan
+from paretour import (
+    CoverageRequest,
+    FrontRequest,
+    Plan,
+    ReplanRequest,
+    coverage_plan,
+    front_plan,
+    replan_plan,
+)
 
 from service.cli.errors import UsageError
 from service.cli.inputs.csv_tables import Ids
-from service.cli.inputs.files import read_layer, read_map, read_request
+from service.cli.inputs.files import read_layer, read_map, read_object, read_request
 from service.cli.options import ANY
 
 _SECOND_OBJECTIVES = ("second_matrix", "cost_layer", "second_coordinates")
@@ -36,6 +44,27 @@ def plan_cities(
     preferences = _parse_numbers(angles, "--angles")
     given = _without_none({**options, **ends, "preferences": preferences})
     return front_plan(cast(FrontRequest, {**request, **given})), ids
+
+
+def plan_rest(
+    front: str, changes: Path | None, stops: Mapping[str, str | None], options: Options
+) -> tuple[Plan, None]:
+    """Return the plan for the rest of a front's way, and no ids.
+
+    Args:
+        front: The id of the front.
+        changes: A file of members of the request, as JSON.
+        stops: Members that are stops, by their ids with commas between.
+        options: Further members.
+
+    Raises:
+        UnreadableFile: The file is no JSON object.
+        OSError: There is no such file.
+    """
+    request = {} if changes is None else read_object(changes)
+    named = {name: text and text.split(",") for name, text in stops.items()}
+    given = _without_none({**named, **options})
+    return replan_plan(front, cast(ReplanRequest, {**request, **given})), None
 
 
 def plan_map(

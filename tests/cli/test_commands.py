@@ -228,3 +228,18 @@ def test_help_waits_for_nothing_heavy() -> None:
         "except SystemExit: sys.exit(len({'numpy', 'httpx', 'fastapi'} & set(sys.modules)))"
     )
     subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True)
+
+
+def test_the_rest_of_a_front_of_a_service_is_replanned(url: str, tmp_path: Path) -> None:
+    cities = np.random.default_rng(2).random((8, 4)).tolist()
+    with Client(url) as client:
+        front = client.front(coordinates=cities, time_limit=0.1)
+    changes = tmp_path / "changes.json"
+    changes.write_text(json.dumps({"add": [{"id": "new", "coordinates": [[0, 0], [1, 1]]}]}))
+    options = ("--url", url, "--done", "0,3", "--remove", "5", "--json")
+    rest = json.loads(paretour("replan", front.id, changes, *options).stdout)
+    assert {tour["stops"][0] for tour in rest["front"]} == {"3"}
+    assert {stop["id"] for stop in rest["stops"]} == {*"0123467", "new"}
+    refused = paretour("replan", front.id, "--url", url, "--done", "x")
+    assert refused.returncode == 2
+    assert "done/0 must be the id of a stop" in refused.stderr

@@ -132,3 +132,19 @@ def test_a_limit_is_named_in_the_refusal(url: str, connect: Connect) -> None:
 def test_without_a_service_there_is_an_error_of_transport(connect: Connect) -> None:
     with pytest.raises(httpx.TransportError):
         connect("http://127.0.0.1:1").actors()
+
+
+def test_the_rest_of_a_front_is_replanned_at_once_and_as_a_job(url: str, connect: Connect) -> None:
+    client = connect(url)
+    front = client.front(coordinates=CITIES, time_limit=0, preferences=20)
+    driven = front.choose(balance=0.5)
+    changes = {"done": driven.tour[:4].tolist(), "tour": driven.tour.tolist(), "time_limit": 0}
+    rest = client.replan(front, **changes)
+    assert {tour[0] for tour in rest.stops} == {str(driven.tour[3])}
+    assert rest.kept is not None
+    assert [item["kept"] for item in rest.document["front"]] == rest.kept.tolist()
+    assert rest.choose(balance=0).kept == rest.kept[0] == client.tour(balance=0, front=rest.id).kept
+    assert client.submit_replan(front.id, **changes).result().lengths.tolist() == (
+        rest.lengths.tolist()
+    )
+    assert (front.kept, driven.kept) == (None, None)

@@ -97,6 +97,16 @@ def _read_yaml(path: Path) -> tuple[Request, bytes]:
     return {**request}, picture
 
 
+def read_object(path: Path) -> Request:
+    """Return the members of a request in a JSON file, or in standard input for a file named -.
+
+    Raises:
+        UnreadableFile: The file is no JSON object; the message names it.
+        OSError: There is no such file.
+    """
+    return _read(path, lambda content: _parse_json(content.text))
+
+
 def read_layer(path: Path) -> Array:
     """Return the costs on a map in a CSV file, a row for each row of its cells.
 

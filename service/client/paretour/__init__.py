@@ -13,8 +13,14 @@ events of `events`; neither needs anything of the service but its address.
 from paretour.asynchronous import AsyncClient, AsyncJob
 from paretour.choice import Choice
 from paretour.errors import Refused
-from paretour.members import CoverageRequest, FrontRequest, ObjectiveRequest, StopRequest
-from paretour.requests import Plan, coverage_plan, front_plan
+from paretour.members import (
+    CoverageRequest,
+    FrontRequest,
+    ObjectiveRequest,
+    ReplanRequest,
+    StopRequest,
+)
+from paretour.requests import Plan, coverage_plan, front_plan, replan_plan
 from paretour.ros_maps import read_ros_map
 from paretour.sync import Client, Job
 from paretour.values import Actor, Front, Objective, Path, Progress, Tour
@@ -35,9 +41,11 @@ __all__ = [
     "Plan",
     "Progress",
     "Refused",
+    "ReplanRequest",
     "StopRequest",
     "Tour",
     "coverage_plan",
     "front_plan",
     "read_ros_map",
+    "replan_plan",
 ]

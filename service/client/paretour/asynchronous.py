@@ -8,8 +8,8 @@ import httpx
 from paretour.calls import Call, Calls, Geometry, auth_headers
 from paretour.choice import Choice
 from paretour.events import JobEvents
-from paretour.members import CoverageRequest, FrontRequest
-from paretour.requests import Plan, coverage_plan, front_plan
+from paretour.members import CoverageRequest, FrontRequest, ReplanRequest
+from paretour.requests import Plan, coverage_plan, front_plan, replan_plan
 from paretour.values import Actor, Front, Progress, Tour
 
 T = TypeVar("T")
@@ -51,6 +51,21 @@ class AsyncClient:
             **request: The members of the request.
         """
         return await self.plan(coverage_plan(request, png))
+
+    async def replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> Front:
+        """Plan the rest of a front's way, from what has changed, and wait for it.
+
+        Args:
+            front: The front, or its id.
+            **request: What has changed, and the options of the new front.
+        """
+        return await self.plan(replan_plan(front, request))
+
+    async def submit_replan(
+        self, front: Front | str, **request: Unpack[ReplanRequest]
+    ) -> "AsyncJob":
+        """Submit a job that plans the rest of a front's way; arguments as of `replan`."""
+        return await self.post(replan_plan(front, request))
 
     async def submit(self, **request: Unpack[FrontRequest]) -> "AsyncJob":
         """Submit a job that plans a front."""

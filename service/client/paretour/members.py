@@ -6,19 +6,24 @@ from typing import Any, Literal, Required, TypedDict
 from numpy.typing import ArrayLike
 
 
-class PlanRequest(TypedDict, total=False):
+class PlanOptions(TypedDict, total=False):
     """The members that every request to plan may have; the service's /docs explains them."""
 
     preferences: int | ArrayLike
     time_limit: float
-    closed: bool
     size: int
     reference_point: ArrayLike
-    initial_tours: ArrayLike
     arrivals: bool
     bound: bool
     actor: str
     seed: int
+
+
+class PlanRequest(PlanOptions, total=False):
+    """The members that every request to plan new cities may have."""
+
+    closed: bool
+    initial_tours: ArrayLike
 
 
 class StopRequest(TypedDict, total=False):
@@ -81,3 +86,19 @@ class CoverageRequest(PlanRequest, total=False):
     cost_layer: ArrayLike
     second_coordinates: ArrayLike
     paths: bool
+
+
+class ReplanRequest(PlanOptions, total=False):
+    """The members of a request to POST /front/{id}/replan: what has changed since.
+
+    Stops are named by their ids, or by their indexes in the front.
+    """
+
+    done: Sequence[int | str]
+    position: int | str | Mapping[str, Any]
+    add: Sequence[Mapping[str, Any]]
+    remove: Sequence[int | str]
+    costs: Sequence[Mapping[str, Any]]
+    objectives: Sequence[ObjectiveRequest]
+    tour: Sequence[int | str]
+    min_kept: float

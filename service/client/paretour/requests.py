@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.members import CoverageRequest, FrontRequest
+from paretour.members import CoverageRequest, FrontRequest, ReplanRequest
+from paretour.values import Front
 
 _DEFAULT_TIME_LIMIT = 1.0  # seconds, the service's own
 _OBJECTIVES = 2
@@ -84,6 +85,11 @@ def _matrices_file(matrices: NDArray[Any]) -> File:
 def coverage_plan(request: CoverageRequest, png: bytes | None) -> Plan:
     """Return the request to POST /coverage. The map is in it, or a PNG or PGM file."""
     return Plan("/coverage", request, None if png is None else File("map", png))
+
+
+def replan_plan(front: Front | str, request: ReplanRequest) -> Plan:
+    """Return the request to replan a front, or the one with this id."""
+    return Plan(f"/front/{front.id if isinstance(front, Front) else front}/replan", request)
 
 
 def _listed(array: Any) -> Any:

@@ -8,8 +8,8 @@ import httpx
 from paretour.calls import Call, Calls, Geometry, auth_headers
 from paretour.choice import Choice
 from paretour.events import JobEvents
-from paretour.members import CoverageRequest, FrontRequest
-from paretour.requests import Plan, coverage_plan, front_plan
+from paretour.members import CoverageRequest, FrontRequest, ReplanRequest
+from paretour.requests import Plan, coverage_plan, front_plan, replan_plan
 from paretour.values import Actor, Front, Progress, Tour
 
 T = TypeVar("T")
@@ -57,6 +57,19 @@ class Client:
             **request: The members of the request.
         """
         return self.plan(coverage_plan(request, png))
+
+    def replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> Front:
+        """Plan the rest of a front's way, from what has changed, and wait for it.
+
+        Args:
+            front: The front, or its id.
+            **request: What has changed, and the options of the new front.
+        """
+        return self.plan(replan_plan(front, request))
+
+    def submit_replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> "Job":
+        """Submit a job that plans the rest of a front's way; arguments as of `replan`."""
+        return self.post(replan_plan(front, request))
 
     def submit(self, **request: Unpack[FrontRequest]) -> "Job":
         """Submit a job that plans a front."""

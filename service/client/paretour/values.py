@@ -62,6 +62,7 @@ class Tour:
             (n + 1, 2); None where the request did not ask for them.
         path: Its way over a map, where the request asked for paths.
         stops: The ids of its stops in order, where the request had ids.
+        kept: The share of the driven tour's remaining legs that it keeps, where it was replanned.
     """
 
     front: str
@@ -72,6 +73,7 @@ class Tour:
     arrivals: Array | None
     path: Path | None
     stops: tuple[str, ...] | None = None
+    kept: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -98,6 +100,8 @@ class Front:
         document: The answer as it came, with every member.
         stops: The ids of the stops of each tour in order, where the request had ids.
         objectives: Both objectives, where the request named them.
+        kept: The share of the driven tour's remaining legs that each tour keeps, shape (m,), where
+            it was replanned.
     """
 
     id: str
@@ -118,6 +122,7 @@ class Front:
     document: Mapping[str, Any]
     stops: tuple[tuple[str, ...], ...] | None = None
     objectives: tuple[Objective, ...] | None = None
+    kept: Array | None = None
 
     def nearest(self, angle: float) -> Tour:
         """Return the tour whose direction is nearest to an angle in degrees.
@@ -144,6 +149,7 @@ class Front:
             arrivals=_arrivals(self.document["front"][index]),
             path=None if self.paths is None else self.paths[index],
             stops=None if self.stops is None else self.stops[index],
+            kept=None if self.kept is None else float(self.kept[index]),
         )
 
 
@@ -196,6 +202,7 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         document=document,
         stops=tuple(tuple(item["stops"]) for item in items) if "stops" in document else None,
         objectives=_parse_objectives(document),
+        kept=_floats([item["kept"] for item in items]) if _is_replanned(items) else None,
     )
 
 
@@ -210,7 +217,12 @@ def parse_tour(document: Mapping[str, Any]) -> Tour:
         arrivals=_arrivals(document),
         path=_parse_path(document),
         stops=tuple(document["stops"]) if "stops" in document else None,
+        kept=document.get("kept"),
     )
+
+
+def _is_replanned(items: Sequence[Mapping[str, Any]]) -> bool:
+    return bool(items) and "kept" in items[0]
 
 
 def _arrivals(item: Mapping[str, Any]) -> Array | None:
