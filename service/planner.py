@@ -43,6 +43,7 @@ class PlanOptions:
         initial_tours: Shape (m, n): tours that the front shall dominate or equal as well.
         bound: Whether to compute an upper bound on the hypervolume of any front.
         seed: Of the search's random choices.
+        search_constructs: Whether the search begins with tours of its own as well.
         augment: How often the constructor is called, each time with another symmetry of the
             coordinates and with angles between those of the other calls.
     """
@@ -56,6 +57,7 @@ class PlanOptions:
     initial_tours: Tours | None = None
     bound: bool = False
     seed: int = 0
+    search_constructs: bool = True
     augment: int = 1
 
     @property
@@ -138,7 +140,9 @@ def plan(
     """
     clock = _Clock()
     deadline = time.monotonic() + options.time_limit
-    reference_point = _reference_point(instance, options)
+    reference_point = options.reference_point
+    if reference_point is None:
+        reference_point = instance.n * instance.scale
     options = replace(options, reference_point=reference_point)
     constructed = _constructed(constructor, instance, options, deadline, stop)
     first = _first_tours(instance, constructed, options)
@@ -170,12 +174,6 @@ def plan(
         gained=gained,
         closed=instance.closed,
     )
-
-
-def _reference_point(instance: Instance, options: PlanOptions) -> Array:
-    if options.reference_point is not None:
-        return options.reference_point
-    return instance.n * instance.scale
 
 
 def _constructed(
@@ -229,6 +227,7 @@ def _improved(
         stop=stop,
         report=report,
         reference_point=options.reference_point,
+        construct=options.search_constructs,
     )
 
 
@@ -243,6 +242,7 @@ def _report_front(
     """Report the progress of the search, with the best tours found so far on demand."""
 
     def best_front(size: int) -> Front:
+        assert options.reference_point is not None
         found = best(min(size, options.size))
         return Front(
             tours=_as_reported(instance, options.start, found.tours),
@@ -250,7 +250,7 @@ def _report_front(
             found=progress.points,
             constructed=constructed,
             scale=instance.scale,
-            reference_point=_reference_point(instance, options),
+            reference_point=options.reference_point,
             terminated=None,
             timings={},
             closed=instance.closed,

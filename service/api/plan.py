@@ -115,7 +115,7 @@ class PlanRoutes:
             "/front/{id}/replan",
             operation_id="replan_front",
             response_model=FrontAnswer,
-            responses={200: CONTENT, **responses, **problem_responses(404, 410, 502)},
+            responses={200: CONTENT, **responses, **problem_responses(404, 409, 410, 502)},
             openapi_extra=_openapi_request(REPLAN_BODY),
         )(self.replan_front)
         return router
@@ -175,6 +175,7 @@ class PlanRoutes:
         Raises:
             Refusal: There is no such front, it cannot be replanned, or not as the body says.
         """
+        self._parser.check_replan(body.body)
         record = await find_record(self._store, request, front)
         if not record.finished:
             raise not_replannable(record.id, "it is still being planned")

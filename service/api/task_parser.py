@@ -14,8 +14,10 @@ from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
 from service.actor_info import ActorInfo
 from service.errors import QueueFull, Refusal
 from service.requests.limits import Limits, check_structure
+from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.task import Task, TaskSource, parse_task
+from service.requests.validation import parse_json
 
 _SHORT = 2**17  # bytes that are parsed here, in a few milliseconds
 _FEW_QUOTES = 2000  # those of 300 stops; as many faults take a few milliseconds
@@ -116,9 +118,14 @@ class TaskParser:
             return parse_task(source, self._limits, self._actors)
         return await self._in_turn(parse_task, source, length)
 
+    def check_replan(self, body: bytes) -> None:
+        """Raise a refusal where a short body is no request to replan; others are parsed later."""
+        check_structure(body, self._limits)
+        if len(body) <= _SHORT and body.count(b'"') <= _FEW_QUOTES:
+            parse_json(ReplanRequest, body)
+
     async def replan(self, source: ReplanSource) -> TaskSource:
-        """Return the rest of the way of a request to replan, with its task; errors as of parse."""
-        check_structure(source.body, self._limits)
+        """Return the rest of the way of a checked request, with its task; errors as of parse."""
         quotes = source.body.count(b'"') + source.front.source.body.count(b'"')
         if source.length <= _SHORT and quotes <= _FEW_QUOTES:
             return parse_replan(source, self._limits, self._actors)

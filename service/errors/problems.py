@@ -52,6 +52,9 @@ PROBLEMS: Mapping[str, Problem] = {
     "head-too-slow": Problem(
         408, "the head of a request must arrive within {limit:g} s, and has not", _NONE
     ),
+    "not-replannable": Problem(
+        409, "front {front} must be one that can be replanned, and is not: {reason}", _REPLAN
+    ),
     "front-expired": Problem(
         410, "front {front} was kept for a while and is no more: plan it again"
     ),
@@ -86,9 +89,6 @@ PROBLEMS: Mapping[str, Problem] = {
         422,
         "the streets of an answer must have at most {limit} {parts}: ask for fewer tours, or one",
         _ROADS,
-    ),
-    "not-replannable": Problem(
-        422, "front {front} must be one that can be replanned, and is not: {reason}", _REPLAN
     ),
     "too-different": Problem(
         422,

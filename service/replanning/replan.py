@@ -47,7 +47,7 @@ def replan(
     """
     began = time.perf_counter()
     first = _first_tours(instance, earlier)
-    wanted = _without_network(options) if len(first) else options
+    wanted = _without_constructions(options) if len(first) else options
     spent = time.perf_counter() - began
     if wanted.time_limit > 0:
         wanted = replace(wanted, time_limit=max(_LEAST_SECONDS, wanted.time_limit - spent))
@@ -78,10 +78,10 @@ def _first_tours(instance: Instance, earlier: EarlierTours) -> Tours:
     return tours[np.argsort(-kept, kind="stable")]
 
 
-def _without_network(options: PlanOptions) -> PlanOptions:
+def _without_constructions(options: PlanOptions) -> PlanOptions:
     if options.fewer and options.time_limit > 0:
-        return replace(options, angles=np.empty(0))
-    return options
+        options = replace(options, angles=np.empty(0))
+    return replace(options, search_constructs=False)
 
 
 def _keeping(

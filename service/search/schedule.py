@@ -80,12 +80,19 @@ class Search:
         seed: Of all random choices.
         reference_point: Shape (2,), positive, in the instance's units.
         capacity: The most tours that the archive holds.
+        constructions: For how many weights a tour is constructed, beside those that are added.
     """
 
     def __init__(
-        self, instance: Instance, seed: int, reference_point: Array, capacity: int = MAX_POINTS
+        self,
+        instance: Instance,
+        seed: int,
+        reference_point: Array,
+        capacity: int = MAX_POINTS,
+        constructions: int = CONSTRUCTIONS,
     ) -> None:
         self.instance = instance
+        self.constructions = constructions
         self.shifts = instance.shifts
         self.reference_point = reference_point
         self.corner = scaled_reference(instance, reference_point)
@@ -157,7 +164,7 @@ class Search:
         """
         yield from self.pool_candidates()
         for rank, k in enumerate(bisection_order(WEIGHTS)):
-            yield from self._descend(k, construct=rank < CONSTRUCTIONS)
+            yield from self._descend(k, construct=rank < self.constructions)
         for divisor in (FIRST_DIVISOR, 1):
             for k in bisection_order(WEIGHTS):
                 yield from self._iterate(k, self.n // divisor)

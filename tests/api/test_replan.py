@@ -207,7 +207,7 @@ def test_the_end_of_an_open_route_is_not_passed_while_stops_are_left(client: htt
 def test_fronts_that_cannot_be_replanned_say_why(client: httpx.Client, store: SqliteStore) -> None:
     covered = client.post("/coverage", json=COVERAGE).json()
     refusal = problem(replan(client, covered))
-    assert (refusal["status"], refusal["code"]) == (422, "not-replannable")
+    assert (refusal["status"], refusal["code"]) == (409, "not-replannable")
     assert "/coverage" in refusal["detail"]
     asyncio.run(store.put(record("imported", caller="anonymous")))
     refusal = problem(replan(client, {"id": "imported"}))

@@ -26,8 +26,8 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
     The rules: a matrix is square; its costs are not negative but on the diagonal; some actors read
     no matrices; an end is one of the cities, and of open routes; a tour visits each of them once;
     stops have ids of their own, and costs as many as they are; places are free cells of a grid; a
-    reference point is beyond some tour; a tour is chosen in one way; an idempotency key belongs to
-    one body.
+    reference point is beyond some tour; what has changed is about the stops of a front; a tour is
+    chosen in one way; an idempotency key belongs to one body.
     """
     if case.path == "/tour" and case.meta.generation.mode.is_positive:
         _choose_in_one_way(case)
@@ -35,6 +35,8 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
         case.query["geometry"] = "straight"
     if _is_key((case.headers or {}).get("Idempotency-Key")):
         case.headers["Idempotency-Key"] = uuid.uuid4().hex
+    if case.path.endswith("/replan") and case.meta.generation.mode.is_positive:
+        _change_nothing(case.body)
     _correct_body(case.body, positive=case.meta.generation.mode.is_positive)
 
 
@@ -54,6 +56,14 @@ def _correct_body(body: Any, *, positive: bool) -> None:
                 body["actor"] = "pa-one-matrix"
             _reach(body)
             _fit_to_cities(body, len(rows))
+
+
+def _change_nothing(body: Any) -> None:
+    """Leave only those members of a request to replan that hold for any front."""
+    if isinstance(body, dict):
+        of_some_front = ("done", "position", "add", "remove", "costs", "objectives", "tour")
+        for name in (*of_some_front, "actor", "reference_point"):
+            body.pop(name, None)
 
 
 def _make_coverable(body: dict[str, Any]) -> None:

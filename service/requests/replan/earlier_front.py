@@ -18,7 +18,7 @@ from service.requests.stops import Labels, Matrix, Objective, Plane, Source, Sto
 from service.requests.task import TaskSource
 
 Array = NDArray[np.float64]
-MOST_TOURS = 100  # of an earlier front, from which the search sets out
+MOST_TOURS = 50  # of an earlier front, from which the search sets out, as many as it has weights
 _NAMES = ("first", "second")  # of objectives that the front's request did not name
 _MODELS: Mapping[str, type[FrontRequest]] = {"front": FrontRequest, "replan": RestRequest}
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from service.actor import ActorInfo
+from service.actor_info import ActorInfo
 from service.instance import PLANE
 from service.requests.limits import Limits, check_amounts
 from service.requests.replan.costs import all_costs, all_stops, between
@@ -70,7 +70,7 @@ def rest_source(source: ReplanSource, limits: Limits) -> TaskSource:
     tours = place[left_of_tours(front, request, rest)]
     file = _matrices_file(sources)
     members = {
-        "stops": [asdict(stops.stops[index]) for index in rest.stops],
+        "stops": [vars(stops.stops[index]) for index in rest.stops],
         "objectives": [
             _objective(objective, each, file is not None)
             for objective, each in zip(objectives, sources, strict=True)

@@ -14,12 +14,13 @@ from service.instance import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.front import FrontRequest
 from service.requests.replan.fields import Cost
-from service.requests.schemas import NonNegativeInteger
 from service.requests.stop_fields import ObjectiveItem
 from service.requests.stops import Changed, Matrix, Source, Stop, changed_costs
 from service.requests.validation import invalid
 
-_Step = tuple[NonNegativeInteger, NonNegativeInteger, Cost]
+# Without AsInteger: these are the service's own, and a hundred thousand of them take a while.
+_Index = Annotated[int, Field(ge=0, le=2**31 - 1)]
+_Step = tuple[_Index, _Index, Cost]
 
 
 class RestObjective(ObjectiveItem):
@@ -50,7 +51,7 @@ class RestRequest(FrontRequest):
         Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
     ] = Field(default_factory=list)  # type: ignore[assignment]
     earlier_tours: Annotated[
-        list[Annotated[list[NonNegativeInteger], Field(fail_fast=True)]],
+        list[Annotated[list[_Index], Field(fail_fast=True)]],
         Field(min_length=1, fail_fast=True),
     ] = Field(description="what is left of each tour, first of the one being driven")
     min_kept: float = Field(default=0.0, ge=0, le=1, allow_inf_nan=False)
