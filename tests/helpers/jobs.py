@@ -17,9 +17,11 @@ SHORT = {"coordinates": CITIES[:12], "time_limit": 0.05}
 LATER = {"Prefer": "handling=strict, respond-async; wait=10"}
 
 
-def later(client: httpx.Client, request: dict[str, Any] = SHORT, **headers: str) -> str:
+def later(
+    client: httpx.Client, request: dict[str, Any] = SHORT, to: str = "/front", **headers: str
+) -> str:
     """The path of a front that will be found."""
-    answer = client.post("/front", json=request, headers={**LATER, **headers})
+    answer = client.post(to, json=request, headers={**LATER, **headers})
     assert (answer.status_code, answer.headers["preference-applied"]) == (202, "respond-async")
     path = answer.headers["location"]
     assert path == f"/front/{answer.json()['id']}"

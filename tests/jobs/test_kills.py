@@ -16,6 +16,7 @@ from tests.helpers.serving import problem
 
 # Long enough for a report on the fastest machine.
 REQUEST = {"coordinates": CITIES[:100], "time_limit": 0.8}
+CHANGES = {"done": [1, 2], "time_limit": 0.8}
 CALLERS = 3
 
 
@@ -28,16 +29,33 @@ def test_ten_kills_under_load_lose_nothing(kind: str, request: pytest.FixtureReq
         ThreadPoolExecutor(CALLERS) as callers,
     ):
         served.client.timeout = 300  # As each process that follows one takes seconds to load.
+        front = served.client.post("/front", json=REQUEST).json()
+        rest = f"/front/{front['id']}/replan"
         asking = [callers.submit(ask, served.client, over) for _ in range(CALLERS)]
-        paths = [later(served.client, REQUEST) for _ in range(6)]
+        paths = [later(served.client, REQUEST) for _ in range(3)]
+        rests = [later(served.client, CHANGES, rest) for _ in range(3)]
         try:
             kill_ten(served)
         finally:
             over.set()
         for path in paths:
             check_ended(ended(served.client, path))
+        for path in rests:
+            check_rest(ended(served.client, path))
+        assert served.client.get(f"/front/{front['id']}").json() == front
         for answer in [answer for asked in asking for answer in asked.result()]:
             check_answered(answer)
+
+
+def check_rest(found: dict[str, Any]) -> None:
+    """With a front of the rest of the way, or lost with its worker."""
+    if found["status"] != "done":
+        assert (found["status"], found["problem"]["code"]) == ("failed", "worker-lost")
+        return
+    left = {str(city) for city in range(100)} - {"1"}
+    for tour in found["front"]:
+        assert (tour["stops"][0], tour["stops"][-1]) == ("2", "0")
+        assert set(tour["stops"]) == left
 
 
 def ask(client: httpx.Client, over: Event) -> list[httpx.Response]:
