@@ -17,6 +17,7 @@ from service.search.improve import Progress
 
 _LEAST_SECONDS = 1e-3  # that are left for the search when the earlier tours took all of its time
 _ROUNDING = 1e-9  # of a share
+_MOST_CELLS = 2**22  # of all tours among which those that keep enough are looked for
 
 
 def replan(
@@ -52,7 +53,7 @@ def replan(
     if wanted.time_limit > 0:
         wanted = replace(wanted, time_limit=max(_LEAST_SECONDS, wanted.time_limit - spent))
     if earlier.min_kept > 0:
-        wanted = replace(wanted, size=2**31)
+        wanted = replace(wanted, size=max(options.size, _MOST_CELLS // instance.n))
 
     def report_kept(progress: Progress, best: Callable[[int], Front]) -> None:
         report(progress, lambda size: _with_kept(instance, best(size), earlier))

@@ -232,6 +232,9 @@ def test_only_tours_that_keep_enough_are_returned(
     front = client.post("/front", json=SHORT).json()
     rest = replan(client, front, done=[3], min_kept=0.7).json()
     assert min(tour["kept"] for tour in rest["front"]) >= 0.7
+    # Wherever a stop is added, a leg is lost.
+    refusal = problem(replan(client, front, add=[NEW], min_kept=1.0))
+    assert (refusal["status"], refusal["code"]) == (422, "too-different")
 
 
 def test_fronts_of_every_form_are_replanned(client: httpx.Client) -> None:

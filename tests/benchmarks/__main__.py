@@ -24,6 +24,7 @@ _NAMES = (
     "networks",
     "open_routes",
     "page",
+    "replan",
     "roads",
     "search",
     "shapes",

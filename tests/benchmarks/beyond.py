@@ -1,4 +1,7 @@
-"""What the paper has not: other shapes, the networks of the literature, thousands of cities."""
+"""What the paper has not: other shapes, networks of the literature, many cities, replanning."""
+
+from statistics import median
+from typing import Any
 
 from tests.benchmarks import printed
 from tests.benchmarks.cells import of, share_in_seconds
@@ -7,8 +10,8 @@ from tests.benchmarks.provenance import load
 
 
 def section() -> str:
-    """What is stored of all three."""
-    return f"{_shapes()}\n{_literature()}\n{_large()}"
+    """What is stored of all of these."""
+    return f"{_shapes()}\n{_literature()}\n{_large()}{_replan()}"
 
 
 def _shapes() -> str:
@@ -57,3 +60,31 @@ def _large() -> str:
         "process of its own.\n\n"
         f"{table(['', 'seconds', 'memory at its highest, MB'], rows)}"
     )
+
+
+def _replan() -> str:
+    """A row for each kind of instance; nothing before the first run."""
+    stored = load("replan")
+    if not stored:
+        return ""
+    columns = list(next(iter(stored.values()))["instances"][0])
+    rows = [
+        [f"{key} ({len(of(entry))})", *(_median(entry, column) for column in columns)]
+        for key, entry in stored.items()
+    ]
+    busy = max(entry["busy"] for entry in stored.values())
+    return (
+        "\n## Replanning\n\nNot in the paper: `python -m tests.benchmarks replan`. Hypervolume in "
+        "the box of what 5 s from nothing\nreach, in per cent of theirs; seconds of the answer; "
+        "the share of legs kept: medians over the instances,\nwhose number is in brackets. At "
+        f"most {busy:g} programs wanted each processor.\n\n{table(['', *columns], rows)}"
+    )
+
+
+def _median(entry: dict[str, Any], column: str) -> str:
+    cells = [instance[column] for instance in of(entry)]
+    share, seconds = (median(cell[name] for cell in cells) for name in ("share", "seconds"))
+    text = f"{100 * share:.2f} in {seconds:.3f} s"
+    if "kept" not in cells[0]:
+        return text
+    return f"{text}, {100 * median(cell['kept'] for cell in cells):.0f} % kept"
