@@ -120,9 +120,7 @@ def create_app(
         docs_url=None,
         redoc_url=None,
     )
-    plans = PlanRoutes(
-        actors, engine, store, limits, edge.bodies, edge.request_seconds, answers
-    )
+    plans = PlanRoutes(actors, engine, store, limits, edge.bodies, edge.request_seconds, answers)
     app.include_router(plans.router(), **edge.guard)
     app.include_router(StoredFrontRoutes(store, engine, answers).router(), **edge.guard)
     app.include_router(_actor_router(actors), **edge.guard)

@@ -74,7 +74,7 @@ class PlanRoutes:
     best front so far because its `seconds` were over.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913  what the routes are made of
         self,
         actors: Mapping[str, ActorInfo],
         engine: Engine,

@@ -102,3 +102,4 @@ class ReplanRequest(PlanOptions, total=False):
     objectives: Sequence[ObjectiveRequest]
     tour: Sequence[int | str]
     min_kept: float
+    geometry: Literal["straight", "roads"]

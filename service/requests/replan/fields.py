@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from service.instance import OBJECTIVES
-from service.requests.schemas import LARGEST, PlanePoint, PlanFields, Text
+from service.requests.schemas import GEOMETRY, LARGEST, Geometry, PlanePoint, PlanFields, Text
 from service.requests.stop_fields import Latitude, Longitude, ObjectiveItem, StopReference
 
 Cost = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
@@ -111,6 +111,7 @@ class ReplanRequest(PlanFields):
         description="the tour that is being driven, with all stops of the front; by default the"
         " front's knee",
     )
+    geometry: Geometry = Field(default="straight", description=GEOMETRY)
     min_kept: float = Field(
         default=0.0,
         ge=0,

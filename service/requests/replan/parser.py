@@ -21,6 +21,8 @@ from service.requests.stops import Changed, Matrix, Measured, Objective, Plane, 
 from service.requests.task import TaskSource, parse_task
 from service.requests.validation import parse_json, too_many_cities
 
+_OPTIONS = {*PlanFields.model_fields, "geometry"}
+
 
 @dataclass(frozen=True, eq=False)
 class ReplanSource:
@@ -78,7 +80,7 @@ def rest_source(source: ReplanSource, limits: Limits) -> TaskSource:
         **_ends(rest, place),
         "earlier_tours": tours.tolist(),
         "min_kept": request.min_kept,
-        **request.model_dump(include=set(PlanFields.model_fields) & request.model_fields_set),
+        **request.model_dump(include=_OPTIONS & request.model_fields_set),
     }
     return TaskSource("replan", to_json(members), file)
 

@@ -18,6 +18,8 @@ def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str,
     schema = limited_schema(ReplanRequest, limits, actors)
     parts = schema.pop("$defs")
     fields = schema["properties"]
+    if not limits.roads:
+        fields["geometry"]["enum"].remove("roads")
     kinds = [{"$ref": f"#/components/schemas/{name}"} for name in _OBJECTIVES]
     fields["objectives"] = {**fields["objectives"], "items": {"oneOf": kinds}}
     for name in ("done", "remove", "tour", "add"):
