@@ -1,5 +1,6 @@
 """Lines along the streets over HTTP: as the engine tells them, or refused for a reason."""
 
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
@@ -128,6 +129,19 @@ def test_an_engine_that_fails_is_a_clear_problem(
     # What needs no engine is answered all the same.
     assert client.get(path, headers=ACCEPT).status_code == 200
     assert client.get("/health/ready").status_code == 200
+
+
+def test_nothing_more_is_asked_for_a_caller_who_has_gone(
+    client: httpx.Client, engine: FakeOsrm, misbehave: Callable[[Misbehaviour], None]
+) -> None:
+    planned = client.post("/front", json=_request()).json()["id"]
+    misbehave(sleeping(0.4))
+    before = len(engine.asked)
+    with pytest.raises(httpx.ReadTimeout):
+        client.get(f"/front/{planned}", params=ROADS, headers=ACCEPT, timeout=0.2)
+    time.sleep(0.8)
+    # The streets would have been asked for after the nearest roads.
+    assert len(engine.asked) <= before + 1
 
 
 def test_streets_that_are_not_there_are_named(client: httpx.Client) -> None:
