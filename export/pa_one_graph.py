@@ -4,18 +4,25 @@ A block has as many preferences as there is room for their costs. It begins with
 cities; further rounds work on the ends that are still open, of which there are fewer each time. A
 loop goes along the links of the finished tours. When all tours are there, a last loop repairs
 them. The functions of the domain `paretour` are the parts that `export.pa_one` puts in.
+
+There is one text for coordinates and for matrices. Where costs have directions, the tables of
+costs and the fragments have a tensor of leans more, and there are prices, of which a block takes
+its rows.
 """
 
-GRAPH = """
-<ir_version: 10, opset_import: ["": %(opset)d, "paretour": 1]>
-actor (float[n, 4] cities, float[k, 2] preferences, int64 repairs)
+from string import Template
+from typing import NamedTuple
+
+_GRAPH = Template("""
+<ir_version: 10, opset_import: ["": $opset, "paretour": 1]>
+actor ($instance $given, float[k, 2] preferences, int64 repairs)
     => (int64[k, n] tours, int64[k, n] visited)
 {
     zero = Constant <value_ints = [0]> ()
     one = Constant <value_ints = [1]> ()
     two = Constant <value_ints = [2]> ()
-    room = Constant <value_ints = [%(room)d]> ()
-    n = Shape <start = 0, end = 1> (cities)
+    room = Constant <value_ints = [$room]> ()
+    n = Shape <$cities_axis> ($given)
     k = Shape <start = 0, end = 1> (preferences)
     cities_in_all = Squeeze (n)
     steps_in_all = Sub (n, two)
@@ -30,9 +37,9 @@ actor (float[n, 4] cities, float[k, 2] preferences, int64 repairs)
     blocks = Squeeze (blocks_in_all)
     shape_of_nothing = Concat <axis = 0> (zero, n)
     nothing = ConstantOfShape <value = int64[1] {0}> (shape_of_nothing)
-    distances, weights = paretour.Prepare (cities, preferences)
+    $problem = paretour.Prepare ($given, preferences)
 
-    least_of_nothing = CastLike (nothing, distances)
+    least_of_nothing = CastLike (nothing, weights)
     built, least = Loop (blocks, , nothing, least_of_nothing) <body = add_block
         (int64 block, bool before, int64[done, n] so_far, float[done, n] least_so_far)
         => (bool after, int64[grown, n] longer, float[grown, n] least_longer)
@@ -40,27 +47,18 @@ actor (float[n, 4] cities, float[k, 2] preferences, int64 repairs)
             after = Identity (before)
             first_row = Mul (block, size)
             beyond_row = Add (first_row, size)
-            rows = Slice (weights, first_row, beyond_row, zero)
-            costs, least_edges, ends, partners, open, links, left, kept, unfinished =
-                paretour.Begin (distances, rows)
+            $rows_of_block
+            $costs, least_edges, $begun, unfinished = paretour.Begin ($problem_of_block)
 
-            last_ends, last_partners, last_open, last_links, last_left, last_kept = Loop
-                (cities_in_all, unfinished, ends, partners, open, links, left, kept) <body = join
-                (int64 round, bool going_on, int64[r, e] all_ends, int64[r, e] all_partners,
-                 bool[r, e] all_open, int64[r, l] links_in, int64[r] left_in, int64[1] kept_in)
-                => (bool go_on, int64[r, f] ends_out, int64[r, f] partners_out,
-                    bool[r, f] open_out, int64[r, l] links_out, int64[r] left_out,
-                    int64[1] kept_out)
+            $last = Loop (cities_in_all, unfinished, $begun) <body = join
+                (int64 round, bool going_on, $given_to_join)
+                => (bool go_on, $joined)
                 {
-                    ends_in = Slice (all_ends, zero, kept_in, one)
-                    partners_in = Slice (all_partners, zero, kept_in, one)
-                    open_in = Slice (all_open, zero, kept_in, one)
-                    ends_out, partners_out, open_out, links_out, left_out, kept_out, go_on =
-                        paretour.Round (costs, ends_in, partners_in, open_in, links_in, left_in)
+                    $slices
+                    $names_joined, go_on = paretour.Round ($costs, $sliced)
                 }>
 
-            first, second = paretour.Start
-                (last_ends, last_partners, last_open, last_links, last_left)
+            first, second = paretour.Start ($finished)
             last_before, last_now, others = Loop (steps, , first, second) <body = walk
                 (int64 step, bool walking_on, int64[r] city_before, int64[r] city_now)
                 => (bool walk_on, int64[r] new_before, int64[r] new_now, int64[r] visited)
@@ -78,10 +76,10 @@ actor (float[n, 4] cities, float[k, 2] preferences, int64 repairs)
             least_longer = Concat <axis = 0> (least_so_far, least_edges)
         }>
 
-    most_cut = Constant <value_ints = [%(cities_cut)d]> ()
+    most_cut = Constant <value_ints = [$cities_cut]> ()
     to_cut = Min (most_cut, n)
     count = ConstantOfShape (to_cut)
-    built_points, built_freshness = paretour.Unrepaired (distances, built)
+    built_points, built_freshness = paretour.Unrepaired ($tables, built)
     tours, points, visited, visited_points, freshness = Loop
         (repairs, , built, built_points, built, built_points, built_freshness) <body = repair
         (int64 number, bool repairing, int64[k, n] tours_in, float[k, 2] points_in,
@@ -90,35 +88,126 @@ actor (float[n, 4] cities, float[k, 2] preferences, int64 repairs)
             int64[k, n] visited_out, float[k, 2] visited_points_out, float[k, n] freshness_out)
         {
             repair_on = Identity (repairing)
-            cut_cities, turned, places, gaps, between, cut_ends, cut_partners, cut_open,
-                cut_links, cut_left, cut_kept, is_cut = paretour.Cut
-                (distances, weights, least, tours_in, freshness_in, count)
-            new_ends, new_partners, new_open, new_links, new_left, new_kept = Loop
-                (cities_in_all, is_cut, cut_ends, cut_partners, cut_open, cut_links, cut_left,
-                 cut_kept) <body = rejoin
-                (int64 round, bool parted, int64[r, e] some_ends, int64[r, e] some_partners,
-                 bool[r, e] some_open, int64[r, l] some_links, int64[r] some_left,
-                 int64[1] some_kept)
-                => (bool apart, int64[r, f] joined_ends, int64[r, f] joined_partners,
-                    bool[r, f] joined_open, int64[r, l] joined_links, int64[r] joined_left,
-                    int64[1] joined_kept)
+            cut_cities, turned, places, gaps, $between, $cut, is_cut = paretour.Cut
+                ($problem, least, tours_in, freshness_in, count)
+            $new = Loop (cities_in_all, is_cut, $cut) <body = rejoin
+                (int64 round, bool parted, $given_to_rejoin)
+                => (bool apart, $rejoined)
                 {
-                    open_ends = Slice (some_ends, zero, some_kept, one)
-                    open_partners = Slice (some_partners, zero, some_kept, one)
-                    open_open = Slice (some_open, zero, some_kept, one)
-                    joined_ends, joined_partners, joined_open, joined_links, joined_left,
-                        joined_kept, apart = paretour.Rejoin (between, open_ends, open_partners,
-                        open_open, some_links, some_left)
+                    $slices_rejoined
+                    $names_rejoined, apart = paretour.Rejoin ($between, $sliced_rejoined)
                 }>
             tours_out, points_out, visited_out, visited_points_out, freshness_out = paretour.Keep
-                (distances, weights, tours_in, points_in, visited_in, visited_points_in,
-                 freshness_in, cut_cities, turned, places, gaps, between, new_ends, new_partners,
-                 new_open, new_links, new_left)
+                ($tables, weights, tours_in, points_in, visited_in, visited_points_in,
+                 freshness_in, cut_cities, turned, places, gaps, $between, $new_fragments)
         }>
 }
-"""
+""")
 
-FRAGMENTS = ("ends", "partners", "open", "links", "left")
-AFTER_ROUND = tuple(f"new_{name}" for name in (*FRAGMENTS, "kept", "go_on"))
 CUTS = ("turned", "places", "gaps")
 STATE = ("tours", "points", "visited", "visited_points", "freshness")
+_TYPES = {
+    "ends": "int64[r, {e}]",
+    "partners": "int64[r, {e}]",
+    "open": "bool[r, {e}]",
+    "links": "int64[r, l]",
+    "left": "int64[r]",
+    "leans": "float[r, {e}]",
+    "kept": "int64[1]",
+}
+_BY_END = ("ends", "partners", "open", "leans")  # of which those that are kept are sliced off
+
+
+class Names(NamedTuple):
+    """The names of what parts pass on, for coordinates or for matrices."""
+
+    instance: str
+    tables: tuple[str, ...]
+    prices: tuple[str, ...]
+    costs: tuple[str, ...]
+    fragments: tuple[str, ...]
+
+    @property
+    def problem(self) -> tuple[str, ...]:
+        """What is found first: the tables, the weights of each row, its prices."""
+        return *self.tables, "weights", *self.prices
+
+    @property
+    def finished(self) -> tuple[str, ...]:
+        """What is needed to begin the tours: fragments, and costs where these have directions."""
+        return *(self.costs if self.prices else ()), *self.fragments
+
+    @property
+    def after_round(self) -> list[str]:
+        """The fragments, how many ends to keep, and whether more are to be joined."""
+        return [f"new_{name}" for name in (*self.fragments, "kept", "go_on")]
+
+
+_FRAGMENTS = ("ends", "partners", "open", "links", "left")
+COORDINATES = Names("cities", ("distances",), (), ("costs",), _FRAGMENTS)
+MATRICES = Names(
+    "matrices",
+    ("means", "mean_leans"),
+    ("fees", "tilts"),
+    ("costs", "cost_leans"),
+    (*_FRAGMENTS, "leans"),
+)
+
+
+def graph(names: Names, opset: int, room: int, cities_cut: int) -> str:
+    """Return the text of the graph; room is for costs of a block, in entries of one table."""
+    kept = (*names.fragments, "kept")
+    by_row = ("weights", *names.prices)
+    is_matrices = names is MATRICES
+    return _GRAPH.substitute(
+        opset=opset,
+        room=room,
+        cities_cut=cities_cut,
+        given=names.instance,
+        instance="float[2, n, n]" if is_matrices else "float[n, 4]",
+        cities_axis="start = 1, end = 2" if is_matrices else "start = 0, end = 1",
+        problem=_listed(names.problem),
+        tables=_listed(names.tables),
+        rows_of_block="\n".join(
+            f"block_{name} = Slice ({name}, first_row, beyond_row, zero)" for name in by_row
+        ),
+        problem_of_block=_listed((*names.tables, *(f"block_{name}" for name in by_row))),
+        costs=_listed(names.costs),
+        begun=_listed(kept),
+        last=_listed(kept, "last_"),
+        finished=", ".join(
+            name if name in names.costs else f"last_{name}" for name in names.finished
+        ),
+        given_to_join=_typed(kept, "all_", "e"),
+        joined=_typed(kept, "out_", "f"),
+        slices=_slices(names.fragments, "all_", "in_"),
+        sliced=_listed(names.fragments, "in_"),
+        names_joined=_listed(kept, "out_"),
+        between=_listed(names.costs, "between_"),
+        cut=_listed(kept, "cut_"),
+        new=_listed(kept, "new_"),
+        new_fragments=_listed(names.fragments, "new_"),
+        given_to_rejoin=_typed(kept, "some_", "e"),
+        rejoined=_typed(kept, "joined_", "f"),
+        slices_rejoined=_slices(names.fragments, "some_", "apart_"),
+        sliced_rejoined=_listed(names.fragments, "apart_"),
+        names_rejoined=_listed(kept, "joined_"),
+    )
+
+
+def _listed(names: tuple[str, ...], prefix: str = "") -> str:
+    return ", ".join(prefix + name for name in names)
+
+
+def _typed(names: tuple[str, ...], prefix: str, ends: str) -> str:
+    return ", ".join(f"{_TYPES[name].format(e=ends)} {prefix}{name}" for name in names)
+
+
+def _slices(names: tuple[str, ...], all_: str, prefix: str) -> str:
+    """Return lines that slice off the ends that are kept, and pass on what is not by end."""
+    return "\n".join(
+        f"{prefix}{name} = Slice ({all_}{name}, zero, {all_}kept, one)"
+        if name in _BY_END
+        else f"{prefix}{name} = Identity ({all_}{name})"
+        for name in names
+    )

@@ -4,26 +4,28 @@ import torch
 from torch import Tensor, nn
 
 from export.onnx_parts import Part
-from export.pa_one_graph import AFTER_ROUND, CUTS, FRAGMENTS, STATE
-from models.networks.candidates import cheapest_candidates
+from export.pa_one_graph import CUTS, STATE, Names
+from models.networks.candidates import Costs, Prices, cheapest_candidates
 from models.networks.fragments import Fragments, cleared
 from models.networks.pa_one import OneActor
 from models.networks.repairs import Cuts, cut, laid_out, last_two_joined, repair_problem
 from models.rollout_repairs import (
-    JOININGS,
+    Problem,
     RepairState,
     cities_to_cut,
     state_after_repair,
     unrepaired,
 )
 
+_WITHOUT_DIRECTIONS = 2  # tensors that a problem is given by: of costs, and of weights
+
 
 class Unrepaired(nn.Module):
     """The state before the first repair, without the tours themselves."""
 
-    def forward(self, distances: Tensor, tours: Tensor) -> tuple[Tensor, Tensor]:
+    def forward(self, tables: tuple[Tensor, ...], tours: Tensor) -> tuple[Tensor, Tensor]:
         """Return the points of tours and the freshness of their cities."""
-        state = unrepaired(distances, tours)
+        state = unrepaired(Costs(*tables), tours)
         return state.points, state.freshness
 
 
@@ -32,8 +34,7 @@ class Cut(nn.Module):
 
     def forward(
         self,
-        distances: Tensor,
-        rows: Tensor,
+        given: tuple[Tensor, ...],
         least: Tensor,
         tours: Tensor,
         freshness: Tensor,
@@ -43,10 +44,11 @@ class Cut(nn.Module):
 
         There are as many cities as the count has entries.
         """
-        cities = cities_to_cut(distances, rows, least, tours, freshness, count.shape[0])
+        costs, rows, prices = problem = as_problem(given)
+        cities = cities_to_cut(problem, least, tours, freshness, count.shape[0])
         cuts = cut(tours, cities)
-        costs, fragments = repair_problem(distances, rows, cuts)
-        return cities, *cuts, costs, *_left(fragments)
+        between, fragments = repair_problem(costs, rows, cuts, prices)
+        return cities, *cuts, *present(between), *_left(fragments)
 
 
 class Rejoin(nn.Module):
@@ -56,11 +58,11 @@ class Rejoin(nn.Module):
         super().__init__()
         self.actor = actor
 
-    def forward(self, costs: Tensor, given: tuple[Tensor, ...]) -> tuple[Tensor, ...]:
+    def forward(self, tables: tuple[Tensor, ...], given: tuple[Tensor, ...]) -> tuple[Tensor, ...]:
         """Return the fragments, how many ends to keep, and whether to go on."""
-        fragments = Fragments(*given)
+        costs, fragments = Costs(*tables), Fragments(*given)
         candidates = cheapest_candidates(costs, fragments)
-        return _left(self.actor.round(costs, fragments, candidates, JOININGS))
+        return _left(self.actor.round(costs, fragments, candidates, self.actor.repair_joinings))
 
 
 class Keep(nn.Module):
@@ -68,55 +70,74 @@ class Keep(nn.Module):
 
     def forward(
         self,
-        distances: Tensor,
+        tables: tuple[Tensor, ...],
         rows: Tensor,
         state: tuple[Tensor, ...],
         cuts: tuple[Tensor, Tensor, Tensor, Tensor],
-        costs: Tensor,
+        between: tuple[Tensor, ...],
         joined: tuple[Tensor, ...],
     ) -> tuple[Tensor, ...]:
         """Return the state after this repair; the cut cities come before the cuts."""
-        tours = laid_out(Cuts(*cuts[1:]), last_two_joined(costs, Fragments(*joined)))
-        return state_after_repair(distances, rows, RepairState(*state), cuts[0], tours)
+        whole = last_two_joined(Costs(*between), Fragments(*joined))
+        tours = laid_out(Cuts(*cuts[1:]), whole)
+        return state_after_repair(Costs(*tables), rows, RepairState(*state), cuts[0], tours)
 
 
 def _left(fragments: Fragments) -> tuple[Tensor, ...]:
     """Return the cleared fragments, how many ends to keep, and whether more are to be joined."""
     after, kept = cleared(fragments)
-    return *after, kept[None], (after.left > 2).any()
+    return *present(after), kept[None], (after.left > 2).any()
+
+
+def present(tensors: Costs | Fragments) -> tuple[Tensor, ...]:
+    """Return those tensors of a kind that there are."""
+    return tuple(tensor for tensor in tensors if tensor is not None)
+
+
+def as_problem(given: tuple[Tensor, ...]) -> Problem:
+    """Return the costs in each objective, the weights of each row and its prices, if there are."""
+    if len(given) == _WITHOUT_DIRECTIONS:
+        distances, rows = given
+        return Costs(distances), rows, None
+    means, leans, rows, fees, tilts = given
+    return Costs(means, leans), rows, Prices(fees, tilts)
 
 
 def repair_parts(
-    distances: Tensor, rows: Tensor, cut_cities: int, open_ends: int
+    names: Names, given: tuple[Tensor, ...], cut_cities: int, open_ends: int
 ) -> dict[str, Part]:
     """Return the parts without weights of the network, by name, to be traced at these sizes."""
-    r, n = len(rows), distances.shape[1]
+    costs, rows, prices = as_problem(given)
+    tables = present(costs)
+    r, n = len(rows), costs.means.shape[1]
     tours = torch.arange(n).repeat(r, 1)
     points, freshness = torch.rand(r, 2), torch.rand(r, n)
     # All different tensors: one that is given twice would be one input.
     state = (tours, points, tours.clone(), points.clone(), freshness)
     least, cities = torch.rand(r, n), torch.arange(cut_cities).repeat(r, 1)
     cuts = cut(tours, cities)
-    costs, fragments = repair_problem(distances, rows, cuts)
+    between, fragments = repair_problem(costs, rows, cuts, prices)
     joined = first_ends(fragments, open_ends)
-    given = ["distances", "rows"]
     return {
         "Unrepaired": (
             Unrepaired(),
-            (distances, tours),
-            ["distances", "tours"],
+            (tables, tours),
+            [*names.tables, "tours"],
             ["points", "freshness"],
         ),
         "Cut": (
             Cut(),
-            (distances, rows, least, tours, freshness, torch.zeros(cut_cities)),
-            [*given, "least", "tours", "freshness", "count"],
-            ["cities", *CUTS, "costs", *AFTER_ROUND],
+            (given, least, tours, freshness, torch.zeros(cut_cities)),
+            [*names.problem, "least", "tours", "freshness", "count"],
+            ["cities", *CUTS, *names.costs, *names.after_round],
         ),
         "Keep": (
             Keep(),
-            (distances, rows, state, (cities, *cuts), costs, tuple(joined)),
-            [*given, *STATE, "cities", *CUTS, "costs", *FRAGMENTS],
+            (tables, rows, state, (cities, *cuts), present(between), present(joined)),
+            [
+                *(*names.tables, "weights", *STATE, "cities", *CUTS),
+                *(*names.costs, *names.fragments),
+            ],
             [f"new_{name}" for name in STATE],
         ),
     }
@@ -125,4 +146,6 @@ def repair_parts(
 def first_ends(fragments: Fragments, count: int) -> Fragments:
     """Return fragments with that many ends, to trace with, of fragments with more."""
     ends, partners, open_ = (part[:, :count].contiguous() for part in fragments[:3])
-    return Fragments(ends, partners.clamp(max=count - 1), open_, *fragments[3:])
+    leans = None if fragments.leans is None else fragments.leans[:, :count].contiguous()
+    partners = partners.clamp(max=count - 1)
+    return Fragments(ends, partners, open_, fragments.links, fragments.left, leans)

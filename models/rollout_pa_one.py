@@ -7,96 +7,81 @@ from jaxtyping import Bool, Float, Int
 from torch import Generator, Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits
 
-from models.data.preferences import weights
 from models.networks.candidates import (
     Candidates,
+    Costs,
     cheapest_candidates,
-    padded_distances,
+    joined_at_cost,
     single_cities,
-    weighted_costs,
+    toured,
 )
-from models.networks.fragments import NEVER, Fragments, joined, mutual_best, possible, walked
+from models.networks.fragments import NEVER, Fragments, mutual_best, possible
 
-JOININGS = 2  # of fragments, for one evaluation of the network
+_JOININGS = 2  # of fragments of an expert's tour, for one evaluation of the network
 _TEMPERATURE = 0.5  # of the distribution that is drawn from, against log-odds
 
-# From costs (r, n, m), fragments and candidates to the log-odds of each edge, (r, e, c).
-EdgeLogits = Callable[[Tensor, Fragments, Candidates], Tensor]
+# From costs, fragments and candidates to the log-odds of each edge, (r, e, c).
+EdgeLogits = Callable[[Costs, Fragments, Candidates], Tensor]
 
 
 def sampled_tours(
-    edge_logits: EdgeLogits,
-    instances: Float[Tensor, "b n 4"],
-    preferences: Float[Tensor, "k 2"],
-    times: int,
-    generator: Generator,
-) -> tuple[Int[Tensor, "b kt n"], Float[Tensor, "b kt"]]:
-    """Draw tours as often for each preference in turn, and return their log-likelihoods.
+    edge_logits: EdgeLogits, costs: Costs, joinings: int, generator: Generator
+) -> tuple[Int[Tensor, "r n"], Float[Tensor, " r"]]:
+    """Draw a tour for each row of costs, and return their log-likelihoods.
+
+    There are so many joinings for one evaluation of the network.
 
     The logits of each edge are moved by chance (Gumbel's distribution, so that the best of several
     is drawn from their softmax). The log-likelihood takes each fragment's choice among its own
     edges for a draw of its own, which it is but for edges that two fragments share.
     """
-    costs = _costs(instances, preferences).repeat_interleave(times, dim=0)
     fragments = single_cities(costs)
-    likelihoods = costs.new_zeros(len(costs))
+    likelihoods = torch.zeros_like(costs.means[:, 0, 0])
     while bool((fragments.left > 1).any()):
         candidates = cheapest_candidates(costs, fragments)
         positions = candidates.positions
         logits = edge_logits(costs, fragments, candidates) / _TEMPERATURE
         noisy = logits.detach() + _noise(positions, generator)
-        for _ in range(JOININGS):
+        for _ in range(joinings):
             allowed = possible(fragments, positions)
             noisy = torch.where(allowed, noisy, -NEVER)
             logits = torch.where(allowed, logits, -NEVER)
             mates = mutual_best(fragments, positions, noisy)
             likelihoods = likelihoods + _log_likelihoods(fragments, positions, logits, mates)
-            fragments = joined(fragments, mates)
+            fragments = joined_at_cost(costs, fragments, mates)
         fragments = fragments.trimmed()
-    by_instance = (len(instances), -1)
-    return walked(fragments).unflatten(0, by_instance), likelihoods.unflatten(0, by_instance)
+    return toured(costs, fragments), likelihoods
 
 
 def imitation_loss(
-    edge_logits: EdgeLogits,
-    instances: Float[Tensor, "b n 4"],
-    preferences: Float[Tensor, "k 2"],
-    tours: Int[Tensor, "b k n"],
+    edge_logits: EdgeLogits, costs: Costs, tours: Int[Tensor, "r n"]
 ) -> Float[Tensor, ""]:
     """Return the binary cross-entropy of each edge to a candidate, summed, for each end.
 
-    There is one tour for each instance and preference. Of the edges that the expert's tours have,
+    There is one tour for each row of costs. Of the edges that the expert's tours have,
     those with the highest logits are taken, until the tours are whole or no candidates are left
     among them.
     """
-    costs = _costs(instances, preferences)
-    by_row = tours.flatten(0, 1)
     fragments = single_cities(costs)
-    loss, ends = costs.new_zeros(()), costs.new_zeros(())
+    loss, ends = costs.means.new_zeros(()), costs.means.new_zeros(())
     while bool((fragments.left > 2).any()):
         candidates = cheapest_candidates(costs, fragments)
         positions, real = candidates.positions, candidates.real
         logits = edge_logits(costs, fragments, candidates)
-        expected = _in_tours(by_row, fragments.ends, positions) & real
+        expected = _in_tours(tours, fragments.ends, positions) & real
         entropies = binary_cross_entropy_with_logits(logits, expected.float(), reduction="none")
         loss = loss + torch.where(real, entropies, 0.0).sum()
         ends = ends + fragments.open.sum()
         allowed = torch.where(expected, logits.detach(), -NEVER)
         before = fragments.left.sum()
-        for _ in range(JOININGS):
+        for _ in range(_JOININGS):
             allowed = torch.where(possible(fragments, positions), allowed, -NEVER)
-            fragments = joined(fragments, mutual_best(fragments, positions, allowed))
+            mates = mutual_best(fragments, positions, allowed)
+            fragments = joined_at_cost(costs, fragments, mates)
         if bool(fragments.left.sum() == before):
             break
         fragments = fragments.trimmed()
     return loss / ends
-
-
-def _costs(
-    instances: Float[Tensor, "b n 4"], preferences: Float[Tensor, "k 2"]
-) -> Float[Tensor, "r n m"]:
-    rows = weights(preferences)
-    return torch.cat([weighted_costs(padded_distances(cities), rows) for cities in instances])
 
 
 def _noise(positions: Int[Tensor, "r e c"], generator: Generator) -> Float[Tensor, "r e c"]:

@@ -10,21 +10,33 @@ from typing import NamedTuple
 
 import torch
 from jaxtyping import Bool, Float, Int
-from torch import Tensor
+from torch import Tensor, nn
 
 from models.data.preferences import turned_outwards, weights
 from models.networks.candidates import (
+    CANDIDATES,
     Candidates,
+    Costs,
+    Prices,
     cheapest_candidates,
     first_candidates,
-    padded_distances,
     weighted_costs,
 )
+from models.networks.fragments import NEVER
 from models.networks.pa_one import OneActor
-from models.networks.repairs import cut, laid_out, last_two_joined, repair_problem, weighted_sums
+from models.networks.repairs import (
+    along,
+    cut,
+    laid_out,
+    last_two_joined,
+    repair_problem,
+    weighted_sums,
+)
+
+# The costs in each objective, the weights of each row, and its prices, if there are any.
+Problem = tuple[Costs, Tensor, Prices | None]
 
 CITIES = 8  # that a repair cuts out of a tour
-JOININGS = 4  # for one evaluation of the network: two evaluations do for nearly every repair
 _AFTER_A_CUT = 0.6  # of a city's freshness
 _ROUNDING = 2e-6  # of a length: what sums of float32 may be wrong by
 
@@ -46,7 +58,7 @@ class RepairState(NamedTuple):
 @torch.no_grad()
 def repaired_tours(
     actor: OneActor,
-    instances: Float[Tensor, "b n 4"],
+    instances: Tensor,
     preferences: Float[Tensor, "k 2"],
     repairs: int,
 ) -> tuple[Int[Tensor, "b k n"], Int[Tensor, "b k n"]]:
@@ -54,8 +66,8 @@ def repaired_tours(
     rows = weights(turned_outwards(preferences))
     built = actor.tours(instances, preferences)
     states = [
-        _repaired(actor, padded_distances(cities), rows, tours, repairs)
-        for cities, tours in zip(instances, built, strict=True)
+        _repaired(actor, actor.costs(instance), rows, tours, repairs)
+        for instance, tours in zip(instances, built, strict=True)
     ]
     tours = torch.stack([state.tours for state in states])
     return tours, torch.stack([state.visited for state in states])
@@ -63,24 +75,25 @@ def repaired_tours(
 
 def _repaired(
     actor: OneActor,
-    distances: Float[Tensor, "2 n w"],
+    costs: Costs,
     rows: Float[Tensor, "r 2"],
     tours: Int[Tensor, "r n"],
     repairs: int,
 ) -> RepairState:
-    least = least_costs(first_candidates(weighted_costs(distances, rows)))
+    prices = actor.prices(costs, rows)
+    least = least_costs(first_candidates(weighted_costs(costs, rows, prices)))
     count = min(CITIES, tours.shape[1])
-    state = unrepaired(distances, tours)
+    state = unrepaired(costs, tours)
     for _ in range(repairs):
-        cities = cities_to_cut(distances, rows, least, state.tours, state.freshness, count)
+        cities = cities_to_cut((costs, rows, prices), least, state.tours, state.freshness, count)
         cuts = cut(state.tours, cities)
-        costs, fragments = repair_problem(distances, rows, cuts)
+        between, fragments = repair_problem(costs, rows, cuts, prices)
         fragments = fragments.trimmed()
         while bool((fragments.left > 2).any()):
-            candidates = cheapest_candidates(costs, fragments)
-            fragments = actor.round(costs, fragments, candidates, JOININGS).trimmed()
-        new = laid_out(cuts, last_two_joined(costs, fragments))
-        state = state_after_repair(distances, rows, state, cities, new)
+            candidates = cheapest_candidates(between, fragments)
+            fragments = actor.round(between, fragments, candidates, actor.repair_joinings).trimmed()
+        new = laid_out(cuts, last_two_joined(between, fragments))
+        state = state_after_repair(costs, rows, state, cities, new)
     return state
 
 
@@ -89,23 +102,20 @@ def least_costs(candidates: Candidates) -> Float[Tensor, "r n"]:
     return candidates.costs[..., :2].sum(dim=-1)
 
 
-def unrepaired(distances: Float[Tensor, "2 n w"], tours: Int[Tensor, "r n"]) -> RepairState:
+def unrepaired(costs: Costs, tours: Int[Tensor, "r n"]) -> RepairState:
     """Return the state before the first repair, of tours as they were built."""
-    points = edge_lengths(distances, tours).sum(dim=2).T
+    points = edge_lengths(costs, tours).sum(dim=2).T
     return RepairState(tours, points, tours, points, torch.ones_like(tours, dtype=points.dtype))
 
 
-def edge_lengths(
-    distances: Float[Tensor, "2 n w"], tours: Int[Tensor, "r n"]
-) -> Float[Tensor, "2 r n"]:
-    """Return the length in each plane from each place of a tour to the next."""
-    pairs = tours * distances.shape[2] + tours.roll(-1, dims=1)
-    return distances.flatten(1).index_select(1, pairs.flatten()).unflatten(1, tours.shape)
+def edge_lengths(costs: Costs, tours: Int[Tensor, "r n"]) -> Float[Tensor, "2 r n"]:
+    """Return the cost in each objective from each place of a tour to the next."""
+    means = along(costs.means, tours)
+    return means if costs.leans is None else means + along(costs.leans, tours)
 
 
 def cities_to_cut(
-    distances: Float[Tensor, "2 n w"],
-    weights: Float[Tensor, "r 2"],
+    problem: Problem,
     least: Float[Tensor, "r n"],
     tours: Int[Tensor, "r n"],
     freshness: Float[Tensor, "r n"],
@@ -113,26 +123,42 @@ def cities_to_cut(
 ) -> Int[Tensor, "r m"]:
     """Return the city of most regret in each row, and those nearest to it.
 
-    The regret of a city is what its edges cost above the least possible, times its freshness.
-    The count is symbolic while the graph is traced for its export.
+    The regret of a city is what its edges cost above the least possible, times its freshness;
+    costs are less the prices, where there are any. The count is symbolic while the graph is
+    traced for its export.
     """
-    onwards = weighted_sums(edge_lengths(distances, tours), weights)
+    costs, weights, prices = problem
+    onwards = weighted_sums(edge_lengths(costs, tours), weights)
+    if prices is not None:
+        leaving, entering = prices.fees + prices.tilts, prices.fees - prices.tilts
+        onwards = onwards - leaving.gather(1, tours) - entering.gather(1, tours).roll(-1, dims=1)
     both = torch.zeros_like(least).scatter(1, tours, onwards + onwards.roll(1, dims=1))
     centres = ((both - least) * freshness).argmax(dim=1)
-    costs = weighted_sums(distances.index_select(1, centres), weights)  # (r, w)
-    costs = costs.scatter(1, centres[:, None], -1.0)
-    return costs.topk(count, largest=False).indices
+    away = _costs_from(problem, centres).scatter(1, centres[:, None], -NEVER)
+    return away.topk(count, largest=False).indices
+
+
+def _costs_from(problem: Problem, cities: Int[Tensor, " r"]) -> Float[Tensor, "r w"]:
+    """Return what the edges at one city of each row cost at least, but for its own price."""
+    costs, weights, prices = problem
+    means = weighted_sums(costs.means.index_select(1, cities), weights)
+    if costs.leans is None or prices is None:
+        return means
+    leans = weighted_sums(costs.leans.index_select(1, cities), weights)
+    leans = leans - prices.tilts.gather(1, cities[:, None])
+    fees, tilts = (nn.functional.pad(part, (0, CANDIDATES)) for part in prices)
+    return means - fees - (leans + tilts).abs()
 
 
 def state_after_repair(
-    distances: Float[Tensor, "2 n w"],
+    costs: Costs,
     weights: Float[Tensor, "r 2"],
     state: RepairState,
     cities: Int[Tensor, "r m"],
     tours: Int[Tensor, "r n"],
 ) -> RepairState:
     """Return the state with the shorter tour of each row, after these cities were cut out."""
-    points = edge_lengths(distances, tours).sum(dim=2).T
+    tours, points = _cheaper_way(costs, weights, tours)
     before = (state.points * weights).sum(dim=1)
     shorter = (before - (points * weights).sum(dim=1) > _ROUNDING * before)[:, None]
     best = torch.where(shorter, points, state.points)
@@ -147,6 +173,19 @@ def state_after_repair(
         torch.where(remember, other, state.visited_points),
         state.freshness.scatter(1, cities, freshness),
     )
+
+
+def _cheaper_way(
+    costs: Costs, weights: Float[Tensor, "r 2"], tours: Int[Tensor, "r n"]
+) -> tuple[Int[Tensor, "r n"], Float[Tensor, "r 2"]]:
+    """Return each tour in the direction that costs its row less, and its two lengths."""
+    means = along(costs.means, tours).sum(dim=2).T
+    if costs.leans is None:
+        return tours, means
+    leans = along(costs.leans, tours).sum(dim=2).T
+    back = (leans * weights).sum(dim=1, keepdim=True) > 0
+    points = means + torch.where(back, -leans, leans)
+    return torch.where(back, tours.flip(1), tours), points
 
 
 def _worth_remembering(

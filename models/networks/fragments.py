@@ -2,8 +2,9 @@
 
 A row is one tour. Its *ends* are the cities that still lack a neighbour: both ends of each path,
 and every city that is still alone, which is an end once and lacks two. Ends that have got all
-their neighbours are closed and, from time to time, cleared away. All is written so that the
-numbers of rows, ends and cities stay free when it is exported.
+their neighbours are closed and, from time to time, cleared away. Paths have no direction; where
+costs differ by direction, each end knows by how much its path would rather be left there. All is
+written so that the numbers of rows, ends and cities stay free when it is exported.
 """
 
 from typing import NamedTuple
@@ -21,7 +22,8 @@ class Fragments(NamedTuple):
 
     An end's partner is the position of the other end of its path; a city alone is its own. The
     links are the first neighbour of each city, then the second of each, then a place of no
-    meaning; minus one where there is none yet.
+    meaning; minus one where there is none yet. The lean of an end is half of what its path costs
+    less on the way to this end than on the way from it; none where costs have no direction.
     """
 
     ends: Int[Tensor, "r e"]
@@ -29,6 +31,7 @@ class Fragments(NamedTuple):
     open: Bool[Tensor, "r e"]
     links: Int[Tensor, "r l"]
     left: Int[Tensor, " r"]
+    leans: Float[Tensor, "r e"] | None = None
 
     @property
     def on_paths(self) -> Bool[Tensor, "r e"]:
@@ -44,19 +47,21 @@ class Fragments(NamedTuple):
         """Return the fragments without positions at which no row has an open end."""
         moved, kept = cleared(self)
         ends, partners, open_ = (part[:, : int(kept)] for part in moved[:3])
-        return Fragments(ends, partners, open_, self.links, self.left)
+        leans = None if moved.leans is None else moved.leans[:, : int(kept)]
+        return Fragments(ends, partners, open_, self.links, self.left, leans)
 
 
 def _positions(positions: Tensor) -> Int[Tensor, " e"]:
     return torch.arange(positions.shape[1], device=positions.device)
 
 
-def all_alone(like: Float[Tensor, "r n"]) -> Fragments:
+def all_alone(like: Float[Tensor, "r n"], *, leaning: bool = False) -> Fragments:
     """Return every city as a fragment of its own, for the rows and cities of the tensor."""
     zeros = torch.zeros_like(like, dtype=torch.long)
     cities = zeros + torch.arange(like.shape[1], device=like.device)
     links = torch.cat((zeros, zeros, zeros[:, :1]), dim=1) - 1
-    return Fragments(cities, cities.clone(), zeros == 0, links, (zeros + 1).sum(dim=1))
+    leans = torch.zeros_like(like) if leaning else None
+    return Fragments(cities, cities.clone(), zeros == 0, links, (zeros + 1).sum(dim=1), leans)
 
 
 def cleared(fragments: Fragments) -> tuple[Fragments, Int[Tensor, ""]]:
@@ -75,6 +80,7 @@ def cleared(fragments: Fragments) -> tuple[Fragments, Int[Tensor, ""]]:
         index < kept,
         fragments.links,
         fragments.left,
+        None if fragments.leans is None else fragments.leans.gather(1, order),
     )
     return moved, kept.max()
 
@@ -118,24 +124,38 @@ def mutual_best(
     return room.scatter(1, torch.where(agreed, mates, e), index.expand_as(mates))[:, :-1]
 
 
-def joined(fragments: Fragments, mates: Int[Tensor, "r e"]) -> Fragments:
-    """Return the fragments with each end joined to its mate, where it has one."""
-    ends, partners, open_, links, left = fragments
+def joined(
+    fragments: Fragments,
+    mates: Int[Tensor, "r e"],
+    edge_leans: Float[Tensor, "r e"] | None = None,
+) -> Fragments:
+    """Return the fragments with each end joined to its mate, where it has one.
+
+    The lean of the edge to a mate is half of what it costs more than the edge from there.
+    """
+    ends, partners, open_, links, left, leans = fragments
     at = mates >= 0
     second = fragments.on_paths
     n = (links.shape[1] - 1) // 2
     places = torch.where(at, torch.where(second, ends + n, ends), 2 * n)
     links = links.scatter(1, places, ends.gather(1, mates.clamp(min=0)))
     beyond = mates.gather(1, partners)
+    if leans is not None and edge_leans is not None:
+        gained = torch.where(at, leans.gather(1, mates.clamp(min=0)) + edge_leans, 0.0)
+        leans = leans + gained.gather(1, partners)
     partners = torch.where(beyond >= 0, partners.gather(1, beyond.clamp(min=0)), partners)
-    return Fragments(ends, partners, open_ & ~(at & second), links, left - at.sum(dim=1) // 2)
+    open_ = open_ & ~(at & second)
+    return Fragments(ends, partners, open_, links, left - at.sum(dim=1) // 2, leans)
 
 
-def walked(fragments: Fragments) -> Int[Tensor, "r n"]:
-    """Return the tours of rows that have one fragment left, from one of its ends to the other."""
+def walked(fragments: Fragments, starts: Int[Tensor, "r 1"] | None = None) -> Int[Tensor, "r n"]:
+    """Return the tours of rows that have one fragment left, from one of its ends to the other.
+
+    Starts are positions of the ends to begin at; otherwise these are the first that are open.
+    """
     links = fragments.links
     n = (links.shape[1] - 1) // 2
-    before, now = first_steps(fragments)
+    before, now = first_steps(fragments, starts)
     tour = [before, now]
     for _ in range(n - 2):
         before, now = now, next_city(links, before, now)
@@ -143,10 +163,16 @@ def walked(fragments: Fragments) -> Int[Tensor, "r n"]:
     return torch.stack(tour, dim=1)
 
 
-def first_steps(fragments: Fragments) -> tuple[Int[Tensor, " r"], Int[Tensor, " r"]]:
+def first_open(fragments: Fragments) -> Int[Tensor, "r 1"]:
+    """Return the position of the first end of each row that is open."""
+    return fragments.open.long().argmax(dim=1, keepdim=True)
+
+
+def first_steps(
+    fragments: Fragments, starts: Int[Tensor, "r 1"] | None = None
+) -> tuple[Int[Tensor, " r"], Int[Tensor, " r"]]:
     """Return one end of each row's last fragment, and the city after it."""
-    number = fragments.open.long()
-    one = fragments.ends.gather(1, number.argmax(dim=1, keepdim=True))
+    one = fragments.ends.gather(1, first_open(fragments) if starts is None else starts)
     return one.squeeze(1), fragments.links.gather(1, one).squeeze(1)
 
 

@@ -10,6 +10,8 @@ against each other; which is why it does as well at 1000 cities as at the 20 to 
 learned from.
 """
 
+from typing import ClassVar
+
 import torch
 from jaxtyping import Float, Int
 from torch import Generator, Tensor, nn
@@ -20,16 +22,19 @@ from models.networks.actor import Actor, Architecture
 from models.networks.candidates import (
     CANDIDATES,
     Candidates,
+    Costs,
+    Prices,
     cheapest_candidates,
     first_candidates,
+    joined_at_cost,
     padded_distances,
     partner_costs,
     single_cities,
+    toured,
     weighted_costs,
 )
-from models.networks.fragments import NEVER, Fragments, joined, mutual_best, possible, walked
+from models.networks.fragments import NEVER, Fragments, mutual_best, possible
 from models.networks.layers import SilenceableLayer, feedforward
-from models.rollout_pa_one import JOININGS
 
 _MESSAGE = 4  # features that an end sends its neighbours
 _EDGE = 4  # hidden features of an edge
@@ -47,15 +52,20 @@ class OneActor(Actor):
     construction = "fragments"
     precisions = ("float32",)
     imitates_starts = False  # it learns edges
+    has_directions: ClassVar[bool] = False  # or all steps cost as much as the step back
+    # Of fragments, for one evaluation of the network: in building tours, and in repairing them.
+    joinings: ClassVar[int] = 2
+    repair_joinings: ClassVar[int] = 4  # two evaluations do for nearly every repair
 
     def __init__(self, config: Architecture) -> None:
         super().__init__()
-        self.embed = feedforward(5 * CANDIDATES + 6, config.width, config.feedforward)
+        inputs = 5 * CANDIDATES + 6 + self.has_directions * (CANDIDATES + 1)
+        self.embed = feedforward(inputs, config.width, config.feedforward)
         self.layers = nn.ModuleList(
             MessagePassingLayer(config.width, config.feedforward) for _ in range(config.layers)
         )
-        self.project_end = nn.Linear(config.width, _EDGE)
-        self.project_edge = nn.Linear(2, _EDGE, bias=False)
+        self.project_end = nn.Linear(config.width, (1 + self.has_directions) * _EDGE)
+        self.project_edge = nn.Linear(2 + self.has_directions, _EDGE, bias=False)
         self.judge = nn.Linear(_EDGE, 1, bias=False)
 
     @property
@@ -63,20 +73,25 @@ class OneActor(Actor):
         """The layers in which ends send each other messages."""
         return self.layers
 
+    def costs(self, instance: Tensor) -> Costs:
+        """Return the costs of the steps of one instance, a row for each objective."""
+        return padded_distances(instance)
+
     def edge_logits(
-        self, costs: Float[Tensor, "r n m"], fragments: Fragments, candidates: Candidates
+        self, costs: Costs, fragments: Fragments, candidates: Candidates
     ) -> Float[Tensor, "r e c"]:
         """Return the log-odds of each edge to a candidate; -NEVER where it is impossible."""
         real, near = candidates.real, _Neighbours(candidates, fragments.partners)
-        total = torch.where(real, candidates.costs, 0.0).sum(dim=-1)
+        of_candidates = candidates.costs.clamp(min=0.0)  # prices may be a little too high
+        total = torch.where(real, of_candidates, 0.0).sum(dim=-1)
         count = real.sum(dim=-1)
         unit = total.sum(dim=-1, keepdim=True) / count.sum(dim=-1, keepdim=True).clamp(min=1)
         unit = unit.clamp(min=1 / NEVER)  # (r, 1)
         scale = total / unit / count.clamp(min=1) + _LEAST_SCALE
-        in_units = candidates.costs / unit[..., None]
+        in_units = of_candidates / unit[..., None]
         own = (in_units / scale[..., None]).clamp(max=_MOST)
         nearest = own[..., 0]
-        on_paths = fragments.on_paths.to(costs)
+        on_paths = fragments.on_paths.to(unit)
         known = torch.stack((1 / scale, nearest, on_paths), dim=-1).flatten(0, 1)
         received = near.candidates_of(known).unflatten(0, scale.shape)
         theirs = torch.where(real, in_units * received[..., 0], _MOST).clamp(max=_MOST)
@@ -85,73 +100,125 @@ class OneActor(Actor):
             scale.log(),
             on_paths,
             (on_paths * across / scale).log1p(),
-            fragments.left[:, None].to(costs).rsqrt().expand_as(scale),
+            fragments.left[:, None].to(unit).rsqrt().expand_as(scale),
             nearest,
-            count.to(costs) / CANDIDATES,
+            count.to(unit) / CANDIDATES,
         )
-        inputs = torch.cat((own, theirs, received.flatten(2), torch.stack(ends, dim=-1)), dim=-1)
-        features = self.embed(inputs.flatten(0, 1))
+        inputs = [own, theirs, received.flatten(2), torch.stack(ends, dim=-1)]
+        relative_costs = own + theirs
+        of_edges = [relative_costs, in_units.clamp(max=_MOST)]
+        directions, leans = None, _leans_in_units(candidates, fragments, unit)
+        if leans is not None:
+            inputs.append((leans / scale[..., None]).clamp(-_MOST, _MOST))
+            directions = leans[..., :CANDIDATES].clamp(-1, 1)
+            of_edges.append(directions.abs())
+        features = self.embed(torch.cat(inputs, dim=-1).flatten(0, 1))
         for layer in self.layers:
             features = layer(features, near)
-        of_ends = self.project_end(features)
-        relative_costs = own + theirs
-        of_edges = torch.stack((relative_costs, in_units.clamp(max=_MOST)), dim=-1).flatten(0, 1)
-        hidden = near.candidates_of(of_ends) + of_ends[:, None] + self.project_edge(of_edges)
+        hidden = _of_both_ends(self.project_end(features), near, directions)
+        hidden = hidden + self.project_edge(torch.stack(of_edges, dim=-1).flatten(0, 1))
         logits = self.judge(hidden.relu()).view_as(relative_costs) - _STEEPNESS * relative_costs
         return torch.where(real, logits, -NEVER)
 
     @torch.no_grad()
-    def tours(
-        self, instances: Float[Tensor, "b n 4"], preferences: Float[Tensor, "k 2"]
-    ) -> Int[Tensor, "b k n"]:
+    def tours(self, instances: Tensor, preferences: Float[Tensor, "k 2"]) -> Int[Tensor, "b k n"]:
         """Return the greedy tour of each instance for each preference."""
         rows = weights(turned_outwards(preferences))
-        return torch.stack([self._tours(cities, rows) for cities in instances])
+        return torch.stack([self._tours(instance, rows) for instance in instances])
 
-    def _tours(self, cities: Float[Tensor, "n 4"], rows: Float[Tensor, "k 2"]) -> Tensor:
-        costs = weighted_costs(padded_distances(cities), rows)
-        fragments = self.round(costs, single_cities(costs), first_candidates(costs)).trimmed()
+    def _tours(self, instance: Tensor, rows: Float[Tensor, "k 2"]) -> Tensor:
+        costs = self.weighted(self.costs(instance), rows)
+        candidates = first_candidates(costs)
+        fragments = self.round(costs, single_cities(costs), candidates, self.joinings).trimmed()
         while bool((fragments.left > 1).any()):
             candidates = cheapest_candidates(costs, fragments)
-            fragments = self.round(costs, fragments, candidates).trimmed()
-        return walked(fragments)
+            fragments = self.round(costs, fragments, candidates, self.joinings).trimmed()
+        return toured(costs, fragments)
 
     def round(
         self,
-        costs: Float[Tensor, "r n m"],
+        costs: Costs,
         fragments: Fragments,
         candidates: Candidates,
-        joinings: int = JOININGS,
+        joinings: int,
     ) -> Fragments:
         """Return the fragments after joining them, so many times, by the best of these edges."""
         logits = self.edge_logits(costs, fragments, candidates)
-        fragments = joined(fragments, mutual_best(fragments, candidates.positions, logits))
+        mates = mutual_best(fragments, candidates.positions, logits)
+        fragments = joined_at_cost(costs, fragments, mates)
         for _ in range(joinings - 1):
             logits = torch.where(possible(fragments, candidates.positions), logits, -NEVER)
-            fragments = joined(fragments, mutual_best(fragments, candidates.positions, logits))
+            mates = mutual_best(fragments, candidates.positions, logits)
+            fragments = joined_at_cost(costs, fragments, mates)
         return fragments
+
+    def prices(self, costs: Costs, weights: Float[Tensor, "r 2"]) -> Prices | None:  # noqa: ARG002
+        """Return the prices that are taken off the costs of each row, if there are any."""
+        return None
+
+    def weighted(self, costs: Costs, weights: Float[Tensor, "r 2"]) -> Costs:
+        """Return the costs that the network joins by, from those in each objective."""
+        return weighted_costs(costs, weights, self.prices(costs, weights))
+
+    def _weighted_one_by_one(self, instances: Tensor, weights: Float[Tensor, "k 2"]) -> Costs:
+        """Return the costs under the weights of each row of each instance, one after the other."""
+        rows = [self.weighted(self.costs(instance), weights) for instance in instances]
+        leans = [costs.leans for costs in rows if costs.leans is not None]
+        return Costs(
+            torch.cat([costs.means for costs in rows]), torch.cat(leans) if leans else None
+        )
 
     def sampled_tours_with_log_likelihoods(
         self,
-        instances: Float[Tensor, "b n 4"],
+        instances: Tensor,
         preferences: Float[Tensor, "k 2"],
         times: int,
         start_generator: Generator,  # noqa: ARG002, its tours start nowhere
         generator: Generator,
     ) -> tuple[Int[Tensor, "b kt n"], Float[Tensor, "b kt"]]:
         """Draw tours as often for each preference in turn, and return their log-likelihoods."""
-        return rollout_pa_one.sampled_tours(
-            self.edge_logits, instances, preferences, times, generator
+        rows = weights(preferences).repeat_interleave(times, dim=0)
+        costs = self._weighted_one_by_one(instances, rows)
+        tours, likelihoods = rollout_pa_one.sampled_tours(
+            self.edge_logits, costs, self.joinings, generator
         )
+        by_instance = (len(instances), -1)
+        return tours.unflatten(0, by_instance), likelihoods.unflatten(0, by_instance)
 
     def imitation_loss(
         self,
-        instances: Float[Tensor, "b n 4"],
+        instances: Tensor,
         preferences: Float[Tensor, "k 2"],
         tours: Int[Tensor, "b k n"],
     ) -> Float[Tensor, ""]:
         """Return the binary cross-entropy of each edge to a candidate, summed, for each end."""
-        return rollout_pa_one.imitation_loss(self.edge_logits, instances, preferences, tours)
+        costs = self._weighted_one_by_one(instances, weights(preferences))
+        return rollout_pa_one.imitation_loss(self.edge_logits, costs, tours.flatten(0, 1))
+
+
+def _leans_in_units(
+    candidates: Candidates, fragments: Fragments, unit: Float[Tensor, "r 1"]
+) -> Float[Tensor, "r e c_and_one"] | None:
+    """Return the lean of each edge to a candidate, and then of the end, if there are any."""
+    if candidates.leans is None or fragments.leans is None:
+        return None
+    edges = torch.where(candidates.real, candidates.leans, 0.0)
+    return torch.cat((edges, fragments.leans[..., None]), dim=-1) / unit[..., None]
+
+
+def _of_both_ends(
+    of_ends: Float[Tensor, "x d"], near: "_Neighbours", directions: Float[Tensor, "r e c"] | None
+) -> Float[Tensor, "x c f"]:
+    """Return the same for an edge seen from either of its ends: the sum of what both say.
+
+    Where edges have directions, ends say another thing as well, that they start it or end it.
+    """
+    if directions is None:
+        return near.candidates_of(of_ends) + of_ends[:, None]
+    own, start = of_ends.chunk(2, dim=-1)
+    their_own, their_start = near.candidates_of(of_ends).chunk(2, dim=-1)
+    towards = directions.flatten(0, 1)[..., None]
+    return their_own + own[:, None] + towards * (their_start - start[:, None])
 
 
 class _Neighbours:

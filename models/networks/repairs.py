@@ -11,8 +11,8 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from models.networks.candidates import CANDIDATES
-from models.networks.fragments import NEVER, Fragments, cleared, joined
+from models.networks.candidates import CANDIDATES, Costs, Prices, joined_at_cost, without
+from models.networks.fragments import NEVER, Fragments, cleared
 
 _DOUBLINGS = 6  # of the edges that an end sees ahead: enough for 64 ends
 
@@ -35,6 +35,12 @@ def weighted_sums(
     return weights[:, :1] * lengths[0] + weights[:, 1:] * lengths[1]
 
 
+def along(table: Float[Tensor, "2 n w"], tours: Int[Tensor, "r n"]) -> Float[Tensor, "2 r n"]:
+    """Return the entries of the table from each place of a tour to the next."""
+    pairs = tours * table.shape[2] + tours.roll(-1, dims=1)
+    return table.flatten(1).index_select(1, pairs.flatten()).unflatten(1, tours.shape)
+
+
 def cut(tours: Int[Tensor, "r n"], cities: Int[Tensor, "r m"]) -> Cuts:
     """Return the tours without the edges of these cities."""
     n = tours.shape[1]
@@ -48,17 +54,18 @@ def cut(tours: Int[Tensor, "r n"], cities: Int[Tensor, "r m"]) -> Cuts:
 
 
 def repair_problem(
-    distances: Float[Tensor, "2 n w"], weights: Float[Tensor, "r 2"], cuts: Cuts
-) -> tuple[Float[Tensor, "r e f"], Fragments]:
+    costs: Costs, weights: Float[Tensor, "r 2"], cuts: Cuts, prices: Prices | None = None
+) -> tuple[Costs, Fragments]:
     """Return the costs between the ends that cuts have left, and the fragments they belong to.
 
     There are three columns for a cut: the cut city, and the first and the last city of the path
     from there to the next one. Of a path of one city the last is closed, of an empty one both.
+    Costs are given in each objective, and returned under the weights, less the prices.
     """
     tours, places, gaps = cuts
     m = places.shape[1]
-    columns = torch.cat((places, places + 1, places + gaps), dim=1)
-    cities = tours.gather(1, columns.clamp(max=tours.shape[1] - 1))
+    columns = torch.cat((places, places + 1, places + gaps), dim=1).clamp(max=tours.shape[1] - 1)
+    cities = tours.gather(1, columns)
     index = torch.arange(3 * m, device=tours.device).expand_as(columns)
     alone, first, last = index[:, :m], index[:, m : 2 * m], index[:, 2 * m :]
     long = gaps > 1
@@ -67,43 +74,79 @@ def repair_problem(
     links = torch.where(across == index, -1, across)
     links = torch.cat((links, no_links, no_links[:, :1]), dim=1)
     open_ = torch.cat((gaps >= 0, gaps > 0, long), dim=1)
-    fragments = Fragments(index, across, open_, links, m + (gaps > 0).sum(dim=1))
-    return _costs_between(distances, weights, cities), fragments
+    left = m + (gaps > 0).sum(dim=1)
+    between = _costs_between(costs, weights, cities)
+    if costs.leans is None or prices is None:
+        return between, Fragments(index, across, open_, links, left)
+    some = Prices(*(part.gather(1, cities) for part in prices))
+    onwards = weighted_sums(along(costs.leans, tours), weights)
+    until = (onwards.cumsum(dim=1) - onwards).gather(1, columns) + some.tilts
+    alone, first, last = until[:, :m], until[:, m : 2 * m], until[:, 2 * m :]
+    leans = torch.cat((torch.zeros_like(alone), last - first, first - last), dim=1)
+    return without(between, some), Fragments(index, across, open_, links, left, leans)
 
 
 def _costs_between(
-    distances: Float[Tensor, "2 n w"], weights: Float[Tensor, "r 2"], cities: Int[Tensor, "r e"]
-) -> Float[Tensor, "r e f"]:
+    costs: Costs, weights: Float[Tensor, "r 2"], cities: Int[Tensor, "r e"]
+) -> Costs:
     e = cities.shape[1]
-    pairs = cities[:, :, None] * distances.shape[2] + cities[:, None, :]
-    lengths = distances.flatten(1).index_select(1, pairs.flatten()).view(2, -1, e * e)
-    costs = weighted_sums(lengths, weights).unflatten(1, (e, e))
+    pairs = cities[:, :, None] * costs.means.shape[2] + cities[:, None, :]
+
+    def between(table: Float[Tensor, "2 n w"]) -> Float[Tensor, "r e e"]:
+        entries = table.flatten(1).index_select(1, pairs.flatten()).view(2, -1, e * e)
+        return weighted_sums(entries, weights).unflatten(1, (e, e))
+
     index = torch.arange(e, device=cities.device)
     own = torch.where(index == index[:, None], NEVER, 0.0)
-    return nn.functional.pad(costs + own, (0, CANDIDATES), value=NEVER)
+    means = nn.functional.pad(between(costs.means) + own, (0, CANDIDATES), value=NEVER)
+    if costs.leans is None:
+        return Costs(means)
+    return Costs(means, nn.functional.pad(between(costs.leans), (0, CANDIDATES)))
 
 
-def last_two_joined(costs: Float[Tensor, "r e f"], fragments: Fragments) -> Fragments:
+def last_two_joined(costs: Costs, fragments: Fragments) -> Fragments:
     """Return one fragment for each row: where two are left, join them the cheaper of two ways.
 
     Open ends must come first.
     """
-    ends, partners, open_, _, left = fragments
+    partners, open_, left = fragments.partners, fragments.open, fragments.left
     one = torch.zeros_like(partners[:, :1])  # a position
     across = partners[:, :1]
-    index = torch.arange(ends.shape[1], device=ends.device)
+    index = torch.arange(partners.shape[1], device=partners.device)
     beyond = (open_ & (index != one) & (index != across)).long().argmax(dim=1, keepdim=True)
     others = torch.cat((beyond, partners.gather(1, beyond)), dim=1)
-
-    def cost(start: Int[Tensor, "r 1"], stop: Int[Tensor, "r 2"]) -> Float[Tensor, "r 2"]:
-        steps = ends.gather(1, start) * costs.shape[2] + ends.gather(1, stop)
-        return costs.flatten(1).gather(1, steps)
-
-    ways = cost(one, others) + cost(across, others.flip(1))
+    ways = _costs_of_joining(costs, fragments, (one, across), others)
     mate = others.gather(1, ways.argmin(dim=1, keepdim=True))
     mates = torch.where(left[:, None] > 1, torch.cat((mate, one), dim=1), -1)
     both = torch.full_like(partners, -1).scatter(1, torch.cat((one, mate), dim=1), mates)
-    return cleared(joined(fragments, both))[0]
+    return cleared(joined_at_cost(costs, fragments, both))[0]
+
+
+def _costs_of_joining(
+    costs: Costs,
+    fragments: Fragments,
+    ends: tuple[Int[Tensor, "r 1"], Int[Tensor, "r 1"]],
+    others: Int[Tensor, "r 2"],
+) -> Float[Tensor, "r 2"]:
+    """Return what a tour of two fragments costs, but for a constant, by the mate of the first end.
+
+    The mate is one of the others; the second end is joined to the other one of them.
+    """
+
+    def entries(table: Tensor, start: Tensor, stop: Tensor) -> Float[Tensor, "r 2"]:
+        cities = fragments.ends
+        steps = cities.gather(1, start) * table.shape[2] + cities.gather(1, stop)
+        return table.flatten(1).gather(1, steps)
+
+    one, across = ends
+    flipped = others.flip(1)
+    means = entries(costs.means, one, others) + entries(costs.means, across, flipped)
+    if costs.leans is None or fragments.leans is None:
+        return means
+    # From the first end to its mate, through the other fragment, and back to the second end.
+    leans = entries(costs.leans, one, others) - entries(costs.leans, across, flipped)
+    paths = fragments.leans.gather(1, one) + fragments.leans.gather(1, flipped)
+    return means - (leans - paths).abs()
 
 
 def laid_out(cuts: Cuts, fragments: Fragments) -> Int[Tensor, "r n"]:

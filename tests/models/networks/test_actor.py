@@ -7,7 +7,7 @@ from torch import Generator
 from models.data.preferences import fan_of_preferences
 from tests.helpers.small_actors import CPU, random_instances, small_actor
 
-NAMES = ("pa-at", "pa-ean", "pa-ad", "pa-one-matrix")
+NAMES = ("pa-at", "pa-ean", "pa-ad")
 
 
 @pytest.mark.parametrize("name", NAMES)

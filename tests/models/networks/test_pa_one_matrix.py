@@ -1,31 +1,167 @@
-"""PA-One for matrices: its first cities, and the tours that it begins with."""
+"""PA-One for matrices: costs and leans against those of the paths themselves, prices, tours."""
 
+from collections.abc import Callable
+from itertools import pairwise
+
+import pytest
 import torch
-from torch import Generator
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from torch import Generator, Tensor
 
-from models.config import NetworkConfig
-from models.data.instances import distance_matrices, uniform_cities
+from models.data.instances import distance_matrices, tour_lengths, uniform_cities
 from models.data.preferences import fan_of_preferences, turned_outwards, weights
-from models.networks.pa_one_matrix import OneMatrixActor
-from tests.helpers.small_actors import CPU, random_instances, small_actor
+from models.networks.candidates import (
+    Candidates,
+    Costs,
+    cheapest_candidates,
+    joined_at_cost,
+    padded_matrices,
+    single_cities,
+    toured,
+    weighted_costs,
+)
+from models.networks.fragments import NEVER, Fragments, mutual_best
+from models.networks.pa_one_matrix import OneMatrixActor, priced
+from models.networks.repairs import cut, repair_problem
+from models.rollout_repairs import repaired_tours
+from tests.helpers.small_actors import CPU, small_actor
+
+Length = Callable[[list[int]], float]
 
 
-def test_tours_of_neighbouring_preferences_begin_at_different_cities() -> None:
-    actor = small_actor("pa-one-matrix")
-    tours = actor.tours(random_instances(actor, 1, 7), fan_of_preferences(20, CPU))[0]
-    assert tours[:, 0].tolist() == [row % 7 for row in range(20)]
+def matrices(n: int, seed: int) -> Tensor:
+    drawn = torch.rand(2, n, n, generator=Generator().manual_seed(seed), dtype=torch.float64)
+    return drawn * (1 - torch.eye(n, dtype=torch.float64))
 
 
-def test_a_new_pa_one_for_matrices_goes_to_the_nearest_neighbour_under_the_weights() -> None:
-    actor = OneMatrixActor(NetworkConfig(name="pa-one-matrix")).eval()
-    # Without what the pointers and the preferences add at random, costs alone are left.
-    actor.decoder.project_city.weight.data[-128:] = 0
-    actor.decoder.encode_preference[-1].weight.data.zero_()
-    matrices = distance_matrices(uniform_cities(1, 30, Generator().manual_seed(0), CPU))
-    matrices = matrices / matrices.amax(dim=(-2, -1), keepdim=True)
-    preference = torch.tensor([[0.6, 0.8]])
-    tour = actor.tours(matrices, preference)[0, 0]
-    cost = (matrices[0] * weights(turned_outwards(preference))[0, :, None, None]).sum(dim=0)
-    for t in range(29):
-        left = tour[t + 1 :]
-        assert tour[t + 1] == left[cost[tour[t], left].argmin()]
+def length_in(table: Tensor) -> Length:
+    return lambda path: sum(float(table[a, b]) for a, b in pairwise(path))
+
+
+def path_at(paths: list[list[int]], city: int) -> list[int]:
+    """The path that ends at this city, which is an end of one."""
+    path = next(path for path in paths if city in (path[0], path[-1]))
+    return path if path[-1] == city else path[::-1]
+
+
+def check_candidates(
+    length: Length, paths: list[list[int]], fragments: Fragments, candidates: Candidates
+) -> None:
+    """Each edge costs what the cheaper way through both paths costs above those through each."""
+    assert candidates.leans is not None
+    for end, count in candidates.real[0].nonzero().tolist():
+        city = int(fragments.ends[0, end])
+        other = int(fragments.ends[0, candidates.positions[0, end, count]])
+        one, two = path_at(paths, city), path_at(paths, other)[::-1]
+        there, back = length(one + two), length((one + two)[::-1])
+        alone = sum(min(length(path), length(path[::-1])) for path in (one, two))
+        assert float(candidates.costs[0, end, count]) == pytest.approx(min(there, back) - alone)
+        assert float(candidates.leans[0, end, count]) == pytest.approx((there - back) / 2)
+
+
+def after_joining(paths: list[list[int]], fragments: Fragments, mates: Tensor) -> list[list[int]]:
+    for end, mate in enumerate(mates[0].tolist()):
+        if mate > end:
+            one = path_at(paths, int(fragments.ends[0, end]))
+            two = path_at(paths, int(fragments.ends[0, mate]))[::-1]
+            gone = [set(one), set(two)]
+            paths = [path for path in paths if set(path) not in gone] + [one + two]
+    return paths
+
+
+@given(n=st.integers(3, 10), seed=st.integers(0, 1000), trims=st.booleans())
+@settings(max_examples=15)
+def test_edges_cost_what_the_cheaper_way_through_both_paths_does(
+    n: int, seed: int, trims: bool
+) -> None:
+    drawn, row = matrices(n, seed), torch.tensor([[0.25, 0.75]], dtype=torch.float64)
+    costs = weighted_costs(padded_matrices(drawn), row)
+    length = length_in(0.25 * drawn[0] + 0.75 * drawn[1])
+    fragments, paths = single_cities(costs), [[city] for city in range(n)]
+    while int(fragments.left) > 1:
+        candidates = cheapest_candidates(costs, fragments)
+        check_candidates(length, paths, fragments, candidates)
+        logits = torch.where(candidates.real, -candidates.costs, -NEVER)
+        mates = mutual_best(fragments, candidates.positions, logits)
+        paths = after_joining(paths, fragments, mates)
+        fragments = joined_at_cost(costs, fragments, mates)
+        fragments = fragments.trimmed() if trims else fragments
+    tour = toured(costs, fragments)[0].tolist()
+    assert sorted(tour) == list(range(n))
+    assert length([*tour, tour[0]]) <= length([tour[0], *tour[::-1]]) + 1e-9
+
+
+def whole(costs: Costs) -> Tensor:
+    assert costs.leans is not None
+    n = costs.means.shape[1]
+    return (costs.means + costs.leans)[:, :, :n]
+
+
+@given(n=st.integers(2, 12), seed=st.integers(0, 1000))
+@settings(max_examples=20)
+def test_prices_change_the_cost_of_all_tours_of_a_row_by_the_same(n: int, seed: int) -> None:
+    costs, rows = padded_matrices(matrices(n, seed)), weights(fan_of_preferences(4, CPU)).double()
+    tours = torch.stack([torch.randperm(n) for _ in range(5)])
+    plain, less = (
+        whole(weighted_costs(costs, rows)),
+        whole(weighted_costs(costs, rows, priced(costs, rows))),
+    )
+    differences = torch.stack(
+        [(plain - less)[:, tour, tour.roll(-1)].sum(dim=1) for tour in tours], dim=1
+    )
+    assert torch.allclose(differences, differences[:, :1].expand_as(differences))
+
+
+def test_prices_of_symmetric_matrices_do_not_lean() -> None:
+    cities = uniform_cities(1, 30, Generator().manual_seed(1), CPU).double()
+    costs = padded_matrices(distance_matrices(cities)[0])
+    assert priced(costs, weights(fan_of_preferences(3, CPU)).double()).tilts.abs().max() < 1e-9
+
+
+def test_ends_that_a_cut_leaves_lean_as_their_paths_do() -> None:
+    actor = small_actor("pa-one-matrix").double()
+    assert isinstance(actor, OneMatrixActor)
+    costs, rows = actor.costs(matrices(12, 3)), weights(fan_of_preferences(2, CPU)).double()
+    tours = torch.stack([torch.randperm(12, generator=Generator().manual_seed(s)) for s in (1, 2)])
+    cuts = cut(tours, torch.tensor([[0, 4, 9], [3, 4, 11]]))
+    _, fragments = repair_problem(costs, rows, cuts, actor.prices(costs, rows))
+    assert fragments.leans is not None
+    tables = whole(actor.weighted(costs, rows))
+    for row, table in enumerate(tables):
+        length = length_in(table)
+        for k in range(3):
+            place, gap = int(cuts.places[row, k]), int(cuts.gaps[row, k])
+            if gap > 1:
+                path = cuts.tours[row, place + 1 : place + gap + 1].tolist()
+                lean = (length(path) - length(path[::-1])) / 2
+                assert float(fragments.leans[row, 3 + k]) == pytest.approx(lean)
+                assert float(fragments.leans[row, 6 + k]) == pytest.approx(-lean)
+
+
+@pytest.mark.parametrize("n", [2, 3, 5, 9, 40])
+def test_every_tour_visits_every_city_once_and_repairs_make_none_longer(n: int) -> None:
+    actor, preferences = small_actor("pa-one-matrix").double(), fan_of_preferences(5, CPU).double()
+    assert isinstance(actor, OneMatrixActor)
+    drawn = matrices(n, n)
+    instance = (drawn / drawn.amax(dim=(1, 2), keepdim=True))[None]
+    before = actor.tours(instance, preferences)
+    every = torch.arange(n).expand(1, 5, -1)
+    assert torch.equal(before.sort(dim=-1).values, every)
+    if n > 2:
+        after, _ = repaired_tours(actor, instance, preferences, 3)
+        assert torch.equal(after.sort(dim=-1).values, every)
+        rows = weights(turned_outwards(preferences))
+        shorter, longer = (
+            (tour_lengths(instance, tours)[0] * rows).sum(dim=1) for tours in (after, before)
+        )
+        assert (shorter <= longer + 1e-9).all()
+
+
+def test_numbering_the_cities_otherwise_changes_the_length_of_no_tour() -> None:
+    actor, preferences = small_actor("pa-one-matrix").double(), fan_of_preferences(5, CPU).double()
+    instance = matrices(20, 7)[None]
+    order = torch.randperm(20, generator=Generator().manual_seed(2))
+    renumbered = instance[:, :, order][..., order]
+    lengths = tour_lengths(instance, actor.tours(instance, preferences))
+    assert torch.allclose(tour_lengths(renumbered, actor.tours(renumbered, preferences)), lengths)

@@ -8,6 +8,7 @@ from torch import Generator, Tensor
 from models.data.instances import uniform_cities
 from models.data.preferences import fan_of_preferences, weights
 from models.networks.candidates import (
+    Costs,
     cheapest_candidates,
     padded_distances,
     single_cities,
@@ -23,7 +24,7 @@ def steps_of(tour: Tensor) -> set[frozenset[int]]:
     return {frozenset(pair) for pair in zip(tour.tolist(), tour.roll(1).tolist(), strict=True)}
 
 
-def rejoined(tours: Tensor, cities: Tensor, distances: Tensor) -> Tensor:
+def rejoined(tours: Tensor, cities: Tensor, distances: Costs) -> Tensor:
     """The tours after a repair that cuts out the cities, by a small actor."""
     actor = small_actor("pa-one")
     assert isinstance(actor, OneActor)
@@ -31,7 +32,7 @@ def rejoined(tours: Tensor, cities: Tensor, distances: Tensor) -> Tensor:
     costs, fragments = repair_problem(distances, weights(fan_of_preferences(3, CPU)), cuts)
     while bool((fragments.left > 2).any()):
         candidates = cheapest_candidates(costs, fragments)
-        fragments = actor.round(costs, fragments, candidates).trimmed()
+        fragments = actor.round(costs, fragments, candidates, actor.repair_joinings).trimmed()
     return laid_out(cuts, last_two_joined(costs, fragments))
 
 
