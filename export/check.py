@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from onnx import ModelProto
 from torch import Generator, Tensor
 
-from models.data.instances import uniform_instances
+from models.data.instances import uniform_cities
 from models.data.preferences import fan_of_preferences
 from models.networks.actor import Actor, StepwiseActor
 from models.networks.pa_one import OneActor
@@ -69,11 +69,18 @@ def compare(
     running = session(model)
     for n in sizes:
         generator = Generator().manual_seed(n)
-        instance = uniform_instances(actor.reads, 1, n, generator, torch.device("cpu"))
+        instance = _instance(actor, n, generator)
         for k in counts:
             preferences = fan_of_preferences(k, torch.device("cpu"))
             for times in _numbers_of_repairs(actor, n, repairs):
                 _compare_tours(actor, running, instance, preferences, times)
+
+
+def _instance(actor: Actor, n: int, generator: Generator) -> Tensor:
+    """Draw an instance as the actor reads it; matrices differ by direction."""
+    if actor.reads == "matrices":
+        return torch.rand(1, 2, n, n, generator=generator)
+    return uniform_cities(1, n, generator, torch.device("cpu"))
 
 
 def _numbers_of_repairs(actor: Actor, n: int, repairs: Sequence[int]) -> Sequence[int]:

@@ -13,7 +13,6 @@ from onnx import GraphProto, ModelProto, NodeProto, TensorProto, helper
 from torch import Tensor, nn
 from torch.export import Dim
 
-from export.attention_blocks import in_blocks, with_nodes
 from export.onnx_parts import exported
 from models.networks.actor import StepwiseActor
 from models.networks.stepwise import Conditioning, Memory, Moment
@@ -88,14 +87,12 @@ def to_onnx(actor: StepwiseActor) -> ModelProto:
         rows = actor.decoder.condition(grouped_preferences)
         state = _Encode(actor)(instance, preferences)[-3:]
     tables = [f"memory_{i}" for i in range(len(memory))] + [f"rows_{i}" for i in range(len(rows))]
-    encode = in_blocks(
-        exported(
-            _Encode(with_nodes(actor)),
-            (instance, preferences),
-            [name, "preferences"],
-            [*tables, "places", *_STATE],
-            _AXES,
-        )
+    encode = exported(
+        _Encode(actor),
+        (instance, preferences),
+        [name, "preferences"],
+        [*tables, "places", *_STATE],
+        _AXES,
     )
     step = exported(
         _Step(actor, type(memory), type(rows)),

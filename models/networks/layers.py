@@ -1,25 +1,16 @@
 """Layers of the encoders: attention of several kinds, feed-forward, preference encoders.
 
-PA-AT's encoder is that of Kool, van Hoof and Welling (2019), arXiv:1803.08475. The layers of
-PA-One for matrices differ in two ways: they normalise before each layer rather than after, so
-that deeper stacks train; and their heads attend less the more a step between two cities costs,
-each head at rates of its own in either objective and under the preference's weights.
+PA-AT's encoder is that of Kool, van Hoof and Welling (2019), arXiv:1803.08475.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Callable
 
-import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
 # Attention: from queries, keys and values to the sums of each head, all (b, h, n, d / h).
 See = Callable[[Tensor, Tensor, Tensor], Tensor]
-# The same, after the rates (h, m) at which each head fades with each measure of nearness.
-SeeFading = Callable[[Tensor, Tensor, Tensor, Tensor], Tensor]
-# From costs (b, s, 2, n, n) of s kinds and weights (g, 2) to the attention of the layers.
-Seeing = Callable[[Tensor, Tensor], SeeFading]
 
 
 def see(
@@ -31,19 +22,6 @@ def see(
     """Return scaled dot-product attention; the bias is added to the scores."""
     scores = query @ key.mT / query.shape[-1] ** 0.5
     return (scores if bias is None else scores + bias).softmax(dim=-1) @ value
-
-
-def see_fading(
-    nearness: Float[Tensor, "b m n n"],
-    rates: Float[Tensor, "h m"],
-    query: Float[Tensor, "b h n e"],
-    key: Float[Tensor, "b h n e"],
-    value: Float[Tensor, "b h n e"],
-) -> Float[Tensor, "b h n e"]:
-    """Return attention that falls off as nearness does, for each head at rates of its own."""
-    # As a product it is one pass over (b, h, n, n), the largest thing there is.
-    bias = (rates @ nearness.flatten(2)).unflatten(2, nearness.shape[2:])
-    return see(query, key, value, bias)
 
 
 class SelfAttention(nn.Module):
@@ -129,43 +107,3 @@ class PostNormLayer(nn.Module):
     def _normalised(self, index: int, features: Tensor) -> Tensor:
         normalised: Tensor = self.norms[index](features.transpose(1, 2)).transpose(1, 2)
         return normalised
-
-
-def seeing_at_once(costs: Float[Tensor, "b s 2 n n"], weights: Float[Tensor, "g 2"]) -> SeeFading:
-    """Return attention of all cities to all in one product.
-
-    Nearness falls with each of s kinds of cost: in the first objective, the second, or by weight.
-    """
-    by_group = costs.repeat_interleave(len(weights), dim=0)
-    shares = weights.repeat(len(costs), 1)[:, None, :, None, None]
-    measures = torch.cat((by_group, (by_group * shares).sum(dim=2, keepdim=True)), dim=2)
-    return partial(see_fading, -measures.flatten(1, 2).log1p())
-
-
-class FadingLayer(SilenceableLayer):
-    """Attention whose heads fade, each at rates of its own, as several measures of nearness fall.
-
-    The kinds of head, rows of first rates by measure, take turns.
-    """
-
-    def __init__(
-        self, width: int, heads: int, hidden: int, kinds: Sequence[Sequence[float]]
-    ) -> None:
-        super().__init__()
-        self.attend = SelfAttention(width, heads)
-        self.think = feedforward(width, width, hidden)
-        self.norms = nn.ModuleList(nn.LayerNorm(width) for _ in range(2))
-        turns = [kinds[head % len(kinds)] for head in range(heads)]
-        self.fading = nn.Parameter(torch.tensor(turns))  # (h, m)
-
-    def silence(self) -> None:
-        """Make the layer give back the features as they came, until it is trained."""
-        for last in (self.attend.merge, self.think[-1]):
-            for weights in last.parameters():
-                nn.init.zeros_(weights)
-
-    def forward(self, features: Float[Tensor, "b n d"], see: SeeFading) -> Float[Tensor, "b n d"]:
-        """Return the features of the cities, each in view of those near it."""
-        features = features + self.attend(self.norms[0](features), partial(see, self.fading))
-        thought: Tensor = self.think(self.norms[1](features))
-        return features + thought

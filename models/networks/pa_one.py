@@ -10,7 +10,7 @@ against each other; which is why it does as well at 1000 cities as at the 20 to 
 learned from.
 """
 
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import torch
 from jaxtyping import Float, Int
@@ -48,7 +48,7 @@ _STEEPNESS = 1.5  # how fast logits fall with such a cost, at first
 class OneActor(Actor):
     """PA-One. Of the configuration it takes width, layers and feedforward."""
 
-    reads = "coordinates"
+    reads: ClassVar[Literal["coordinates", "matrices"]] = "coordinates"
     construction = "fragments"
     precisions = ("float32",)
     imitates_starts = False  # it learns edges

@@ -11,7 +11,7 @@ from models.networks.actor import StepwiseActor
 from models.rollout import greedily, log_likelihoods, repeated, roll_out, sampling
 from tests.helpers.small_actors import CPU, random_instances, small_actor
 
-NAMES = ("pa-at", "pa-ean", "pa-ad", "pa-one-matrix")
+NAMES = ("pa-at", "pa-ean", "pa-ad")
 
 
 @pytest.mark.parametrize("name", NAMES)

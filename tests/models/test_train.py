@@ -41,13 +41,13 @@ def test_the_command_goes_on_with_the_run_that_lies_there(tmp_path: Path) -> Non
 
 def test_products_of_less_precision_train_as_well(tmp_path: Path) -> None:
     command = ["--out", str(tmp_path), "--precision", "bfloat16", "--steps", "2"]
-    command += ["--name", "pa-one-matrix"]
+    command += ["--name", "pa-at"]
     small = ["--width", "16", "--heads", "2", "--layers", "1", "--feedforward", "32"]
     train.main(
         [*command, *small, "--instances", "2", "--starts", "2", "--preferences", "5"], COUNTS
     )
-    weights = load_weights(tmp_path / "weights.pt").actor.state_dict()
-    assert all(each.isfinite().all() and each.dtype == torch.float32 for each in weights.values())
+    weights = load_weights(tmp_path / "weights.pt").actor.parameters()
+    assert all(each.isfinite().all() and each.dtype == torch.float32 for each in weights)
 
 
 def test_pa_one_trains_in_single_precision_alone(tmp_path: Path) -> None:
