@@ -16,7 +16,7 @@ from tqdm import tqdm
 
 from models.data.dataset import Shard
 from models.data.generators import PLANES
-from models.data.matrices import MATRICES, SHARES
+from models.data.matrices import any_matrices
 from models.options import add_options, from_options, setting
 from service.instance import Instance
 from service.preferences import from_angles, weights
@@ -81,7 +81,7 @@ def expert_tours(
 def _instance(n: int, config: ExpertConfig, generator: Generator) -> Array:
     if config.kind == "coordinates":
         return _cities(n, config.shaped, generator)
-    return MATRICES[generator.choice(list(MATRICES), p=SHARES)](n, generator)
+    return any_matrices(n, generator)
 
 
 def _cities(n: int, shaped: float, generator: Generator) -> Array:

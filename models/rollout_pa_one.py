@@ -13,6 +13,7 @@ from models.networks.candidates import (
     cheapest_candidates,
     joined_at_cost,
     single_cities,
+    still_possible,
     toured,
 )
 from models.networks.fragments import NEVER, Fragments, mutual_best, possible
@@ -42,8 +43,9 @@ def sampled_tours(
         positions = candidates.positions
         logits = edge_logits(costs, fragments, candidates) / _TEMPERATURE
         noisy = logits.detach() + _noise(positions, generator)
+        before = fragments
         for _ in range(joinings):
-            allowed = possible(fragments, positions)
+            allowed = still_possible(candidates, before, fragments)
             noisy = torch.where(allowed, noisy, -NEVER)
             logits = torch.where(allowed, logits, -NEVER)
             mates = mutual_best(fragments, positions, noisy)

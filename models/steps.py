@@ -7,16 +7,19 @@ import math
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 
+import numpy as np
 import torch
-from torch import Tensor, nn
+from torch import Generator, Tensor, nn
 from torch.optim import Optimizer
 
 from models.checkpoint import Run
 from models.config import TrainingConfig
 from models.data.dataset import Batch, Labels
-from models.data.instances import city_count, tour_lengths, uniform_instances
+from models.data.instances import city_count, tour_lengths, uniform_cities
+from models.data.matrices import any_matrices
 from models.data.preferences import fan_of_preferences, spread_preferences
 from models.lagrangian import ascended, lagrangian, violation, weighted_sum
+from models.networks.matrix_features import unit_matrices
 
 
 @dataclass(frozen=True)
@@ -97,7 +100,17 @@ def descend(optimizer: Optimizer, network: nn.Module, loss: Tensor, clip_gradien
 def _sample_instances(run: Run) -> Tensor:
     config, generator = run.config, run.instance_generator
     n = city_count(config.least_cities, config.most_cities, generator)
-    return uniform_instances(run.actor.reads, config.instances, n, generator, run.device)
+    if run.actor.reads == "coordinates":
+        return uniform_cities(config.instances, n, generator, run.device)
+    drawn = np.stack(
+        [any_matrices(n, _numpy_generator(generator)) for _ in range(config.instances)]
+    )
+    return unit_matrices(torch.from_numpy(drawn.astype(np.float32)).to(run.device))
+
+
+def _numpy_generator(generator: Generator) -> np.random.Generator:
+    """Return a generator of numpy whose seed the generator draws."""
+    return np.random.default_rng(int(torch.randint(2**62, (), generator=generator)))
 
 
 def _preferences(run: Run) -> Tensor:

@@ -106,3 +106,8 @@ MATRICES: dict[str, Callable[[int, Generator], Array]] = {
 }
 # How often each kind is drawn.
 SHARES = (0.2, 0.2, 0.1, 0.1, 0.15, 0.25)
+
+
+def any_matrices(n: int, generator: Generator) -> Array:
+    """Draw costs of a kind drawn at random."""
+    return MATRICES[generator.choice(list(MATRICES), p=SHARES)](n, generator)

@@ -19,10 +19,12 @@ from models.networks.fragments import (
     all_alone,
     first_open,
     joined,
+    possible,
     walked,
 )
 
 CANDIDATES = 8  # of an end
+_ROUNDING = 1e-5  # of a cost, by which it may seem to have risen
 
 
 class Costs(NamedTuple):
@@ -152,6 +154,39 @@ def cheapest_candidates(costs: Costs, fragments: Fragments) -> Candidates:
     impossible = (positions == partners[..., None]) | ~open_[..., None] | (cheapest >= NEVER / 2)
     cheapest = torch.where(impossible, NEVER, cheapest)
     return Candidates(cheapest, positions, None if leans is None else leans.gather(2, cities))
+
+
+def still_possible(
+    candidates: Candidates, before: Fragments, after: Fragments
+) -> Bool[Tensor, "r e c"]:
+    """Return which edges may still be added after some were, at no higher cost than before.
+
+    Candidates are of the fragments before. Where costs have directions, a path that has grown may
+    want to be gone along the other way, in which another edge to it costs more.
+    """
+    allowed = possible(after, candidates.positions)
+    if candidates.leans is None or before.leans is None or after.leans is None:
+        return allowed
+    costs, magnitudes = zip(
+        *(_cost_of_leaning(candidates, before, fragments) for fragments in (before, after)),
+        strict=True,
+    )
+    return allowed & (costs[1] <= costs[0] + _ROUNDING * (magnitudes[0] + magnitudes[1]))
+
+
+def _cost_of_leaning(
+    candidates: Candidates, before: Fragments, now: Fragments
+) -> tuple[Float[Tensor, "r e c"], Float[Tensor, "r e c"]]:
+    """Return what directions add to the cost of each edge, and the numbers that it comes from."""
+    positions = candidates.positions
+    change = now.leans - before.leans
+    theirs, change_there = (
+        leans.gather(1, positions.flatten(1)).view_as(candidates.costs)
+        for leans in (now.leans, change)
+    )
+    through = (candidates.leans + change_there - change[..., None]).abs()
+    paths = now.leans.abs()[..., None] + theirs.abs()
+    return paths - through, paths + through
 
 
 def partner_costs(costs: Costs, fragments: Fragments) -> Float[Tensor, "r e"]:

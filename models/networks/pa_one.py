@@ -30,10 +30,11 @@ from models.networks.candidates import (
     padded_distances,
     partner_costs,
     single_cities,
+    still_possible,
     toured,
     weighted_costs,
 )
-from models.networks.fragments import NEVER, Fragments, mutual_best, possible
+from models.networks.fragments import NEVER, Fragments, mutual_best
 from models.networks.layers import SilenceableLayer, feedforward
 
 _MESSAGE = 4  # features that an end sends its neighbours
@@ -145,12 +146,12 @@ class OneActor(Actor):
         """Return the fragments after joining them, so many times, by the best of these edges."""
         logits = self.edge_logits(costs, fragments, candidates)
         mates = mutual_best(fragments, candidates.positions, logits)
-        fragments = joined_at_cost(costs, fragments, mates)
+        after = joined_at_cost(costs, fragments, mates)
         for _ in range(joinings - 1):
-            logits = torch.where(possible(fragments, candidates.positions), logits, -NEVER)
-            mates = mutual_best(fragments, candidates.positions, logits)
-            fragments = joined_at_cost(costs, fragments, mates)
-        return fragments
+            logits = torch.where(still_possible(candidates, fragments, after), logits, -NEVER)
+            mates = mutual_best(after, candidates.positions, logits)
+            after = joined_at_cost(costs, after, mates)
+        return after
 
     def prices(self, costs: Costs, weights: Float[Tensor, "r 2"]) -> Prices | None:  # noqa: ARG002
         """Return the prices that are taken off the costs of each row, if there are any."""

@@ -35,8 +35,6 @@ class OneMatrixActor(OneActor):
 
     reads = "matrices"
     has_directions = True
-    # What is joined to a path may turn it, and then the other edges to it cost otherwise.
-    joinings = 1
     repair_joinings = 2
 
     def costs(self, instance: Float[Tensor, "2 n n"]) -> Costs:
