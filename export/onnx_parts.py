@@ -2,14 +2,32 @@
 
 import logging
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from tempfile import TemporaryDirectory
 from typing import Any
 
+import numpy as np
+import onnx
 import torch
-from onnx import AttributeProto, FunctionProto, GraphProto, ModelProto, TensorProto, helper, inliner
-from torch import nn
+from onnx import (
+    AttributeProto,
+    FunctionProto,
+    GraphProto,
+    ModelProto,
+    TensorProto,
+    helper,
+    inliner,
+    numpy_helper,
+)
+from torch import Tensor, nn
+from torch.onnx.symbolic_helper import parse_args
+from torch.onnx.utils import register_custom_op_symbolic, unregister_custom_op_symbolic
 
 DOMAIN = "paretour"  # of functions that stand for parts until they are put in their places
+
+OPSET = 18
+_REDUCTIONS = {"amax": "max", "amin": "min", "sum": "add"}
 
 # A module, what to trace it with, and the names of its inputs and outputs.
 Part = tuple[nn.Module, tuple[Any, ...], list[str], list[str]]
@@ -45,6 +63,80 @@ def exported(
     return program.model_proto
 
 
+def traced(
+    module: nn.Module,
+    arguments: tuple[Any, ...],
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    axes: Collection[int],
+) -> ModelProto:
+    """Export a module as `exported` does, by the older exporter, fifty times as fast.
+
+    It records operations one by one. A size that the module reads of one axis of a tensor stays
+    dynamic; one that it reads otherwise may be frozen.
+
+    Raises:
+        ValueError: a constant of the graph is one of the sizes of axes.
+    """
+    tensors = _flat(arguments)
+    dynamic = {
+        name: [axis for axis, size in enumerate(tensor.shape) if size in axes]
+        for name, tensor in zip(inputs, tensors, strict=True)
+    }
+    with (
+        warnings.catch_warnings(),
+        _reductions_of_tables(),
+        TemporaryDirectory() as folder,
+    ):
+        warnings.simplefilter("ignore")  # the exporter is deprecated; recording has its own
+        torch.onnx.export(
+            module.eval(),
+            arguments,
+            f"{folder}/part.onnx",
+            input_names=list(inputs),
+            output_names=list(outputs),
+            dynamic_axes=dynamic,
+            opset_version=OPSET,
+            dynamo=False,
+        )
+        model = onnx.load(f"{folder}/part.onnx")
+    del model.graph.value_info[:]
+    _check_sizes(model.graph, axes)
+    return model
+
+
+def _check_sizes(graph: GraphProto, axes: Collection[int]) -> None:
+    for node in graph.node:
+        if node.op_type == "Constant":
+            values = numpy_helper.to_array(node.attribute[0].t)
+            if values.dtype == np.int64 and not set(values.flatten().tolist()).isdisjoint(axes):
+                raise ValueError(f"a size must not be frozen, got {node.name}: {values}")
+
+
+def _flat(argument: Any) -> list[Tensor]:
+    if not isinstance(argument, tuple):
+        return [argument]
+    return [tensor for part in argument for tensor in _flat(part)]
+
+
+@contextmanager
+def _reductions_of_tables() -> Iterator[None]:
+    """Have scatter_reduce exported without the case of tensors that have no axis."""
+
+    @parse_args("v", "i", "v", "v", "s", "b")
+    def scatter_reduce(
+        graph: Any, table: Any, axis: int, index: Any, source: Any, reduce: str, _: bool
+    ) -> Any:
+        how = _REDUCTIONS[reduce]
+        return graph.op("ScatterElements", table, index, source, axis_i=axis, reduction_s=how)
+
+    register_custom_op_symbolic("aten::scatter_reduce", scatter_reduce, OPSET)
+    try:
+        yield
+    finally:
+        unregister_custom_op_symbolic("aten::scatter_reduce", OPSET)
+
+
 def inlined(model: ModelProto, functions: Sequence[FunctionProto]) -> ModelProto:
     """Return the model with each function inlined, and all weights in the outermost graph.
 
@@ -78,8 +170,11 @@ def _taken_out(graph: GraphProto) -> list[TensorProto]:
     return constants
 
 
-def as_function(name: str, model: ModelProto) -> FunctionProto:
-    """Return a graph as a function of that name, its weights as constants inside."""
+def as_function(name: str, model: ModelProto, inputs: Sequence[str]) -> FunctionProto:
+    """Return a graph as a function of that name, its weights as constants inside.
+
+    Of its inputs the graph may lack those that it does not use.
+    """
     graph = model.graph
     constants = [
         helper.make_node("Constant", [], [tensor.name], value=tensor)
@@ -88,7 +183,7 @@ def as_function(name: str, model: ModelProto) -> FunctionProto:
     return helper.make_function(
         DOMAIN,
         name,
-        [value.name for value in graph.input],
+        inputs,
         [value.name for value in graph.output],
         [*constants, *graph.node],
         model.opset_import,

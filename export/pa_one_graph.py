@@ -7,7 +7,7 @@ them. The functions of the domain `paretour` are the parts that `export.pa_one` 
 
 There is one text for coordinates and for matrices. Where costs have directions, the tables of
 costs and the fragments have a tensor of leans more, and there are prices, of which a block takes
-its rows.
+its rows, and shortlists. There the last fragments of a block are joined as in a repair.
 """
 
 from string import Template
@@ -37,7 +37,7 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
     blocks = Squeeze (blocks_in_all)
     shape_of_nothing = Concat <axis = 0> (zero, n)
     nothing = ConstantOfShape <value = int64[1] {0}> (shape_of_nothing)
-    $problem = paretour.Prepare ($given, preferences)
+    $prepared = paretour.Prepare ($given, preferences)
 
     least_of_nothing = CastLike (nothing, weights)
     built, least = Loop (blocks, , nothing, least_of_nothing) <body = add_block
@@ -48,24 +48,14 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
             first_row = Mul (block, size)
             beyond_row = Add (first_row, size)
             $rows_of_block
-            $costs, least_edges, $begun, unfinished = paretour.Begin ($problem_of_block)
-
-            $last = Loop (cities_in_all, unfinished, $begun) <body = join
-                (int64 round, bool going_on, $given_to_join)
-                => (bool go_on, $joined)
-                {
-                    $slices
-                    $names_joined, go_on = paretour.Round ($costs, $sliced)
-                }>
-
-            first, second = paretour.Start ($finished)
+            $joining
             last_before, last_now, others = Loop (steps, , first, second) <body = walk
                 (int64 step, bool walking_on, int64[r] city_before, int64[r] city_now)
                 => (bool walk_on, int64[r] new_before, int64[r] new_now, int64[r] visited)
                 {
                     walk_on = Identity (walking_on)
                     new_before = Identity (city_now)
-                    new_now = paretour.Next (last_links, city_before, city_now)
+                    new_now = paretour.Next ($walked, city_before, city_now)
                     visited = Identity (new_now)
                 }>
             first_of_all = Unsqueeze (first, zero)
@@ -90,13 +80,7 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
             repair_on = Identity (repairing)
             cut_cities, turned, places, gaps, $between, $cut, is_cut = paretour.Cut
                 ($problem, least, tours_in, freshness_in, count)
-            $new = Loop (cities_in_all, is_cut, $cut) <body = rejoin
-                (int64 round, bool parted, $given_to_rejoin)
-                => (bool apart, $rejoined)
-                {
-                    $slices_rejoined
-                    $names_rejoined, apart = paretour.Rejoin ($between, $sliced_rejoined)
-                }>
+            $rejoining
             tours_out, points_out, visited_out, visited_points_out, freshness_out = paretour.Keep
                 ($tables, weights, tours_in, points_in, visited_in, visited_points_in,
                  freshness_in, cut_cities, turned, places, gaps, $between, $new_fragments)
@@ -104,8 +88,52 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
 }
 """)
 
+# Of cities, until each row has one fragment: candidates are among all open ends.
+_JOINING = Template("""
+            $costs, least_edges, $begun, unfinished = paretour.Begin ($problem_of_block)
+            $last = Loop (cities_in_all, unfinished, $begun) <body = join
+                (int64 round, bool going_on, $given_to_join)
+                => (bool go_on, $joined)
+                {
+                    $slices
+                    $names_joined, go_on = paretour.Round ($costs, $sliced)
+                }>
+            first, second = paretour.Start ($last_fragments)
+""")
+
+# The same with candidates from lists, while many ends are open; then the problem is contracted.
+_LISTED_JOINING = Template("""
+            $row_lists, least_edges, $begun, unfinished = paretour.Begin
+                ($problem_of_block, $lists)
+            $last = Loop (cities_in_all, unfinished, $begun) <body = join
+                (int64 round, bool going_on, $given_to_join)
+                => (bool go_on, $joined)
+                {
+                    $slices
+                    $names_joined, go_on = paretour.Round ($problem_of_block, $row_lists, $sliced)
+                }>
+            $slices_of_last
+            $costs, $few, is_open = paretour.Contract ($problem_of_block, $sliced_last)
+            $rejoining_of_few
+            links_of_tours, first, second = paretour.Finish
+                ($problem_of_block, $sliced_last, $costs, $solved)
+""")
+
+# Of a few fragments, until two are left at most.
+_REJOINING = Template("""
+            $after = Loop (cities_in_all, $unfinished, $before) <body = rejoin
+                (int64 ${prefix}round, bool ${prefix}going_on, $given)
+                => (bool ${prefix}go_on, $rejoined)
+                {
+                    $slices
+                    $names, ${prefix}go_on = paretour.Rejoin ($costs, $sliced)
+                }>
+""")
+
 CUTS = ("turned", "places", "gaps")
 STATE = ("tours", "points", "visited", "visited_points", "freshness")
+LISTS = ("cities", "means", "leans", "rise_of_means", "rise_of_leans")
+ROW_LISTS = LISTS[:3]
 _TYPES = {
     "ends": "int64[r, {e}]",
     "partners": "int64[r, {e}]",
@@ -129,13 +157,13 @@ class Names(NamedTuple):
 
     @property
     def problem(self) -> tuple[str, ...]:
-        """What is found first: the tables, the weights of each row, its prices."""
+        """The tables, the weights of each row, its prices."""
         return *self.tables, "weights", *self.prices
 
     @property
-    def finished(self) -> tuple[str, ...]:
-        """What is needed to begin the tours: fragments, and costs where these have directions."""
-        return *(self.costs if self.prices else ()), *self.fragments
+    def lists(self) -> tuple[str, ...]:
+        """The shortlists, of matrices only."""
+        return tuple(f"listed_{name}" for name in LISTS) if self.prices else ()
 
     @property
     def after_round(self) -> list[str]:
@@ -156,7 +184,6 @@ MATRICES = Names(
 
 def graph(names: Names, opset: int, room: int, cities_cut: int) -> str:
     """Return the text of the graph; room is for costs of a block, in entries of one table."""
-    kept = (*names.fragments, "kept")
     by_row = ("weights", *names.prices)
     is_matrices = names is MATRICES
     return _GRAPH.substitute(
@@ -166,32 +193,63 @@ def graph(names: Names, opset: int, room: int, cities_cut: int) -> str:
         given=names.instance,
         instance="float[2, n, n]" if is_matrices else "float[n, 4]",
         cities_axis="start = 1, end = 2" if is_matrices else "start = 0, end = 1",
+        prepared=_listed((*names.problem, *names.lists)),
         problem=_listed(names.problem),
         tables=_listed(names.tables),
         rows_of_block="\n".join(
             f"block_{name} = Slice ({name}, first_row, beyond_row, zero)" for name in by_row
         ),
-        problem_of_block=_listed((*names.tables, *(f"block_{name}" for name in by_row))),
+        joining=_joining(names),
+        walked="links_of_tours" if names.lists else "last_links",
+        between=_listed(names.costs, "between_"),
+        cut=_listed((*names.fragments, "kept"), "cut_"),
+        rejoining=_rejoining(names, "is_cut", ("cut_", "new_"), "between_"),
+        new_fragments=_listed(names.fragments, "new_"),
+    )
+
+
+def _joining(names: Names) -> str:
+    """Return the lines that build the tours of a block."""
+    kept = (*names.fragments, "kept")
+    template = _LISTED_JOINING if names.lists else _JOINING
+    return template.safe_substitute(
+        problem_of_block=_listed(
+            (*names.tables, *(f"block_{name}" for name in ("weights", *names.prices)))
+        ),
         costs=_listed(names.costs),
+        lists=_listed(names.lists),
+        row_lists=_listed(ROW_LISTS, "row_"),
         begun=_listed(kept),
         last=_listed(kept, "last_"),
-        finished=", ".join(
-            name if name in names.costs else f"last_{name}" for name in names.finished
-        ),
+        last_fragments=_listed(names.fragments, "last_"),
         given_to_join=_typed(kept, "all_", "e"),
         joined=_typed(kept, "out_", "f"),
         slices=_slices(names.fragments, "all_", "in_"),
         sliced=_listed(names.fragments, "in_"),
         names_joined=_listed(kept, "out_"),
-        between=_listed(names.costs, "between_"),
-        cut=_listed(kept, "cut_"),
-        new=_listed(kept, "new_"),
-        new_fragments=_listed(names.fragments, "new_"),
-        given_to_rejoin=_typed(kept, "some_", "e"),
-        rejoined=_typed(kept, "joined_", "f"),
-        slices_rejoined=_slices(names.fragments, "some_", "apart_"),
-        sliced_rejoined=_listed(names.fragments, "apart_"),
-        names_rejoined=_listed(kept, "joined_"),
+        slices_of_last=_slices(names.fragments, "last_", "whole_"),
+        sliced_last=_listed(names.fragments, "whole_"),
+        few=_listed(kept, "few_"),
+        rejoining_of_few=_rejoining(names, "is_open", ("few_", "solved_"), ""),
+        solved=_listed(names.fragments, "solved_"),
+    )
+
+
+def _rejoining(names: Names, unfinished: str, prefixes: tuple[str, str], costs: str) -> str:
+    """Return the lines that join fragments; prefixes are of the names before and after."""
+    kept = (*names.fragments, "kept")
+    before, after = prefixes
+    return _REJOINING.substitute(
+        prefix=before,
+        unfinished=unfinished,
+        before=_listed(kept, before),
+        after=_listed(kept, after),
+        costs=_listed(names.costs, costs),
+        given=_typed(kept, f"{before}in_", "e"),
+        rejoined=_typed(kept, f"{before}out_", "f"),
+        slices=_slices(names.fragments, f"{before}in_", f"{before}some_"),
+        sliced=_listed(names.fragments, f"{before}some_"),
+        names=_listed(kept, f"{before}out_"),
     )
 
 

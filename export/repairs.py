@@ -5,12 +5,12 @@ from torch import Tensor, nn
 
 from export.onnx_parts import Part
 from export.pa_one_graph import CUTS, STATE, Names
-from models.networks.candidates import Costs, Prices, cheapest_candidates
-from models.networks.fragments import Fragments, cleared
+from models.networks.joining.candidates import cheapest_candidates
+from models.networks.joining.costs import Costs, Prices, Problem
+from models.networks.joining.fragments import Fragments, cleared
+from models.networks.joining.repairs import Cuts, cut, laid_out, last_two_joined, repair_problem
 from models.networks.pa_one import OneActor
-from models.networks.repairs import Cuts, cut, laid_out, last_two_joined, repair_problem
 from models.rollout_repairs import (
-    Problem,
     RepairState,
     cities_to_cut,
     state_after_repair,
@@ -44,11 +44,11 @@ class Cut(nn.Module):
 
         There are as many cities as the count has entries.
         """
-        costs, rows, prices = problem = as_problem(given)
+        problem = as_problem(given)
         cities = cities_to_cut(problem, least, tours, freshness, count.shape[0])
         cuts = cut(tours, cities)
-        between, fragments = repair_problem(costs, rows, cuts, prices)
-        return cities, *cuts, *present(between), *_left(fragments)
+        between, fragments = repair_problem(problem, cuts)
+        return cities, *cuts, *present(between), *left_of(fragments)
 
 
 class Rejoin(nn.Module):
@@ -62,7 +62,7 @@ class Rejoin(nn.Module):
         """Return the fragments, how many ends to keep, and whether to go on."""
         costs, fragments = Costs(*tables), Fragments(*given)
         candidates = cheapest_candidates(costs, fragments)
-        return _left(self.actor.round(costs, fragments, candidates, self.actor.repair_joinings))
+        return left_of(self.actor.round(costs, fragments, candidates, self.actor.repair_joinings))
 
 
 class Keep(nn.Module):
@@ -83,10 +83,10 @@ class Keep(nn.Module):
         return state_after_repair(Costs(*tables), rows, RepairState(*state), cuts[0], tours)
 
 
-def _left(fragments: Fragments) -> tuple[Tensor, ...]:
-    """Return the cleared fragments, how many ends to keep, and whether more are to be joined."""
+def left_of(fragments: Fragments, enough: int = 2) -> tuple[Tensor, ...]:
+    """Return the cleared fragments, how many ends to keep, and whether too many are left."""
     after, kept = cleared(fragments)
-    return *present(after), kept[None], (after.left > 2).any()
+    return *present(after), kept[None], (after.left > enough).any()
 
 
 def present(tensors: Costs | Fragments) -> tuple[Tensor, ...]:
@@ -95,19 +95,24 @@ def present(tensors: Costs | Fragments) -> tuple[Tensor, ...]:
 
 
 def as_problem(given: tuple[Tensor, ...]) -> Problem:
-    """Return the costs in each objective, the weights of each row and its prices, if there are."""
+    """Return the problem that these tensors are, in the order of `Names.problem`."""
     if len(given) == _WITHOUT_DIRECTIONS:
         distances, rows = given
-        return Costs(distances), rows, None
+        return Problem(Costs(distances), rows)
     means, leans, rows, fees, tilts = given
-    return Costs(means, leans), rows, Prices(fees, tilts)
+    return Problem(Costs(means, leans), rows, Prices(fees, tilts))
+
+
+def as_tensors(problem: Problem) -> tuple[Tensor, ...]:
+    """Return the tensors of a problem, in the order of `Names.problem`."""
+    return *present(problem.costs), problem.weights, *(problem.prices or ())
 
 
 def repair_parts(
-    names: Names, given: tuple[Tensor, ...], cut_cities: int, open_ends: int
+    actor: OneActor, names: Names, problem: Problem, cut_cities: int, open_ends: int
 ) -> dict[str, Part]:
-    """Return the parts without weights of the network, by name, to be traced at these sizes."""
-    costs, rows, prices = as_problem(given)
+    """Return the parts that repair, by name, to be traced at these sizes."""
+    costs, rows, _ = problem
     tables = present(costs)
     r, n = len(rows), costs.means.shape[1]
     tours = torch.arange(n).repeat(r, 1)
@@ -116,8 +121,8 @@ def repair_parts(
     state = (tours, points, tours.clone(), points.clone(), freshness)
     least, cities = torch.rand(r, n), torch.arange(cut_cities).repeat(r, 1)
     cuts = cut(tours, cities)
-    between, fragments = repair_problem(costs, rows, cuts, prices)
-    joined = first_ends(fragments, open_ends)
+    between, fragments = repair_problem(problem, cuts)
+    joined = nearly_solved(actor, between, fragments, open_ends)
     return {
         "Unrepaired": (
             Unrepaired(),
@@ -127,9 +132,15 @@ def repair_parts(
         ),
         "Cut": (
             Cut(),
-            (given, least, tours, freshness, torch.zeros(cut_cities)),
+            (as_tensors(problem), least, tours, freshness, torch.zeros(cut_cities)),
             [*names.problem, "least", "tours", "freshness", "count"],
             ["cities", *CUTS, *names.costs, *names.after_round],
+        ),
+        "Rejoin": (
+            Rejoin(actor),
+            (present(between), present(joined)),
+            [*names.costs, *names.fragments],
+            names.after_round,
         ),
         "Keep": (
             Keep(),
@@ -141,6 +152,15 @@ def repair_parts(
             [f"new_{name}" for name in STATE],
         ),
     }
+
+
+def nearly_solved(actor: OneActor, costs: Costs, fragments: Fragments, count: int) -> Fragments:
+    """Return the fragments when two at most are left in each row, with that many ends."""
+    while bool((fragments.left > 2).any()):
+        candidates = cheapest_candidates(costs, fragments)
+        with torch.no_grad():
+            fragments = cleared(actor.round(costs, fragments, candidates, 1))[0]
+    return first_ends(fragments, count)
 
 
 def first_ends(fragments: Fragments, count: int) -> Fragments:

@@ -7,16 +7,16 @@ from jaxtyping import Bool, Float, Int
 from torch import Generator, Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits
 
-from models.networks.candidates import (
+from models.networks.joining.candidates import (
     Candidates,
-    Costs,
     cheapest_candidates,
     joined_at_cost,
     single_cities,
     still_possible,
     toured,
 )
-from models.networks.fragments import NEVER, Fragments, mutual_best, possible
+from models.networks.joining.costs import Costs
+from models.networks.joining.fragments import NEVER, Fragments, mutual_best, possible
 
 _JOININGS = 2  # of fragments of an expert's tour, for one evaluation of the network
 _TEMPERATURE = 0.5  # of the distribution that is drawn from, against log-odds

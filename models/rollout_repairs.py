@@ -6,35 +6,18 @@ left, and the new tour replaces the old one if it is shorter under its row's wei
 tours that it visits, each row remembers one that no tour of the front dominates.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 
 from models.data.preferences import turned_outwards, weights
-from models.networks.candidates import (
-    CANDIDATES,
-    Candidates,
-    Costs,
-    Prices,
-    cheapest_candidates,
-    first_candidates,
-    weighted_costs,
-)
-from models.networks.fragments import NEVER
+from models.networks.joining.candidates import Candidates
+from models.networks.joining.costs import CANDIDATES, Costs, Problem, weighted_sums
+from models.networks.joining.fragments import NEVER
+from models.networks.joining.repairs import along, cut, laid_out, repair_problem
 from models.networks.pa_one import OneActor
-from models.networks.repairs import (
-    along,
-    cut,
-    laid_out,
-    last_two_joined,
-    repair_problem,
-    weighted_sums,
-)
-
-# The costs in each objective, the weights of each row, and its prices, if there are any.
-Problem = tuple[Costs, Tensor, Prices | None]
 
 CITIES = 8  # that a repair cuts out of a tour
 _AFTER_A_CUT = 0.6  # of a city's freshness
@@ -66,7 +49,7 @@ def repaired_tours(
     rows = weights(turned_outwards(preferences))
     built = actor.tours(instances, preferences)
     states = [
-        _repaired(actor, actor.costs(instance), rows, tours, repairs)
+        _repaired(actor, actor.problem(instance, rows), tours, repairs)
         for instance, tours in zip(instances, built, strict=True)
     ]
     tours = torch.stack([state.tours for state in states])
@@ -75,25 +58,19 @@ def repaired_tours(
 
 def _repaired(
     actor: OneActor,
-    costs: Costs,
-    rows: Float[Tensor, "r 2"],
+    problem: Problem,
     tours: Int[Tensor, "r n"],
     repairs: int,
 ) -> RepairState:
-    prices = actor.prices(costs, rows)
-    least = least_costs(first_candidates(weighted_costs(costs, rows, prices)))
+    least = least_costs(actor.first_candidates(problem))
     count = min(CITIES, tours.shape[1])
-    state = unrepaired(costs, tours)
+    state = unrepaired(problem.costs, tours)
     for _ in range(repairs):
-        cities = cities_to_cut((costs, rows, prices), least, state.tours, state.freshness, count)
+        cities = cities_to_cut(problem, least, state.tours, state.freshness, count)
         cuts = cut(state.tours, cities)
-        between, fragments = repair_problem(costs, rows, cuts, prices)
-        fragments = fragments.trimmed()
-        while bool((fragments.left > 2).any()):
-            candidates = cheapest_candidates(between, fragments)
-            fragments = actor.round(between, fragments, candidates, actor.repair_joinings).trimmed()
-        new = laid_out(cuts, last_two_joined(between, fragments))
-        state = state_after_repair(costs, rows, state, cities, new)
+        between, fragments = repair_problem(problem, cuts)
+        new = laid_out(cuts, actor.joined_to_one(between, fragments.trimmed()))
+        state = state_after_repair(problem.costs, problem.weights, state, cities, new)
     return state
 
 
@@ -119,12 +96,12 @@ def cities_to_cut(
     least: Float[Tensor, "r n"],
     tours: Int[Tensor, "r n"],
     freshness: Float[Tensor, "r n"],
-    count: int | torch.SymInt,
+    count: int | Tensor,
 ) -> Int[Tensor, "r m"]:
     """Return the city of most regret in each row, and those nearest to it.
 
     The regret of a city is what its edges cost above the least possible, times its freshness;
-    costs are less the prices, where there are any. The count is symbolic while the graph is
+    costs are less the prices, where there are any. The count is a tensor while the graph is
     traced for its export.
     """
     costs, weights, prices = problem
@@ -135,7 +112,7 @@ def cities_to_cut(
     both = torch.zeros_like(least).scatter(1, tours, onwards + onwards.roll(1, dims=1))
     centres = ((both - least) * freshness).argmax(dim=1)
     away = _costs_from(problem, centres).scatter(1, centres[:, None], -NEVER)
-    return away.topk(count, largest=False).indices
+    return away.topk(cast(int, count), largest=False).indices
 
 
 def _costs_from(problem: Problem, cities: Int[Tensor, " r"]) -> Float[Tensor, "r w"]:

@@ -19,22 +19,19 @@ from torch import Generator, Tensor, nn
 from models import rollout_pa_one
 from models.data.preferences import turned_outwards, weights
 from models.networks.actor import Actor, Architecture
-from models.networks.candidates import (
-    CANDIDATES,
+from models.networks.joining.candidates import (
     Candidates,
-    Costs,
-    Prices,
     cheapest_candidates,
     first_candidates,
     joined_at_cost,
-    padded_distances,
     partner_costs,
     single_cities,
     still_possible,
     toured,
-    weighted_costs,
 )
-from models.networks.fragments import NEVER, Fragments, mutual_best
+from models.networks.joining.costs import CANDIDATES, Costs, Problem, padded_distances
+from models.networks.joining.fragments import NEVER, Fragments, mutual_best
+from models.networks.joining.repairs import last_two_joined
 from models.networks.layers import SilenceableLayer, feedforward
 
 _MESSAGE = 4  # features that an end sends its neighbours
@@ -79,7 +76,7 @@ class OneActor(Actor):
         return padded_distances(instance)
 
     def edge_logits(
-        self, costs: Costs, fragments: Fragments, candidates: Candidates
+        self, costs: Costs | Problem, fragments: Fragments, candidates: Candidates
     ) -> Float[Tensor, "r e c"]:
         """Return the log-odds of each edge to a candidate; -NEVER where it is impossible."""
         real, near = candidates.real, _Neighbours(candidates, fragments.partners)
@@ -125,10 +122,19 @@ class OneActor(Actor):
     def tours(self, instances: Tensor, preferences: Float[Tensor, "k 2"]) -> Int[Tensor, "b k n"]:
         """Return the greedy tour of each instance for each preference."""
         rows = weights(turned_outwards(preferences))
-        return torch.stack([self._tours(instance, rows) for instance in instances])
+        return torch.stack([self.built(self.problem(instance, rows)) for instance in instances])
 
-    def _tours(self, instance: Tensor, rows: Float[Tensor, "k 2"]) -> Tensor:
-        costs = self.weighted(self.costs(instance), rows)
+    def problem(self, instance: Tensor, weights: Float[Tensor, "r 2"]) -> Problem:
+        """Return the problem that one instance is under the weights of each row."""
+        return Problem(self.costs(instance), weights)
+
+    def first_candidates(self, problem: Problem) -> Candidates:
+        """Return the candidates while all cities are alone."""
+        return first_candidates(problem.tables)
+
+    def built(self, problem: Problem) -> Int[Tensor, "r n"]:
+        """Return the tours that are built for the rows of a problem."""
+        costs = problem.tables
         candidates = first_candidates(costs)
         fragments = self.round(costs, single_cities(costs), candidates, self.joinings).trimmed()
         while bool((fragments.left > 1).any()):
@@ -136,9 +142,16 @@ class OneActor(Actor):
             fragments = self.round(costs, fragments, candidates, self.joinings).trimmed()
         return toured(costs, fragments)
 
+    def joined_to_one(self, costs: Costs, fragments: Fragments) -> Fragments:
+        """Return one fragment for each row, of a few: the last two are joined the cheaper way."""
+        while bool((fragments.left > 2).any()):
+            candidates = cheapest_candidates(costs, fragments)
+            fragments = self.round(costs, fragments, candidates, self.repair_joinings).trimmed()
+        return last_two_joined(costs, fragments)
+
     def round(
         self,
-        costs: Costs,
+        costs: Costs | Problem,
         fragments: Fragments,
         candidates: Candidates,
         joinings: int,
@@ -153,17 +166,9 @@ class OneActor(Actor):
             after = joined_at_cost(costs, after, mates)
         return after
 
-    def prices(self, costs: Costs, weights: Float[Tensor, "r 2"]) -> Prices | None:  # noqa: ARG002
-        """Return the prices that are taken off the costs of each row, if there are any."""
-        return None
-
-    def weighted(self, costs: Costs, weights: Float[Tensor, "r 2"]) -> Costs:
-        """Return the costs that the network joins by, from those in each objective."""
-        return weighted_costs(costs, weights, self.prices(costs, weights))
-
     def _weighted_one_by_one(self, instances: Tensor, weights: Float[Tensor, "k 2"]) -> Costs:
         """Return the costs under the weights of each row of each instance, one after the other."""
-        rows = [self.weighted(self.costs(instance), weights) for instance in instances]
+        rows = [self.problem(instance, weights).tables for instance in instances]
         leans = [costs.leans for costs in rows if costs.leans is not None]
         return Costs(
             torch.cat([costs.means for costs in rows]), torch.cat(leans) if leans else None

@@ -4,30 +4,31 @@ Where costs differ by direction, a path knows by how much it would rather be gon
 than the other, and each edge to it is judged in the way that then costs less. Of a finished tour
 the cheaper direction is taken. On symmetric matrices nothing of this is left.
 
-A tour leaves each city once and enters it once. So a price for each that is taken off the costs
-of its steps changes all tours by the same, and what is left of the costs says more about which
-steps a tour wants: after the best prices of the assignment problem, only those that an optimal
-assignment may take cost nothing. The prices here are of the assignment problem with entropy,
-which come from a few products of matrices (Sinkhorn's iteration; Cuturi, 2013, arXiv:1306.0895).
-They are found for some weights, and between these drawn in straight lines: wrong prices do no
-harm to any tour.
+Candidates come from shortlists while many ends are open. What is left is a small problem, of which
+all pairs are looked at.
 """
 
-import torch
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from torch import Tensor
 
-from models.networks.candidates import Costs, Prices, padded_matrices, weighted_costs
-from models.networks.fragments import NEVER
+from models.networks.joining.candidates import Candidates, toured
+from models.networks.joining.contraction import contracted, expanded
+from models.networks.joining.costs import Costs, Problem, padded_matrices
+from models.networks.joining.fragments import Fragments, all_alone
+from models.networks.joining.prices import prices_at_knots, prices_between
+from models.networks.joining.shortlists import (
+    LEAST,
+    RowLists,
+    Shortlists,
+    first_of,
+    listed_candidates,
+    lists_of_rows,
+    shortlists,
+)
 from models.networks.matrix_features import unit_matrices
 from models.networks.pa_one import OneActor
 
-_WEIGHTS = 9  # for which prices are found
-_CHEAPEST = 4  # steps of each city, whose mean is the unit of the temperature
-_TEMPERATURE = 0.5
-_ITERATIONS = 10
-_LEAST_UNIT = 1e-6
-_LEAST = 1e-30  # entry of a kernel: a city so far from all others gets no higher price
+_SHARE = 2  # of the cities may be open ends, among fewer of which all pairs are looked at
 
 
 class OneMatrixActor(OneActor):
@@ -41,47 +42,48 @@ class OneMatrixActor(OneActor):
         """Return the costs of the steps of one instance in units of the largest of each matrix."""
         return padded_matrices(unit_matrices(instance[None])[0])
 
-    def prices(self, costs: Costs, weights: Float[Tensor, "r 2"]) -> Prices:
-        """Return the prices that are taken off the costs of each row."""
-        return priced(costs, weights)
+    def problem(self, instance: Float[Tensor, "2 n n"], weights: Float[Tensor, "r 2"]) -> Problem:
+        """Return the problem that one instance is under the weights of each row."""
+        return self.listed_problem(instance, weights)[0]
+
+    def listed_problem(
+        self, instance: Float[Tensor, "2 n n"], weights: Float[Tensor, "r 2"]
+    ) -> tuple[Problem, Shortlists]:
+        """Return the problem that one instance is, and the shortlists of its cities."""
+        costs = self.costs(instance)
+        known = prices_at_knots(costs)
+        return Problem(costs, weights, prices_between(weights, known)), shortlists(costs, known)
+
+    def first_candidates(self, problem: Problem) -> Candidates:
+        """Return the candidates while all cities are alone."""
+        return first_of(self._lists(problem))
+
+    def built(self, problem: Problem) -> Int[Tensor, "r n"]:
+        """Return the tours that are built for the rows of a problem."""
+        lists = self._lists(problem)
+        assert problem.prices is not None
+        fragments = all_alone(problem.prices.fees, leaning=True)
+        after = self.round(problem, fragments, first_of(lists), self.joinings)
+        while bool(are_listed(fragments, after)):
+            fragments = after.trimmed()
+            candidates = listed_candidates(lists, fragments)
+            after = self.round(problem, fragments, candidates, self.joinings)
+        fragments = after.trimmed()
+        solved = self.joined_to_one(*contracted(problem, fragments))
+        return toured(problem, expanded(fragments, solved))
+
+    @staticmethod
+    def _lists(problem: Problem) -> RowLists:
+        lists = shortlists(problem.costs, prices_at_knots(problem.costs))
+        return lists_of_rows(lists, problem.weights)
 
 
-def priced(costs: Costs, weights: Float[Tensor, "r 2"]) -> Prices:
-    """Return the prices of the cities under the weights of each row, costs by objective."""
-    first = torch.arange(_WEIGHTS, device=weights.device) / (_WEIGHTS - 1)
-    known = _prices(weighted_costs(costs, torch.stack((first, 1 - first), dim=1).to(weights)))
-    steps = (weights[:, :1] - first.to(weights)).abs() * (_WEIGHTS - 1)
-    shares = (1 - steps).clamp(min=0)  # (r, weights)
-    return Prices(shares @ known.fees, shares @ known.tilts)
+def are_listed(before: Fragments, after: Fragments) -> Tensor:
+    """Return whether the candidates of the next look are to come from lists.
 
-
-def _prices(costs: Costs) -> Prices:
-    """Return the prices of the cities in each row of costs, which have leans."""
-    means, leans = costs
-    assert leans is not None
-    n = means.shape[1]
-    there, back = means + leans, means - leans
-    unit = _unit(torch.cat((there, back), dim=1))[:, None] * _TEMPERATURE
-    kernel, back_kernel = (
-        (-table[:, :, :n] / unit[..., None]).exp().clamp(min=_LEAST) for table in (there, back)
-    )
-    leave, enter = kernel.sum(dim=2).rsqrt(), back_kernel.sum(dim=2).rsqrt()
-    for _ in range(_ITERATIONS):
-        leave, enter = (
-            (leave / _product(kernel, enter)).sqrt(),
-            (enter / _product(back_kernel, leave)).sqrt(),
-        )
-    leave, enter = unit * leave.log(), unit * enter.log()
-    return Prices((leave + enter) / 2, (leave - enter) / 2)
-
-
-def _product(tables: Float[Tensor, "g n n"], of: Float[Tensor, "g n"]) -> Float[Tensor, "g n"]:
-    return (tables @ of[..., None]).squeeze(2)
-
-
-def _unit(costs: Float[Tensor, "g two_n m"]) -> Float[Tensor, " g"]:
-    """Return the mean of the cheapest steps from and to each city."""
-    cheapest = costs.topk(_CHEAPEST, largest=False).values
-    real = cheapest < NEVER / 2
-    total = torch.where(real, cheapest, 0.0).sum(dim=(1, 2))
-    return (total / real.sum(dim=(1, 2)).clamp(min=1)).clamp(min=_LEAST_UNIT)
+    They are while many ends are open in some row, if the last look joined some in each such row.
+    """
+    n = (after.links.shape[1] - 1) // 2
+    count = after.open.sum(dim=1)
+    many = (count > LEAST) & (_SHARE * count > n)
+    return many.any() & ~(many & (after.left == before.left)).any()

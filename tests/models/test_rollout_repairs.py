@@ -13,7 +13,7 @@ from torch import Generator, Tensor
 from models.checkpoint import load_weights
 from models.data.instances import tour_lengths, uniform_cities
 from models.data.preferences import fan_of_preferences, turned_outwards, weights
-from models.networks.candidates import padded_distances
+from models.networks.joining.costs import padded_distances
 from models.networks.pa_one import OneActor
 from models.rollout_repairs import edge_lengths, repaired_tours
 from service.pareto import nondominated

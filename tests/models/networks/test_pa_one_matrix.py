@@ -11,19 +11,18 @@ from torch import Generator, Tensor
 
 from models.data.instances import distance_matrices, tour_lengths, uniform_cities
 from models.data.preferences import fan_of_preferences, turned_outwards, weights
-from models.networks.candidates import (
+from models.networks.joining.candidates import (
     Candidates,
-    Costs,
     cheapest_candidates,
     joined_at_cost,
-    padded_matrices,
     single_cities,
     toured,
-    weighted_costs,
 )
-from models.networks.fragments import NEVER, Fragments, mutual_best
-from models.networks.pa_one_matrix import OneMatrixActor, priced
-from models.networks.repairs import cut, repair_problem
+from models.networks.joining.costs import Costs, Prices, padded_matrices, weighted_costs
+from models.networks.joining.fragments import NEVER, Fragments, mutual_best
+from models.networks.joining.prices import prices_at_knots, prices_between
+from models.networks.joining.repairs import cut, repair_problem
+from models.networks.pa_one_matrix import OneMatrixActor
 from models.rollout_repairs import repaired_tours
 from tests.helpers.small_actors import CPU, small_actor
 
@@ -92,6 +91,10 @@ def test_edges_cost_what_the_cheaper_way_through_both_paths_does(
     assert length([*tour, tour[0]]) <= length([tour[0], *tour[::-1]]) + 1e-9
 
 
+def priced(costs: Costs, rows: Tensor) -> Prices:
+    return prices_between(rows, prices_at_knots(costs))
+
+
 def whole(costs: Costs) -> Tensor:
     assert costs.leans is not None
     n = costs.means.shape[1]
@@ -122,12 +125,12 @@ def test_prices_of_symmetric_matrices_do_not_lean() -> None:
 def test_ends_that_a_cut_leaves_lean_as_their_paths_do() -> None:
     actor = small_actor("pa-one-matrix").double()
     assert isinstance(actor, OneMatrixActor)
-    costs, rows = actor.costs(matrices(12, 3)), weights(fan_of_preferences(2, CPU)).double()
+    problem = actor.problem(matrices(12, 3), weights(fan_of_preferences(2, CPU)).double())
     tours = torch.stack([torch.randperm(12, generator=Generator().manual_seed(s)) for s in (1, 2)])
     cuts = cut(tours, torch.tensor([[0, 4, 9], [3, 4, 11]]))
-    _, fragments = repair_problem(costs, rows, cuts, actor.prices(costs, rows))
+    _, fragments = repair_problem(problem, cuts)
     assert fragments.leans is not None
-    tables = whole(actor.weighted(costs, rows))
+    tables = whole(problem.tables)
     for row, table in enumerate(tables):
         length = length_in(table)
         for k in range(3):

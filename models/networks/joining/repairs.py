@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 import torch
 from jaxtyping import Float, Int
-from torch import Tensor, nn
+from torch import Tensor
 
-from models.networks.candidates import CANDIDATES, Costs, Prices, joined_at_cost, without
-from models.networks.fragments import NEVER, Fragments, cleared
+from models.networks.joining.candidates import joined_at_cost
+from models.networks.joining.costs import Costs, Problem, costs_between, weighted_sums
+from models.networks.joining.fragments import Fragments, cleared
 
 _DOUBLINGS = 6  # of the edges that an end sees ahead: enough for 64 ends
 
@@ -26,13 +27,6 @@ class Cuts(NamedTuple):
     tours: Int[Tensor, "r n"]
     places: Int[Tensor, "r m"]
     gaps: Int[Tensor, "r m"]
-
-
-def weighted_sums(
-    lengths: Float[Tensor, "2 r x"], weights: Float[Tensor, "r 2"]
-) -> Float[Tensor, "r x"]:
-    """Return the sum of both lengths under the weights of each row."""
-    return weights[:, :1] * lengths[0] + weights[:, 1:] * lengths[1]
 
 
 def along(table: Float[Tensor, "2 n w"], tours: Int[Tensor, "r n"]) -> Float[Tensor, "2 r n"]:
@@ -53,14 +47,12 @@ def cut(tours: Int[Tensor, "r n"], cities: Int[Tensor, "r m"]) -> Cuts:
     return Cuts(turned, places, beyond - places - 1)
 
 
-def repair_problem(
-    costs: Costs, weights: Float[Tensor, "r 2"], cuts: Cuts, prices: Prices | None = None
-) -> tuple[Costs, Fragments]:
+def repair_problem(problem: Problem, cuts: Cuts) -> tuple[Costs, Fragments]:
     """Return the costs between the ends that cuts have left, and the fragments they belong to.
 
     There are three columns for a cut: the cut city, and the first and the last city of the path
     from there to the next one. Of a path of one city the last is closed, of an empty one both.
-    Costs are given in each objective, and returned under the weights, less the prices.
+    Costs are returned under the weights, less the prices.
     """
     tours, places, gaps = cuts
     m = places.shape[1]
@@ -75,33 +67,21 @@ def repair_problem(
     links = torch.cat((links, no_links, no_links[:, :1]), dim=1)
     open_ = torch.cat((gaps >= 0, gaps > 0, long), dim=1)
     left = m + (gaps > 0).sum(dim=1)
-    between = _costs_between(costs, weights, cities)
+    fragments = Fragments(index, across, open_, links, left, _leans(problem, cuts, columns, cities))
+    return costs_between(problem, cities), fragments
+
+
+def _leans(
+    problem: Problem, cuts: Cuts, columns: Int[Tensor, "r e"], cities: Int[Tensor, "r e"]
+) -> Float[Tensor, "r e"] | None:
+    """Return the leans of the ends that cuts have left, if costs have any."""
+    costs, weights, prices = problem
     if costs.leans is None or prices is None:
-        return between, Fragments(index, across, open_, links, left)
-    some = Prices(*(part.gather(1, cities) for part in prices))
-    onwards = weighted_sums(along(costs.leans, tours), weights)
-    until = (onwards.cumsum(dim=1) - onwards).gather(1, columns) + some.tilts
-    alone, first, last = until[:, :m], until[:, m : 2 * m], until[:, 2 * m :]
-    leans = torch.cat((torch.zeros_like(alone), last - first, first - last), dim=1)
-    return without(between, some), Fragments(index, across, open_, links, left, leans)
-
-
-def _costs_between(
-    costs: Costs, weights: Float[Tensor, "r 2"], cities: Int[Tensor, "r e"]
-) -> Costs:
-    e = cities.shape[1]
-    pairs = cities[:, :, None] * costs.means.shape[2] + cities[:, None, :]
-
-    def between(table: Float[Tensor, "2 n w"]) -> Float[Tensor, "r e e"]:
-        entries = table.flatten(1).index_select(1, pairs.flatten()).view(2, -1, e * e)
-        return weighted_sums(entries, weights).unflatten(1, (e, e))
-
-    index = torch.arange(e, device=cities.device)
-    own = torch.where(index == index[:, None], NEVER, 0.0)
-    means = nn.functional.pad(between(costs.means) + own, (0, CANDIDATES), value=NEVER)
-    if costs.leans is None:
-        return Costs(means)
-    return Costs(means, nn.functional.pad(between(costs.leans), (0, CANDIDATES)))
+        return None
+    onwards = weighted_sums(along(costs.leans, cuts.tours), weights)
+    until = (onwards.cumsum(dim=1) - onwards).gather(1, columns) + prices.tilts.gather(1, cities)
+    alone, first, last = until.tensor_split(3, dim=1)
+    return torch.cat((torch.zeros_like(alone), last - first, first - last), dim=1)
 
 
 def last_two_joined(costs: Costs, fragments: Fragments) -> Fragments:
@@ -175,7 +155,7 @@ def _neighbours(fragments: Fragments) -> Int[Tensor, "r e 2"]:
     links = links.scatter(1, last + e, last.flip(1))
     index = torch.arange(e, device=links.device).expand_as(links[:, :e])
     alone = torch.cat((index, index), dim=1)
-    return torch.where(links < 0, alone, links).unflatten(1, (2, e)).mT
+    return torch.where(links < 0, alone, links).view(-1, 2, e).transpose(1, 2)
 
 
 def _places(cuts: Cuts, neighbours: Int[Tensor, "r e 2"]) -> Int[Tensor, "r e"]:

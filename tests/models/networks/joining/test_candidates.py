@@ -5,13 +5,8 @@ from torch import Generator
 
 from models.data.instances import uniform_cities
 from models.data.preferences import fan_of_preferences, weights
-from models.networks.candidates import (
-    cheapest_candidates,
-    first_candidates,
-    padded_distances,
-    single_cities,
-    weighted_costs,
-)
+from models.networks.joining.candidates import cheapest_candidates, first_candidates, single_cities
+from models.networks.joining.costs import padded_distances, weighted_costs
 from tests.helpers.small_actors import CPU
 
 

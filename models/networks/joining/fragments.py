@@ -103,13 +103,13 @@ def mutual_best(
     joined. The logit of an edge is the same for both its ends, and -NEVER where it is impossible.
     """
     best, which = edge_logits.max(dim=-1)
-    mates = candidates.gather(2, which[..., None]).squeeze(-1)
+    mates = candidates.gather(2, which[..., None])[..., 0]
     own = fragments.names
     theirs = own.gather(1, mates)
     highest = torch.full_like(best, -NEVER).scatter_reduce(1, own, best, "amax")
     highest = highest.scatter_reduce(1, theirs, best, "amax")
     agreed = (best > -NEVER / 2) & (best >= highest.gather(1, own))
-    agreed &= best >= highest.gather(1, theirs)
+    agreed = agreed & (best >= highest.gather(1, theirs))
 
     # Of edges with one logit, a fragment takes the one with the highest number.
     index = _positions(own)
@@ -117,7 +117,7 @@ def mutual_best(
     numbers = torch.where(agreed, torch.minimum(index, mates) * e + torch.maximum(index, mates), -1)
     most = torch.full_like(numbers, -1).scatter_reduce(1, own, numbers, "amax")
     most = most.scatter_reduce(1, theirs, numbers, "amax")
-    agreed &= (most.gather(1, own) == numbers) & (most.gather(1, theirs) == numbers)
+    agreed = agreed & ((most.gather(1, own) == numbers) & (most.gather(1, theirs) == numbers))
 
     chosen = torch.where(agreed, mates, -1)
     room = torch.cat((chosen, chosen[:, :1]), dim=1)
@@ -173,7 +173,7 @@ def first_steps(
 ) -> tuple[Int[Tensor, " r"], Int[Tensor, " r"]]:
     """Return one end of each row's last fragment, and the city after it."""
     one = fragments.ends.gather(1, first_open(fragments) if starts is None else starts)
-    return one.squeeze(1), fragments.links.gather(1, one).squeeze(1)
+    return one[:, 0], fragments.links.gather(1, one).squeeze(1)
 
 
 def next_city(
@@ -181,6 +181,6 @@ def next_city(
 ) -> Int[Tensor, " r"]:
     """Return the neighbour of the city now that is not the one before."""
     n = (links.shape[1] - 1) // 2
-    first = links.gather(1, now[:, None]).squeeze(1)
-    second = links.gather(1, now[:, None] + n).squeeze(1)
+    first = links.gather(1, now[:, None])[:, 0]
+    second = links.gather(1, now[:, None] + n)[:, 0]
     return torch.where(first == before, second, first)

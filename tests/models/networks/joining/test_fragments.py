@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from torch import Generator, Tensor
 
-from models.networks.fragments import (
+from models.networks.joining.fragments import (
     NEVER,
     Fragments,
     all_alone,

@@ -7,16 +7,11 @@ from torch import Generator, Tensor
 
 from models.data.instances import uniform_cities
 from models.data.preferences import fan_of_preferences, weights
-from models.networks.candidates import (
-    Costs,
-    cheapest_candidates,
-    padded_distances,
-    single_cities,
-    weighted_costs,
-)
-from models.networks.fragments import joined, walked
+from models.networks.joining.candidates import single_cities
+from models.networks.joining.costs import Costs, Problem, padded_distances, weighted_costs
+from models.networks.joining.fragments import joined, walked
+from models.networks.joining.repairs import cut, laid_out, last_two_joined, repair_problem
 from models.networks.pa_one import OneActor
-from models.networks.repairs import cut, laid_out, last_two_joined, repair_problem
 from tests.helpers.small_actors import CPU, small_actor
 
 
@@ -29,11 +24,9 @@ def rejoined(tours: Tensor, cities: Tensor, distances: Costs) -> Tensor:
     actor = small_actor("pa-one")
     assert isinstance(actor, OneActor)
     cuts = cut(tours, cities)
-    costs, fragments = repair_problem(distances, weights(fan_of_preferences(3, CPU)), cuts)
-    while bool((fragments.left > 2).any()):
-        candidates = cheapest_candidates(costs, fragments)
-        fragments = actor.round(costs, fragments, candidates, actor.repair_joinings).trimmed()
-    return laid_out(cuts, last_two_joined(costs, fragments))
+    problem = Problem(distances, weights(fan_of_preferences(3, CPU)))
+    costs, fragments = repair_problem(problem, cuts)
+    return laid_out(cuts, actor.joined_to_one(costs, fragments))
 
 
 @given(seed=st.integers(0, 1000), n=st.integers(3, 30), m=st.integers(1, 21))

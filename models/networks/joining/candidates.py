@@ -1,0 +1,160 @@
+"""Candidate edges of PA-One: the cheapest edges from each open end of a path.
+
+Where costs differ by direction, a path is gone along in either, and which way is the cheaper one
+may change with every edge that is added to it. An edge then costs what the cheaper way through
+both paths and itself costs above the cheaper way through each.
+"""
+
+from typing import NamedTuple
+
+import torch
+from jaxtyping import Bool, Float, Int
+from torch import Tensor
+
+from models.networks.joining.costs import CANDIDATES, Costs, Problem
+from models.networks.joining.fragments import (
+    NEVER,
+    Fragments,
+    all_alone,
+    first_open,
+    joined,
+    possible,
+    walked,
+)
+
+_ROUNDING = 1e-5  # of a cost, by which it may seem to have risen
+
+
+class Candidates(NamedTuple):
+    """The candidates of each end by ascending cost: positions of other ends, and costs of edges.
+
+    An impossible edge costs NEVER. The lean of an edge is positive where the way from the end
+    along its edge is the dearer one, by twice as much; none where costs have no direction.
+    """
+
+    costs: Float[Tensor, "r e c"]
+    positions: Int[Tensor, "r e c"]
+    leans: Float[Tensor, "r e c"] | None = None
+
+    @property
+    def real(self) -> Bool[Tensor, "r e c"]:
+        """Which of the edges are possible."""
+        return self.costs < NEVER / 2
+
+
+def single_cities(costs: Costs) -> Fragments:
+    """Return the fragments that a tour of each row begins from: every city alone."""
+    return all_alone(costs.means[:, :, 0], leaning=costs.leans is not None)
+
+
+def first_candidates(costs: Costs) -> Candidates:
+    """Return the candidates while all cities are alone, for less than `cheapest_candidates`."""
+    means, leans = costs
+    least = means if leans is None else means - leans.abs()
+    cheapest, cities = least.topk(CANDIDATES, largest=False)
+    positions = torch.where(cheapest < NEVER / 2, cities, 0)
+    return Candidates(cheapest, positions, None if leans is None else leans.gather(2, cities))
+
+
+def cheapest_candidates(costs: Costs, fragments: Fragments) -> Candidates:
+    """Return the candidates of each end: the open ends to which an edge costs least."""
+    ends, partners, open_ = fragments[:3]
+    r, n = costs.means.shape[0], costs.means.shape[1]
+    zeros = torch.zeros_like(costs.means[:, 0])
+    place = torch.where(open_, ends, n)
+    closed = (zeros + NEVER).scatter(1, place, torch.where(open_, 0.0, NEVER).to(zeros))
+    rows = torch.arange(r, device=zeros.device)[:, None]
+    lines = (n * rows + ends).flatten()
+
+    def from_ends(table: Tensor) -> Float[Tensor, "r e m"]:
+        return table.flatten(0, 1).index_select(0, lines).unflatten(0, ends.shape)
+
+    leans = None
+    open_costs = from_ends(costs.means) + closed[:, None]
+    if costs.leans is not None and fragments.leans is not None:
+        own = fragments.leans
+        theirs = zeros.scatter(1, place, own)
+        leans = from_ends(costs.leans) + theirs[:, None] - own[..., None]
+        open_costs = open_costs + own.abs()[..., None] + theirs.abs()[:, None] - leans.abs()
+    cheapest, cities = open_costs.topk(CANDIDATES, largest=False)
+    index = torch.arange(ends.shape[1], device=zeros.device).expand_as(ends)
+    position = zeros.long().scatter(1, place, index)
+    positions = position.gather(1, cities.flatten(1)).view_as(cities)
+    impossible = (positions == partners[..., None]) | ~open_[..., None] | (cheapest >= NEVER / 2)
+    cheapest = torch.where(impossible, NEVER, cheapest)
+    return Candidates(cheapest, positions, None if leans is None else leans.gather(2, cities))
+
+
+def still_possible(
+    candidates: Candidates, before: Fragments, after: Fragments
+) -> Bool[Tensor, "r e c"]:
+    """Return which edges may still be added after some were, at no higher cost than before.
+
+    Candidates are of the fragments before. Where costs have directions, a path that has grown may
+    want to be gone along the other way, in which another edge to it costs more.
+    """
+    allowed = possible(after, candidates.positions)
+    if before.leans is None or after.leans is None:
+        return allowed
+    then, scale_then = _costs_of_leaning(candidates, before.leans, before.leans)
+    now, scale_now = _costs_of_leaning(candidates, before.leans, after.leans)
+    return allowed & (now <= then + _ROUNDING * (scale_then + scale_now))
+
+
+def _costs_of_leaning(
+    candidates: Candidates, before: Float[Tensor, "r e"], now: Float[Tensor, "r e"]
+) -> tuple[Float[Tensor, "r e c"], Float[Tensor, "r e c"]]:
+    """Return what directions add to the cost of each edge, and the scale of what that is made of.
+
+    Candidates are of the leans before.
+    """
+    assert candidates.leans is not None
+    change = now - before
+    theirs, change_there = (
+        leans.gather(1, candidates.positions.flatten(1)).view_as(candidates.costs)
+        for leans in (now, change)
+    )
+    through = (candidates.leans + change_there - change[..., None]).abs()
+    paths = now.abs()[..., None] + theirs.abs()
+    return paths - through, paths + through
+
+
+def partner_costs(costs: Costs | Problem, fragments: Fragments) -> Float[Tensor, "r e"]:
+    """Return the cost of the edge from each end to its partner, which would close the path.
+
+    It is the mean of both directions.
+    """
+    return costs.steps(fragments.ends, _across(fragments))[0]
+
+
+def _across(fragments: Fragments) -> Int[Tensor, "r e"]:
+    """Return the city at the other end of each end's path."""
+    return fragments.ends.gather(1, fragments.partners)
+
+
+def joined_at_cost(
+    costs: Costs | Problem, fragments: Fragments, mates: Int[Tensor, "r e"]
+) -> Fragments:
+    """Return the fragments joined, each end to its mate, by edges that lean as costs do."""
+    if fragments.leans is None:
+        return joined(fragments, mates)
+    ends = fragments.ends
+    return joined(fragments, mates, costs.steps(ends, ends.gather(1, mates.clamp(min=0)))[1])
+
+
+def toured(costs: Costs | Problem, fragments: Fragments) -> Int[Tensor, "r n"]:
+    """Return the tours of rows that have one fragment left, in the direction that costs less."""
+    return walked(fragments, cheaper_starts(costs, fragments))
+
+
+def cheaper_starts(costs: Costs | Problem, fragments: Fragments) -> Int[Tensor, "r 1"]:
+    """Return the position of the end from which each row's last fragment is the cheaper tour."""
+    first = first_open(fragments)
+    if fragments.leans is None:
+        return first
+    last = fragments.partners.gather(1, first)
+    starts, stops = (fragments.ends.gather(1, end) for end in (last, first))
+    closing = costs.steps(starts, stops)[1]
+    assert closing is not None
+    # The way from the last end to the first, then along the path.
+    return torch.where(closing > fragments.leans.gather(1, last), last, first)

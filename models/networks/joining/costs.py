@@ -1,0 +1,154 @@
+"""Costs of steps: in each objective, under the weights of each row, and less the prices of cities.
+
+A row is one tour under construction, with costs of its own: those of its preference.
+"""
+
+from typing import NamedTuple
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from models.data.instances import distance_matrices
+from models.networks.joining.fragments import NEVER
+
+CANDIDATES = 8  # of an end of a path
+
+
+class Costs(NamedTuple):
+    """The mean cost of each step and of the step back, and how much of it the way there is above.
+
+    There is no lean where both cost the same. There are as many columns more as an end has
+    candidates, of cities that are never reached.
+    """
+
+    means: Float[Tensor, "r n m"]
+    leans: Float[Tensor, "r n m"] | None = None
+
+    def steps(
+        self, starts: Int[Tensor, "r e"], stops: Int[Tensor, "r e"]
+    ) -> tuple[Float[Tensor, "r e"], Float[Tensor, "r e"] | None]:
+        """Return the means of the costs of steps in each row, and their leans, if there are any."""
+        rows = torch.arange(self.means.shape[0], device=starts.device)[:, None]
+        leans = None if self.leans is None else self.leans[rows, starts, stops]
+        return self.means[rows, starts, stops], leans
+
+
+class Prices(NamedTuple):
+    """What each city costs by itself, in each row: half a fee for the way there and the way on.
+
+    The fee is taken off the cost of every step to a city and from it; the tilt is taken off that
+    of the steps from the city, and put on those to it. The cost of no tour changes by more than
+    that of another.
+    """
+
+    fees: Float[Tensor, "r n"]
+    tilts: Float[Tensor, "r n"]
+
+
+class Problem(NamedTuple):
+    """The costs in each objective, the weights of each row, and its prices, if there are any.
+
+    It gives the same costs of steps as a table for each row would, but no such table is made.
+    """
+
+    costs: Costs
+    weights: Float[Tensor, "r 2"]
+    prices: Prices | None = None
+
+    @property
+    def tables(self) -> Costs:
+        """The costs of all steps in each row."""
+        return weighted_costs(self.costs, self.weights, self.prices)
+
+    def steps(
+        self, starts: Int[Tensor, "r e"], stops: Int[Tensor, "r e"]
+    ) -> tuple[Float[Tensor, "r e"], Float[Tensor, "r e"] | None]:
+        """Return the means of the costs of steps in each row, and their leans, if there are any."""
+        pairs = starts * self.costs.means.shape[2] + stops
+
+        def entries(table: Float[Tensor, "2 n m"]) -> Float[Tensor, "r e"]:
+            found = table.flatten(1).index_select(1, pairs.flatten()).view(2, -1, pairs.shape[1])
+            return weighted_sums(found, self.weights)
+
+        means, leans = entries(self.costs.means), None
+        if self.prices is not None:
+            fees, tilts = self.prices
+            means = means - fees.gather(1, starts) - fees.gather(1, stops)
+            if self.costs.leans is not None:
+                leans = entries(self.costs.leans) - tilts.gather(1, starts) + tilts.gather(1, stops)
+        return means, leans
+
+
+def padded_distances(cities: Float[Tensor, "n 4"]) -> Costs:
+    """Return the distances in each plane, a row each; no city has itself for a neighbour."""
+    return Costs(_padded(distance_matrices(cities[None])[0]))
+
+
+def padded_matrices(matrices: Float[Tensor, "2 n n"]) -> Costs:
+    """Return the costs in each objective, a row each; no city has itself for a neighbour."""
+    back = matrices.transpose(1, 2)
+    leans = nn.functional.pad((matrices - back) / 2, (0, CANDIDATES))
+    return Costs(_padded((matrices + back) / 2), leans)
+
+
+def _padded(costs: Float[Tensor, "2 n n"]) -> Float[Tensor, "2 n m"]:
+    index = torch.arange(costs.shape[-1], device=costs.device)
+    own = torch.where(index == index[:, None], NEVER, 0.0)
+    return nn.functional.pad(costs + own, (0, CANDIDATES), value=NEVER)
+
+
+def weighted_costs(
+    costs: Costs, weights: Float[Tensor, "r 2"], prices: Prices | None = None
+) -> Costs:
+    """Return the cost of each step under the weights of each row, from those in each objective.
+
+    Where there are prices, what a tour costs in all falls by as much for every tour of a row.
+    """
+    means, leans = costs
+    weighted = Costs(
+        _weighted(means, weights), None if leans is None else _weighted(leans, weights)
+    )
+    return weighted if prices is None else without(weighted, prices)
+
+
+def without(costs: Costs, prices: Prices) -> Costs:
+    """Return the costs without the prices of both cities of each step."""
+    fees, tilts = (nn.functional.pad(part, (0, CANDIDATES)) for part in prices)
+    n = costs.means.shape[1]
+    means = costs.means - fees[:, :n, None] - fees[:, None]
+    if costs.leans is None:
+        return Costs(means)
+    return Costs(means, costs.leans - tilts[:, :n, None] + tilts[:, None])
+
+
+def costs_between(problem: Problem, cities: Int[Tensor, "r e"]) -> Costs:
+    """Return the costs of the steps between these cities of each row, numbered as they come."""
+    costs, weights, prices = problem
+    e = cities.shape[1]
+    pairs = cities[:, :, None] * costs.means.shape[2] + cities[:, None, :]
+
+    def between(table: Float[Tensor, "2 n w"]) -> Float[Tensor, "r e e"]:
+        entries = table.flatten(1).index_select(1, pairs.flatten()).view(2, -1, e * e)
+        return weighted_sums(entries, weights).unflatten(1, (e, e))
+
+    index = torch.arange(e, device=cities.device)
+    own = torch.where(index == index[:, None], NEVER, 0.0)
+    means = nn.functional.pad(between(costs.means) + own, (0, CANDIDATES), value=NEVER)
+    if costs.leans is None:
+        return Costs(means)
+    found = Costs(means, nn.functional.pad(between(costs.leans), (0, CANDIDATES)))
+    if prices is None:
+        return found
+    return without(found, Prices(*(part.gather(1, cities) for part in prices)))
+
+
+def weighted_sums(
+    lengths: Float[Tensor, "2 r x"], weights: Float[Tensor, "r 2"]
+) -> Float[Tensor, "r x"]:
+    """Return the sum of both lengths under the weights of each row."""
+    return weights[:, :1] * lengths[0] + weights[:, 1:] * lengths[1]
+
+
+def _weighted(costs: Float[Tensor, "2 n m"], weights: Float[Tensor, "r 2"]) -> Tensor:
+    return (weights @ costs.flatten(1)).view(-1, costs.shape[1], costs.shape[2])

@@ -1,0 +1,79 @@
+"""Prices of cities, from the assignment problem with entropy.
+
+A tour leaves each city once and enters it once. So a price for each that is taken off the costs
+of its steps changes all tours by the same, and what is left of the costs says more about which
+steps a tour wants: after the best prices of the assignment problem, only those that an optimal
+assignment may take cost nothing. The prices here are of the assignment problem with entropy,
+which come from a few products of matrices (Sinkhorn's iteration; Cuturi, 2013, arXiv:1306.0895).
+They are found for some weights, the knots, and between these drawn in straight lines: wrong
+prices do no harm to any tour.
+"""
+
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+from models.networks.joining.costs import Costs, Prices, weighted_costs
+from models.networks.joining.fragments import NEVER
+
+_KNOTS = 9  # weights for which prices are found
+_CHEAPEST = 4  # steps of each city, whose mean is the unit of the temperature
+_TEMPERATURE = 0.5
+_ITERATIONS = 10
+_LEAST_UNIT = 1e-6
+_LEAST = 1e-30  # entry of a kernel: a city so far from all others gets no higher price
+
+
+def knots(like: Tensor) -> Float[Tensor, "g 2"]:
+    """Return the weights for which prices are found, by ascending first weight."""
+    first = torch.arange(_KNOTS, device=like.device).to(like) / (_KNOTS - 1)
+    return torch.stack((first, 1 - first), dim=1)
+
+
+def places_among_knots(weights: Float[Tensor, "r 2"]) -> Float[Tensor, " r"]:
+    """Return where the weights of each row lie, from 0 at the first knot on."""
+    return weights[:, 0] * (_KNOTS - 1)
+
+
+def prices_between(weights: Float[Tensor, "r 2"], known: Prices) -> Prices:
+    """Return the prices under the weights of each row, from those at the knots."""
+    index = torch.arange(_KNOTS, device=weights.device).to(weights)
+    shares = (1 - (places_among_knots(weights)[:, None] - index).abs()).clamp(min=0)  # (r, knots)
+    return Prices(shares @ known.fees, shares @ known.tilts)
+
+
+def prices_at_knots(costs: Costs) -> Prices:
+    """Return the prices of the cities at each knot, from the costs in each objective."""
+    return _prices(weighted_costs(costs, knots(costs.means)))
+
+
+def _prices(costs: Costs) -> Prices:
+    """Return the prices of the cities in each row of costs, which have leans."""
+    means, leans = costs
+    assert leans is not None
+    n = means.shape[1]
+    there, back = means + leans, means - leans
+    unit = _unit(torch.cat((there, back), dim=1))[:, None] * _TEMPERATURE
+    kernel, back_kernel = (
+        (-table[:, :, :n] / unit[..., None]).exp().clamp(min=_LEAST) for table in (there, back)
+    )
+    leave, enter = kernel.sum(dim=2).rsqrt(), back_kernel.sum(dim=2).rsqrt()
+    for _ in range(_ITERATIONS):
+        leave, enter = (
+            (leave / _product(kernel, enter)).sqrt(),
+            (enter / _product(back_kernel, leave)).sqrt(),
+        )
+    leave, enter = unit * leave.log(), unit * enter.log()
+    return Prices((leave + enter) / 2, (leave - enter) / 2)
+
+
+def _product(tables: Float[Tensor, "g n n"], of: Float[Tensor, "g n"]) -> Float[Tensor, "g n"]:
+    return (tables @ of[..., None])[..., 0]
+
+
+def _unit(costs: Float[Tensor, "g two_n m"]) -> Float[Tensor, " g"]:
+    """Return the mean of the cheapest steps from and to each city."""
+    cheapest = costs.topk(_CHEAPEST, largest=False).values
+    real = cheapest < NEVER / 2
+    total = torch.where(real, cheapest, 0.0).sum(dim=(1, 2))
+    return (total / real.sum(dim=(1, 2)).clamp(min=1)).clamp(min=_LEAST_UNIT)

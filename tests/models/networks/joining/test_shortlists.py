@@ -1,0 +1,136 @@
+"""Shortlists and contraction: the same candidates, costs and tours as among all pairs."""
+
+import torch
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from torch import Generator, Tensor
+
+from models.data.preferences import fan_of_preferences, weights
+from models.networks.joining.candidates import (
+    Candidates,
+    cheapest_candidates,
+    first_candidates,
+    joined_at_cost,
+    single_cities,
+    still_possible,
+    toured,
+)
+from models.networks.joining.contraction import contracted, expanded
+from models.networks.joining.costs import Problem, padded_matrices
+from models.networks.joining.fragments import NEVER, Fragments, mutual_best
+from models.networks.joining.prices import prices_at_knots, prices_between
+from models.networks.joining.shortlists import (
+    RowLists,
+    first_of,
+    listed_candidates,
+    lists_of_rows,
+    shortlists,
+)
+from tests.helpers.small_actors import CPU
+
+# A list has room for all cities of so few.
+CITIES = st.integers(3, 12)
+
+
+def problem_of(n: int, seed: int) -> tuple[Problem, RowLists]:
+    drawn = torch.rand(2, n, n, generator=Generator().manual_seed(seed), dtype=torch.float64)
+    costs, rows = padded_matrices(drawn), weights(fan_of_preferences(4, CPU)).double()
+    rows = rows / rows.sum(dim=1, keepdim=True)  # exactly one, as they are in double
+    known = prices_at_knots(costs)
+    problem = Problem(costs, rows, prices_between(rows, known))
+    return problem, lists_of_rows(shortlists(costs, known), rows)
+
+
+def joined_once(problem: Problem, fragments: Fragments) -> Fragments:
+    candidates = cheapest_candidates(problem.tables, fragments)
+    logits = torch.where(candidates.real, -candidates.costs, -NEVER)
+    return joined_at_cost(
+        problem, fragments, mutual_best(fragments, candidates.positions, logits)
+    ).trimmed()
+
+
+def some_joined(problem: Problem, times: int) -> Fragments:
+    fragments = single_cities(problem.tables)
+    for _ in range(times):
+        fragments = joined_once(problem, fragments)
+    return fragments
+
+
+def steps_of(tour: Tensor) -> set[frozenset[int]]:
+    return {frozenset(pair) for pair in zip(tour.tolist(), tour.roll(1).tolist(), strict=True)}
+
+
+def by_cost(candidates: Candidates) -> Candidates:
+    order = candidates.costs.sort(dim=-1).indices
+    assert candidates.leans is not None
+    return Candidates(*(part.gather(2, order) for part in (*candidates[:2], candidates.leans)))
+
+
+@given(n=CITIES, seed=st.integers(0, 1000), times=st.integers(0, 3))
+@settings(max_examples=15)
+def test_candidates_from_lists_with_room_for_all_are_those_of_all_pairs(
+    n: int, seed: int, times: int
+) -> None:
+    problem, lists = problem_of(n, seed)
+    fragments = some_joined(problem, times)
+    both = [
+        (cheapest_candidates(problem.tables, fragments), listed_candidates(lists, fragments)),
+        (first_candidates(problem.tables), first_of(lists)),
+    ]
+    for all_pairs, listed in both:
+        expected, found = by_cost(all_pairs), by_cost(listed)
+        # Among all pairs an end's own partner takes a place, too.
+        assert (expected.real <= found.real).all()
+        assert torch.allclose(found.costs[expected.real], expected.costs[expected.real])
+        assert torch.equal(found.positions[expected.real], expected.positions[expected.real])
+        assert found.leans is not None
+        assert expected.leans is not None
+        assert torch.allclose(found.leans[expected.real], expected.leans[expected.real])
+
+
+def test_a_list_has_nearly_all_of_the_cheapest_steps() -> None:
+    problem, lists = problem_of(100, 1)
+    cheapest = first_candidates(problem.tables).costs
+    assert (first_of(lists).costs < cheapest + 1e-9).double().mean() > 0.99
+
+
+@given(n=CITIES, seed=st.integers(0, 1000), times=st.integers(0, 2))
+@settings(max_examples=15)
+def test_what_is_joined_in_a_contracted_problem_completes_the_tours(
+    n: int, seed: int, times: int
+) -> None:
+    problem, _ = problem_of(n, seed)
+    fragments = some_joined(problem, times)
+    between, solved = contracted(problem, fragments)
+    whole = fragments
+    while bool((solved.left > 1).any()):
+        candidates = cheapest_candidates(between, solved)
+        logits = torch.where(candidates.real, -candidates.costs, -NEVER)
+        mates = mutual_best(solved, candidates.positions, logits)
+        solved = joined_at_cost(between, solved, mates).trimmed()
+        whole = joined_once(problem, whole)
+    tours = toured(problem, expanded(fragments, solved))
+    for row, expected in zip(tours, toured(problem, whole), strict=True):
+        assert sorted(row.tolist()) == list(range(n))
+        assert steps_of(row) == steps_of(expected)
+
+
+@given(n=CITIES, seed=st.integers(0, 1000), times=st.integers(0, 2))
+@settings(max_examples=15)
+def test_an_edge_stays_possible_where_it_costs_no_more_than_before(
+    n: int, seed: int, times: int
+) -> None:
+    problem, _ = problem_of(n, seed)
+    before = some_joined(problem, times)
+    candidates = cheapest_candidates(problem.tables, before)
+    logits = torch.where(candidates.real, -candidates.costs, -NEVER)
+    mates = mutual_best(before, candidates.positions, logits)
+    after = joined_at_cost(problem, before, mates)
+    costs = cheapest_candidates(problem.tables, after)
+    possible = still_possible(candidates, before, after)
+    for row, end, place in candidates.real.nonzero().tolist():
+        position = candidates.positions[row, end, place]
+        now = costs.costs[row, end][(costs.positions == position)[row, end] & costs.real[row, end]]
+        as_cheap = bool((now <= candidates.costs[row, end, place] + 1e-9).any())
+        if len(now):
+            assert bool(possible[row, end, place]) == as_cheap
