@@ -1,4 +1,4 @@
-"""The routes that plan fronts: `POST /front`, `POST /coverage` and `POST /front/{id}/replan`."""
+"""The routes that plan: `POST /front`, `/coverage`, `/fleet` and `/front/{id}/replan`."""
 
 import asyncio
 import hashlib
@@ -18,11 +18,12 @@ from service.api.body import receive_source
 from service.api.body_budget import DEFAULT_BUDGET, BodyBudget
 from service.api.disconnect import disconnected
 from service.api.geojson.answers import CONTENT, FrontAnswers
-from service.api.request_bodies import COVERAGE_BODY, FRONT_BODY, REPLAN_BODY
+from service.api.request_bodies import COVERAGE_BODY, FLEET_BODY, FRONT_BODY, REPLAN_BODY
 from service.api.request_headers import PARAMETERS, idempotency_key, prefers_async
 from service.api.responses import (
     AcceptedAnswer,
     CoverageAnswer,
+    FleetAnswer,
     FrontAnswer,
     json_response,
     problem_bytes,
@@ -31,14 +32,16 @@ from service.api.responses import (
 from service.api.stored_fronts import find_record
 from service.api.task_parser import ParserBounds, TaskParser
 from service.jobs.engine import Engine, record_in_time
-from service.jobs.front_document import empty_front
+from service.jobs.fleets.fleet_document import empty_fleet
+from service.jobs.front_document import FrontDocument, empty_front
 from service.jobs.record import Record
 from service.jobs.store import Store
+from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront, not_replannable
 from service.requests.replan.parser import ReplanSource
 from service.requests.schemas import Geometry
-from service.requests.task import TaskKind, TaskSource
+from service.requests.task import Task, TaskKind, TaskSource
 
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
 _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
@@ -118,6 +121,12 @@ class PlanRoutes:
             responses={200: CONTENT, **responses, **problem_responses(404, 409, 410, 502)},
             openapi_extra=_openapi_request(REPLAN_BODY),
         )(self.replan_front)
+        router.post(
+            "/fleet",
+            response_model=FleetAnswer,
+            responses={200: CONTENT, **responses, **problem_responses(502)},
+            openapi_extra=_openapi_request(FLEET_BODY),
+        )(self.plan_fleet)
         return router
 
     async def plan_front(self, request: Request) -> Response:
@@ -144,6 +153,16 @@ class PlanRoutes:
         will be. A repeat with the same `Idempotency-Key` is answered with the front of the first.
         """
         return await self._plan(request, "coverage")
+
+    async def plan_fleet(self, request: Request) -> Response:
+        """Plan the front of plans for several vehicles, each with the routes that they drive.
+
+        With `Accept: application/geo+json`, and stops that have locations, the answer is GeoJSON.
+
+        With `Prefer: respond-async` the answer is 202 at once, and `Location` says where the front
+        will be. A repeat with the same `Idempotency-Key` is answered with the front of the first.
+        """
+        return await self._plan(request, "fleet")
 
     async def replan_front(self, request: Request, id: str) -> Response:  # noqa: A002
         """Plan the rest of the way of a front, from what has changed.
@@ -223,7 +242,7 @@ class PlanRoutes:
             caller=caller_of(request),
             request_id=request.scope["request_id"],
             status="queued",
-            front=empty_front(source.task),
+            front=_nothing_yet(source.task),
             source=source,
             key=key,
             digest=await asyncio.to_thread(_digest, body) if key else "",
@@ -236,6 +255,12 @@ class PlanRoutes:
             return await self._engine.run(record, disconnect)
         finally:
             disconnect.cancel()
+
+
+def _nothing_yet(task: Task) -> FrontDocument:
+    if isinstance(task.subject, UnmeasuredFleet):
+        return empty_fleet(task)
+    return empty_front(task)
 
 
 def _accepted_response(record: Record, geometry: Geometry) -> Response:

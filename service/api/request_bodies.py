@@ -1,12 +1,14 @@
 """The request bodies of the operations that plan, in the OpenAPI document.
 
-Each is JSON, or multipart/form-data of a part `request`, which is JSON, and a file.
+Each is JSON; or of fronts and coverage, multipart/form-data of a part `request`, which is JSON,
+and a file.
 """
 
 from collections.abc import Iterable
 from typing import Any
 
 from service.requests.coverage import coverage_schemas
+from service.requests.fleets.schemas import fleet_schemas
 from service.requests.front_schemas import FILE_FORMS, JSON_FORMS, front_schemas, one_of
 from service.requests.limits import Limits, reference_to
 from service.requests.replan.schema import replan_schemas
@@ -23,6 +25,7 @@ def request_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
         **front_schemas(limits, names),
         **coverage_schemas(limits, names),
         **replan_schemas(limits, names),
+        **fleet_schemas(limits),
         "FrontForm": _form_schema(one_of(FILE_FORMS), "matrices", file),
         "CoverageForm": _form_schema(reference_to("CoverageFileRequest"), "map", image),
     }
@@ -52,3 +55,7 @@ REPLAN_BODY = {
     "content": {_JSON: {"schema": reference_to("ReplanRequest")}},
 }
 COVERAGE_BODY = _body(reference_to("CoverageRequest"), "CoverageForm")
+FLEET_BODY = {
+    "required": True,
+    "content": {_JSON: {"schema": reference_to("FleetRequest")}},
+}

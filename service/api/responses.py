@@ -14,6 +14,7 @@ from pydantic_core import to_json
 from starlette.responses import Response
 
 from service.errors import Refusal
+from service.fleet.fleet import Over
 from service.instance import OBJECTIVES
 from service.jobs.record import Status
 from service.requests.stop_fields import StopItem
@@ -155,6 +156,42 @@ class CoverageAnswer(FrontAnswer):
 
     front: list[CoverageItem]  # type: ignore[assignment]  # a list for reading only
     places: list[list[int]] = Field(description="row and column of each")
+
+
+class RouteItem(BaseModel):
+    """The route of one vehicle."""
+
+    vehicle: str = Field(description="the id of its type")
+    stops: list[str] = Field(description="ids in order, with the start and end that are stops")
+    lengths: Lengths
+    arrivals: list[float] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="if there is a clock: when it reaches each stop; at the first, when it leaves,"
+        " as late as it can without being done later",
+    )
+
+
+class PlanItem(BaseModel):
+    """A plan of a fleet and where it stands."""
+
+    balance: float = Field(description="0 at the front's least first length, 1 at its least second")
+    lengths: Lengths
+    routes: list[RouteItem] = Field(description="of the vehicles that leave")
+    unassigned: list[str] = Field(description="the ids of stops that are left out for their prize")
+
+
+class FleetObjectiveName(ObjectiveName):
+    """An objective of a fleet's front."""
+
+    over: Over = Field(description="of a plan's routes the sum, or the longest")
+
+
+class FleetAnswer(FrontAnswer):
+    """A front of plans for a fleet, by ascending first length."""
+
+    front: list[PlanItem]  # type: ignore[assignment]  # a list for reading only
+    objectives: list[FleetObjectiveName]  # type: ignore[assignment]
+    stops: list[StopItem]
 
 
 class ActorItem(ActorName):

@@ -13,9 +13,16 @@ from starlette.responses import Response, StreamingResponse
 
 from service.api.auth import caller_of
 from service.api.geojson.answers import CONTENT, FrontAnswers
-from service.api.responses import FrontAnswer, TourAnswer, json_bytes, problem_responses
+from service.api.responses import (
+    FleetAnswer,
+    FrontAnswer,
+    TourAnswer,
+    json_bytes,
+    problem_responses,
+)
 from service.errors import Expired, NotFound, Refusal
 from service.jobs.engine import Engine, JobState
+from service.jobs.fleets.fleet_document import holds_plans
 from service.jobs.record import Record
 from service.jobs.store import Store
 from service.requests.schemas import GEOMETRY, Geometry
@@ -41,13 +48,13 @@ class StoredFrontRoutes:
         router.get(
             "/front/{id}",
             operation_id="get_front",
-            response_model=FrontAnswer,
+            response_model=FrontAnswer | FleetAnswer,
             responses={200: CONTENT, **problem_responses(404, 406, 410, 422, 502, 503, 504)},
         )(self.front)
         router.delete(
             "/front/{id}",
             operation_id="forget_front",
-            response_model=FrontAnswer,
+            response_model=FrontAnswer | FleetAnswer,
             responses={204: {"description": "Forgotten"}, **missing},
         )(self.forget)
         router.get(
@@ -89,6 +96,8 @@ class StoredFrontRoutes:
         """Give one tour of a front: at an angle, at a balance, within a budget, or the knee."""
         query.check()
         record = await self._record(request, query.front)
+        if holds_plans(record.front):
+            raise Refusal("no-tours", front=record.id)
         if not record.front.tours:
             raise Refusal("no-tour", front=record.id)
         index = query.choose(record.front.lengths, record.front.directions)

@@ -1,11 +1,13 @@
 """The two backends that plan for the command: this process, and a service at a URL."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import httpx
-from paretour import Actor, Client, Front, Plan
+from paretour import Actor, Client, FleetFront, Front, Plan
+from paretour.fleets import parse_fleet
 from paretour.values import parse_front
 from rich.console import Console
 
@@ -27,6 +29,9 @@ class Backend(Protocol):
         Raises:
             KeyboardInterrupt: Ctrl-C was pressed before there was a front.
         """
+
+    def fleet(self, plan: Plan, console: Console) -> FleetFront:
+        """Plan a front of plans for a fleet."""
 
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors to choose from."""
@@ -64,6 +69,11 @@ class RemoteBackend:
                     raise
                 return front
 
+    def fleet(self, plan: Plan, console: Console) -> FleetFront:
+        """Plan a front of plans for a fleet; Ctrl-C cancels it."""
+        with self._client() as client, console.status("planning"):
+            return client.plan_fleet(plan)
+
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors that the service has loaded."""
         with self._client() as client:
@@ -86,6 +96,14 @@ class LocalBackend:
         Raises:
             UsageError: The request cannot be planned.
         """
+        return parse_front(self._document(plan, console))
+
+    def fleet(self, plan: Plan, console: Console) -> FleetFront:
+        """Plan a front of plans for a fleet, with the same exceptions."""
+        return parse_fleet(self._document(plan, console))
+
+    def _document(self, plan: Plan, console: Console) -> Mapping[str, Any]:
+        """Return the answer to a request, as the service gives it."""
         from service.cli.configuration import load_settings, load_with
         from service.errors import Refusal
         from service.jobs.runner import load_runner
@@ -98,9 +116,9 @@ class LocalBackend:
             load_settings(),
         )
         upload = None if plan.file is None else plan.file.content
-        kind: TaskKind = "coverage" if plan.path == "/coverage" else "front"
+        kinds: Mapping[str, TaskKind] = {"/coverage": "coverage", "/fleet": "fleet"}
         try:
-            task = runner.parse(TaskSource(kind, plan.json, upload))
+            task = runner.parse(TaskSource(kinds.get(plan.path, "front"), plan.json, upload))
             if task.needs_compiled_code:
                 with console.status(LOADING):
                     runner.warm_up()
@@ -109,7 +127,8 @@ class LocalBackend:
         except Refusal as error:
             raise UsageError(str(error)) from None
         status = "cancelled" if interrupted() else "done"
-        return parse_front(json.loads(document.json(id="", status=status)))
+        answer: Mapping[str, Any] = json.loads(document.json(id="", status=status))
+        return answer
 
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors in the directory that the settings name."""

@@ -10,6 +10,7 @@ from typing import Annotated
 from typer import Argument, Exit, Option, Typer, echo
 
 from service import installed_version
+from service.cli.fleets import fleet
 from service.cli.options import (
     ActorName,
     Angle,
@@ -169,6 +170,7 @@ def tour(  # noqa: PLR0913  an option each
 
 
 app.command()(replan)
+app.command()(fleet)
 
 
 @app.command()

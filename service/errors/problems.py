@@ -10,10 +10,11 @@ from typing import NamedTuple
 _ALL = ("*",)
 _NONE = ()  # no operation is at fault, but the path, the method or the service
 _REPLAN = ("POST /front/{id}/replan",)
-_PLANS = ("POST /front", "POST /coverage", *_REPLAN)
+_FLEET = ("POST /fleet",)
+_PLANS = ("POST /front", "POST /coverage", *_FLEET, *_REPLAN)
 _TOUR = ("GET /tour",)
 _STORED = "GET /front/{id}"
-_ROADS = ("POST /front", *_REPLAN, _STORED, *_TOUR)
+_ROADS = ("POST /front", *_FLEET, *_REPLAN, _STORED, *_TOUR)
 
 
 class Problem(NamedTuple):
@@ -41,6 +42,9 @@ PROBLEMS: Mapping[str, Problem] = {
         _TOUR,
     ),
     "no-tour": Problem(404, "front {front} must have a tour, and has none yet", _TOUR),
+    "no-tours": Problem(
+        404, "front {front} must be of tours, and is of plans of a fleet: read it whole", _TOUR
+    ),
     "unknown-front": Problem(404, "there is no front {front}"),
     "no-locations": Problem(
         406,
@@ -75,6 +79,7 @@ PROBLEMS: Mapping[str, Problem] = {
     "invalid-instance": Problem(422, "{reason}", _PLANS),
     "invalid-parts": Problem(422, "{reason}", _PLANS),
     "invalid-request": Problem(422, "{detail}", (*_PLANS, _STORED, *_TOUR)),
+    "no-plan": Problem(422, "{reason}", _FLEET),
     "no-actor": Problem(422, "{kind} need an actor that reads them, and none is loaded", _PLANS),
     "no-router": Problem(
         422, "{name} {measure} needs a routing engine, and none is configured", _ROADS

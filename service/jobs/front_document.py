@@ -17,6 +17,7 @@ from service.coverage.survey import CoveragePath
 from service.instance import OBJECTIVES, Instance
 from service.pareto import balances
 from service.planner import Front
+from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.stops import Labels, UnmeasuredStops
 from service.requests.task import Task
 from service.search.improve import Termination
@@ -103,7 +104,7 @@ class FrontDocument:
         """Return the front with the balance of each tour, where they have none yet."""
         if b'"balance":' in self.tours[:_HEAD]:
             return self
-        tours, ends = _joined(
+        tours, ends = joined(
             tour.replace(b',"lengths":', b',"balance":' + to_json(balance) + b',"lengths":', 1)
             for tour, balance in zip(self.split(), balances(self.lengths).tolist(), strict=True)
         )
@@ -164,7 +165,7 @@ _MEMBERS = tuple(field.name for field in _MEMBER_FIELDS)
 _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
 
 
-def _joined(tours: Iterable[bytes]) -> tuple[bytes, bytes]:
+def joined(tours: Iterable[bytes]) -> tuple[bytes, bytes]:
     """Return the JSON of all tours in one, and where each ends in it."""
     each = list(tours)
     ends = np.cumsum([len(tour) + 1 for tour in each], dtype=np.int64) - 1
@@ -206,7 +207,7 @@ def encode_front(
             b"".join((tour[:-1], b',"path":', _encode_path(path), b"}"))
             for tour, path in zip(encoded, paths, strict=True)
         ]
-    tours, ends = _joined(encoded)
+    tours, ends = joined(encoded)
     return FrontDocument(
         cities=front.n,
         points=front.found,
@@ -252,8 +253,9 @@ def _encode_rows(parts: Iterable[NDArray[Any]]) -> tuple[bytes, bytes, bytes]:
 
 
 def empty_front(task: Task) -> FrontDocument:
-    """Return the document of a task of which nothing has been found yet."""
+    """Return the document of a task, not of a fleet, of which nothing has been found yet."""
     subject, reference_point = task.subject, task.options.reference_point
+    assert not isinstance(subject, UnmeasuredFleet)
     if isinstance(subject, Instance):
         cities, scale, places = subject.n, subject.scale.tolist(), None
         if reference_point is None:

@@ -17,10 +17,13 @@ from service.coverage.coverage import Coverage
 from service.coverage.survey import CoveragePath, Survey, survey
 from service.errors import Cancelled
 from service.instance import Instance, cumulated_lengths
+from service.jobs.fleets import fleet_run
+from service.jobs.fleets.fleet_run import run_fleet
 from service.jobs.front_document import FrontDocument, encode_front
 from service.planner import Front, plan
 from service.replanning import earlier_tours
 from service.replanning.replan import replan
+from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import Limits, check_reference_point
 from service.requests.road_measurer import BlockingMeasurer, needs_roads
 from service.requests.stops import UnmeasuredStops, make_instance
@@ -95,6 +98,8 @@ class TaskRunner:
             task = self.parse(task)
         if self.measurer is not None and needs_roads(task):
             task = self.measurer.measured(task, stop)
+        if isinstance(task.subject, UnmeasuredFleet):
+            return run_fleet(task, task.subject, stop, report)
         if isinstance(task.subject, Coverage):
             return self._cover(task, task.subject, stop, report)
         if isinstance(task.subject, UnmeasuredStops):
@@ -211,6 +216,7 @@ def warm_up() -> None:
     improve.warm_up()
     earlier_tours.warm_up()
     shortest_paths.warm_up()
+    fleet_run.warm_up()
 
 
 def load_runner(

@@ -6,11 +6,10 @@ from typing import TypeVar
 from service.errors import Refusal
 from service.requests.arrays import check_costs
 from service.requests.front import FORMS, FrontRequest
-from service.requests.limits import Limits, check_limits, lower_defaults
+from service.requests.limits import Limits, check_limits, check_router, lower_defaults
 from service.requests.npy import read_npy
 from service.requests.schemas import LARGEST
 from service.requests.stop_fields import find_index
-from service.requests.stops import ROAD_MEASURES, Measured, UnmeasuredStops, base_of
 from service.requests.validation import invalid, parse_json, too_many_cities
 
 AnyFrontRequest = TypeVar("AnyFrontRequest", bound=FrontRequest)
@@ -61,7 +60,7 @@ def _check_cities(request: FrontRequest, limits: Limits) -> None:
     if request.matrices.size:
         _check_matrices(request)
     if request.stops:
-        _check_router(request.unmeasured, limits)
+        check_router(request.unmeasured, limits)
     if request.kind == "matrices" and request.augment > 1:
         demand = "must be 1 for matrices, which cannot be turned or mirrored"
         raise invalid("augment", f"{demand}, got {request.augment}")
@@ -73,15 +72,6 @@ def _check_matrices(request: FrontRequest) -> None:
         raise invalid("matrices", f"must have {request.n} rows, one for each stop, got {rows}")
     for m, matrix in enumerate(request.matrices):
         check_costs(matrix, f"matrices/{m}", LARGEST)
-
-
-def _check_router(stops: UnmeasuredStops, limits: Limits) -> None:
-    if limits.roads:
-        return
-    for m, source in enumerate(map(base_of, stops.sources)):
-        if isinstance(source, Measured) and source.measure in ROAD_MEASURES:
-            part = f"objectives/{m}/from"
-            raise Refusal("no-router", name=part, measure=source.measure, pointer=f"/{part}")
 
 
 def _by_index(request: AnyFrontRequest) -> AnyFrontRequest:

@@ -4,7 +4,7 @@ A generator of clients makes a type of each. So a form has the members that it m
 rule about those that it may not.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from service.requests.front import FORMS, FrontRequest
@@ -16,6 +16,12 @@ JSON_FORMS = ("CoordinatesRequest", "MatricesRequest", "StopsRequest")
 FILE_FORMS = ("MatricesFileRequest", "StopsFileRequest")  # beside a file of matrices
 _CITIES = (*FORMS, "objectives")
 _SOURCES = ("matrix", "coordinates", "from")
+_KINDS = {
+    "MatrixObjective": ("An objective whose costs are a matrix.", ["matrix"]),
+    "PlaneObjective": ("An objective whose costs are distances in a plane.", ["coordinates"]),
+    "MeasuredObjective": ("An objective that is measured between locations.", ["from"]),
+    "NamedObjective": ("An objective whose costs are a matrix in a file.", []),
+}
 
 
 def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
@@ -35,8 +41,8 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
         _form(_unaugmented(cities), "MatricesFileRequest", "Cities by costs in a file", []),
         _form(file_stops, "StopsFileRequest", "Stops by costs in a file", ["stops", "objectives"]),
     ]
-    stop, objective = (_without_null(parts[name]) for name in ("StopItem", "ObjectiveItem"))
-    named = [stop, *_objectives(objective, limits), *forms]
+    stop, objective = (without_null(parts[name]) for name in ("StopItem", "ObjectiveItem"))
+    named = [stop, *objective_variants(objective, limits, _KINDS), *forms]
     return {schema["title"]: schema for schema in named}
 
 
@@ -45,7 +51,7 @@ def one_of(names: Sequence[str]) -> Schema:
     return {"oneOf": [reference_to(name) for name in names]}
 
 
-def _without_null(schema: Schema) -> Schema:
+def without_null(schema: Schema) -> Schema:
     """Return a schema without defaults of null, from which generators conclude too much."""
     fields = {
         name: {k: v for k, v in field.items() if k != "default" or v is not None}
@@ -98,18 +104,14 @@ def _form(schema: Schema, name: str, cities: str, required: Sequence[str]) -> Sc
     return _variant(schema, name, description, _CITIES, required)
 
 
-def _objectives(schema: Schema, limits: Limits) -> list[Schema]:
-    """Return the schema of an objective with each source, and of one without."""
+def objective_variants(
+    schema: Schema, limits: Limits, kinds: Mapping[str, tuple[str, Sequence[str]]]
+) -> list[Schema]:
+    """Return the schemas of an objective of these kinds, each with a description and a source."""
     if not limits.roads:
         measures = schema["properties"]["from"]["enum"]
         known = [measure for measure in measures if measure not in ROAD_MEASURES]
         schema = _with(schema, **{"from": {**schema["properties"]["from"], "enum": known}})
-    kinds = {
-        "MatrixObjective": ("An objective whose costs are a matrix.", ["matrix"]),
-        "PlaneObjective": ("An objective whose costs are distances in a plane.", ["coordinates"]),
-        "MeasuredObjective": ("An objective that is measured between locations.", ["from"]),
-        "NamedObjective": ("An objective whose costs are a matrix in a file.", []),
-    }
     return [
         _variant(schema, name, description, _SOURCES, source)
         for name, (description, source) in kinds.items()

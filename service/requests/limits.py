@@ -8,6 +8,7 @@ from service.errors import Refusal
 from service.instance import Instance, least_lengths
 from service.planner import PlanOptions
 from service.requests.schemas import PlanFields, PlanRequest
+from service.requests.stops import ROAD_MEASURES, Measured, UnmeasuredStops, base_of
 from service.requests.validation import invalid
 
 _TOURS_BY_ID = 100  # initial tours that may name every stop by its id
@@ -21,6 +22,7 @@ class Limits:
     Args:
         body_bytes: Bytes of a body.
         cities: Cities of an instance, or places on a map.
+        fleet_stops: Stops of a fleet.
         cells: Cells of a map.
         path_cells: Cells of all paths of an answer, and stops of all its tours with arrivals.
         preferences: Preferences of a front.
@@ -36,6 +38,7 @@ class Limits:
     size: int
     seconds: float
     path_cells: int = 2**21
+    fleet_stops: int = 500
     roads: bool = False
 
 
@@ -70,7 +73,7 @@ def check_amounts(request: PlanFields, n: int, limits: Limits) -> None:
     }
     for name, (limit, actual) in asked.items():
         if name in request.model_fields_set:
-            _check_limit(name, limit, actual)
+            check_limit(name, limit, actual)
     if request.arrivals:
         _check_arrivals(min(request.size, limits.size), n, limits.path_cells)
 
@@ -83,7 +86,7 @@ def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
     """
     _check_ends(request, n)
     check_amounts(request, n, limits)
-    _check_limit("initial_tours", limits.size, len(request.initial_tours))
+    check_limit("initial_tours", limits.size, len(request.initial_tours))
     ends = request.ends
     for index, tour in enumerate(request.initial_tours):
         if len(tour) != n or sorted(tour) != list(range(n)):
@@ -123,6 +126,16 @@ def check_reference_point(instance: Instance, options: PlanOptions) -> None:
         if length <= shortest:
             demand = f"must be more than {shortest:.6g}, which every tour has at least"
             raise invalid(f"reference_point/{m}", f"{demand}, got {length:.6g}")
+
+
+def check_router(stops: UnmeasuredStops, limits: Limits) -> None:
+    """Raise a refusal where costs by road are asked for, and no routing engine is configured."""
+    if limits.roads:
+        return
+    for m, source in enumerate(map(base_of, stops.sources)):
+        if isinstance(source, Measured) and source.measure in ROAD_MEASURES:
+            part = f"objectives/{m}/from"
+            raise Refusal("no-router", name=part, measure=source.measure, pointer=f"/{part}")
 
 
 def lower_defaults(request: AnyPlanRequest, limits: Limits) -> AnyPlanRequest:
@@ -186,6 +199,7 @@ def _check_arrivals(size: int, n: int, most: int) -> None:
         raise invalid("size", demand)
 
 
-def _check_limit(name: str, limit: float, actual: float) -> None:
+def check_limit(name: str, limit: float, actual: float) -> None:
+    """Raise a refusal where a field is over its limit."""
     if actual > limit:
         raise Refusal("over-limit", name=name, pointer=f"/{name}", limit=limit, actual=actual)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from service.errors import Cancelled
+from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.stops import UnmeasuredStops
 from service.requests.task import Task, TaskSource
 from service.roads.client import RoadClient
@@ -15,7 +16,12 @@ _POLL_SECONDS = 0.05  # between two questions whether to stop
 
 def needs_roads(task: Task) -> bool:
     """Return whether costs by road are missing of a task."""
-    return isinstance(task.subject, UnmeasuredStops) and bool(task.subject.road_measures)
+    match task.subject:
+        case UnmeasuredStops() as stops:
+            return bool(stops.road_measures)
+        case UnmeasuredFleet(stops=stops):
+            return bool(stops.road_measures)
+    return False
 
 
 async def measured_by_road(task: Task, client: RoadClient) -> Task:
@@ -24,12 +30,13 @@ async def measured_by_road(task: Task, client: RoadClient) -> Task:
     Raises:
         Refusal: The engine has no costs between these stops, or fails; see RoadClient.costs.
     """
-    stops, labels = task.subject, task.labels
-    assert isinstance(stops, UnmeasuredStops)
+    subject, labels = task.subject, task.labels
+    assert isinstance(subject, UnmeasuredStops | UnmeasuredFleet)
     assert labels is not None
     began = time.perf_counter()
+    stops = subject.stops if isinstance(subject, UnmeasuredFleet) else subject
     costs = await client.costs(stops.locations, [stop.id for stop in labels.stops])
-    measured = stops.measured_by_road({"road_time": costs.seconds, "road_distance": costs.metres})
+    measured = subject.measured_by_road({"road_time": costs.seconds, "road_distance": costs.metres})
     return replace(task, subject=measured, timings={"roads": 1000 * (time.perf_counter() - began)})
 
 

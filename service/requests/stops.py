@@ -160,8 +160,12 @@ def make_instance(stops: UnmeasuredStops) -> Instance:
     ends = stops.ends._asdict()
     if len(planes) == OBJECTIVES:
         return Instance(coordinates=np.concatenate(planes, axis=1), **ends)
-    costs = [_costs(source, stops.locations) for source in stops.sources]
-    return Instance(matrices=np.stack(costs), **ends)
+    return Instance(matrices=cost_matrices(stops), **ends)
+
+
+def cost_matrices(stops: UnmeasuredStops) -> Array:
+    """Return the costs between stops, all of them measured, shape (2, n, n)."""
+    return np.stack([_costs(source, stops.locations) for source in stops.sources])
 
 
 def _costs(source: Source, locations: Array) -> Array:

@@ -11,14 +11,21 @@ from service.instance import Instance, Kind
 from service.planner import PlanOptions
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.coverage import parse_coverage_request
+from service.requests.fleets.request import parse_fleet_request
+from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.front import FrontRequest
 from service.requests.front_parser import parse_front_request
-from service.requests.limits import Limits, check_reference_point, check_structure
+from service.requests.limits import (
+    Limits,
+    check_reference_point,
+    check_router,
+    check_structure,
+)
 from service.requests.replan.rest_request import RestRequest
 from service.requests.schemas import Geometry
 from service.requests.stops import Labels, UnmeasuredStops
 
-TaskKind = Literal["front", "coverage", "replan"]
+TaskKind = Literal["front", "coverage", "fleet", "replan"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -27,9 +34,9 @@ class Task:
 
     Args:
         subject: The cities; or what becomes cities in the job: a map and its places, or stops
-            whose costs are to be measured.
+            or a fleet whose costs are to be measured.
         options: The options for the planner.
-        actor: The name of the actor that builds the first tours.
+        actor: The name of the actor that builds the first tours; empty for fleets, which have none.
         paths: Whether each tour comes with its path over the map.
         arrivals: Whether each tour comes with both lengths up to each stop.
         geometry: What the lines of the answer follow, where that is GeoJSON.
@@ -38,7 +45,7 @@ class Task:
         earlier: What is left of the tours of the front that is replanned, if one is.
     """
 
-    subject: Instance | Coverage | UnmeasuredStops
+    subject: Instance | Coverage | UnmeasuredStops | UnmeasuredFleet
     options: PlanOptions
     actor: str
     paths: bool = False
@@ -88,6 +95,8 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
             paths=coverage_request.paths,
             arrivals=coverage_request.arrivals,
         )
+    if source.kind == "fleet":
+        return _fleet_task(source.body, limits)
     model = RestRequest if source.kind == "replan" else FrontRequest
     request = parse_front_request(source.body, limits, source.upload, model)
     subject, options = request.subject(), request.options()
@@ -102,6 +111,13 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
         geometry=request.geometry,
         earlier=request.earlier if isinstance(request, RestRequest) else None,
     )
+
+
+def _fleet_task(body: bytes, limits: Limits) -> Task:
+    request = parse_fleet_request(body, limits)
+    fleet = request.subject()
+    check_router(fleet.stops, limits)
+    return Task(subject=fleet, options=request.options(), actor="", labels=request.labels)
 
 
 DEFAULT_ACTORS: Mapping[Kind, str] = {"coordinates": "pa-one", "matrices": "pa-one-matrix"}

@@ -15,6 +15,7 @@ _NAMES = (
     "concave",
     "coverage",
     "curves",
+    "fleet",
     "fronts",
     "kro",
     "large",

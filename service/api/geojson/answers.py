@@ -20,6 +20,7 @@ from service.api.geojson.features import Drawing
 from service.api.geojson.lines import Line
 from service.api.responses import json_bytes
 from service.errors import Fault, Refusal
+from service.jobs.fleets.fleet_document import holds_plans
 from service.jobs.record import Record
 from service.requests.schemas import Geometry
 
@@ -30,7 +31,7 @@ CONTENT: dict[str, Any] = {
         GEOJSON: {
             "schema": {
                 "title": "FeatureCollection",
-                "description": "a line for each tour, then a point for each stop (RFC 7946)",
+                "description": "a line for each tour or route, a point for each stop (RFC 7946)",
                 "type": "object",
                 "required": ["type", "features"],
                 "properties": {
@@ -99,6 +100,9 @@ class FrontAnswers:
         self.check(request, record.front.stops, geometry)
         if not accepts_geojson(request):
             return json_bytes(record.json())
+        if geometry == "roads" and holds_plans(record.front):
+            sentence = "geometry must be straight for plans of a fleet, got roads"
+            raise Refusal("invalid-request", detail=sentence, errors=[_fault(request, sentence)])
         tours = b"[" + record.front.tours + b"]"
         return await self._drawn(request, record, tours, geometry, seconds)
 
@@ -132,7 +136,8 @@ class FrontAnswers:
         drawing = await asyncio.to_thread(Drawing.of, record, tours)
         if geometry == "roads" and drawing.tours:
             assert self._streets is not None
-            asked = self._streets.lines(drawing.locations, drawing.ids, drawing.ways, seconds)
+            ways = np.array(drawing.ways, dtype=np.int64)
+            asked = self._streets.lines(drawing.locations, drawing.ids, ways, seconds)
             lines = await unless_disconnected(request, asked)
         else:
             lines = drawing.straight_lines

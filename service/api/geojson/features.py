@@ -1,4 +1,4 @@
-"""Fronts and tours as FeatureCollections: a line for each tour, a point for each stop."""
+"""Fronts and tours as FeatureCollections: a line for each tour or route, a point for each stop."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
 from service.api.geojson.lines import Line, encode_line
+from service.jobs.fleets.fleet_document import holds_plans
 from service.jobs.record import Record
 
 
@@ -19,22 +20,37 @@ class Drawing:
     Args:
         record: The record of the front, whose stops all have locations.
         tours: The tours, as in its JSON.
-        ways: The stops that each tour comes by, shape (tours, m), m at least 2: its end, too.
+        ways: The stops that each tour comes by, two at least: its end, too.
     """
 
     record: Record
     tours: Sequence[dict[str, Any]]
-    ways: NDArray[np.int64]
+    ways: Sequence[Sequence[int]]
 
     @classmethod
     def of(cls, record: Record, tours: bytes) -> "Drawing":
-        """Return the drawing of tours of a front, a JSON array."""
+        """Return the drawing of tours of a front, or of the routes of plans, a JSON array."""
         parsed = from_json(tours)
+        if holds_plans(record.front):
+            return cls._of_plans(record, parsed)
         # Fronts have this member where tours are open routes alone.
         returns = record.front.closed is None or record.front.cities == 1
         orders = [tour["tour"] for tour in parsed]
         ways = [[*order, order[0]] if returns else order for order in orders]
-        return cls(record, parsed, np.array(ways, dtype=np.int64))
+        return cls(record, parsed, ways)
+
+    @classmethod
+    def _of_plans(cls, record: Record, plans: Sequence[dict[str, Any]]) -> "Drawing":
+        """Return the drawing of all routes, each with the number of its plan and its lengths."""
+        indexes = {stop["id"]: index for index, stop in enumerate(record.front.stops or ())}
+        routes = [
+            {"plan": number, "balance": plan["balance"], "plan_lengths": plan["lengths"], **route}
+            for number, plan in enumerate(plans)
+            for route in plan["routes"]
+        ]
+        ways = [[indexes[stop] for stop in route["stops"]] for route in routes]
+        # A line has two positions at least, also that of a route that is one stop.
+        return cls(record, routes, [way if len(way) > 1 else way * 2 for way in ways])
 
     @property
     def ids(self) -> list[str]:
@@ -49,7 +65,7 @@ class Drawing:
     @property
     def straight_lines(self) -> list[Line]:
         """The straight way of each tour from stop to stop."""
-        return list(self.locations[self.ways])
+        return [self.locations[np.array(way, dtype=np.int64)] for way in self.ways]
 
     def encode(self, lines: Sequence[Line]) -> bytes:
         """Return the FeatureCollection of the tours along these lines, and of all stops.

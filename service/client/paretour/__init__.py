@@ -13,14 +13,16 @@ events of `events`; neither needs anything of the service but its address.
 from paretour.asynchronous import AsyncClient, AsyncJob
 from paretour.choice import Choice
 from paretour.errors import Refused
+from paretour.fleets import FleetFront, FleetPlan, FleetRoute
 from paretour.members import (
     CoverageRequest,
+    FleetRequest,
     FrontRequest,
     ObjectiveRequest,
     ReplanRequest,
     StopRequest,
 )
-from paretour.requests import Plan, coverage_plan, front_plan, replan_plan
+from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
 from paretour.ros_maps import read_ros_map
 from paretour.sync import Client, Job
 from paretour.values import Actor, Front, Objective, Path, Progress, Tour
@@ -32,6 +34,10 @@ __all__ = [
     "Choice",
     "Client",
     "CoverageRequest",
+    "FleetFront",
+    "FleetPlan",
+    "FleetRequest",
+    "FleetRoute",
     "Front",
     "FrontRequest",
     "Job",
@@ -45,6 +51,7 @@ __all__ = [
     "StopRequest",
     "Tour",
     "coverage_plan",
+    "fleet_plan",
     "front_plan",
     "read_ros_map",
     "replan_plan",

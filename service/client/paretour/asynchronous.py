@@ -8,8 +8,9 @@ import httpx
 from paretour.calls import Call, Calls, Geometry, auth_headers
 from paretour.choice import Choice
 from paretour.events import JobEvents
-from paretour.members import CoverageRequest, FrontRequest, ReplanRequest
-from paretour.requests import Plan, coverage_plan, front_plan, replan_plan
+from paretour.fleets import FleetFront
+from paretour.members import CoverageRequest, FleetRequest, FrontRequest, ReplanRequest
+from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
 from paretour.values import Actor, Front, Progress, Tour
 
 T = TypeVar("T")
@@ -67,6 +68,10 @@ class AsyncClient:
         """Submit a job that plans the rest of a front's way; arguments as of `replan`."""
         return await self.post(replan_plan(front, request))
 
+    async def fleet(self, **request: Unpack[FleetRequest]) -> FleetFront:
+        """Plan a front of plans for a fleet and wait for it."""
+        return await self.plan_fleet(fleet_plan(request))
+
     async def submit(self, **request: Unpack[FrontRequest]) -> "AsyncJob":
         """Submit a job that plans a front."""
         return await self.post(front_plan(request))
@@ -80,6 +85,10 @@ class AsyncClient:
     async def plan(self, plan: Plan) -> Front:
         """Send a plan that was built before, and wait for the front."""
         return await self._connection.run(self._calls.plan(plan))
+
+    async def plan_fleet(self, plan: Plan) -> FleetFront:
+        """Send a plan for a fleet that was built before, and wait for the front of its plans."""
+        return await self._connection.run(self._calls.plan_fleet(plan))
 
     async def post(self, plan: Plan) -> "AsyncJob":
         """Send a plan that was built before, as a job."""

@@ -12,6 +12,7 @@ import httpx
 from paretour.choice import Choice, parameters
 from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
+from paretour.fleets import FleetFront, parse_fleet
 from paretour.requests import Plan
 from paretour.values import FINAL_STATUSES, Actor, Front, Tour, parse_front, parse_tour
 
@@ -57,6 +58,10 @@ class Calls:
     def plan(self, plan: Plan) -> Call[Front]:
         """Plan a front and wait for it."""
         return parse_front((yield from self._post(plan, self.timeout + plan.seconds)).json())
+
+    def plan_fleet(self, plan: Plan) -> Call[FleetFront]:
+        """Plan a front of plans for a fleet and wait for it."""
+        return parse_fleet((yield from self._post(plan, self.timeout + plan.seconds)).json())
 
     def submit(self, plan: Plan) -> Call[str]:
         """Submit a job that plans a front; return the front's id."""

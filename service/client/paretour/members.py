@@ -62,6 +62,55 @@ class FrontRequest(PlanRequest, total=False):
     augment: int
 
 
+class FleetStopRequest(StopRequest, total=False):
+    """A stop of a fleet, and what it asks of the vehicle that visits it."""
+
+    demand: Sequence[int]
+    service: float
+    window: ArrayLike | None
+    prize: float | None
+
+
+class ShipmentRequest(TypedDict):
+    """Two stops, by index or id, that one vehicle visits in this order."""
+
+    pickup: int | str
+    delivery: int | str
+
+
+class VehicleRequest(TypedDict, total=False):
+    """So many vehicles that are alike."""
+
+    id: Required[str]
+    count: int
+    start: int | str | None
+    end: int | str | None
+    capacity: Sequence[int]
+    shift: ArrayLike | None
+    longest: float | None
+    fixed: float
+
+
+class FleetObjectiveRequest(ObjectiveRequest, total=False):
+    """An objective, and whether a plan's length is the sum over routes or the longest."""
+
+    over: Literal["sum", "max"]
+
+
+class FleetRequest(TypedDict, total=False):
+    """The members of a request to POST /fleet; the service's /docs explains them."""
+
+    stops: Required[Sequence[FleetStopRequest]]
+    vehicles: Required[Sequence[VehicleRequest]]
+    objectives: Required[Sequence[FleetObjectiveRequest]]
+    shipments: Sequence[ShipmentRequest]
+    clock: str | None
+    time_limit: float
+    size: int
+    reference_point: ArrayLike
+    seed: int
+
+
 class CoverageRequest(PlanRequest, total=False):
     """The members of a request to POST /coverage: map, places, second objective."""
 

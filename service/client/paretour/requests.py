@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.members import CoverageRequest, FrontRequest, ReplanRequest
+from paretour.members import CoverageRequest, FleetRequest, FrontRequest, ReplanRequest
 from paretour.values import Front
 
 _DEFAULT_TIME_LIMIT = 1.0  # seconds, the service's own
@@ -90,6 +90,11 @@ def coverage_plan(request: CoverageRequest, png: bytes | None) -> Plan:
 def replan_plan(front: Front | str, request: ReplanRequest) -> Plan:
     """Return the request to replan a front, or the one with this id."""
     return Plan(f"/front/{front.id if isinstance(front, Front) else front}/replan", request)
+
+
+def fleet_plan(request: FleetRequest) -> Plan:
+    """Return the request to POST /fleet."""
+    return Plan("/fleet", request)
 
 
 def _listed(array: Any) -> Any:

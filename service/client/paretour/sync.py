@@ -8,8 +8,9 @@ import httpx
 from paretour.calls import Call, Calls, Geometry, auth_headers
 from paretour.choice import Choice
 from paretour.events import JobEvents
-from paretour.members import CoverageRequest, FrontRequest, ReplanRequest
-from paretour.requests import Plan, coverage_plan, front_plan, replan_plan
+from paretour.fleets import FleetFront
+from paretour.members import CoverageRequest, FleetRequest, FrontRequest, ReplanRequest
+from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
 from paretour.values import Actor, Front, Progress, Tour
 
 T = TypeVar("T")
@@ -71,6 +72,10 @@ class Client:
         """Submit a job that plans the rest of a front's way; arguments as of `replan`."""
         return self.post(replan_plan(front, request))
 
+    def fleet(self, **request: Unpack[FleetRequest]) -> FleetFront:
+        """Plan a front of plans for a fleet and wait for it."""
+        return self.plan_fleet(fleet_plan(request))
+
     def submit(self, **request: Unpack[FrontRequest]) -> "Job":
         """Submit a job that plans a front."""
         return self.post(front_plan(request))
@@ -84,6 +89,10 @@ class Client:
     def plan(self, plan: Plan) -> Front:
         """Send a plan that was built before, and wait for the front."""
         return self._connection.run(self._calls.plan(plan))
+
+    def plan_fleet(self, plan: Plan) -> FleetFront:
+        """Send a plan for a fleet that was built before, and wait for the front of its plans."""
+        return self._connection.run(self._calls.plan_fleet(plan))
 
     def post(self, plan: Plan) -> "Job":
         """Send a plan that was built before, as a job."""

@@ -187,22 +187,22 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         id=document["id"],
         status=document["status"],
         tours=tours.reshape(len(items), document["cities"]),
-        lengths=_floats([item["lengths"] for item in items]).reshape(-1, 2),
-        angles=_floats([item["angle"] for item in items]),
-        balances=_floats([item["balance"] for item in items]),
+        lengths=read_only_floats([item["lengths"] for item in items]).reshape(-1, 2),
+        angles=read_only_floats([item["angle"] for item in items]),
+        balances=read_only_floats([item["balance"] for item in items]),
         points=document["points"],
         hypervolume=document["hypervolume"],
         hypervolume_bound=document["hypervolume_bound"],
-        reference_point=_floats(document["reference_point"]),
-        scale=_floats(document["scale"]),
+        reference_point=read_only_floats(document["reference_point"]),
+        scale=read_only_floats(document["scale"]),
         actor=(document["actor"] or {}).get("name"),
         terminated=document["terminated"],
         places=_integers(document["places"]) if "places" in document else None,
         paths=paths or None,
         document=document,
         stops=tuple(tuple(item["stops"]) for item in items) if "stops" in document else None,
-        objectives=_parse_objectives(document),
-        kept=_floats([item["kept"] for item in items]) if _is_replanned(items) else None,
+        objectives=objectives_of(document),
+        kept=read_only_floats([item["kept"] for item in items]) if _is_replanned(items) else None,
     )
 
 
@@ -212,7 +212,7 @@ def parse_tour(document: Mapping[str, Any]) -> Tour:
         front=document["front"],
         angle=document["angle"],
         balance=document["balance"],
-        lengths=_floats(document["lengths"]),
+        lengths=read_only_floats(document["lengths"]),
         tour=_integers(document["tour"]),
         arrivals=_arrivals(document),
         path=_parse_path(document),
@@ -226,10 +226,11 @@ def _is_replanned(items: Sequence[Mapping[str, Any]]) -> bool:
 
 
 def _arrivals(item: Mapping[str, Any]) -> Array | None:
-    return _floats(item["arrivals"]) if "arrivals" in item else None
+    return read_only_floats(item["arrivals"]) if "arrivals" in item else None
 
 
-def _parse_objectives(document: Mapping[str, Any]) -> tuple[Objective, ...] | None:
+def objectives_of(document: Mapping[str, Any]) -> tuple[Objective, ...] | None:
+    """Return the objectives of a JSON answer, where the request named them."""
     if "objectives" not in document:
         return None
     return tuple(Objective(each["name"], each.get("unit")) for each in document["objectives"])
@@ -239,7 +240,7 @@ def _parse_path(item: Mapping[str, Any]) -> Path | None:
     if "path" not in item:
         return None
     path = item["path"]
-    points = _floats(path["points"]) if "points" in path else None
+    points = read_only_floats(path["points"]) if "points" in path else None
     return Path(_integers(path["cells"]), path["metres"], points)
 
 
@@ -247,7 +248,8 @@ def _integers(values: Any) -> NDArray[np.int64]:
     return _read_only(np.array(values, dtype=np.int64))
 
 
-def _floats(values: Any) -> Array:
+def read_only_floats(values: Any) -> Array:
+    """Return numbers as an array that cannot be changed."""
     return _read_only(np.array(values, dtype=np.float64))
 
 

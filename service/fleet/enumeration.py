@@ -1,0 +1,101 @@
+"""The exact front of a fleet of few stops and vehicles, by dynamic programming over its routes.
+
+Every order of every subset of the stops is a route. Vehicle after vehicle takes one or none, and
+of the partial plans that visit the same stops those that are dominated are dropped.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from itertools import permutations
+from typing import NamedTuple
+
+import numpy as np
+
+from service.fleet.evaluation import route_lengths, route_violations, violations
+from service.fleet.fleet import Fleet, Rules
+from service.fleet.plans import Plan, Route
+from service.pareto import nondominated
+
+MOST_STOPS = 6  # to visit
+_MOST_VEHICLES = 6
+Stops = frozenset[int]
+
+
+class _Partial(NamedTuple):
+    """The routes of some vehicles, and their lengths together."""
+
+    first: float
+    second: float
+    routes: tuple[Route, ...]
+
+
+Partials = Mapping[Stops, list[_Partial]]
+
+
+def is_enumerable(rules: Rules) -> bool:
+    """Return whether a fleet has few stops and vehicles."""
+    stops = len(rules.clients)
+    vehicles = sum(min(vehicle.count, stops) for vehicle in rules.vehicles)
+    return stops <= MOST_STOPS and vehicles <= _MOST_VEHICLES
+
+
+def exact_plans(fleet: Fleet) -> list[Plan]:
+    """Return a plan for each point of the exact front, and others that are dominated."""
+    rules = fleet.rules
+    partials: Partials = {frozenset(): [_Partial(0.0, 0.0, ())]}
+    for index, vehicle in enumerate(rules.vehicles):
+        routes = _routes(fleet, index)
+        for _ in range(min(vehicle.count, len(rules.clients))):
+            partials = _with_another(rules, partials, routes)
+    plans = [Plan(partial.routes) for each in partials.values() for partial in each]
+    return [plan for plan in plans if not violations(fleet, plan)]
+
+
+def _routes(fleet: Fleet, vehicle: int) -> Partials:
+    """Return the routes of a vehicle that break no rule, by the stops that they visit."""
+    rules = fleet.rules
+    fixed = rules.vehicles[vehicle].fixed
+    found: dict[Stops, list[_Partial]] = defaultdict(list)
+    for most in range(1, len(rules.clients) + 1):
+        for stops in permutations(rules.clients, most):
+            route = Route(vehicle, stops)
+            if _ships_in_order(rules, stops) and not any(route_violations(fleet, route)):
+                first, second = route_lengths(fleet, route)
+                found[frozenset(stops)].append(_Partial(first + fixed, second, (route,)))
+    return {visited: _undominated(each) for visited, each in found.items()}
+
+
+def _ships_in_order(rules: Rules, stops: tuple[int, ...]) -> bool:
+    """Return whether what is picked up on a route is delivered later on it, and the reverse."""
+    places = {stop: place for place, stop in enumerate(stops)}
+    missing = len(stops)
+    return all(
+        places.get(each.pickup, missing) < places.get(each.delivery, missing)
+        or not {each.pickup, each.delivery} & places.keys()
+        for each in rules.shipments
+    )
+
+
+def _with_another(rules: Rules, partials: Partials, routes: Partials) -> Partials:
+    """Return the partial plans in which one more vehicle takes one of these routes, or none."""
+    found = {visited: list(each) for visited, each in partials.items()}
+    for visited, before in partials.items():
+        for added, each in routes.items():
+            if not visited & added:
+                joined = (_joined(rules, a, b) for a in before for b in each)
+                found.setdefault(visited | added, []).extend(joined)
+    return {visited: _undominated(each) for visited, each in found.items()}
+
+
+def _joined(rules: Rules, a: _Partial, b: _Partial) -> _Partial:
+    first, second = (
+        max(x, y) if over == "max" else x + y
+        for x, y, over in zip(a[:2], b[:2], rules.over, strict=True)
+    )
+    return _Partial(first, second, a.routes + b.routes)
+
+
+def _undominated(partials: Iterable[_Partial]) -> list[_Partial]:
+    each = list(partials)
+    points = np.array([partial[:2] for partial in each])
+    return [each[index] for index in nondominated(points)]

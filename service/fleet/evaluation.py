@@ -1,0 +1,225 @@
+"""The lengths of plans, the times of their routes, and the rules that they break.
+
+Nothing here knows of the engine that finds plans: it is what every plan is checked by.
+"""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import accumulate, pairwise
+from math import inf
+
+import numpy as np
+
+from service.fleet.fleet import Array, Fleet, Rules
+from service.fleet.plans import Plan, Route, path_of
+from service.instance import OBJECTIVES
+
+_TOLERANCE = 1e-9  # relative, in times and lengths: sums of floats differ by their order
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """When a vehicle reaches each stop of its route, and when it is done.
+
+    It leaves as late as it can without being done later.
+
+    Attributes:
+        arrivals: A time for each stop of `path_of`; at the first the departure. It may wait there
+            until the window opens.
+        end: When the route is done.
+        late: By how much it misses windows and the end of its shift, at most.
+    """
+
+    arrivals: tuple[float, ...]
+    end: float
+    late: float
+
+    @property
+    def duration(self) -> float:
+        """The time from the departure to the end."""
+        return self.end - self.arrivals[0]
+
+
+def schedule(fleet: Fleet, route: Route) -> Schedule:
+    """Return the times of a route of a fleet that has a clock, or of one in its objective.
+
+    Raises:
+        ValueError: The fleet has no clock.
+    """
+    if fleet.rules.clock is None:
+        raise ValueError("a fleet without a clock has no times")
+    shift = fleet.rules.vehicles[route.vehicle].shift
+    early = _drive(fleet, route, shift[0], shift[1])
+    # Savelsbergh (1992): to leave later by the waiting, or what windows allow, delays no end.
+    delay = 0.0 if early.late else min(early.waiting, early.slack)
+    timely = _drive(fleet, route, shift[0] + delay, shift[1]) if delay else early
+    return Schedule(timely.arrivals, timely.end, early.late)
+
+
+@dataclass(frozen=True)
+class _Drive:
+    arrivals: tuple[float, ...]
+    end: float
+    waiting: float
+    slack: float  # by how much it may leave later, where it is nowhere late
+    late: float
+
+
+def _drive(fleet: Fleet, route: Route, departure: float, last: float) -> _Drive:
+    """Return the times of a route that begins at a time."""
+    path = path_of(fleet.rules, route)
+    time, waiting, slack, late = departure, 0.0, inf, 0.0
+    arrivals = []
+    for stop, leg in zip(path, [*legs(fleet, route, _clock(fleet.rules)), 0.0], strict=True):
+        visit = fleet.rules.visits[stop]
+        opens, closes = visit.window
+        arrivals.append(time)
+        waiting += max(0.0, opens - time)
+        begin = max(time, opens)
+        slack = min(slack, closes - begin + waiting)
+        late = max(late, begin - closes)
+        time = begin + visit.service
+        end, time = time, time + leg
+    slack = min(slack, last - end + waiting)
+    return _Drive(tuple(arrivals), end, waiting, slack, max(late, end - last))
+
+
+def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
+    """Return the costs of the legs of a route in one objective."""
+    costs = fleet.costs[objective]
+    return [float(costs[a, b]) for a, b in pairwise(path_of(fleet.rules, route))]
+
+
+def route_lengths(fleet: Fleet, route: Route) -> tuple[float, float]:
+    """Return the lengths of a route: in the clock's objective its duration, else its costs."""
+    first, second = (_length(fleet, route, objective) for objective in range(OBJECTIVES))
+    return first, second
+
+
+def plan_lengths(fleet: Fleet, plan: Plan) -> tuple[float, float]:
+    """Return the lengths of a plan, with prizes lost and vehicles used in the first."""
+    routes = np.array([route_lengths(fleet, route) for route in plan.routes]).reshape(
+        -1, OBJECTIVES
+    )
+    first, second = (
+        float(lengths.max(initial=0.0) if over == "max" else lengths.sum())
+        for lengths, over in zip(routes.T, fleet.rules.over, strict=True)
+    )
+    return first + extras(fleet.rules, plan), second
+
+
+def extras(rules: Rules, plan: Plan) -> float:
+    """Return the prizes that a plan loses, and the fixed costs of the vehicles that it uses."""
+    fixed = sum(rules.vehicles[route.vehicle].fixed for route in plan.routes)
+    return fixed + sum(rules.visits[stop].prize or 0.0 for stop in unassigned(rules, plan))
+
+
+def unassigned(rules: Rules, plan: Plan) -> list[int]:
+    """Return the stops that a plan leaves out, in order."""
+    return sorted(set(rules.clients) - set(plan.visited()))
+
+
+def points_of(fleet: Fleet, plans: Sequence[Plan]) -> Array:
+    """Return the lengths of plans, shape (m, 2)."""
+    return np.array([plan_lengths(fleet, plan) for plan in plans]).reshape(-1, OBJECTIVES)
+
+
+def violations(fleet: Fleet, plan: Plan) -> list[str]:
+    """Return a sentence for each rule of the fleet that a plan breaks."""
+    return [
+        *_visits_broken(fleet.rules, plan),
+        *_counts_broken(fleet.rules, plan),
+        *_shipments_broken(fleet.rules, plan),
+        *(broken for route in plan.routes for broken in route_violations(fleet, route)),
+    ]
+
+
+def _clock(rules: Rules) -> int:
+    assert rules.clock is not None
+    return rules.clock
+
+
+def _length(fleet: Fleet, route: Route, objective: int) -> float:
+    if objective == fleet.rules.clock:
+        return schedule(fleet, route).duration
+    return sum(legs(fleet, route, objective))
+
+
+def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:
+    visits = Counter(plan.visited())
+    for stop, times in visits.items():
+        if stop not in rules.clients:
+            yield f"stop {stop} is no stop to visit"
+        elif times > 1:
+            yield f"stop {stop} is visited {times} times"
+    required = (stop for stop in rules.clients if not _may_be_left_out(rules, stop))
+    yield from (f"stop {stop} is not visited" for stop in required if stop not in visits)
+    yield from ("a route visits no stop" for route in plan.routes if not route.stops)
+
+
+def _may_be_left_out(rules: Rules, stop: int) -> bool:
+    pickups = {each.delivery: each.pickup for each in rules.shipments}
+    return rules.visits[pickups.get(stop, stop)].prize is not None
+
+
+def _counts_broken(rules: Rules, plan: Plan) -> Iterator[str]:
+    used = Counter(route.vehicle for route in plan.routes)
+    for index, count in used.items():
+        if count > rules.vehicles[index].count:
+            yield f"{count} vehicles of type {index} leave, and there are fewer"
+
+
+def _shipments_broken(rules: Rules, plan: Plan) -> Iterator[str]:
+    places = {
+        stop: (number, place)
+        for number, route in enumerate(plan.routes)
+        for place, stop in enumerate(route.stops)
+    }
+    for each in rules.shipments:
+        pickup, delivery = places.get(each.pickup), places.get(each.delivery)
+        if (pickup is None) != (delivery is None):
+            yield f"of the shipment from {each.pickup} to {each.delivery} half is done"
+        elif pickup and delivery and (pickup[0] != delivery[0] or pickup > delivery):
+            yield f"what is delivered at {each.delivery} was not picked up at {each.pickup}"
+
+
+def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
+    """Yield a sentence for each rule that a route breaks by itself."""
+    rules = fleet.rules
+    vehicle = rules.vehicles[route.vehicle]
+    for dimension, capacity in enumerate(vehicle.capacity):
+        if (most := max(_loads(rules, route, dimension))) > capacity:
+            yield f"a vehicle of type {route.vehicle} holds {most} of {capacity}"
+    if rules.clock is not None:
+        times = schedule(fleet, route)
+        if _exceeds(times.late, 0.0, times.end):
+            yield f"a vehicle of type {route.vehicle} is late by {times.late:g}"
+    if vehicle.longest != inf:
+        objective = rules.maximum if rules.clock is None else rules.clock
+        assert objective is not None
+        if _exceeds(length := _length(fleet, route, objective), vehicle.longest, length):
+            yield f"a route of length {length:g} is longer than {vehicle.longest:g}"
+
+
+def _exceeds(actual: float, most: float, scale: float) -> bool:
+    return actual > most + _TOLERANCE * scale
+
+
+def _loads(rules: Rules, route: Route, dimension: int) -> Iterator[int]:
+    """Return what a vehicle holds in one dimension, at its start and after each visit.
+
+    At the start that is all it brings to stops that are in no shipment.
+    """
+    delivered = {each.delivery: each.pickup for each in rules.shipments}
+
+    def demand(stop: int) -> int:
+        return (rules.visits[stop].demand or (0,) * rules.dimensions)[dimension]
+
+    def change(stop: int) -> int:
+        if stop in delivered:
+            return -demand(delivered[stop])
+        return demand(stop) if stop in rules.shipped else -demand(stop)
+
+    brought = sum(demand(stop) for stop in route.stops if stop not in rules.shipped)
+    return accumulate((change(stop) for stop in route.stops), initial=brought)

@@ -1,0 +1,88 @@
+"""Conditions that every feasible plan needs: the first that fails names what to change."""
+
+from collections.abc import Iterator
+
+from service.errors import Refusal
+from service.fleet.evaluation import route_violations
+from service.fleet.fleet import Fleet, Rules, VehicleType
+from service.fleet.plans import Route
+
+
+def check_necessary(fleet: Fleet) -> None:
+    """Raise a refusal where some stop fits no vehicle, or all of them do not fit all vehicles.
+
+    Raises:
+        Refusal: A necessary condition fails; that none does is no proof of a plan.
+    """
+    for reason in (*_demands(fleet.rules), *_totals(fleet.rules)):
+        raise Refusal("no-plan", reason=reason)
+    for reason in _unreachable(fleet):
+        raise Refusal("no-plan", reason=reason)
+
+
+def _required(rules: Rules) -> list[int]:
+    """Return the stops that must be visited, a shipment by its pick-up alone."""
+    deliveries = {each.delivery for each in rules.shipments}
+    return [
+        stop
+        for stop in rules.clients
+        if stop not in deliveries and rules.visits[stop].prize is None
+    ]
+
+
+def _demands(rules: Rules) -> Iterator[str]:
+    for stop in _required(rules):
+        demand = rules.visits[stop].demand
+        if demand and not any(_holds(vehicle, demand) for vehicle in rules.vehicles):
+            yield f"the demand of stops/{stop} is over the capacity of every vehicle"
+
+
+def _holds(vehicle: VehicleType, demand: tuple[int, ...]) -> bool:
+    return all(d <= c for d, c in zip(demand, vehicle.capacity, strict=True))
+
+
+def _totals(rules: Rules) -> Iterator[str]:
+    """Name the dimension in which what must be brought is more than all vehicles hold."""
+    brought = [stop for stop in _required(rules) if stop not in rules.shipped]
+    for dimension in range(rules.dimensions):
+        demands = (rules.visits[stop].demand or (0,) * rules.dimensions for stop in brought)
+        total = sum(demand[dimension] for demand in demands)
+        most = sum(vehicle.count * vehicle.capacity[dimension] for vehicle in rules.vehicles)
+        if total > most:
+            yield (
+                f"the demands sum to {total} in dimension {dimension}, and all vehicles together"
+                f" hold {most}"
+            )
+
+
+def _unreachable(fleet: Fleet) -> Iterator[str]:
+    """Name a stop that no vehicle can serve even if it serves nothing else.
+
+    Where a detour over another stop may be shorter, that is no necessary condition.
+    """
+    rules = fleet.rules
+    deliveries = {each.pickup: (each.pickup, each.delivery) for each in rules.shipments}
+    for stop in _required(rules):
+        stops = deliveries.get(stop, (stop,))
+        served = any(_serves(fleet, vehicle, stops) for vehicle in range(len(rules.vehicles)))
+        if not served and _triangle_holds(fleet):
+            yield (
+                f"stops/{stop} cannot be reached within its window, the shift and the longest"
+                " route of any vehicle, even on a route of its own"
+            )
+
+
+def _serves(fleet: Fleet, vehicle: int, stops: tuple[int, ...]) -> bool:
+    """Return whether a vehicle can visit these stops alone."""
+    return not any(route_violations(fleet, Route(vehicle, stops)))
+
+
+def _triangle_holds(fleet: Fleet) -> bool:
+    """Return whether no detour over a stop is shorter, in the objective that is limited."""
+    rules = fleet.rules
+    objective = rules.maximum if rules.clock is None else rules.clock
+    if objective is None:
+        return True
+    costs = fleet.costs[objective]
+    slack = 1e-9 * costs.max(initial=0.0)
+    return all((costs[:, [k]] + costs[[k]] >= costs - slack).all() for k in range(rules.n))

@@ -1,0 +1,223 @@
+"""plan_fleet(...): from a fleet to its front of plans."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from math import inf
+
+import numpy as np
+
+from service.errors import Cancelled, Refusal
+from service.fleet.archive import SolutionArchive
+from service.fleet.enumeration import exact_plans, is_enumerable
+from service.fleet.evaluation import points_of, violations
+from service.fleet.fleet import Array, Fleet
+from service.fleet.necessary import check_necessary
+from service.fleet.plans import FleetFront, Plan
+from service.fleet.solver import Solver
+from service.fleet.sweep import Sweep
+from service.fleet.translation import Translation
+from service.pareto import best_subset, hypervolume, nondominated, selection_seconds
+from service.search.improve import Progress, Termination
+
+_REPORT_EVERY = 0.1  # seconds
+_NO_LIMIT = 2**62
+_CHECKING = 5e-6  # seconds for each stop of each plan, more than a 2.5 GHz Xeon takes
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FleetOptions:
+    """The options of plan_fleet(...).
+
+    Args:
+        time_limit: Seconds for everything, at most.
+        size: The greatest number of plans of the front.
+        seed: Of all random choices.
+        reference_point: Of the hypervolume, shape (2,); by default lengths that no plan should
+            reach.
+        iterations: Of PyVRP, at most. With an infinite time limit the same seed and the same
+            iterations give the same front.
+    """
+
+    time_limit: float
+    size: int = 100
+    seed: int = 0
+    reference_point: Array | None = None
+    iterations: int = _NO_LIMIT
+
+
+Report = Callable[[Progress, Callable[[int], FleetFront]], None]
+
+
+def plan_fleet(
+    fleet: Fleet,
+    options: FleetOptions,
+    stop: Callable[[], bool] = lambda: False,
+    report: Report = lambda *_: None,
+) -> FleetFront:
+    """Return the best front of plans found for a fleet within the time limit.
+
+    Args:
+        fleet: The fleet.
+        options: What front is wanted, and how much may be spent on it.
+        stop: Called after each iteration of PyVRP, a few milliseconds; True ends the planning with
+            what was found so far.
+        report: Called about ten times a second with the progress, and with a function that gives
+            the best front so far of at most so many plans.
+
+    Raises:
+        Refusal: There is no plan, and why where that is known; or none was found in time.
+        Cancelled: It was told to stop before it had a plan.
+    """
+    check_necessary(fleet)
+    began = time.monotonic()
+    if is_enumerable(fleet.rules):
+        plans = exact_plans(fleet)
+        if not plans:
+            raise Refusal("no-plan", reason="no plan keeps every rule: all were tried")
+        return _front(fleet, options, plans, terminated="converged", began=began)
+    search = _Search(fleet, options, stop, report, began)
+    terminated = search.run()
+    return search.front(options.size, terminated)
+
+
+class _Search:
+    """The search for a front: PyVRP, sweeping, into an archive."""
+
+    def __init__(
+        self,
+        fleet: Fleet,
+        options: FleetOptions,
+        stop: Callable[[], bool],
+        report: Report,
+        began: float,
+    ) -> None:
+        self._fleet = fleet
+        self._options = options
+        self._stop = stop
+        self._report = report
+        self._began = self._reported = began
+        self._deadline = self._began + options.time_limit
+        self._reference_point = reference_point_of(fleet, options)
+        self._translation = Translation(fleet)
+        self._archive = SolutionArchive(self._translation)
+        self._iterations = 0
+        self._cancelled = False
+
+    def run(self) -> Termination:
+        """Search until nothing is left to do, or the time is over, or it is told to stop."""
+        options, archive = self._options, self._archive
+        solver = Solver(self._translation, options.seed, archive.offer, self._ended, self._deadline)
+        random = np.random.default_rng(options.seed)
+        for step in Sweep(self._translation, archive, random, self._left).steps():
+            if self._left() < 1 or self._ended():
+                return "cancelled" if self._cancelled else "time_limit"
+            iterations = min(step.iterations, options.iterations - self._iterations)
+            self._iterations += solver.search(step.goal, step.start, iterations)
+        return "converged"
+
+    def front(self, size: int, terminated: Termination | None) -> FleetFront:
+        """Return the best front found so far of at most so many plans.
+
+        Raises:
+            Refusal: There is none.
+            Cancelled: There is none, as it was told to stop.
+        """
+        archive = self._archive
+        chosen = best_subset(np.array(archive.points).reshape(-1, 2), size, self._reference_point)
+        found = [self._translation.plan(archive.solutions[index]) for index in chosen]
+        plans = [plan for plan in found if not violations(self._fleet, plan)]
+        if not plans and self._cancelled:
+            raise Cancelled
+        if not plans:
+            sentence = f"no plan was found in {self._options.time_limit:g} s that keeps every rule"
+            raise Refusal("no-plan", reason=sentence)
+        return _front(
+            self._fleet,
+            self._options,
+            plans,
+            found=len(self._archive),
+            terminated=terminated,
+            began=self._began,
+        )
+
+    def _left(self) -> float:
+        """Return how many iterations are left, estimated from the time that those before took."""
+        most = self._options.iterations - self._iterations
+        spent = time.monotonic() - self._began
+        if self._options.time_limit == inf or not self._iterations:
+            return most
+        return min(most, (self._deadline - self._began - spent) * self._iterations / spent)
+
+    def _ended(self) -> bool:
+        """Return whether to stop, after a report if one is due."""
+        now = time.monotonic()
+        if self._stop():
+            self._cancelled = True
+            return True
+        left = self._deadline - now
+        if now - self._reported >= _REPORT_EVERY and left > _REPORT_EVERY and len(self._archive):
+            self._reported = now
+            points = np.array(self._archive.points)
+            volume = hypervolume(points, self._reference_point)
+            progress = Progress(now - self._began, volume, len(points))
+            self._report(progress, partial(self.front, terminated=None))
+        return left <= self._reserve()
+
+    def _reserve(self) -> float:
+        """Return the seconds before the deadline that checking and selecting plans takes."""
+        found = len(self._archive)
+        checked = min(found, self._options.size) * self._fleet.rules.n
+        selected = selection_seconds(self._options.size, found)
+        return _CHECKING * checked + selected
+
+
+def _front(
+    fleet: Fleet,
+    options: FleetOptions,
+    plans: Sequence[Plan],
+    *,
+    found: int = 0,
+    terminated: Termination | None,
+    began: float,
+) -> FleetFront:
+    """Return the front of plans that break no rule."""
+    points = points_of(fleet, plans)
+    reference_point = reference_point_of(fleet, options)
+    front = nondominated(points)
+    kept = front[best_subset(points[front], options.size, reference_point)]
+    return FleetFront(
+        fleet=fleet,
+        plans=[plans[index] for index in kept],
+        points=points[kept],
+        found=max(found, len(front)),
+        scale=scale_of(fleet),
+        reference_point=reference_point,
+        hypervolume=hypervolume(points[kept], reference_point),
+        terminated=terminated,
+        timings={"improvement": 1000 * (time.monotonic() - began)},
+    )
+
+
+def scale_of(fleet: Fleet) -> Array:
+    """Return the unit of each objective, shape (2,): its largest cost, 1 where that is 0."""
+    largest = fleet.costs.max(axis=(1, 2), initial=0.0)
+    return np.where(largest > 0, largest, 1.0)
+
+
+def reference_point_of(fleet: Fleet, options: FleetOptions) -> Array:
+    """Return the reference point asked for; by default lengths above those of sensible plans.
+
+    These are the number of stops times the scale, with all prizes and fixed costs in the first
+    objective, and in the clock's the time from the first shift or window to the end of the last.
+    """
+    if options.reference_point is not None:
+        return options.reference_point
+    rules = fleet.rules
+    point = rules.n * scale_of(fleet)
+    point[0] += sum(visit.prize or 0.0 for visit in rules.visits)
+    point[0] += sum(vehicle.fixed * min(vehicle.count, rules.n) for vehicle in rules.vehicles)
+    if rules.clock is not None:
+        point[rules.clock] += sum(visit.service for visit in rules.visits)
+    return point

@@ -1,0 +1,60 @@
+"""Plans of a fleet: the routes of its vehicles, and fronts of plans."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from service.fleet.fleet import Array, Fleet, Rules
+
+
+@dataclass(frozen=True)
+class Route:
+    """The visits of one vehicle, in order, without its start and end."""
+
+    vehicle: int
+    stops: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The routes of all vehicles that leave."""
+
+    routes: tuple[Route, ...]
+
+    def visited(self) -> Iterator[int]:
+        """Yield each visited stop, in the order of the routes."""
+        return (stop for route in self.routes for stop in route.stops)
+
+
+def path_of(rules: Rules, route: Route) -> tuple[int, ...]:
+    """Return the stops of a route with its start and end, where these are stops."""
+    vehicle = rules.vehicles[route.vehicle]
+    ends = [() if end is None else (end,) for end in (vehicle.start, vehicle.end)]
+    return (*ends[0], *route.stops, *ends[1])
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FleetFront:
+    """Nondominated plans and their points, by ascending first length.
+
+    Attributes:
+        fleet: What was planned for.
+        plans: The m plans.
+        points: Their lengths, shape (m, 2).
+        found: The number of nondominated plans found, of which m were kept.
+        scale: The unit of each objective, shape (2,).
+        reference_point: Of the hypervolume, shape (2,).
+        hypervolume: Of the plans kept.
+        terminated: How the search ended; None while it goes on.
+        timings: Milliseconds by phase.
+    """
+
+    fleet: Fleet
+    plans: Sequence[Plan]
+    points: Array
+    found: int
+    scale: Array
+    reference_point: Array
+    hypervolume: float
+    terminated: Literal["converged", "time_limit", "cancelled"] | None
+    timings: dict[str, float] = field(default_factory=dict)

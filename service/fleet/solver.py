@@ -1,0 +1,141 @@
+"""PyVRP's iterated local search towards one goal, with every solution that it visits reported."""
+
+import time
+import warnings
+from collections.abc import Callable
+
+import pyvrp
+import pyvrp.search
+from pyvrp.exceptions import PenaltyBoundWarning
+from pyvrp.IteratedLocalSearch import (
+    IteratedLocalSearch,
+    IteratedLocalSearchCallbacks,
+    IteratedLocalSearchParams,
+)
+from pyvrp.PenaltyManager import PenaltyManager, PenaltyParams
+
+from service.fleet.translation import Goal, Translation, Weights
+
+_FEW = 200  # stops, of which a search of the whole neighbourhood takes milliseconds
+_EXHAUSTIVE = 5e-6  # seconds for each pair of stops, more than a 2.5 GHz Xeon takes
+Neighbours = dict[pyvrp.Activity, list[pyvrp.Activity]]
+Offer = Callable[[pyvrp.Solution, Weights], None]
+
+
+class Solver:
+    """Searches towards goals, one after another.
+
+    Args:
+        translation: Of the fleet.
+        seed: Of all random choices.
+        offer: Called with each solution that a search visits, feasible or not, and the weights of
+            its goal.
+        stop: Called after each iteration; True ends the search.
+        deadline: Time by time.monotonic() after which nothing slow is begun.
+    """
+
+    def __init__(
+        self,
+        translation: Translation,
+        seed: int,
+        offer: Offer,
+        stop: Callable[[], bool],
+        deadline: float | None = None,
+    ) -> None:
+        self._translation = translation
+        self._random = pyvrp.RandomNumberGenerator(seed=seed)
+        self._offer = offer
+        self._stop = stop
+        self._deadline = deadline
+        self._neighbours: tuple[Weights, Neighbours] | None = None
+
+    def search(self, goal: Goal, start: pyvrp.Solution | None, iterations: int) -> int:
+        """Search towards a goal, and return the number of iterations.
+
+        Args:
+            goal: The goal.
+            start: The solution to start from, found under any goal; None begins at a random one.
+            iterations: The most iterations.
+        """
+        data = self._translation.data(goal)
+        local_search = self._local_search(data, goal)
+        parameters = PenaltyParams(max_penalty=self._translation.max_penalty)
+        penalties = parameters.midpoint_penalties(data)
+        manager = PenaltyManager(penalties, parameters)
+        initial = self._initial(data, start, local_search, manager)
+        self._offer(initial, goal.weights)
+        watcher = _Watcher(self._offer, self._stop, goal.weights, iterations)
+        small = len(self._translation.fleet.rules.clients) <= _FEW
+        settings = IteratedLocalSearchParams(callbacks=watcher, exhaustive_on_best=small)
+        with warnings.catch_warnings():
+            # A goal that no plan reaches is no news here.
+            warnings.simplefilter("ignore", PenaltyBoundWarning)
+            search = IteratedLocalSearch(data, manager, local_search, initial, settings)
+            search.run(watcher, collect_stats=False)
+        return watcher.iterations
+
+    def _local_search(self, data: pyvrp.ProblemData, goal: Goal) -> pyvrp.search.LocalSearch:
+        if self._neighbours is None or self._neighbours[0] != goal.weights:
+            self._neighbours = goal.weights, pyvrp.search.compute_neighbours(data)
+        local_search = pyvrp.search.LocalSearch(data, self._random, self._neighbours[1])
+        for operator in pyvrp.search.OPERATORS:
+            if operator.supports(data):
+                local_search.add_operator(operator(data))
+        return local_search
+
+    def _initial(
+        self,
+        data: pyvrp.ProblemData,
+        start: pyvrp.Solution | None,
+        local_search: pyvrp.search.LocalSearch,
+        manager: PenaltyManager,
+    ) -> pyvrp.Solution:
+        if start is not None:
+            return _moved(data, start)
+        random = pyvrp.Solution.make_random(data, self._random)
+        seconds = _EXHAUSTIVE * len(self._translation.fleet.rules.clients) ** 2
+        if self._deadline is not None and time.monotonic() + seconds > self._deadline:
+            return random
+        return local_search(random, manager.max_cost_evaluator(), exhaustive=True)
+
+
+class _Watcher(IteratedLocalSearchCallbacks):
+    """Offers each candidate of a search, and ends it."""
+
+    def __init__(
+        self, offer: Offer, stop: Callable[[], bool], weights: Weights, iterations: int
+    ) -> None:
+        self._offer = offer
+        self._stop = stop
+        self._weights = weights
+        self._most = iterations
+        self.iterations = 0
+
+    def on_iteration(
+        self,
+        current: pyvrp.Solution,  # noqa: ARG002  PyVRP names them all
+        candidate: pyvrp.Solution,
+        best: pyvrp.Solution,  # noqa: ARG002
+        cost_evaluator: pyvrp.CostEvaluator,  # noqa: ARG002
+    ) -> None:
+        """Offer the candidate."""
+        self.iterations += 1
+        self._offer(candidate, self._weights)
+
+    def on_best(self, best: pyvrp.Solution) -> None:
+        """Offer a new best solution, which may be better than the candidate."""
+        self._offer(best, self._weights)
+
+    def __call__(self, best_cost: float) -> bool:  # noqa: ARG002
+        """Return whether the search is to end."""
+        return self.iterations >= self._most or self._stop()
+
+
+def _moved(data: pyvrp.ProblemData, solution: pyvrp.Solution) -> pyvrp.Solution:
+    """Return a solution of other data of the same fleet as one of these data."""
+    routes = [
+        pyvrp.Route(data, [each for each in route.schedule() if not each.is_depot()], vehicle)
+        for route in solution.routes()
+        for vehicle in [route.vehicle_type()]
+    ]
+    return pyvrp.Solution(data, routes)

@@ -1,0 +1,241 @@
+"""A fleet in PyVRP's terms: whole numbers, one matrix of distances and one of durations.
+
+One objective becomes PyVRP's duration and the other its distance. Two objectives and a clock never
+need a third matrix: what is time is the duration, and of a sum against a maximum the maximum is
+bounded by a limit on each route. Costs are scaled by powers of ten, so that decimals of a few
+digits stay exact; what is rounded nevertheless is rounded against the plan, so that a plan of PyVRP
+breaks no rule.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pyvrp
+from numpy.typing import NDArray
+
+from service.fleet.fleet import Array, Fleet, VehicleType
+from service.fleet.plans import Plan, Route
+from service.fleet.scales import Horizon, round_down, round_up, scales_of
+
+UNBOUNDED = 2**44  # more than every route
+Weights = tuple[int, int]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Goal:
+    """What PyVRP is to minimise: weights of distance and duration, with a limit on each route."""
+
+    weights: Weights
+    limit: int = UNBOUNDED
+
+
+@dataclass(frozen=True)
+class _Roles:
+    """The objective that is PyVRP's distance, that which is its duration, and which is limited."""
+
+    distance: int
+    duration: int | None
+    limited: int | None
+
+    @classmethod
+    def of(cls, fleet: Fleet) -> "_Roles":
+        rules = fleet.rules
+        if rules.clock is not None:
+            return cls(1 - rules.clock, rules.clock, rules.maximum)
+        if rules.maximum is None:
+            return cls(0, 1, None)
+        summed = 1 - rules.maximum
+        if np.array_equal(fleet.costs[0], fleet.costs[1]):
+            return cls(summed, None, rules.maximum)
+        return cls(summed, rules.maximum, rules.maximum)
+
+
+class Translation:
+    """Translates a fleet to PyVRP's data, and PyVRP's solutions back to plans."""
+
+    def __init__(self, fleet: Fleet) -> None:
+        self.fleet = fleet
+        self.roles = _Roles.of(fleet)
+        rules = fleet.rules
+        # A location for each stop, and one more that is anywhere: open routes start or end there.
+        self.anywhere = rules.n
+        self._depots = [*sorted(rules.depots), self.anywhere]
+        self._singles = [stop for stop in rules.clients if stop not in rules.shipped]
+        self._horizon = Horizon.of(fleet)
+        scales, self.max_penalty = scales_of(fleet, self._horizon)
+        duration = self.roles.duration
+        self.distance_scale = scales[self.roles.distance]
+        self.duration_scale = 1.0 if duration is None else scales[duration]
+
+    @cached_property
+    def _matrices(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        distance, duration = self.roles.distance, self.roles.duration
+        distances = self._matrix(self.fleet.costs[distance], self.distance_scale)
+        if duration is None:
+            return distances, np.zeros_like(distances)
+        return distances, self._matrix(self.fleet.costs[duration], self.duration_scale)
+
+    def _matrix(self, costs: Array, scale: float) -> NDArray[np.int64]:
+        padded = np.zeros((len(costs) + 1, len(costs) + 1), np.int64)
+        padded[:-1, :-1] = round_up(costs * scale)
+        return padded
+
+    @cached_property
+    def _locations(self) -> list[pyvrp.Location]:
+        return [pyvrp.Location(0, 0) for _ in range(self.anywhere + 1)]
+
+    @property
+    def limit_scale(self) -> float:
+        """What a length in the limited objective is multiplied by."""
+        return self.duration_scale if self._limits_duration else self.distance_scale
+
+    @property
+    def _limits_duration(self) -> bool:
+        return self.roles.duration is not None and self.roles.limited == self.roles.duration
+
+    @property
+    def sum_weights(self) -> Weights:
+        """The weights of distance and duration under which the objective that is a sum counts."""
+        return (0, 1) if self.roles.limited == self.roles.distance and self._two else (1, 0)
+
+    @property
+    def _two(self) -> bool:
+        return self.roles.duration is not None
+
+    def data(self, goal: Goal) -> pyvrp.ProblemData:
+        """Return PyVRP's data for a goal."""
+        distances, durations = self._matrices
+        return pyvrp.ProblemData(
+            self._locations,
+            [self._client(stop, goal) for stop in self._singles],
+            [pyvrp.Depot(location) for location in self._depots],
+            [self._vehicle(vehicle, goal) for vehicle in self.fleet.rules.vehicles],
+            [distances],  # type: ignore[list-item]  # PyVRP's stub means arrays of integers
+            [durations],  # type: ignore[list-item]
+            [],
+            self._shipments(goal),
+        )
+
+    def plan(self, solution: pyvrp.Solution) -> Plan:
+        """Return the plan of a solution."""
+        return Plan(
+            tuple(
+                Route(route.vehicle_type(), tuple(self._stop(each) for each in visits))
+                for route in solution.routes()
+                if (visits := [each for each in route.schedule() if not each.is_depot()])
+            )
+        )
+
+    def solution(self, data: pyvrp.ProblemData, plan: Plan) -> pyvrp.Solution:
+        """Return the solution of a plan in data that were made here."""
+        routes = [
+            pyvrp.Route(data, [self._activities[stop] for stop in route.stops], route.vehicle)
+            for route in plan.routes
+        ]
+        return pyvrp.Solution(data, routes)
+
+    @cached_property
+    def _activities(self) -> dict[int, pyvrp.Activity]:
+        kinds = pyvrp.ActivityType
+        found = {s: pyvrp.Activity(kinds.CLIENT, i) for i, s in enumerate(self._singles)}
+        for index, each in enumerate(self.fleet.rules.shipments):
+            found[each.pickup] = pyvrp.Activity(kinds.PICKUP, index)
+            found[each.delivery] = pyvrp.Activity(kinds.DELIVERY, index)
+        return found
+
+    def _stop(self, activity: pyvrp.Activity) -> int:
+        if activity.is_client():
+            return self._singles[activity.idx]
+        shipment = self.fleet.rules.shipments[activity.idx]
+        is_pickup = activity.type == pyvrp.ActivityType.PICKUP
+        return shipment.pickup if is_pickup else shipment.delivery
+
+    def _client(self, stop: int, goal: Goal) -> pyvrp.Client:
+        visit = self.fleet.rules.visits[stop]
+        early, late, service = self._times(stop)
+        return pyvrp.Client(
+            stop,
+            delivery=self._load(visit.demand),
+            service_duration=service,
+            tw_early=early,
+            tw_late=late,
+            prize=self._extra(visit.prize or 0.0, goal),
+            required=visit.prize is None,
+        )
+
+    def _shipments(self, goal: Goal) -> list[pyvrp.Shipment]:
+        return [
+            pyvrp.Shipment(
+                each.pickup,
+                each.delivery,
+                *self._times(each.pickup),
+                *self._times(each.delivery),
+                self._load(self.fleet.rules.visits[each.pickup].demand),
+                self._extra(self.fleet.rules.visits[each.pickup].prize or 0.0, goal),
+                self.fleet.rules.visits[each.pickup].prize is None,
+            )
+            for each in self.fleet.rules.shipments
+        ]
+
+    def _vehicle(self, vehicle: VehicleType, goal: Goal) -> pyvrp.VehicleType:
+        distance, duration = goal.weights
+        longest_distance, longest_duration = self._longest(vehicle, goal.limit)
+        early = self._early(vehicle.shift[0])
+        return pyvrp.VehicleType(
+            min(vehicle.count, max(1, len(self.fleet.rules.clients))),
+            list(vehicle.capacity),
+            self._depot(vehicle.start),
+            self._depot(vehicle.end),
+            fixed_cost=self._extra(vehicle.fixed, goal),
+            tw_early=early,
+            tw_late=max(early, self._late(vehicle.shift[1])),
+            shift_duration=longest_duration,
+            max_distance=longest_distance,
+            unit_distance_cost=distance,
+            unit_duration_cost=duration,
+        )
+
+    def _longest(self, vehicle: VehicleType, limit: int) -> tuple[int, int]:
+        """Return the longest distance and the longest duration of a route."""
+        timed = self.fleet.rules.clock is not None
+        scale = self.duration_scale if timed else self.limit_scale
+        longest = UNBOUNDED
+        if vehicle.longest < UNBOUNDED / scale:
+            longest = int(round_down(vehicle.longest * scale))
+        if timed and not self._limits_duration:
+            return limit, longest
+        limit = min(limit, longest)
+        return (UNBOUNDED, limit) if self._limits_duration else (limit, UNBOUNDED)
+
+    def _extra(self, cost: float, goal: Goal) -> int:
+        """Return a cost that is added to the first objective, under the weights of a goal."""
+        is_distance = self.roles.distance == 0
+        weight = goal.weights[0 if is_distance else 1]
+        scale = self.distance_scale if is_distance else self.duration_scale
+        return min(round(cost * scale) * weight, UNBOUNDED)
+
+    def _load(self, demand: Sequence[int]) -> list[int]:
+        return list(demand or (0,) * self.fleet.rules.dimensions)
+
+    def _depot(self, stop: int | None) -> int:
+        return self._depots.index(self.anywhere if stop is None else stop)
+
+    def _times(self, stop: int) -> tuple[int, int, int]:
+        """Return the earliest and latest begin of a visit, and how long it takes."""
+        visit = self.fleet.rules.visits[stop]
+        service = int(round_up(visit.service * self.duration_scale))
+        early = self._early(visit.window[0])
+        return early, max(early, self._late(visit.window[1])), service
+
+    def _early(self, time: float) -> int:
+        return int(round_up(self._since_begin(time) * self.duration_scale))
+
+    def _late(self, time: float) -> int:
+        if time >= self._horizon.end:
+            return UNBOUNDED
+        return int(round_down(self._since_begin(time) * self.duration_scale))
+
+    def _since_begin(self, time: float) -> float:
+        return max(0.0, time - self._horizon.begin)

@@ -1,0 +1,53 @@
+"""Plan the front of a fleet for a task."""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+from service.fleet.plans import FleetFront
+from service.jobs.fleets.fleet_document import encode_fleet
+from service.jobs.front_document import FrontDocument
+from service.requests.fleets.subject import UnmeasuredFleet
+from service.requests.task import Task
+from service.search.improve import Progress
+
+Report = Callable[[Progress, Callable[[int], FrontDocument]], None]
+
+
+def run_fleet(
+    task: Task, subject: UnmeasuredFleet, stop: Callable[[], bool], report: Report
+) -> FrontDocument:
+    """Return the front of plans of a task, whose stops are measured.
+
+    Raises:
+        Refusal: No plan keeps every rule, or none was found.
+        Cancelled: It was told to stop before it had a plan.
+    """
+    # Here, so that a service or a worker starts without PyVRP.
+    from service.fleet.planner import FleetOptions, plan_fleet
+
+    assert task.labels is not None
+    labels = task.labels
+
+    def encoded(front: FleetFront) -> FrontDocument:
+        return encode_fleet(front, subject.vehicles, labels)
+
+    def report_encoded(progress: Progress, best: Callable[[int], FleetFront]) -> None:
+        report(progress, lambda size: encoded(best(size)))
+
+    began = time.perf_counter()
+    fleet = subject.fleet()
+    timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
+    options = FleetOptions(
+        time_limit=task.options.time_limit,
+        size=task.options.size,
+        seed=task.options.seed,
+        reference_point=task.options.reference_point,
+    )
+    front = plan_fleet(fleet, options, stop, report_encoded)
+    return encoded(replace(front, timings={**timings, **front.timings}))
+
+
+def warm_up() -> None:
+    """Import PyVRP, which takes some tenths of a second."""
+    import service.fleet.planner  # noqa: F401

@@ -1,0 +1,46 @@
+"""`paretour fleet`: the formats that it prints, and what it refuses."""
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.command import paretour
+from tests.helpers.fleet_requests import fleet_request
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "fleet.json"
+    path.write_text(json.dumps(fleet_request()))
+    return path
+
+
+def test_a_fleet_is_planned_by_a_service_and_printed_as_lines_of_routes(
+    file: Path, url: str
+) -> None:
+    ended = paretour("fleet", file, "--url", url, "--csv", "--size", 2)
+    assert ended.returncode == 0, ended.stderr
+    rows = list(csv.DictReader(io.StringIO(ended.stdout)))
+    assert {row["plan"] for row in rows} <= {"0", "1"}
+    assert {row["vehicle"] for row in rows} <= {"van", "bike"}
+    assert all(row["stops"].split()[0] == "stop-0" for row in rows)
+    assert float(rows[0]["distance"]) >= float(rows[0]["route distance"])
+
+
+def test_this_process_plans_a_fleet_as_a_table(file: Path) -> None:
+    ended = paretour("fleet", file, "--time-limit", 0.1)
+    assert ended.returncode == 0, ended.stderr
+    assert "time (min)" in ended.stdout
+    assert "hypervolume" in ended.stderr
+
+
+def test_a_file_that_is_no_request_and_two_formats_are_refused(file: Path) -> None:
+    both = paretour("fleet", file, "--json", "--csv")
+    assert (both.returncode, both.stdout) == (2, "")
+    file.write_text("[1]")
+    ended = paretour("fleet", file)
+    assert (ended.returncode, ended.stdout) == (2, "")
+    assert "must hold an object" in ended.stderr

@@ -1,0 +1,24 @@
+"""Both clients plan a fleet, and have its plans as values."""
+
+import numpy as np
+import pytest
+
+from tests.helpers.answers import Connect
+from tests.helpers.fleet_requests import fleet_request
+
+
+def test_a_fleet_is_planned_and_its_plans_are_values(connect: Connect, url: str) -> None:
+    client = connect(url)
+    request = fleet_request()
+    request["objectives"][1]["matrix"] = np.array(request["objectives"][1]["matrix"])
+    front = client.fleet(**request)
+    assert front.document["status"] == front.status == "done"
+    assert [each.name for each in front.objectives] == ["distance", "time"]
+    assert front.lengths.tolist() == [plan.lengths.tolist() for plan in front.plans]
+    for plan, item in zip(front.plans, front.document["front"], strict=True):
+        assert plan.unassigned == tuple(item["unassigned"])
+        for route, each in zip(plan.routes, item["routes"], strict=True):
+            assert (route.vehicle, list(route.stops)) == (each["vehicle"], each["stops"])
+            assert route.arrivals.tolist() == each["arrivals"]
+    with pytest.raises(ValueError, match="read-only"):
+        front.lengths[0, 0] = 1

@@ -1,0 +1,143 @@
+"""The lengths and times of plans, and the rules that they break."""
+
+import dataclasses
+from math import inf
+
+import numpy as np
+import pytest
+
+from service.fleet.evaluation import (
+    plan_lengths,
+    route_lengths,
+    schedule,
+    unassigned,
+    violations,
+)
+from service.fleet.fleet import Fleet, Rules, Shipment, VehicleType, Visit
+from service.fleet.plans import Plan, Route
+from tests.helpers.fleets import best_times, every_plan, random_fleet
+
+LINE = np.abs(np.subtract.outer([0.0, 1, 2, 3, 4], [0.0, 1, 2, 3, 4]))
+
+
+def fleet_of(**rules: object) -> Fleet:
+    """Return a fleet on a line with a depot at 0 and stops at 1 to 4."""
+    given = {
+        "visits": (Visit(),) * 5,
+        "vehicles": (VehicleType(start=0, end=0, count=2),),
+        **rules,
+    }
+    return Fleet(rules=Rules(**given), costs=np.stack([LINE, 10 * LINE]))
+
+
+def test_a_sum_adds_routes_and_a_maximum_takes_the_longest() -> None:
+    plan = Plan((Route(0, (1, 2)), Route(0, (3, 4))))
+    assert plan_lengths(fleet_of(), plan) == (12, 120)
+    assert plan_lengths(fleet_of(over=("max", "sum")), plan) == (8, 120)
+
+
+def test_an_open_route_ends_at_its_last_visit() -> None:
+    vehicles = (VehicleType(start=0, count=2),)
+    assert route_lengths(fleet_of(vehicles=vehicles), Route(0, (1, 4))) == (4, 40)
+    vehicles = (VehicleType(count=2),)
+    assert route_lengths(fleet_of(vehicles=vehicles), Route(0, (1, 4))) == (3, 30)
+
+
+def test_prizes_lost_and_vehicles_used_are_added_to_the_first_length() -> None:
+    visits = (Visit(), Visit(prize=7), *(Visit(),) * 3)
+    vehicles = (VehicleType(start=0, end=0, count=2, fixed=100),)
+    fleet = fleet_of(visits=visits, vehicles=vehicles)
+    plan = Plan((Route(0, (2,)), Route(0, (3, 4))))
+    assert unassigned(fleet.rules, plan) == [1]
+    assert plan_lengths(fleet, plan) == (4 + 8 + 7 + 200, 120)
+
+
+def test_a_vehicle_leaves_as_late_as_its_end_allows() -> None:
+    visits = (Visit(), Visit(service=2, window=(10, 12)), *(Visit(),) * 3)
+    fleet = fleet_of(visits=visits, clock=0)
+    times = schedule(fleet, Route(0, (1, 2)))
+    assert times.arrivals == (9, 10, 13, 15)
+    assert times.duration == 6
+
+
+@pytest.mark.parametrize("seed", range(150))
+def test_times_agree_with_trying_every_departure(seed: int) -> None:
+    fleet = random_fleet(seed)
+    if fleet.rules.clock is None:
+        fleet = dataclasses.replace(fleet, rules=dataclasses.replace(fleet.rules, clock=1))
+    plans = list(every_plan(fleet.rules))
+    plan = plans[seed % len(plans)]
+    for route in plan.routes:
+        times, expected = schedule(fleet, route), best_times(fleet, route)
+        assert (times.late == 0) == (expected is not None)
+        if expected is not None:
+            assert (times.end, times.arrivals[0]) == expected
+
+
+FULL = VehicleType(start=0, end=0, count=1, capacity=(3,))
+BROKEN = [
+    ({}, [(1, 2, 3)], "stop 4 is not visited"),
+    ({}, [(1, 2), (2, 3, 4)], "stop 2 is visited 2 times"),
+    ({}, [(0, 1, 2, 3, 4)], "stop 0 is no stop to visit"),
+    ({}, [(1, 2, 3, 4), ()], "a route visits no stop"),
+    ({"vehicles": (FULL,)}, [(1, 2), (3, 4)], "2 vehicles of type 0 leave"),
+    (
+        {"visits": (Visit(), *(Visit(demand=(1,)),) * 4), "vehicles": (FULL,)},
+        [(1, 2, 3, 4)],
+        "holds 4 of 3",
+    ),
+    (
+        {"shipments": (Shipment(3, 1),)},
+        [(1, 2, 3, 4)],
+        "what is delivered at 1 was not picked up at 3",
+    ),
+    (
+        {"shipments": (Shipment(1, 3),)},
+        [(1, 2), (3, 4)],
+        "what is delivered at 3 was not picked up at 1",
+    ),
+    (
+        {"shipments": (Shipment(1, 3),), "visits": (Visit(), Visit(prize=1), *(Visit(),) * 3)},
+        [(1, 2, 4)],
+        "half is done",
+    ),
+    (
+        {"visits": (Visit(), Visit(window=(0, 3)), *(Visit(),) * 3), "clock": 0},
+        [(4, 1, 2, 3)],
+        "late by 4",
+    ),
+    (
+        {"vehicles": (VehicleType(start=0, end=0, shift=(2, 9)),), "clock": 0},
+        [(1, 2, 3, 4)],
+        "late by 1",
+    ),
+    (
+        {"vehicles": (VehicleType(start=0, end=0, longest=7),), "clock": 0},
+        [(1, 2, 3, 4)],
+        "longer than 7",
+    ),
+]
+
+
+@pytest.mark.parametrize(("rules", "routes", "sentence"), BROKEN)
+def test_each_broken_rule_is_named(
+    rules: dict[str, object], routes: list[tuple[int, ...]], sentence: str
+) -> None:
+    plan = Plan(tuple(Route(0, stops) for stops in routes))
+    assert any(sentence in broken for broken in violations(fleet_of(**rules), plan))
+
+
+def test_a_plan_that_keeps_every_rule_breaks_none() -> None:
+    assert violations(fleet_of(), Plan((Route(0, (1, 2)), Route(0, (3, 4))))) == []
+
+
+def test_a_load_is_freed_by_what_is_delivered_before_a_pickup() -> None:
+    """Two of three places are delivered at 1, which leaves room for the shipment from 2 to 3."""
+    visits = (Visit(), Visit(demand=(2,)), Visit(demand=(3,)), Visit(), Visit())
+    fleet = fleet_of(visits=visits, vehicles=(FULL,), shipments=(Shipment(2, 3),))
+    assert violations(fleet, Plan((Route(0, (1, 2, 3, 4)),))) == []
+    assert violations(fleet, Plan((Route(0, (2, 1, 3, 4)),)))
+
+
+def test_an_unbounded_vehicle_has_no_longest_route() -> None:
+    assert VehicleType().longest == inf

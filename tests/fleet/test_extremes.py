@@ -1,0 +1,60 @@
+"""Fleets of extreme numbers: each is planned, or refused with a reason."""
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+from service.errors import Refusal
+from service.jobs.runner import TaskRunner
+from service.requests.task import TaskSource
+from tests.helpers.fleet_requests import LIMITS
+
+NUMBERS = [0.0, 1.0, 3.5, 0.1, 123456.789, 7e16, *(10.0**each for each in (-300, -150, -9, 9, 150))]
+
+
+def extreme_request(seed: int) -> dict[str, Any]:
+    """Return a request of up to eleven stops with numbers of any size in every field."""
+    random = np.random.default_rng(seed)
+    n = int(random.integers(2, 12))
+    clock = ["a", "b", None][random.integers(3)]
+
+    def number() -> float:
+        return float(random.choice(NUMBERS))
+
+    def given(**members: Any) -> dict[str, Any]:
+        return {name: value for name, value in members.items() if random.random() < 0.3}
+
+    def stop(index: int) -> dict[str, Any]:
+        timed = given(window=sorted((number(), number())), service=number()) if clock else {}
+        return {"id": str(index), **given(demand=[10**9], prize=number()), **timed}
+
+    unit = number()
+    whole = (unit * random.integers(0, 5, (2, n, n))).tolist()
+    mixed = [[[number() for _ in range(n)] for _ in range(n)] for _ in range(2)]
+    first, second = whole if seed % 2 else mixed
+    shift = given(shift=sorted((number(), number()))) if clock else {}
+    vehicle = {"id": "v", "count": 10**6, "capacity": [10**9], **given(start=0), **shift}
+    return {
+        "stops": [{"id": "0"}, *(stop(index) for index in range(1, n))],
+        "vehicles": [{**vehicle, **given(fixed=number(), longest=number() or 1.0)}],
+        "objectives": [
+            {"name": "a", "matrix": first},
+            {"name": "b", "matrix": second, "over": ["sum", "max"][random.integers(2)]},
+        ],
+        "clock": clock,
+        "time_limit": 0.02,
+    }
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_extreme_numbers_are_planned_or_refused(seed: int) -> None:
+    source = TaskSource("fleet", json.dumps(extreme_request(seed)).encode())
+    try:
+        document = TaskRunner({}, LIMITS).run(source, lambda: False, lambda *_: None)
+    except Refusal:
+        return  # its status is that of the table, and none of it is 500
+    front = json.loads(document.json())["front"]
+    assert front
+    assert np.isfinite([plan["lengths"] for plan in front]).all()

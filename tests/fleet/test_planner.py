@@ -1,0 +1,170 @@
+"""Fronts of plans against brute force, and what every front promises."""
+
+from collections.abc import Callable, Sequence
+from itertools import islice
+from math import inf
+from typing import Any
+
+import numpy as np
+import pytest
+
+from service.errors import Cancelled, Refusal
+from service.fleet.archive import SolutionArchive
+from service.fleet.evaluation import plan_lengths, violations
+from service.fleet.fleet import Fleet, Over, Rules, VehicleType, Visit
+from service.fleet.planner import FleetOptions, plan_fleet
+from service.fleet.plans import FleetFront
+from service.fleet.solver import Solver
+from service.fleet.sweep import Sweep
+from service.fleet.translation import Translation
+from service.pareto import nondominated
+from service.search.improve import Progress
+from tests.helpers.fleets import Point, exact_front, hull_corners, random_fleet
+
+ENOUGH = FleetOptions(time_limit=inf, iterations=20_000)
+
+
+def points_of(front: FleetFront) -> list[Point]:
+    return [(float(x), float(y)) for x, y in front.points]
+
+
+def deliveries(n: int, over: Sequence[Over] = ("sum", "max"), seed: int = 1) -> Fleet:
+    """Return a fleet with a depot, n stops with windows, and vehicles enough."""
+    random = np.random.default_rng(seed)
+    places = random.random((n + 1, 2))
+    costs = np.linalg.norm(places[:, np.newaxis] - places, axis=2)
+    begins = random.random(n) * 5
+    visits = [Visit(demand=(1,), window=(begin, begin + 5), service=0.1) for begin in begins]
+    rules = Rules(
+        visits=(Visit(), *visits),
+        vehicles=(VehicleType(start=0, end=0, count=n // 5 + 1, capacity=(10,), shift=(0, 12)),),
+        over=over,
+        clock=1,
+    )
+    return Fleet(rules=rules, costs=np.stack([costs**2, costs]))
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_a_handful_of_stops_has_the_front_of_brute_force(seed: int) -> None:
+    fleet = random_fleet(seed)
+    if expected := exact_front(fleet):
+        front = plan_fleet(fleet, FleetOptions(time_limit=inf))
+        assert points_of(front) == expected
+        assert front.terminated == "converged"
+    else:
+        with pytest.raises(Refusal) as refused:
+            plan_fleet(fleet, FleetOptions(time_limit=inf))
+        assert refused.value.code == "no-plan"
+
+
+def searched(fleet: Fleet) -> list[Point]:
+    """Return the points that PyVRP finds of a fleet so small that it would be enumerated."""
+    translation = Translation(fleet)
+    archive = SolutionArchive(translation)
+    solver = Solver(translation, 0, archive.offer, lambda: False)
+    random = np.random.default_rng(0)
+    for step in islice(Sweep(translation, archive, random, lambda: inf).steps(), 8):
+        solver.search(step.goal, step.start, step.iterations)
+    plans = [translation.plan(solution) for solution in archive.solutions]
+    assert [violations(fleet, plan) for plan in plans] == [[]] * len(plans)
+    return sorted({plan_lengths(fleet, plan) for plan in plans})
+
+
+def test_pyvrp_finds_no_more_than_brute_force_and_seldom_less() -> None:
+    same = 0
+    for seed in range(12):
+        fleet = random_fleet(seed)
+        expected, found = exact_front(fleet), searched(fleet)
+        assert all(any(a <= x and b <= y for a, b in expected) for x, y in found)
+        limited = fleet.rules.maximum is not None
+        same += found == expected if limited else hull_corners(found) == hull_corners(expected)
+    assert same > 8
+
+
+def test_iterations_and_seed_decide_the_front() -> None:
+    fleet = deliveries(16)
+    options = FleetOptions(time_limit=inf, iterations=400, seed=3)
+    first, second = plan_fleet(fleet, options), plan_fleet(fleet, options)
+    assert first.plans == second.plans
+
+
+@pytest.mark.parametrize("over", [("sum", "max"), ("max", "sum"), ("sum", "sum")])
+def test_no_plan_is_dominated_or_breaks_a_rule(over: tuple[Over, Over]) -> None:
+    fleet = deliveries(20, over)
+    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=600, size=5))
+    assert 1 < len(front.plans) <= 5
+    assert nondominated(front.points).tolist() == list(range(len(front.plans)))
+    for plan, point in zip(front.plans, front.points, strict=True):
+        assert violations(fleet, plan) == []
+        assert plan_lengths(fleet, plan) == tuple(point)
+
+
+def test_progress_is_reported_and_a_stop_ends_with_what_was_found() -> None:
+    reports: list[tuple[int, int]] = []
+
+    def report(progress: Progress, best: Callable[[int], FleetFront]) -> None:
+        reports.append((progress.points, len(best(3).plans)))
+
+    fleet = deliveries(20)
+    options = FleetOptions(time_limit=60.0)
+    front = plan_fleet(fleet, options, stop=lambda: len(reports) > 1, report=report)
+    assert front.terminated == "cancelled"
+    assert front.plans
+    assert all(0 < plans <= min(3, points) for points, plans in reports)
+
+
+def test_a_stop_before_the_first_plan_cancels() -> None:
+    with pytest.raises(Cancelled):
+        plan_fleet(deliveries(20), FleetOptions(time_limit=60.0), stop=lambda: True)
+
+
+def test_the_time_limit_is_kept_and_a_front_there() -> None:
+    front = plan_fleet(deliveries(30), FleetOptions(time_limit=0.3))
+    assert front.terminated == "time_limit"
+    assert front.plans
+
+
+def test_a_fleet_of_depots_alone_has_the_plan_in_which_nobody_leaves() -> None:
+    rules = Rules(visits=(Visit(),), vehicles=(VehicleType(start=0, end=0),))
+    front = plan_fleet(Fleet(rules=rules, costs=np.zeros((2, 1, 1))), FleetOptions(time_limit=1))
+    assert [plan.routes for plan in front.plans] == [()]
+
+
+NEAR = Visit(demand=(2,))
+IMPOSSIBLE = [
+    ({"visits": (Visit(), Visit(demand=(9,)), NEAR)}, "the demand of stops/1"),
+    ({"visits": (Visit(), *(Visit(demand=(3,)),) * 3)}, "the demands sum to 9 in dimension 0"),
+    ({"visits": (Visit(), Visit(window=(0, 1)), NEAR), "clock": 0}, "stops/1 cannot be reached"),
+]
+
+
+@pytest.mark.parametrize(("rules", "sentence"), IMPOSSIBLE)
+def test_a_necessary_condition_that_fails_is_named(rules: dict[str, Any], sentence: str) -> None:
+    fleet = Fleet(
+        rules=Rules(**rules, vehicles=(VehicleType(start=0, end=0, capacity=(4,), count=2),)),
+        costs=np.full((2, len(rules["visits"]), len(rules["visits"])), 3.0),
+    )
+    with pytest.raises(Refusal, match=sentence):
+        plan_fleet(fleet, FleetOptions(time_limit=1))
+
+
+def test_what_was_not_found_in_time_is_said_so() -> None:
+    fleet = deliveries(20)
+    # Three to a stop and four to a vehicle: all vehicles hold more than all stops ask for.
+    visits = (Visit(), *(Visit(demand=(3,)),) * 20)
+    tight = Rules(visits=visits, vehicles=(VehicleType(start=0, capacity=(4,), count=16),))
+    with pytest.raises(Refusal, match=r"no plan was found in 0.1 s"):
+        plan_fleet(Fleet(rules=tight, costs=fleet.costs), FleetOptions(time_limit=0.1))
+
+
+@pytest.mark.parametrize("unit", [1e-150, 1e-9, 1.0, 1e9, 1e150])
+def test_costs_of_any_size_are_planned(unit: float) -> None:
+    fleet = deliveries(15)
+    rules = Rules(visits=(Visit(),) * 16, vehicles=(OPEN,))
+    front = plan_fleet(
+        Fleet(rules=rules, costs=fleet.costs * unit), FleetOptions(time_limit=inf, iterations=300)
+    )
+    assert front.plans
+
+
+OPEN = VehicleType(start=0, count=3)

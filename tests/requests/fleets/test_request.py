@@ -1,0 +1,163 @@
+"""Requests of POST /fleet: what they mean, and what is refused."""
+
+import copy
+import json
+from math import inf
+from typing import Any
+
+import pytest
+
+from service.errors import Refusal
+from service.fleet.fleet import ALWAYS, Shipment, VehicleType, Visit
+from service.requests.fleets.schemas import fleet_schemas
+from service.requests.limits import Limits
+from service.requests.task import TaskSource, parse_task
+from tests.helpers.fleet_requests import LIMITS, fleet_of, fleet_request
+
+
+def test_a_request_becomes_a_fleet() -> None:
+    rules = fleet_of(fleet_request()).rules
+    assert rules.visits[1] == Visit(demand=(2,), service=3, window=(480, 600))
+    assert rules.visits[2] == Visit(demand=(1,), prize=4000)
+    assert rules.visits[5] == Visit()
+    assert rules.vehicles == (
+        VehicleType(
+            start=0, end=0, count=2, capacity=(5,), shift=(470, 700), longest=200, fixed=50
+        ),
+        VehicleType(start=0, end=None, capacity=(2,), shift=ALWAYS, longest=inf),
+    )
+    assert rules.shipments == (Shipment(3, 4),)
+    assert (rules.over, rules.clock) == (("sum", "max"), 1)
+    assert rules.clients == tuple(range(1, 8))
+
+
+def test_limits_lower_the_defaults_and_refuse_what_is_over_them() -> None:
+    request = fleet_request()
+    del request["time_limit"], request["size"]
+    task = parse_task(TaskSource("fleet", json.dumps(request).encode()), LIMITS, {})
+    assert (task.options.time_limit, task.options.size) == (0.2, 30)
+    few = Limits(
+        body_bytes=10**6,
+        cities=50,
+        cells=9,
+        preferences=2,
+        size=30,
+        seconds=0.2,
+        fleet_stops=7,
+    )
+    with pytest.raises(Refusal) as refused:
+        parse_task(TaskSource("fleet", json.dumps(request).encode()), few, {})
+    assert (refused.value.code, refused.value.limit) == ("too-many-cities", 7)
+
+
+def changed(path: str, value: Any) -> dict[str, Any]:
+    """Return the request with another value at a path, as stops/0/window; None removes it."""
+    request = copy.deepcopy(fleet_request())
+    *parents, last = [int(part) if part.isdecimal() else part for part in path.split("/")]
+    at: Any = request
+    for part in parents:
+        at = at[part]
+    if value is None:
+        del at[last]
+    elif isinstance(last, int) and last == len(at):
+        at.append(value)
+    else:
+        at[last] = value
+    return request
+
+
+HUGE = 10**400
+REFUSED = [
+    ("stops", [], "/stops"),
+    ("stops", None, "/stops"),
+    ("stops/1/demand", [1, 1], "/stops/1/demand"),
+    ("stops/1/demand", [-1], "/stops/1/demand/0"),
+    ("stops/1/demand", [0.5], "/stops/1/demand/0"),
+    ("stops/1/demand", [HUGE], "/stops/1/demand/0"),
+    ("stops/1/demand", [1] * 9, "/stops/1/demand"),
+    ("stops/0/demand", [1], "/stops/0/demand"),
+    ("stops/0/window", [1, 2], "/stops/0/window"),
+    ("stops/1/service", -1, "/stops/1/service"),
+    ("stops/1/service", 1e151, "/stops/1/service"),
+    ("stops/1/window", [3, 2], "/stops/1/window"),
+    ("stops/1/window", [3], "/stops/1/window"),
+    ("stops/1/window", [-3, 2], "/stops/1/window/0"),
+    ("stops/2/prize", -1, "/stops/2/prize"),
+    ("stops/4/prize", 1, "/shipments/0/delivery"),
+    ("stops/4/demand", [1], "/shipments/0/delivery"),
+    ("stops/1/locked", True, "/stops/1/locked"),
+    ("stops/1/id", "stop-2", "/stops/2/id"),
+    ("shipments/0/pickup", "stop-0", "/shipments/0/pickup"),
+    ("shipments/0/pickup", "stop-9", "/shipments/0/pickup"),
+    ("shipments/0/delivery", 3, "/shipments/0/delivery"),
+    ("shipments/0/delivery", 8, "/shipments/0/delivery"),
+    ("shipments/1", {"pickup": 4, "delivery": 5}, "/shipments/1/pickup"),
+    ("vehicles", [], "/vehicles"),
+    ("vehicles/0/count", 0, "/vehicles/0/count"),
+    ("vehicles/0/count", HUGE, "/vehicles/0/count"),
+    ("vehicles/0/start", "stop-77", "/vehicles/0/start"),
+    ("vehicles/0/end", 8, "/vehicles/0/end"),
+    ("vehicles/1/capacity", [1, 2], "/vehicles/1/capacity"),
+    ("vehicles/1/shift", [5, 1], "/vehicles/1/shift"),
+    ("vehicles/1/longest", 0, "/vehicles/1/longest"),
+    ("vehicles/1/id", "van", "/vehicles/1/id"),
+    ("objectives/0/over", "mean", "/objectives/0/over"),
+    ("objectives/0/over", "max", "/objectives/1/over"),
+    ("objectives/1/over", None, None),
+    ("objectives/0/name", "time", "/objectives/1/name"),
+    ("objectives/1/matrix", [[0.0]], "/objectives/1/matrix"),
+    ("objectives/0/from", "road_time", "/objectives/0/from"),
+    ("clock", "minutes", "/clock"),
+    ("clock", None, "/vehicles/0/shift"),
+    ("time_limit", 0, "/time_limit"),
+    ("time_limit", 1, "/time_limit"),
+    ("size", 31, "/size"),
+    ("seed", -1, "/seed"),
+    ("reference_point", [1.0], "/reference_point"),
+    ("preferences", 5, "/preferences"),
+]
+
+
+@pytest.mark.parametrize(("path", "value", "pointer"), REFUSED)
+def test_what_is_wrong_is_pointed_at(path: str, value: Any, pointer: str | None) -> None:
+    source = TaskSource("fleet", json.dumps(changed(path, value)).encode())
+    if pointer is None:
+        parse_task(source, LIMITS, {})
+        return
+    with pytest.raises(Refusal) as refused:
+        parse_task(source, LIMITS, {})
+    assert refused.value.status == 422
+    assert [fault.pointer for fault in refused.value.errors] == [pointer]
+    assert pointer.strip("/") in refused.value.detail
+
+
+def test_a_prize_or_a_fixed_cost_needs_a_first_objective_that_is_a_sum() -> None:
+    request = changed("objectives/1/over", "sum")
+    request["objectives"][0]["over"] = "max"
+    with pytest.raises(Refusal, match="added to the first objective"):
+        fleet_of(request)
+
+
+def test_times_are_refused_without_a_clock() -> None:
+    request = changed("clock", None)
+    for vehicle in request["vehicles"]:
+        vehicle.pop("shift", None)
+    with pytest.raises(Refusal, match=r"stops/1/service needs the name of the objective"):
+        fleet_of(request)
+
+
+def test_schemas_have_names_and_limits() -> None:
+    schemas = fleet_schemas(LIMITS)
+    assert set(schemas) == {
+        "FleetStopItem",
+        "ShipmentItem",
+        "VehicleItem",
+        "FleetMatrixObjective",
+        "FleetPlaneObjective",
+        "FleetMeasuredObjective",
+        "FleetRequest",
+    }
+    fields = schemas["FleetRequest"]["properties"]
+    assert fields["stops"]["maxItems"] == LIMITS.fleet_stops
+    assert fields["time_limit"]["maximum"] == fields["time_limit"]["default"] == 0.2
+    assert schemas["FleetRequest"]["required"] == ["stops", "vehicles", "objectives"]
