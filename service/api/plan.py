@@ -32,16 +32,14 @@ from service.api.responses import (
 from service.api.stored_fronts import find_record
 from service.api.task_parser import ParserBounds, TaskParser
 from service.jobs.engine import Engine, record_in_time
-from service.jobs.fleets.fleet_document import empty_fleet
-from service.jobs.front_document import FrontDocument, empty_front
+from service.jobs.fleets.fleet_document import empty_document
 from service.jobs.record import Record
 from service.jobs.store import Store
-from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront, not_replannable
 from service.requests.replan.parser import ReplanSource
 from service.requests.schemas import Geometry
-from service.requests.task import Task, TaskKind, TaskSource
+from service.requests.task import TaskKind, TaskSource
 
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
 _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
@@ -242,7 +240,7 @@ class PlanRoutes:
             caller=caller_of(request),
             request_id=request.scope["request_id"],
             status="queued",
-            front=_nothing_yet(source.task),
+            front=empty_document(source.task),
             source=source,
             key=key,
             digest=await asyncio.to_thread(_digest, body) if key else "",
@@ -255,12 +253,6 @@ class PlanRoutes:
             return await self._engine.run(record, disconnect)
         finally:
             disconnect.cancel()
-
-
-def _nothing_yet(task: Task) -> FrontDocument:
-    if isinstance(task.subject, UnmeasuredFleet):
-        return empty_fleet(task)
-    return empty_front(task)
 
 
 def _accepted_response(record: Record, geometry: Geometry) -> Response:

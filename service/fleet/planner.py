@@ -70,8 +70,8 @@ def plan_fleet(
         Refusal: There is no plan, and why where that is known; or none was found in time.
         Cancelled: It was told to stop before it had a plan.
     """
-    check_necessary(fleet)
     began = time.monotonic()
+    check_necessary(fleet)
     if is_enumerable(fleet.rules):
         plans = exact_plans(fleet)
         if not plans:

@@ -17,7 +17,6 @@ from service.coverage.survey import CoveragePath
 from service.instance import OBJECTIVES, Instance
 from service.pareto import balances
 from service.planner import Front
-from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.stops import Labels, UnmeasuredStops
 from service.requests.task import Task
 from service.search.improve import Termination
@@ -254,8 +253,8 @@ def _encode_rows(parts: Iterable[NDArray[Any]]) -> tuple[bytes, bytes, bytes]:
 
 def empty_front(task: Task) -> FrontDocument:
     """Return the document of a task, not of a fleet, of which nothing has been found yet."""
-    subject, reference_point = task.subject, task.options.reference_point
-    assert not isinstance(subject, UnmeasuredFleet)
+    subject: Any = task.subject
+    reference_point = task.options.reference_point
     if isinstance(subject, Instance):
         cities, scale, places = subject.n, subject.scale.tolist(), None
         if reference_point is None:
@@ -263,9 +262,8 @@ def empty_front(task: Task) -> FrontDocument:
     elif isinstance(subject, UnmeasuredStops):
         cities, scale, places = subject.n, None, None
     else:
-        # A worker finds out what the places cost, and with a spacing where they are.
         places = [] if subject.places is None else subject.places.tolist()
-        cities, scale = len(places), None
+        cities, scale = len(places), None  # a worker finds out what they cost
     return FrontDocument(
         cities=cities,
         points=0,

@@ -11,7 +11,7 @@ from pydantic_core import to_json
 from service.fleet.evaluation import route_lengths, schedule, unassigned
 from service.fleet.fleet import Fleet, Over
 from service.fleet.plans import FleetFront, Plan, Route, path_of
-from service.jobs.front_document import FrontDocument, Timings, joined
+from service.jobs.front_document import FrontDocument, Timings, empty_front, joined
 from service.pareto import balances
 from service.preferences import angles
 from service.requests.fleets.subject import UnmeasuredFleet
@@ -44,7 +44,7 @@ def encode_fleet(front: FleetFront, vehicles: Sequence[str], labels: Labels) -> 
     )
 
 
-def empty_fleet(task: Task) -> FrontDocument:
+def _empty_fleet(task: Task) -> FrontDocument:
     """Return the document of a fleet's task of which nothing has been found yet."""
     assert isinstance(task.subject, UnmeasuredFleet)
     assert task.labels is not None
@@ -61,6 +61,11 @@ def empty_fleet(task: Task) -> FrontDocument:
         actor=None,
         **_named(task.labels, task.subject.rules.over),
     )
+
+
+def empty_document(task: Task) -> FrontDocument:
+    """Return the document of a task, of a fleet or not, of which nothing has been found yet."""
+    return _empty_fleet(task) if isinstance(task.subject, UnmeasuredFleet) else empty_front(task)
 
 
 def holds_plans(front: FrontDocument) -> bool:
