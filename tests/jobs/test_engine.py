@@ -15,6 +15,7 @@ from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
 from tests.helpers.actors import Broken, Shuffler
 from tests.helpers.engines import Clustered, Embedded, engine_of
+from tests.helpers.fleet_requests import fleet_request
 from tests.helpers.jobs import (
     CITIES,
     LATER,
@@ -55,6 +56,12 @@ def gated(gate: Path) -> Shuffler:
     actor = Shuffler(gate)
     actor.close()
     return actor
+
+
+def test_a_fleet_is_planned_by_either_engine(client: httpx.Client) -> None:
+    answer = client.post("/fleet", json=fleet_request())
+    assert answer.status_code == 200, answer.text
+    assert answer.json()["front"][0]["routes"]
 
 
 def test_a_front_asked_for_later_is_the_one_that_would_have_been_answered(
