@@ -146,6 +146,7 @@ def test_every_operation_and_every_form_has_a_name_of_its_own(document: Path) ->
         "get_tour",
         "list_actors",
         "plan_coverage",
+        "plan_fleet",
         "plan_front",
         "replan_front",
     ]

@@ -44,6 +44,7 @@ def open_page(
     Where the page asks for its default seconds of search, the service is asked for a tenth of them.
     """
     page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)
+    page.set_default_timeout(120 * SECOND)
     errors: list[str] = []
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.on("console", lambda line: errors.append(line.text) if line.type == "error" else None)

@@ -27,7 +27,7 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
     no matrices; an end is one of the cities, and of open routes; a tour visits each of them once;
     stops have ids of their own, and costs as many as they are; places are free cells of a grid; a
     reference point is beyond some tour; what has changed is about the stops of a front; a tour is
-    chosen in one way; an idempotency key belongs to one body.
+    chosen in one way; a fleet can keep its rules; an idempotency key belongs to one body.
     """
     if case.path == "/tour" and case.meta.generation.mode.is_positive:
         _choose_in_one_way(case)
@@ -44,6 +44,8 @@ def _correct_body(body: Any, *, positive: bool) -> None:
     match body:
         case {"grid": _} | {"occupancy_grid": _} if positive:
             _make_coverable(body)
+        case {"stops": _, "objectives": _, "vehicles": _} if positive:
+            _make_drivable(body)
         case {"stops": _, "objectives": _} if positive:
             _make_plannable(body)
         case {"coordinates": [_, *_] as rows}:
@@ -106,6 +108,18 @@ def _make_plannable(body: dict[str, Any]) -> None:
     body.pop("end", None)
     if "initial_tours" in body:
         body["initial_tours"] = [[f"{i}" for i in range(n)]]
+
+
+def _make_drivable(body: dict[str, Any]) -> None:
+    """Replace a fleet by one without rules, of as many stops and types of vehicles."""
+    body |= {
+        "stops": [{"id": f"{i}", "location": [0.0, 0.0]} for i in range(len(body["stops"]))],
+        "vehicles": [{"id": f"{i}", "start": "0"} for i in range(len(body["vehicles"]))],
+        "objectives": [{"name": f"{m}", "from": "great_circle"} for m in range(2)],
+    }
+    for name in ("shipments", "clock", "time_limit"):  # 1e-300 s are too short for a plan
+        body.pop(name, None)
+    _reach(body)
 
 
 def _choose_in_one_way(case: Any) -> None:
