@@ -94,7 +94,7 @@ def test_what_a_replica_has_begun_another_tells_of_when_it_is_killed(
     machines: Machines, client: httpx.Client
 ) -> None:
     with machines.replica() as (service, other):
-        path = later(other, SOME_SECONDS)
+        path = later(other, {**LONG, "time_limit": 6})
         until_found(client, path)
         service.process.kill()
         service.process.wait()

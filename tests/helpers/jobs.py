@@ -14,6 +14,7 @@ from service.instance import Instance, tour_lengths
 CITIES = np.random.default_rng(5).random((300, 4)).tolist()
 LONG = {"coordinates": CITIES, "time_limit": 600}
 SHORT = {"coordinates": CITIES[:12], "time_limit": 0.05}
+SECONDS = 300  # that a job may take on the busiest machine
 LATER = {"Prefer": "handling=strict, respond-async; wait=10"}
 
 
@@ -34,17 +35,25 @@ def id_of(path: str) -> str:
 
 
 def ended(client: httpx.Client, path: str) -> dict[str, Any]:
+    deadline = time.monotonic() + SECONDS
     while (found := client.get(path).json())["status"] in ("queued", "running"):
-        time.sleep(0.02)
+        _wait(deadline, path, found)
     return found
 
 
 def until_found(client: httpx.Client, path: str) -> dict[str, Any]:
     """A front that is being planned, of which something has been found."""
+    deadline = time.monotonic() + SECONDS
     while not (found := client.get(path).json())["front"]:
-        time.sleep(0.02)
+        _wait(deadline, path, found)
     assert found["status"] == "running"
     return found
+
+
+def _wait(deadline: float, path: str, found: dict[str, Any]) -> None:
+    if time.monotonic() > deadline:
+        raise TimeoutError(f"{path} is still {found['status']} after {SECONDS} s")
+    time.sleep(0.02)
 
 
 def check(found: dict[str, Any]) -> None:
