@@ -41,7 +41,8 @@ _FORKED_WITH = [
     "scipy.linalg",  # numba imports it when it first loads compiled code
     "service.coverage.survey",
     "service.jobs.messages",
-    "service.planner",
+    "service.jobs.fleets.fleet_run",
+    "service.replanning.replan",
     "service.requests.road_measurer",
 ]
 _CONTEXT = multiprocessing.get_context("forkserver")
