@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from service.instance import Instance, step_lengths, tour_lengths
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer[Any]]
+_Index = TypeVar("_Index", bound=np.integer[Any])
 Build = Callable[[Instance, Array], Tours]
 MIN_JOINED = 3  # cities: with two ends joined to one, fewer are left than a network was trained on
 
@@ -45,7 +46,7 @@ def plain_tours(instance: Instance) -> Tours:
     return moved_ends(instance, np.concatenate((order, order[:, ::-1])))
 
 
-def rotated(tours: Tours, places: NDArray[np.intp]) -> Tours:
+def rotated(tours: NDArray[_Index], places: NDArray[np.intp]) -> NDArray[_Index]:
     """Return closed tours, shape (k, n), each from another place on, shape (k,)."""
     n = tours.shape[1]
     return np.take_along_axis(tours, (places[:, np.newaxis] + np.arange(n)) % n, axis=1)

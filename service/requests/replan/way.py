@@ -12,6 +12,7 @@ from service.requests.replan.earlier_front import EarlierFront
 from service.requests.replan.fields import NewStop, ReplanRequest
 from service.requests.stop_fields import find_index
 from service.requests.validation import invalid, show
+from service.search.open_routes import rotated
 
 Tours = NDArray[np.int64]
 
@@ -129,8 +130,7 @@ def _begun(front: EarlierFront) -> Tours:
     """Return a front's tours, the closed ones from their start on."""
     if not front.ends.closed:
         return front.tours
-    places = (front.tours == front.start).argmax(axis=1)[:, np.newaxis]
-    return np.take_along_axis(front.tours, (places + np.arange(front.n)) % front.n, axis=1)
+    return rotated(front.tours, (front.tours == front.start).argmax(axis=1))
 
 
 def _as_driven(
