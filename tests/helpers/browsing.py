@@ -69,6 +69,12 @@ def wait_until_planned(page: Page) -> None:
     expect(page.locator("#status")).to_contain_text("Done", timeout=60 * SECOND)
 
 
+def tours_of_front(page: Page) -> int:
+    """Return how many tours the front has that is shown, by what the slider says."""
+    said = page.get_by_role("slider", name="Balance").get_attribute("aria-valuetext") or ""
+    return int(said.partition(" of ")[2].partition(":")[0])
+
+
 def wait_for_next_frame(page: Page) -> None:
     """Wait for the frame in which the page draws what was changed in this one."""
     page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")

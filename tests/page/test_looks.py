@@ -12,6 +12,7 @@ from tests.helpers.browsing import (
     PHONE,
     needs_chromium,
     open_page,
+    tours_of_front,
     wait_for_next_frame,
     wait_until_planned,
 )
@@ -124,7 +125,7 @@ def test_the_maps_follow_when_the_page_turns_dark(browser: Browser, released: st
         assert all(one[0] != other[0] for one, other in zip(before, after, strict=True))
 
 
-def test_a_thousand_cities_and_a_hundred_tours_are_shown(browser: Browser, released: str) -> None:
+def test_a_thousand_cities_and_their_front_are_shown(browser: Browser, released: str) -> None:
     cities = np.random.default_rng(0).random((1000, 4)).round(4)
     with open_page(browser, released) as page:
         wait_until_planned(page)
@@ -133,13 +134,15 @@ def test_a_thousand_cities_and_a_hundred_tours_are_shown(browser: Browser, relea
         expect(page.locator("#count")).to_have_text("1,000 cities")
         page.get_by_label("Seconds of planning").fill("2")
         page.get_by_role("button", name="Plan").click()
-        expect(page.get_by_label("A front of 100 tours")).to_be_visible(timeout=120_000)
         wait_until_planned(page)
+        count = tours_of_front(page)
         slider = page.get_by_role("slider", name="Balance")
         shown = set()
-        for key, place in [("Home", 1), ("PageUp", 11), ("End", 100)]:
+        for key, place in [("Home", 1), ("PageUp", 11), ("End", count)]:
             slider.press(key)
-            expect(slider).to_have_attribute("aria-valuetext", re.compile(f"tour {place} of 100"))
+            expect(slider).to_have_attribute(
+                "aria-valuetext", re.compile(f"tour {place} of {count}")
+            )
             wait_for_next_frame(page)
             shown.add(page.locator("#plane-1 canvas.selected").evaluate("c => c.toDataURL()"))
         assert len(shown) == 3

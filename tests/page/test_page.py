@@ -13,6 +13,7 @@ from tests.helpers.browsing import (
     curl_body,
     needs_chromium,
     open_page,
+    tours_of_front,
     wait_for_next_frame,
     wait_until_planned,
 )
@@ -41,7 +42,7 @@ def test_the_page_opens_with_stops_by_road_and_their_front(
 
 @at_both_widths
 def test_an_example_shows_its_front(page: Page) -> None:
-    expect(page.get_by_label("A front of 100 tours: distance from")).to_be_visible()
+    expect(page.get_by_label(re.compile(r"A front of \d+ tours: distance from"))).to_be_visible()
     expect(page.locator("#count")).to_have_text("61 cities")
     expect(page.locator("#figures")).to_contain_text("Network alone")
 
@@ -52,14 +53,15 @@ def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> N
     slider.press("Home")
     shortest = figure(page, "Distance")
     slider.press("End")
-    expect(slider).to_have_attribute("aria-valuetext", re.compile("tour 100 of 100"))
+    expect(slider).to_have_attribute("aria-valuetext", re.compile(r"tour (\d+) of \1:"))
     assert figure(page, "Distance") > shortest
+    count = tours_of_front(page)
     slider.press("ArrowLeft")
-    expect(slider).to_have_attribute("aria-valuetext", re.compile("tour 99 of 100"))
+    expect(slider).to_have_attribute("aria-valuetext", re.compile(f"tour {count - 1} of {count}"))
     marker = page.locator("#front-chart .marker.selected").bounding_box()
     slider.press("Home")
     page.mouse.click(marker["x"] + marker["width"] / 2, marker["y"] + marker["height"] / 2)
-    expect(slider).to_have_attribute("aria-valuetext", re.compile("tour 99 of 100"))
+    expect(slider).to_have_attribute("aria-valuetext", re.compile(f"tour {count - 1} of {count}"))
 
 
 def test_the_page_says_what_a_tour_gives_up_and_what_it_gains(page: Page) -> None:
