@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
+from typing import Any
 
 import httpx
 import pytest
@@ -34,7 +35,7 @@ from tests.helpers.processes import ServeProcess, serve_process, work_process
 from tests.helpers.redis_server import LASTING, Redis, redis_server
 from tests.helpers.serving import problem
 
-SOME_SECONDS = {"coordinates": CITIES, "time_limit": 1.5}
+SOME_SECONDS: dict[str, Any] = {"coordinates": CITIES, "time_limit": 1.5}
 
 
 @dataclass
@@ -188,6 +189,24 @@ def test_when_redis_is_full_no_more_is_taken_until_there_is_room(
         machines.connection.config_set("maxmemory", 0)
     assert machines.state.unfinished() == {}
     assert client.post("/front", json=SHORT).json()["status"] == "done"
+
+
+def test_a_job_that_ends_when_redis_is_full_ends_once_there_is_room(
+    machines: Machines, client: httpx.Client
+) -> None:
+    path = later(client, SOME_SECONDS)
+    until_found(client, path)
+    machines.connection.config_set("maxmemory", 1)
+    try:
+        problem(client.post("/front", json=SHORT), 503, "store-unavailable")
+        time.sleep(
+            SOME_SECONDS["time_limit"] + 3
+        )  # the job is over, and its worker said so in vain
+    finally:
+        machines.connection.config_set("maxmemory", 0)
+    done(client, path)
+    done(client, later(client, SOME_SECONDS))
+    assert machines.workers[-1].poll() is None
 
 
 def test_when_redis_is_restarted_all_goes_on(machines: Machines, client: httpx.Client) -> None:
