@@ -72,6 +72,9 @@ HOSTILE = [
     "[" + "0," * 5000 + "0]",
     '"' + "x" * 20_000 + '"',
 ]
+ZEROS = bytes(50 * 2**20)
+ZIPPED = gzip.compress(ZEROS, 1)
+
 ANY_JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20),
     lambda inner: st.lists(inner, max_size=5) | st.dictionaries(st.text(max_size=9), inner),
@@ -251,9 +254,9 @@ def test_ten_megabytes_of_brackets_are_refused(client: httpx.Client, opening: st
 @pytest.mark.parametrize(
     ("coding", "bomb"),
     [
-        ("gzip", gzip.compress(bytes(50 * 2**20))),
-        ("deflate", zlib.compress(bytes(50 * 2**20))),
-        ("gzip, gzip", gzip.compress(gzip.compress(bytes(50 * 2**20)))),
+        ("gzip", ZIPPED),
+        ("deflate", zlib.compress(ZEROS, 1)),
+        ("gzip, gzip", gzip.compress(ZIPPED)),
         ("br", b"\x0b\x02\x80"),
     ],
 )

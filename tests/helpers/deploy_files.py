@@ -24,7 +24,7 @@ class Manifest:
     @property
     def objects(self) -> list[dict[str, Any]]:
         """All objects of the file."""
-        return list(yaml.safe_load_all((DEPLOY / self.name).read_text()))
+        return list(yaml.load_all((DEPLOY / self.name).read_text(), yaml.CSafeLoader))
 
     @property
     def pods(self) -> dict[str, dict[str, Any]]:
@@ -49,7 +49,8 @@ class ComposeFile:
     @property
     def document(self) -> dict[str, Any]:
         """The whole file."""
-        document: dict[str, Any] = yaml.safe_load((DEPLOY / self.name).read_text())
+        text = (DEPLOY / self.name).read_text()
+        document: dict[str, Any] = yaml.load(text, yaml.CSafeLoader)
         return document
 
     @property
