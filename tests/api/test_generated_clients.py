@@ -90,8 +90,9 @@ def document(address: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def python_folder(document: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the client in Python, and the virtual environment that generated it."""
     folder = tmp_path_factory.mktemp("python")
-    run([sys.executable, "-m", "venv", "venv"], folder)
-    install([f"{folder}/venv/bin/pip", "install", "-q", "--no-compile", *PYTHON_GENERATOR], folder)
+    run([sys.executable, "-m", "venv", "--without-pip", "venv"], folder)
+    pip = [sys.executable, "-m", "pip", "--python", f"{folder}/venv/bin/python"]
+    install([*pip, "install", "-q", "--no-compile", *PYTHON_GENERATOR], folder)
     command = ["venv/bin/openapi-python-client", "generate", "--fail-on-warning", "--meta=none"]
     run([*command, f"--path={document}", "--output-path=generated"], folder, venv_path(folder))
     return folder

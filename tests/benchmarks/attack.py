@@ -80,6 +80,7 @@ def attacked(seconds: float) -> dict[str, Any]:
         "workers_lost": lost,
         "workers_present": present,
         "tracebacks_in_log": service.log.count(b"Traceback"),
+        "tracebacks": dict(service.tracebacks),
         "exit_status": service.process.returncode,
     }
 

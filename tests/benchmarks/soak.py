@@ -59,6 +59,7 @@ def soak(seconds: float, visitors: int) -> dict[str, Any]:
         "faults": tally.faults,
         "jobs": tally.jobs,
         "tracebacks_in_log": service.log.count(b"Traceback"),
+        "tracebacks": dict(service.tracebacks),
         "exit_status": service.process.returncode,
         "megabytes": [round(each / 2**20, 1) for each in memory],
         "growth_over_last_half": round(growth(memory), 4),

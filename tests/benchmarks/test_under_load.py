@@ -43,6 +43,9 @@ def loaded(**other: Any) -> dict[str, Any]:
     }
 
 
+LOGGED = {"tracebacks_in_log": 1, "tracebacks": {"E: e": 1}}
+
+
 def soaked(**other: Any) -> dict[str, Any]:
     return {
         **WHERE,
@@ -52,6 +55,7 @@ def soaked(**other: Any) -> dict[str, Any]:
         "faults": [],
         "jobs": {"accepted": 4, "done": 2, "cancelled": 1, "forgotten once done": 1},
         "tracebacks_in_log": 0,
+        "tracebacks": {},
         "exit_status": 0,
         "megabytes": [500.0, 600.0],
         "growth_over_last_half": 0.0999,
@@ -71,6 +75,7 @@ def attacked(**other: Any) -> dict[str, Any]:
         "workers_lost": 0,
         "workers_present": 2,
         "tracebacks_in_log": 0,
+        "tracebacks": {},
         "exit_status": 0,
         **other,
     }
@@ -107,7 +112,10 @@ def test_a_demand_that_load_does_not_meet_is_named(other: dict[str, Any], senten
         ({"jobs": {"accepted": 3, "done": 2}}, "every accepted job must end, got 3 and 2 ends"),
         ({"jobs": {"accepted": 1, "failed": 1}}, "no job may fail, got 1"),
         ({"faults": ["plan: 500"]}, "there must be no fault, got 1: plan: 500"),
-        ({"tracebacks_in_log": 1}, "the log must have no traceback"),
+        (
+            {"tracebacks_in_log": 1, "tracebacks": {"E: e": 1}},
+            "the log must have no traceback, got 1: E: e",
+        ),
         ({"exit_status": -9}, "the service must end with 0, got -9"),
         ({"growth_over_last_half": 0.1}, "memory must grow by less than 10%"),
     ],
@@ -135,7 +143,10 @@ def test_a_demand_that_soak_does_not_meet_is_named(other: dict[str, Any], senten
         ({"megabytes": 2049}, "memory must stay under 2048 MB, got 2049 MB"),
         ({"workers_lost": 1}, "no worker may be lost, got 1"),
         ({"workers_present": 1}, "2 workers must be there afterwards, got 1"),
-        ({"tracebacks_in_log": 1}, "the log must have no traceback"),
+        (
+            {"tracebacks_in_log": 1, "tracebacks": {"E: e": 1}},
+            "the log must have no traceback, got 1: E: e",
+        ),
         ({"exit_status": -9}, "the service must end with 0, got -9"),
     ],
 )

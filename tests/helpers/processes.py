@@ -1,5 +1,6 @@
 """The commands `paretour serve` and `paretour work` as processes of their own."""
 
+import json
 import os
 import signal
 import socket
@@ -7,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -23,6 +25,12 @@ class ServeProcess:
     url: str
     process: subprocess.Popen[bytes]
     log: bytes = b""
+
+    @property
+    def tracebacks(self) -> Counter[str]:
+        """How often each error was logged with a traceback: what was said, and its last line."""
+        lines = [json.loads(line) for line in self.log.splitlines() if b"Traceback" in line]
+        return Counter(f"{line['message']}: {line['exc_info'].splitlines()[-1]}" for line in lines)
 
 
 @contextmanager
