@@ -77,8 +77,9 @@ class RecordWorker:
             self._store.finish(as_failed(stored.record, WorkerLost(), stored.record.front))
             return
         deadline = time.monotonic() + self._seconds
-        terminate = getattr(self._runner, "terminate", None) or (lambda: None)
-        supervisor = _Supervisor(stored, self._store, deadline, self._is_draining, terminate)
+        supervisor = _Supervisor(
+            stored, self._store, deadline, self._is_draining, self._runner.terminate
+        )
         result = self._result(stored, supervisor)
         supervisor.end()
         if supervisor.reason is Draining:

@@ -58,6 +58,9 @@ class Runner(Protocol):
                 so many tours found so far, which may be called until it returns.
         """
 
+    def terminate(self) -> None:
+        """End the running call of a network, if one runs; from any thread."""
+
 
 MakeRunner = Callable[[], Runner]
 

@@ -104,13 +104,12 @@ class _WorkerLoop:
                 Thread(target=self._warm_up, name="warm-up", daemon=True).start()
 
     def _terminate(self, number: int) -> None:
-        """Terminate the calls of the runner, if it can, until the task of this number has ended."""
-        terminate = getattr(self._runner, "terminate", None)
-        while terminate is not None:
+        """Terminate the calls of the runner until the task of this number has ended."""
+        while True:
             with self._changing:
                 if self._running != number:
                     return
-                terminate()
+                self._runner.terminate()
             time.sleep(_TERMINATE_EVERY)
 
     def _set_running(self, number: int | None) -> None:
