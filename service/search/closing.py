@@ -70,3 +70,11 @@ def is_kept(closing: Array | None, i: int, j: int) -> bool:
     if closing is None:
         return False
     return (i == 0 or j == 0) and closing_cost(closing, i, j) < 0
+
+
+@inlined
+def is_free_end(closing: Array | None, city: int, after: int) -> bool:
+    """Return whether a city is an end of the route, beside the invented city, that may change."""
+    if closing is None:
+        return False
+    return after == 0 and closing_cost(closing, city, 0) == 0

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
 
 LONGEST_BLOCK = 50  # cities that a perturbation moves at once
+KICKS_PER_END = 8  # kicks of an open route, of which one is at an end of it
 UNLIMITED = 1 << 60
 LEAST_GAIN = 1e-12  # as a share of the weighted length, far above what rounding adds
 
@@ -121,13 +122,36 @@ def removes_kept_step(
 
 
 @inlined
+def often_at_an_end(
+    working: WorkingTour,
+    closing: Array | None,
+    random: NDArray[np.int64],
+    start: int,
+    size: int,
+) -> int:
+    """Return a position for `size` cities: `start`, or often that beside an end of an open route.
+
+    Which cities are the best ends is found late where they change as seldom as any other step.
+    """
+    if closing is None:
+        return start
+    if random_below(random, KICKS_PER_END) > 0:
+        return start
+    place = working.position[0]  # of the invented city, after a route's last city
+    beside = place + 1 if random_below(random, 2) else place - size
+    return wrap(beside, len(working.tour))
+
+
+@inlined
 def perturb(working: WorkingTour, scalarization: Scalarization, random: NDArray[np.int64]) -> None:
-    """Swap two adjacent blocks of random sizes at a random place."""
+    """Swap two adjacent blocks of random sizes at a random place, or at an end of a route."""
     n = len(working.tour)
     longest = min(LONGEST_BLOCK, n // 3)
     start = random_below(random, n)
     a, b = 1 + random_below(random, longest), 1 + random_below(random, longest)
-    while removes_kept_step(working, scalarization.costs.closing, start, a, b):
+    closing = scalarization.costs.closing
+    start = often_at_an_end(working, closing, random, start, a + b)
+    while removes_kept_step(working, closing, start, a, b):
         start = random_below(random, n)
     make_move(working, scalarization, start, a, b, False)
 

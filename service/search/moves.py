@@ -9,8 +9,11 @@ All searches go through the candidates of a city by ascending cost, and stop at 
 which on no move can gain enough.
 """
 
+import numpy as np
+
 from service.jit import inlined
 from service.search.candidates import Scalarization, weighted_cost
+from service.search.closing import is_free_end
 from service.search.costs import step_costs
 from service.search.working_tour import WorkingTour, enqueue, reverse_block, swap_blocks, wrap
 
@@ -27,16 +30,21 @@ def neighbour(working: WorkingTour, city: int, direction: int) -> int:
 
 @inlined
 def two_opt(working: WorkingTour, scalarization: Scalarization, city: int, least: float) -> Move:
-    """Return the best 2-opt move of an edge at the city, if it gains more than `least`."""
+    """Return the best 2-opt move of an edge at the city, if it gains more than `least`.
+
+    Where the city is a free end of a route, its edge is at no cost, and what a move gains is the
+    other edge: so all candidates are tried.
+    """
     n = len(working.tour)
     best = (least, 0, 0, 0, False)
     for direction in (1, -1):
         after = neighbour(working, city, direction)
         removed = weighted_cost(scalarization, city, after)
+        most = np.inf if is_free_end(scalarization.costs.closing, city, after) else removed
         for k in range(scalarization.candidates.shape[1]):
             other = scalarization.candidates[city, k]
             added = scalarization.candidate_costs[city, k]
-            if added >= removed:
+            if added >= most:
                 break
             end = neighbour(working, other, direction)
             gain = (

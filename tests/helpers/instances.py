@@ -89,8 +89,11 @@ def no_tours(n: int) -> NDArray[np.int32]:
 def scalarization_of(instance: Instance) -> Scalarization:
     """The sum of both objectives under equal weights, with eight candidates a city."""
     costs = make_costs(instance)
-    sums = costs.matrix.sum(axis=2) + np.diag(np.full(instance.n, np.inf))
-    candidates = np.argsort(sums, axis=1)[:, : min(8, instance.n - 1)]
+    n = len(costs.cities)
+    sums = costs.matrix.sum(axis=2) + np.diag(np.full(n, np.inf))
+    if not instance.closed:  # nobody goes to the invented city
+        sums[0], sums[:, 0] = np.inf, np.inf
+    candidates = np.argsort(sums, axis=1)[:, : min(8, n - 1)]
     candidate_costs = np.take_along_axis(sums, candidates, axis=1) / 2
     return Scalarization(
         costs, np.ascontiguousarray(candidates, np.int32), candidate_costs, 0.5, 0.5

@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from service.search.costs import lengths
-from service.search.moves import apply_move, length_change
+from service.search.moves import apply_move, length_change, two_opt
 from service.search.working_tour import make_working_tour
-from tests.helpers.instances import random_matrices, scalarization_of
+from tests.helpers.instances import opened, random_matrices, scalarization_of
 
 
 @given(seed=st.integers(0, 10**6), flip=st.booleans(), data=st.data())
@@ -23,3 +23,19 @@ def test_a_move_changes_lengths_as_computed(seed: int, flip: bool, data: st.Data
     expected = np.array(length_change(working, scalarization, start, a, b, flip))
     apply_move(working, start, a, b, flip)
     assert np.array(lengths(scalarization.costs, working.tour)) == pytest.approx(before + expected)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_free_end_of_a_route_is_exchanged_for_the_best_other(seed: int) -> None:
+    scalarization = scalarization_of(opened(random_matrices(8, seed, symmetric=True), "no"))
+    working = make_working_tour(9)  # from the invented city through 1 to 8
+    cost = scalarization.costs.matrix.sum(axis=2) / 2
+    gains = [  # of turning round the beginning of the route, up to the city before k
+        cost[k - 1, k] - cost[1, k] for k in range(3, 9)
+    ]
+    gains += [  # of turning round what follows the first city, up to k
+        cost[1, 2] - cost[1, k] + (cost[k, k + 1] - cost[2, k + 1] if k < 8 else 0.0)
+        for k in range(3, 9)
+        if cost[1, k] < cost[1, 2]
+    ]
+    assert two_opt(working, scalarization, 1, 0.0)[0] == pytest.approx(max(0.0, *gains))
