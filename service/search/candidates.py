@@ -1,9 +1,11 @@
 """Candidate lists: for each city, the few cheapest to go to under a weighted sum.
 
 Ranking all n cities anew under each of many weights takes O(n^2) a weight. So the cheapest under
-a few weights are pooled once, and the lists of all other weights are ranked from that pool.
+a few weights are pooled once, and the lists of all other weights are ranked from that pool. From
+coordinates that are not tabulated, k-d trees find them without a look at all pairs.
 """
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -12,12 +14,22 @@ from numpy.typing import NDArray
 from service.jit import allocating, inlined
 from service.search.closing import FORBIDDEN, is_closing
 from service.search.costs import Costs, step_costs
+from service.search.kd_tree import (
+    KdTrees,
+    fill_kd_tree,
+    find_nearest,
+    insert_smallest,
+    make_kd_trees,
+    make_nearest,
+)
 
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
 
 CANDIDATES_PER_CITY = 8  # from 5 to 12 make no difference that could be measured
 POOL_WEIGHTS = 5  # weights under which the pool collects candidates
+POOL_BLOCK = 200_000  # costs computed between two checks of the deadline
+TREE_BLOCK = 100  # rows filled by trees between two checks of the deadline
 
 
 class CandidatePool(NamedTuple):
@@ -44,6 +56,29 @@ def make_candidate_pool(n: int) -> CandidatePool:
     return CandidatePool(
         np.zeros((n, width), np.int32), np.zeros((n, width, 2)), np.zeros(n, np.int32)
     )
+
+
+def fill_in_blocks(pool: CandidatePool, costs: Costs, weights: Array) -> Iterator[None]:
+    """Fill a pool with the cheapest cities under weights (k, 2), and yield every few milliseconds.
+
+    O(n^2) where costs are tabulated, else O(n log^2 n).
+    """
+    n = len(pool.cities)
+    if len(costs.matrix):
+        compared = n
+    else:
+        compared = 0 if costs.closing is None else 1  # the invented city is in no plane
+        trees = make_kd_trees(weights, np.arange(compared, n, dtype=np.int32))
+        for k in range(len(weights)):
+            fill_kd_tree(trees, costs, k)
+            yield
+        for begin in range(compared, n, TREE_BLOCK):
+            fill_pool_by_trees(pool, costs, trees, begin, min(begin + TREE_BLOCK, n))
+            yield
+    rows = max(1, POOL_BLOCK // n)
+    for begin in range(0, compared, rows):
+        fill_pool(pool, costs, weights, begin, min(begin + rows, compared))
+        yield
 
 
 @inlined
@@ -73,19 +108,10 @@ def select_smallest(keys: Array, skipped: int, chosen: Cities, chosen_keys: Arra
 
     Of equal keys the lower index comes first. Insertion into a list of k: O(n k).
     """
-    kept = len(chosen)
     chosen_keys[:] = np.inf
     for j in range(len(keys)):
-        key = keys[j]
-        if key >= chosen_keys[kept - 1] or j == skipped:
-            continue
-        place = kept - 1
-        while place > 0 and chosen_keys[place - 1] > key:
-            chosen_keys[place] = chosen_keys[place - 1]
-            chosen[place] = chosen[place - 1]
-            place -= 1
-        chosen_keys[place] = key
-        chosen[place] = j
+        if j != skipped:
+            insert_smallest(chosen, chosen_keys, j, keys[j])
 
 
 @allocating
@@ -105,15 +131,36 @@ def fill_pool(pool: CandidatePool, costs: Costs, weights: Array, begin: int, end
             for m in range(n):
                 keys[m] = weights[k, 0] * rows[0, m] + weights[k, 1] * rows[1, m]
             select_smallest(keys, i, chosen, chosen_keys)
-            for c in range(len(chosen)):
-                j = chosen[c]
-                if seen[j] != i:
-                    seen[j] = i
-                    place = pool.sizes[i]
-                    pool.cities[i, place] = j
-                    pool.costs[i, place, 0] = rows[0, j]
-                    pool.costs[i, place, 1] = rows[1, j]
-                    pool.sizes[i] = place + 1
+            pool_chosen(pool, costs, i, chosen, seen)
+
+
+@allocating
+def fill_pool_by_trees(
+    pool: CandidatePool, costs: Costs, trees: KdTrees, begin: int, end: int
+) -> None:
+    """Fill the rows begin to end - 1 of a pool with the cheapest cities under the trees' weights.
+
+    That is what fill_pool() fills in, but for cities at equal costs. O(log n) a row.
+    """
+    found = make_nearest(CANDIDATES_PER_CITY)
+    seen = np.full(len(pool.cities), -1, np.int32)
+    for i in range(begin, end):
+        pool.sizes[i] = 0
+        for k in range(len(trees.weights)):
+            find_nearest(trees, costs, k, i, found)
+            pool_chosen(pool, costs, i, found.cities, seen)
+
+
+@inlined
+def pool_chosen(pool: CandidatePool, costs: Costs, i: int, chosen: Cities, seen: Cities) -> None:
+    """Add those cities to row i of a pool that it does not hold yet; `seen` is of all cities."""
+    for j in chosen:
+        if seen[j] != i:
+            seen[j] = i
+            place = pool.sizes[i]
+            pool.cities[i, place] = j
+            pool.costs[i, place, 0], pool.costs[i, place, 1] = candidate_costs(costs, i, j)
+            pool.sizes[i] = place + 1
 
 
 @allocating

@@ -24,7 +24,7 @@ from service.search.candidates import (
     CANDIDATES_PER_CITY,
     POOL_WEIGHTS,
     Scalarization,
-    fill_pool,
+    fill_in_blocks,
     make_candidate_pool,
     rank_candidates,
 )
@@ -48,7 +48,6 @@ CONSTRUCTIONS = 17  # weights for which a tour is constructed as well
 LEAST_SHARE = 1e-3  # of a weight: the other length still counts at the ends, to break ties
 FIRST_DIVISOR = 4  # in the first round a weight gets a quarter of the iterations of later ones
 BLOCK = 300  # iterations between two checks of the deadline, about a millisecond
-POOL_BLOCK = 200_000  # costs computed between two checks of the deadline
 DESCENT_BLOCK = 2_000  # cities from the queue between two checks of the deadline
 EXPLORE_EVERY = 10  # turns, of which one goes to what has lately gained less
 PATIENCE = 1_000  # iterations per city without a new tour, after which the search has converged
@@ -173,11 +172,8 @@ class Search:
     def pool_candidates(self) -> Iterator[int]:
         """Fill the pool from which the candidates under each weight are ranked."""
         self.pool = make_candidate_pool(self.n)
-        pooled = np.linspace(0, WEIGHTS - 1, POOL_WEIGHTS).astype(int)
-        rows = max(1, POOL_BLOCK // self.n)
-        for begin in range(0, self.n, rows):
-            end = min(begin + rows, self.n)
-            fill_pool(self.pool, self.state.costs, self.weights[pooled], begin, end)
+        pooled = self.weights[np.linspace(0, WEIGHTS - 1, POOL_WEIGHTS).astype(int)]
+        for _ in fill_in_blocks(self.pool, self.state.costs, pooled):
             yield 0
 
     @property
