@@ -1,78 +1,46 @@
 /** The page, put together: a request on the left, its front on the right. */
 
-import { isCity, rowsOf, textOf } from "./inputs/cities.js";
 import { csv, curl, download } from "./result/exports.js";
 import { clearFaults, showFault, showFaults } from "./planning/faults.js";
-import { Fields } from "./inputs/fields.js";
 import { isRequest, read, readPasted } from "./inputs/files.js";
-import { askedFor, described, kindOf, requestFor } from "./inputs/instance.js";
+import { kindOf } from "./inputs/instance.js";
 import { fragment, linked } from "./result/link.js";
 import { counted } from "./common/numbers.js";
 import { UNNAMED, namesIn } from "./common/objectives.js";
 import { Placing } from "./inputs/placing.js";
+import { RequestForm } from "./inputs/request_form.js";
 import { Planning } from "./planning/planning.js";
 import { Result } from "./result/result.js";
 import { Service } from "./planning/service.js";
 
 const element = (id) => document.getElementById(id);
 const form = element("request");
-const fields = new Fields(form);
 const service = new Service(() => element("key").value.trim());
 const narrow = matchMedia("(max-width: 860px)"); // the form stands above what it gives, not beside
-const placing = new Placing(element("place"), element("place-help"), placed);
 const result = new Result((plane, place) => placing.clicked(plane, place));
+const input = new RequestForm(form, edited);
+const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row));
 
-let brought = { coordinates: [] }; // of what was opened, the members that are not settings
-let objectives = UNNAMED;
+let objectives = UNNAMED; // as the front that is shown calls them
 let planning = null; // what is under way
 let answer = null; // the best front so far
 let opened = 0; // how many requests were, so that none takes the place of a later one
-let frame = 0; // in which what was typed is drawn, 0 where all of it is
 
-const asked = () =>
-  askedFor(brought, fields.members, { text: element("cities").value, whole: element("rounded").checked });
-const request = () => requestFor(asked());
-
-/** Takes what is asked for into the form, and shows its cities under their objectives. */
-function open(wanted, names = UNNAMED) {
+/** Takes what is asked for into the form, and shows its stops under their objectives. */
+function open(wanted, names) {
   opened += 1;
-  const kind = kindOf(wanted);
-  brought = fields.take(wanted, kind);
-  objectives = names;
-  const typed = kind === "coordinates";
-  element("typed").hidden = element("place").hidden = !typed;
-  element("brought").hidden = typed;
-  element("brought").textContent = typed ? "" : described(wanted);
-  element("order").open = !typed && kind !== "grid";
-  element("cities").value = textOf(wanted.coordinates ?? []);
-  element("rounding").hidden = !wanted.rounded;
-  element("rounded").checked = Boolean(wanted.rounded);
-  result.name(objectives);
-  edited();
+  element("order").open = !["coordinates", "grid"].includes(kindOf(wanted));
+  input.open(wanted, names);
 }
 
-/** Whatever was planned is not of these cities. */
-function edited(fit = true) {
-  cancelAnimationFrame(frame);
-  frame = 0;
+/** Whatever was planned is not of these stops. */
+function edited(instance, fit) {
   leave();
   clearFaults();
   say("");
-  const rows = rowsOf(element("cities").value);
-  element("count").textContent = counted(rows.length, "city", "cities");
-  const typed = kindOf(brought) === "coordinates";
-  result.clear(typed ? { coordinates: rows.filter(isCity) } : brought, fit);
+  result.name((objectives = input.objectives), input.ids);
+  result.clear(instance, fit);
   answered(null);
-}
-
-/** Between two frames, however much is typed, it is drawn once. */
-function typed() {
-  frame ||= requestAnimationFrame(() => edited());
-}
-
-function placed(row) {
-  element("cities").value = textOf([...rowsOf(element("cities").value), row]);
-  edited(false);
 }
 
 function answered(found) {
@@ -97,7 +65,7 @@ const ALONE = "This link opens the front without its maps: what was asked for is
 
 /** Shows what comes of a plan; `states` asks a planning for it. */
 async function run(states) {
-  if (frame) edited();
+  input.settle();
   leave();
   const mine = (planning = new Planning(service));
   clearFaults();
@@ -117,14 +85,14 @@ async function run(states) {
 
 function show(state) {
   if (state.answer) {
-    if (state.answer.objectives) result.name((objectives = namesIn(state.answer)));
+    if (state.answer.objectives) result.name((objectives = namesIn(state.answer)), input.ids);
     result.show(state);
     answered(state.answer);
   }
   say(SAID[state.stage] ?? ended(state));
 }
 
-const plan = () => run((mine) => mine.plan(request()));
+const plan = () => run((mine) => mine.plan(input.request));
 
 function leave() {
   planning?.leave();
@@ -163,8 +131,8 @@ const openFiles = (files) => files.length && openBrought(() => read(files));
 async function openBrought(reading) {
   try {
     const { members, objectives: names } = await reading();
-    open(members, names);
     forgetExample();
+    open(members, names);
   } catch (error) {
     showFault("file", error.message);
   }
@@ -224,7 +192,7 @@ async function copy(text, button) {
 }
 
 async function copyLink(button) {
-  const { hash, whole } = await fragment(answer.id, { request: asked(), objectives });
+  const { hash, whole } = await fragment(answer.id, { request: input.asked, objectives });
   history.replaceState(null, "", hash);
   element("link-help").textContent = whole ? "" : ALONE;
   await copy(location.href, button);
@@ -236,8 +204,6 @@ form.addEventListener("submit", (event) => {
   plan();
 });
 element("stop").addEventListener("click", stop);
-element("cities").addEventListener("input", typed);
-element("rounded").addEventListener("change", () => edited(false));
 element("clear").addEventListener("click", () => {
   forgetExample();
   open({ coordinates: [] });
@@ -247,7 +213,7 @@ element("file").addEventListener("change", (event) => {
   openFiles([...event.target.files]);
   event.target.value = "";
 });
-element("curl").addEventListener("click", (event) => copy(curl(request()), event.target));
+element("curl").addEventListener("click", (event) => copy(curl(input.request), event.target));
 element("link").addEventListener("click", (event) => copyLink(event.target));
 element("json").addEventListener("click", () =>
   download("front.json", "application/json", JSON.stringify(answer)),

@@ -19,7 +19,7 @@ from tqdm import tqdm
 
 from tests.benchmarks.instances import SIZES, paper_instances
 from tests.benchmarks.provenance import provenance, store
-from tests.helpers.browsing import chromium, open_page, wait_until_planned
+from tests.helpers.browsing import chromium, open_page, stops_as_text, wait_until_planned
 from tests.helpers.processes import serve_process
 
 FRAMES = 240  # of each measurement
@@ -92,7 +92,7 @@ def _page_row(browser: Browser, address: str, n: int, rounds: int) -> dict[str, 
     cities = "\n".join(", ".join(f"{each:.4f}" for each in row) for row in paper_instances(n, 1)[0])
     with open_page(browser, address) as page:
         wait_until_planned(page)
-        page.get_by_label("x1, y1, x2, y2").fill(cities)
+        stops_as_text(page).fill(cities)
         page.get_by_role("button", name="Plan").click()
         wait_until_planned(page)
         page.get_by_label("A front of 100 tours").wait_for()

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import pytest
-from playwright.sync_api import Browser, Page, Route, expect, sync_playwright
+from playwright.sync_api import Browser, Locator, Page, Route, expect, sync_playwright
 
 CHROMIUM = Path("/usr/bin/chromium")
 DESK, PHONE = 1440, 375  # widths of a window in pixels
@@ -87,6 +87,12 @@ def open_files(page: Page, files: dict[str, str]) -> None:
         for name, text in files.items()
     ]
     page.get_by_label("Open files").set_input_files(payloads)
+
+
+def stops_as_text(page: Page) -> Locator:
+    """Return the box that holds the stops of two planes as text, unfolded."""
+    page.locator("#typed").evaluate("details => details.open = true")
+    return page.get_by_label("x1, y1, x2, y2")
 
 
 def curl_body(page: Page) -> Any:

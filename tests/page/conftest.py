@@ -27,6 +27,6 @@ def page(width: int, browser: Browser, released: str) -> Iterator[Page]:
     with open_page(browser, released, width) as page:
         wait_until_planned(page)
         page.get_by_label("Example").select_option("City deliveries")
-        expect(page.locator("#count")).to_have_text("61 cities")
+        expect(page.locator("#count")).to_have_text("61 stops")
         wait_until_planned(page)
         yield page

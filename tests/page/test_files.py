@@ -21,6 +21,7 @@ from tests.helpers.browsing import (
     needs_chromium,
     open_files,
     open_page,
+    stops_as_text,
     wait_until_planned,
 )
 from tests.helpers.serving import app_of, serving
@@ -63,7 +64,7 @@ def test_stops_are_planned_under_their_names_and_ids(page: Page) -> None:
         "time_limit": 0.1,
     }
     open_files(page, {"stops.json": json.dumps(request)})
-    expect(page.get_by_text("4 stops with ids.")).to_be_visible()
+    expect(page.locator("#count")).to_have_text("4 stops")
     page.get_by_role("button", name="Plan").click()
     wait_until_planned(page)
     expect(page.locator("#order p")).to_contain_text('order "1" →')
@@ -98,12 +99,12 @@ def test_points_of_geojson_are_stops_as_on_the_command_line(
 ) -> None:
     text = collection(objectives=OBJECTIVES, time_limit=0.2)
     if pasted:
-        page.get_by_label("x1, y1, x2, y2").focus()
+        stops_as_text(page).focus()
         page.evaluate("text => navigator.clipboard.writeText(text)", text)
         page.keyboard.press("Control+V")
     else:
         open_files(page, {"stops.geojson": text})
-    expect(page.get_by_text("3 stops with ids.")).to_be_visible()
+    expect(page.locator("#count")).to_have_text("3 stops")
     (tmp_path / "stops.geojson").write_text(text)
     request, ids = read_request([tmp_path / "stops.geojson"])
     body = curl_body(page)
@@ -115,12 +116,12 @@ def test_points_of_geojson_are_stops_as_on_the_command_line(
 
 
 def test_rows_that_are_pasted_go_into_their_box(page: Page) -> None:
-    box = page.get_by_label("x1, y1, x2, y2")
+    box = stops_as_text(page)
     box.fill("")
     page.evaluate("text => navigator.clipboard.writeText(text)", "1, 2, 3, 4")
     box.focus()
     page.keyboard.press("Control+V")
-    expect(page.locator("#count")).to_have_text("1 city")
+    expect(page.locator("#count")).to_have_text("1 stop")
 
 
 @pytest.mark.parametrize(
@@ -130,7 +131,12 @@ def test_rows_that_are_pasted_go_into_their_box(page: Page) -> None:
         ("stops.json", '{"coordinates": [', "stops.json must be JSON"),
         ("stops.json", '{"coordinates": [1, 2]}', "coordinates of stops.json must be rows"),
         ("stops.json", '{"stops": 7}', "stops of stops.json must be a list"),
-        ("points.geojson", collection(), "points.geojson must have a member objectives"),
+        (
+            "stops.csv",
+            "id,lon,lat\na,24.9,60.1\nb,east,60.2\n",
+            "lon of stops.csv must be a number",
+        ),
+        ("stops.csv", "id;lon;lat\na;24,9;60\na;25;60\n", "must have an id of its own in row 2"),
         (
             "points.geojson",
             collection(objectives=OBJECTIVES, features=[{"geometry": None}]),
@@ -143,7 +149,7 @@ def test_rows_that_are_pasted_go_into_their_box(page: Page) -> None:
 def test_a_bad_file_is_refused_in_a_sentence(page: Page, name: str, text: str, said: str) -> None:
     open_files(page, {name: text})
     expect(page.locator("#file-fault")).to_contain_text(said, ignore_case=True)
-    expect(page.locator("#count")).to_have_text("61 cities")
+    expect(page.locator("#count")).to_have_text("61 stops")
 
 
 def tsplib(places: str) -> str:
@@ -166,7 +172,7 @@ def tsplib(places: str) -> str:
 )
 def test_a_file_of_cities_is_planned(page: Page, files: dict[str, str]) -> None:
     open_files(page, files)
-    expect(page.get_by_label("x1, y1, x2, y2")).to_have_value("0, 0, 5, 5\n3, 1, 9, 1\n5, 2, 2, 8")
+    expect(stops_as_text(page)).to_have_value("0, 0, 5, 5\n3, 1, 9, 1\n5, 2, 2, 8")
     page.get_by_role("button", name="Plan").click()
     expect(page.locator("#status")).to_have_text("Done: 1 tour found.")
 
@@ -219,6 +225,7 @@ def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
         wait_until_planned(other)
         expect(other.get_by_label("Distances rounded")).to_be_checked()
         expect(other.locator("#plane-1 canvas.selected")).to_be_visible()
+        stops_as_text(other)
         other.get_by_label("Distances rounded").uncheck()
         expect(other.get_by_label("No front yet")).to_be_visible()
         assert len(curl_body(other)["coordinates"]) == 12

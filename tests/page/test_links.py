@@ -17,7 +17,7 @@ def test_a_link_opens_the_same_front_with_its_cities(page: Page, browser: Browse
     front = page.locator("#front-chart").get_attribute("aria-label")
     other = browser.new_page()
     other.goto(page.evaluate("navigator.clipboard.readText()"))
-    expect(other.locator("#count")).to_have_text("61 cities")
+    expect(other.locator("#count")).to_have_text("61 stops")
     expect(other.locator("#front-chart")).to_have_attribute("aria-label", front or "")
     other.get_by_text("Details", exact=True).click()
     expect(other.get_by_text("is drawn here while a search runs")).to_be_visible()

@@ -12,6 +12,7 @@ from tests.helpers.browsing import (
     PHONE,
     needs_chromium,
     open_page,
+    stops_as_text,
     tours_of_front,
     wait_for_next_frame,
     wait_until_planned,
@@ -99,7 +100,7 @@ def test_cities_and_tours_stand_out_from_the_maps(
     with open_page(browser, released, scheme=scheme) as page:
         wait_until_planned(page)
         page.get_by_label("Example").select_option("City deliveries")
-        expect(page.locator("#count")).to_have_text("61 cities")
+        expect(page.locator("#count")).to_have_text("61 stops")
         wait_until_planned(page)
         page.get_by_role("slider", name="Balance").press("Home")
         page.get_by_role("button", name="Pin to compare").click()
@@ -130,8 +131,8 @@ def test_a_thousand_cities_and_their_front_are_shown(browser: Browser, released:
     with open_page(browser, released) as page:
         wait_until_planned(page)
         page.get_by_label("Example").select_option("City deliveries")
-        page.get_by_label("x1, y1, x2, y2").fill("\n".join(",".join(map(str, r)) for r in cities))
-        expect(page.locator("#count")).to_have_text("1,000 cities")
+        stops_as_text(page).fill("\n".join(",".join(map(str, r)) for r in cities))
+        expect(page.locator("#count")).to_have_text("1,000 stops")
         page.get_by_label("Seconds of planning").fill("2")
         page.get_by_role("button", name="Plan").click()
         wait_until_planned(page)

@@ -13,6 +13,7 @@ from tests.helpers.browsing import (
     curl_body,
     needs_chromium,
     open_page,
+    stops_as_text,
     tours_of_front,
     wait_for_next_frame,
     wait_until_planned,
@@ -30,7 +31,7 @@ def test_the_page_opens_with_stops_by_road_and_their_front(
 ) -> None:
     with open_page(browser, released, width) as page:
         wait_until_planned(page)
-        expect(page.get_by_text("60 stops with ids.")).to_be_visible()
+        expect(page.locator("#count")).to_have_text("60 stops")
         expect(page.get_by_text("OpenStreetMap contributors (ODbL)")).to_be_visible()
         expect(page.get_by_role("row", name="People met")).to_be_visible()
         first, second = page.locator(".plane").all()
@@ -43,7 +44,7 @@ def test_the_page_opens_with_stops_by_road_and_their_front(
 @at_both_widths
 def test_an_example_shows_its_front(page: Page) -> None:
     expect(page.get_by_label(re.compile(r"A front of \d+ tours: distance from"))).to_be_visible()
-    expect(page.locator("#count")).to_have_text("61 cities")
+    expect(page.locator("#count")).to_have_text("61 stops")
     expect(page.locator("#figures")).to_contain_text("Network alone")
 
 
@@ -145,18 +146,18 @@ def test_the_search_is_stopped_before_the_service_has_taken_it(page: Page) -> No
 
 
 def test_open_routes_lead_from_the_start_to_the_end(page: Page) -> None:
-    page.locator("#more > summary").click()
-    page.get_by_label("End city").fill("7")
-    page.get_by_label("Open routes").check()
+    page.get_by_label("End elsewhere").fill("8")
     page.get_by_label("Seconds of planning").fill("0.2")
     page.get_by_role("button", name="Plan").click()
     expect(page.locator("#status")).to_contain_text("Done")
     body = curl_body(page)
     assert (body["closed"], body["start"], body["end"]) == (False, 0, 7)
     page.locator("#order > summary").click()
-    expect(page.locator("#order p")).to_have_text(re.compile("^0 → .* → 7$"))
-    page.get_by_label("End city").fill("")
-    page.get_by_label("Start city").fill("")
+    expect(page.locator("#order p")).to_have_text(re.compile("^1 → .* → 8$"))
+    page.get_by_label("End elsewhere").fill("")
+    assert "closed" not in curl_body(page)
+    page.get_by_label("Open route").check()
+    page.get_by_label("Start", exact=True).fill("")
     assert curl_body(page)["start"] is None
 
 
@@ -166,9 +167,9 @@ def test_what_the_service_refuses_is_said_at_the_field(page: Page) -> None:
     fault = page.locator("#time_limit-fault")
     expect(fault).to_have_text('Seconds of planning must be a valid number, got "soon".')
     expect(page.get_by_label("Seconds of planning")).to_be_focused()
-    page.get_by_label("x1, y1, x2, y2").fill("1, 2, 3, 4\n1, 2, 3\n")
+    stops_as_text(page).fill("1, 2, 3, 4\n1, 2, 3\n")
     page.get_by_role("button", name="Plan").click()
-    expect(page.locator("#cities-fault")).to_contain_text("City 1 must have 4 items")
+    expect(page.locator("#cities-fault")).to_contain_text("Stop 2 must have 4 items")
 
 
 def test_cities_are_clicked_into_place_plane_by_plane(page: Page) -> None:
@@ -177,14 +178,14 @@ def test_cities_are_clicked_into_place_plane_by_plane(page: Page) -> None:
     for x, y in [(100, 160), (190, 130), (130, 90)]:
         page.locator("#plane-1").click(position={"x": x, "y": y})
         page.locator("#plane-2").click(position={"x": y, "y": x})
-    expect(page.locator("#count")).to_have_text("3 cities")
+    expect(page.locator("#count")).to_have_text("3 stops")
     page.get_by_role("button", name="Plan").click()
     expect(page.locator("#status")).to_have_text("Done: 1 tour found.")
 
 
 @at_both_widths
 def test_the_keyboard_is_enough(page: Page) -> None:
-    page.get_by_label("x1, y1, x2, y2").fill(CITIES)
+    stops_as_text(page).fill(CITIES)
     page.get_by_label("Seconds of planning").focus()
     page.keyboard.press("Control+a")
     page.keyboard.type("0.1")

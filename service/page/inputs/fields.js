@@ -1,21 +1,26 @@
 /** The fields of a request: their names, and which kinds of request have them. */
 
+import { nameOf, stopNamed } from "./names.js";
+
 const FIELDS = [
   { name: "cell_size", label: "Metres a cell", where: "coverage" },
   { name: "robot_radius", label: "Robot’s radius, m", where: "coverage" },
   { name: "spacing", label: "Places apart, m", where: "coverage" },
   { name: "time_limit", label: "Seconds of planning", value: "3" },
   { name: "size", label: "Tours", value: "100" },
+  { name: "start", label: "Start", value: "1", stop: true },
+  { name: "end", label: "End elsewhere", stop: true },
+  { name: "open", label: "Open route: no way back to the start", box: true },
   { name: "preferences", label: "Directions of the network", where: "more" },
-  { name: "start", label: "Start city", value: "0", where: "more" },
-  { name: "end", label: "End city", where: "more" },
-  { name: "open", label: "Open routes: no way back to the start", where: "more", box: true },
   { name: "seed", label: "Seed", value: "0", where: "more" },
 ];
+
+const OFFERED = 1000; // names in a list that a browser opens without delay
 
 export class Fields {
   #form;
   #coverage;
+  #ids = null; // of the stops, where they have them
 
   constructor(form) {
     this.#form = form;
@@ -30,13 +35,25 @@ export class Fields {
   get members() {
     const asked = FIELDS.filter(({ where }) => where !== "coverage" || !this.#coverage.hidden);
     const texts = asked.filter(({ box }) => !box).map(({ name }) => [name, this.#form[name].value.trim()]);
-    const given = texts.filter(([, text]) => text).map(([name, text]) => [name, numberOr(text)]);
+    const given = texts.filter(([, text]) => text).map(([name, text]) => [name, this.#value(name, text)]);
     return { ...Object.fromEntries(given), ...this.#ends(given.map(([name]) => name)) };
+  }
+
+  /** Lets stops be named, and offers their names. */
+  name(ids, cities) {
+    if (this.#form.start.value === nameOf(this.#ids, 0)) this.#form.start.value = nameOf(ids, 0);
+    this.#ids = ids;
+    const names = Array.from({ length: Math.min(cities, OFFERED) }, (_, city) => new Option(nameOf(ids, city)));
+    this.#form.querySelector("#stop-names").replaceChildren(...names);
+  }
+
+  #value(name, text) {
+    return ["start", "end"].includes(name) ? stopNamed(this.#ids, text) : numberOr(text);
   }
 
   /** What open routes need: that they are, and that an empty start leaves it to them. */
   #ends(given) {
-    if (!this.#form.open.checked) return {};
+    if (!this.#form.open.checked && !given.includes("end")) return {};
     return { closed: false, ...(given.includes("start") ? {} : { start: null }) };
   }
 
@@ -46,9 +63,10 @@ export class Fields {
     this.#coverage.hidden = kind !== "grid";
     this.#form.open.checked = request.closed === false;
     delete rest.closed;
-    if (request.start === null) this.#form.start.value = "";
-    for (const { name, where, box } of FIELDS) {
-      if (box) continue;
+    this.#ids = request.stops?.map(({ id }) => id) ?? request.ids ?? null;
+    this.#takeEnds(rest);
+    for (const { name, where, box, stop } of FIELDS) {
+      if (box || stop) continue;
       if (where === "coverage") this.#form[name].value = "";
       // What is there and no number, as a list of angles, is left as it is, unless one is typed.
       if (request[name] != null) this.#form[name].value = "";
@@ -57,6 +75,15 @@ export class Fields {
       delete rest[name];
     }
     return rest;
+  }
+
+  /** Takes start and end, each an index, an id, or missing; a start that is null may be anywhere. */
+  #takeEnds(rest) {
+    const shown = (stop) => (typeof stop === "number" ? nameOf(this.#ids, stop) : (stop ?? ""));
+    this.#form.start.value = rest.start === null ? "" : shown(rest.start ?? 0);
+    this.#form.end.value = shown(rest.end);
+    delete rest.start;
+    delete rest.end;
   }
 }
 
@@ -72,12 +99,13 @@ function madeBox({ name, label }) {
   return caption;
 }
 
-function made({ name, label, value = "" }) {
+function made({ name, label, value = "", stop = false }) {
   const field = document.createElement("div");
   field.className = "field";
   const caption = Object.assign(document.createElement("label"), { htmlFor: name, textContent: label });
   const input = Object.assign(document.createElement("input"), { id: name, name, value });
-  input.inputMode = "decimal";
+  if (stop) input.setAttribute("list", "stop-names");
+  else input.inputMode = "decimal";
   input.autocomplete = "off";
   input.setAttribute("aria-describedby", `${name}-fault`);
   const fault = Object.assign(document.createElement("p"), { id: `${name}-fault`, className: "fault" });

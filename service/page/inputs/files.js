@@ -1,6 +1,6 @@
 /** Read the files that people open or drop into the members of a request. */
 
-import { rowsOf } from "./cities.js";
+import { membersOfTable, membersOfTables } from "./columns.js";
 import { isCollection, stopsOf } from "./geojson.js";
 import { OBJECTIVES, coverageOf } from "./image.js";
 import { namesIn } from "../common/objectives.js";
@@ -20,8 +20,8 @@ export async function read(files) {
 /** The same of text that was pasted. */
 export const readPasted = (text) => request([{ name: "what was pasted", text }]);
 
-/** Whether text is a request, and no rows of cities. */
-export const isRequest = (text) => /^\s*{/.test(text);
+/** Whether text is a request or a table with a heading, and no rows of cities alone. */
+export const isRequest = (text) => /^\s*{/.test(text) || /^\s*[a-z"][^\n]*[,;\t][^\n]*\n/i.test(text);
 
 function request(texts) {
   const members = membersOf(texts);
@@ -36,11 +36,11 @@ async function textsOf(files) {
 }
 
 function membersOf(texts) {
-  if (texts.length === 2) return pair(texts);
-  if (texts.length > 2) throw new Error(`one file is wanted, or two of TSPLIB, got ${texts.length}`);
+  if (texts.length > 2) throw new Error(`one file is wanted, or two with an objective each, got ${texts.length}`);
+  if (texts.length === 2) return texts.some(({ text }) => isTsplib(text)) ? pair(texts) : membersOfTables(texts);
   const [{ name, text }] = texts;
   if (isTsplib(text)) throw new Error(`${name} is one plane: open it together with the other`);
-  return /^\s*[[{]/.test(text) ? parsed(name, text) : table(name, text);
+  return /^\s*[[{]/.test(text) ? parsed(name, text) : membersOfTable({ name, text });
 }
 
 function parsed(name, text) {
@@ -71,14 +71,3 @@ function drawable(name, members) {
 }
 
 const isRows = (value) => Array.isArray(value) && value.every(Array.isArray);
-
-function table(name, text) {
-  const rows = rowsOf(text);
-  const wrong = rows.findIndex((row) => row.length !== 4 || row.some((cell) => typeof cell === "string"));
-  if (!rows.length) throw new Error(`${name} must have a city on each line, got none`);
-  if (wrong >= 0) {
-    const came = rows[wrong].join(", ").slice(0, 60);
-    throw new Error(`${name} must have four numbers on each line, got "${came}" as city ${wrong}`);
-  }
-  return { coordinates: rows };
-}

@@ -1,19 +1,18 @@
 /** Read a FeatureCollection of points (GeoJSON, RFC 7946) as the stops of a request. */
 
+import { MEASURED } from "./columns.js";
+
 const STRUCTURE = ["type", "features", "bbox"]; // of every collection; other members are the request's
 
 export const isCollection = (given) => given?.type === "FeatureCollection";
 
 /** The request whose stops are the points. Where a feature is none, or has no id, an Error names it. */
 export function stopsOf(name, collection) {
-  const { features, objectives } = collection;
+  const { features } = collection;
   if (!Array.isArray(features)) throw new Error(`${name} must have a list of features`);
-  if (!objectives) {
-    throw new Error(`${name} must have a member objectives beside its features: both, with a name and a source each`);
-  }
   const stops = features.map((feature, number) => stop(feature, `features/${number} of ${name}`));
   const members = Object.entries(collection).filter(([member]) => !STRUCTURE.includes(member));
-  return { ...Object.fromEntries(members), stops };
+  return { objectives: MEASURED, ...Object.fromEntries(members), stops };
 }
 
 function stop(feature, where) {

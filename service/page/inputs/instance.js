@@ -3,6 +3,8 @@
 import { isCity, rowsOf } from "./cities.js";
 import { rounded } from "./distances.js";
 import { counted } from "../common/numbers.js";
+import { UNNAMED } from "../common/objectives.js";
+import { nameOf } from "./names.js";
 import { Problem } from "../planning/service.js";
 
 // Two matrices of more fill the longest body that a service takes, and the browser's memory.
@@ -13,17 +15,17 @@ export const kindOf = ({ grid, matrices, coordinates, stops }) =>
 
 /** In a few words, what was brought that cannot be typed. */
 export function described(asked) {
-  const { grid, matrices, places, stops } = asked;
+  const { grid, matrices, places, stops, coordinates } = asked;
   if (kindOf(asked) === "unknown") return "The link names a front alone: where its stops lie is not known here.";
-  if (stops) return `${counted(stops.length, "stop", "stops")} with ids.`;
-  if (matrices) return `Two matrices of ${matrices[0]?.length ?? 0} cities.`;
+  if (stops || coordinates) return "";
+  if (matrices) return `Two matrices of ${counted(matrices[0]?.length ?? 0, "stop", "stops")}.`;
   const where = places ? `${places.length} places` : "places laid out by the spacing";
   return `A grid of ${grid.length} by ${grid[0]?.length ?? 0} cells; ${where}.`;
 }
 
 /**
- * What is asked for, as the page opens it: a request, beside whose coordinates `rounded` may stand.
- * It is what was opened, with the settings and the cities as they have become since.
+ * What is asked for, as the page opens it: a request, beside whose coordinates or matrices may stand
+ * `rounded`, the `ids` of the stops, and `names`, both objectives as the user calls them.
  */
 export function askedFor(opened, settings, { text, whole }) {
   const asked = { ...opened, ...settings };
@@ -31,15 +33,29 @@ export function askedFor(opened, settings, { text, whole }) {
 }
 
 /** The request by which the service is asked for it. */
-export function requestFor({ rounded: whole, ...body }) {
+export function requestFor({ rounded: whole, ids, names, ...body }) {
   const kind = kindOf(body);
   if (kind === "grid") return { path: "coverage", body: { ...body, paths: true } };
-  if (kind !== "coordinates" || !whole) return { path: "front", body };
-  const { coordinates, ...others } = body;
   // A row that is no city is named by the service, which wants to see it for that.
-  if (!coordinates.length || !coordinates.every(isCity)) return { path: "front", body };
-  return { path: "front", body: { matrices: wholeDistances(coordinates), ...others } };
+  const planes = kind === "coordinates" && whole && body.coordinates.length && body.coordinates.every(isCity);
+  const short = planes ? { ...without(body, "coordinates"), matrices: wholeDistances(body.coordinates) } : body;
+  return { path: "front", body: (ids || names) && kind !== "stops" ? long(short, ids, names) : short };
 }
+
+/** The long form of a request, in which stops have ids and objectives have names. */
+function long({ coordinates, matrices, ...others }, ids, names = UNNAMED) {
+  const cities = (coordinates ?? matrices[0]).length;
+  const sources = [0, 1].map((axis) =>
+    matrices ? { matrix: matrices[axis] } : { coordinates: coordinates.map((row) => row.slice(2 * axis, 2 * axis + 2)) },
+  );
+  return {
+    stops: Array.from({ length: cities }, (_, city) => ({ id: nameOf(ids, city) })),
+    objectives: names.map(({ name, unit }, axis) => ({ name, ...(unit && { unit }), ...sources[axis] })),
+    ...others,
+  };
+}
+
+const without = (members, name) => Object.fromEntries(Object.entries(members).filter(([each]) => each !== name));
 
 function wholeDistances(rows) {
   if (rows.length > MOST_ROUNDED) {

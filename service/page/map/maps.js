@@ -8,7 +8,7 @@ const element = (id) => document.getElementById(id);
 
 /** Rows of cities for stops: how far east and north in degrees of latitude; none without locations. */
 function rowsOfStops(stops) {
-  if (!stops.every(({ location }) => location)) return [];
+  if (!stops.every(({ location }) => location?.every(Number.isFinite))) return [];
   const middle = stops.reduce((sum, { location }) => sum + location[1], 0) / stops.length;
   const narrowing = Math.cos((middle * Math.PI) / 180);
   return stops.map(({ location: [longitude, latitude] }) => [longitude * narrowing, latitude, 0, 0]);
@@ -24,6 +24,11 @@ export class Maps {
   constructor(onClick) {
     this.#planes = new Planes([element("plane-1"), element("plane-2")], onClick);
     this.#grid = new GridMap(element("grid"));
+  }
+
+  /** Calls the stops by these ids, or by numbers where there are none. */
+  name(ids) {
+    this.#planes.name(ids);
   }
 
   /** Shows an instance without tours; `fit` says whether the view moves to hold all of it. */

@@ -5,6 +5,7 @@ import { Plane } from "./plane.js";
 export class Planes {
   #maps;
   #tour = null;
+  #ids = null;
 
   /** @param {(plane: number, place: number[]) => void} onClick told where a map was clicked */
   constructor(elements, onClick) {
@@ -12,6 +13,11 @@ export class Planes {
       const onHover = (city) => this.#highlight(city);
       return new Plane(element, { onHover, onClick: (place) => onClick(plane, place) });
     });
+  }
+
+  /** Calls the cities by these ids, or by numbers where there are none. */
+  name(ids) {
+    this.#ids = ids;
   }
 
   /** Draws cities, rows of four numbers; tours are taken away. */
@@ -29,7 +35,13 @@ export class Planes {
 
   #highlight(city) {
     const turn = this.#tour ? this.#tour.indexOf(city) + 1 : 0;
-    const said = turn ? `city ${city}, stop ${turn}` : `city ${city}`;
+    const name = this.#ids?.[city] ?? `stop ${city + 1}`;
+    const said = turn ? `${name}: ${ordinal(turn)} on the tour` : name;
     this.#maps.forEach((map) => map.highlight(city, said));
   }
 }
+
+const ENDINGS = { one: "st", two: "nd", few: "rd", other: "th" };
+const RULES = new Intl.PluralRules("en", { type: "ordinal" });
+
+const ordinal = (number) => `${number}${ENDINGS[RULES.select(number)]}`;

@@ -1,6 +1,6 @@
 /** Show each fault of a refusal at the field that it is about. */
 
-const FIELD_OF = { coordinates: "cities", matrices: "cities" };
+const FIELD_OF = { coordinates: "cities", matrices: "cities", stops: "cities", closed: "end" };
 const COLUMNS = ["x₁", "y₁", "x₂", "y₂"];
 const FIELD_OF_CODE = { unauthorized: "key" };
 
@@ -36,13 +36,15 @@ export function showFault(field, detail) {
 }
 
 function mark(name, row) {
-  const field = document.getElementById(name);
+  const source = document.querySelector(`#${name} [data-axis="${row}"][data-member="source"]`);
+  const field = source ?? document.getElementById(name);
   if (!field) return null;
   field.setAttribute("aria-invalid", "true");
-  const folded = field.closest("details");
+  const folded = field.closest("details:not(#typed)");
   if (folded) folded.open = true;
-  if (name === "cities" && row !== undefined) selectLine(field, Number(row));
-  return field;
+  if (name !== "cities" || row === undefined) return field;
+  selectLine(field, Number(row));
+  return document.querySelector(`#stops [data-row="${row}"]`) ?? field;
 }
 
 function selectLine(area, row) {
@@ -55,8 +57,9 @@ function selectLine(area, row) {
 function inWords(detail, field) {
   const label = document.querySelector(`label[for="${field}"]`)?.textContent;
   return detail
-    .replace(/^coordinates\/(\d+)\/([0-3])\b/, (_, city, column) => `${COLUMNS[column]} of city ${city}`)
-    .replace(/^coordinates\/(\d+)\b/, "city $1")
+    .replace(/^coordinates\/(\d+)\/([0-3])\b/, (_, city, column) => `${COLUMNS[column]} of stop ${Number(city) + 1}`)
+    .replace(/^objectives\/([01])\b/, (_, axis) => `the ${["first", "second"][axis]} objective`)
+    .replace(/^(coordinates|stops)\/(\d+)\b/, (_, member, city) => `stop ${Number(city) + 1}`)
     .replace(new RegExp(`^${field}\\b`), label ?? field);
 }
 

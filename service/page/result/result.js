@@ -5,6 +5,7 @@ import { choiceOf } from "./choice.js";
 import { compare } from "./comparison.js";
 import { showFigures, showTourFigures } from "./figures.js";
 import { Growth } from "../chart/growth.js";
+import { nameOf } from "../inputs/names.js";
 import { Maps } from "../map/maps.js";
 import { length } from "../common/numbers.js";
 import { UNNAMED, titled } from "../common/objectives.js";
@@ -28,6 +29,7 @@ export class Result {
   #pinned = null;
   #frame = 0;
   #objectives = UNNAMED;
+  #ids = null; // of the stops
 
   /** @param {(plane: number, place: number[]) => void} onClick told where a plane was clicked */
   constructor(onClick) {
@@ -42,9 +44,11 @@ export class Result {
     this.clear({});
   }
 
-  /** What the two lengths are called from now on. */
-  name(objectives) {
+  /** What the two lengths are called from now on, and the stops, where they have ids. */
+  name(objectives, ids = null) {
     this.#objectives = objectives;
+    this.#ids = ids;
+    this.#maps.name(ids);
     this.#chart.name(objectives);
     this.#slider.name(objectives);
     objectives.forEach((objective, plane) => {
@@ -151,6 +155,9 @@ export class Result {
 
   #order() {
     if (!element("order").open) return;
-    element("order").querySelector("p").textContent = (this.#selected?.stops ?? this.#selected?.tour)?.join(" → ") ?? "";
+    element("order").querySelector("p").textContent = named(this.#selected, this.#ids).join(" → ");
   }
 }
+
+/** The names of the stops of a tour, in its order. */
+const named = (tour, ids) => tour?.stops ?? tour?.tour.map((city) => nameOf(ids, city)) ?? [];

@@ -1,0 +1,182 @@
+/** The form, put together: stops as a table and as text, both objectives, and the settings. */
+
+import { isCity, rowsOf, textOf } from "./cities.js";
+import { Fields } from "./fields.js";
+import { askedFor, described, kindOf, requestFor } from "./instance.js";
+import { nameOf } from "./names.js";
+import { ObjectiveFields } from "./objective_fields.js";
+import { isMeasured, moved, renamed, withAnother, without } from "./stops.js";
+import { StopsTable } from "./table.js";
+import { counted } from "../common/numbers.js";
+import { UNNAMED, namesIn } from "../common/objectives.js";
+
+const element = (id) => document.getElementById(id);
+const COLUMNS = { coordinates: ["x₁", "y₁", "x₂", "y₂"], stops: ["Longitude", "Latitude"] };
+
+export class RequestForm {
+  #fields;
+  #table;
+  #objectiveFields;
+  #onEdited;
+  #brought = { coordinates: [] }; // of what was opened, the members that are not settings
+  #objectives = UNNAMED; // as they are shown
+  #frame = 0; // in which what was typed is drawn, 0 where all of it is
+
+  /** @param {(instance: object, fit: boolean) => void} onEdited told of other stops or costs */
+  constructor(form, onEdited) {
+    this.#onEdited = onEdited;
+    this.#fields = new Fields(form);
+    this.#objectiveFields = new ObjectiveFields(element("objectives"), (axis, change) => this.#measure(axis, change));
+    this.#table = new StopsTable(element("stops"), {
+      onName: (row, text) => this.#rename(row, text),
+      onNumber: (row, column, text) => this.#move(row, column, text),
+      onDelete: (row) => this.#delete(row),
+    });
+    element("cities").addEventListener("input", () => this.#typed());
+    element("rounded").addEventListener("change", () => this.#edited(false));
+    element("add").addEventListener("click", () => this.#add());
+  }
+
+  /** Takes what is asked for into the form, and shows its stops under their objectives. */
+  open(wanted, names = UNNAMED) {
+    const kind = kindOf(wanted);
+    this.#brought = this.#fields.take(wanted, kind);
+    this.#objectives = wanted.names ?? names;
+    element("typed").hidden = element("place").hidden = kind !== "coordinates";
+    element("named").hidden = kind === "unknown";
+    element("brought").textContent = described(wanted);
+    element("brought").hidden = !element("brought").textContent;
+    element("cities").value = textOf(wanted.coordinates ?? []);
+    element("rounding").hidden = !wanted.rounded;
+    element("rounded").checked = Boolean(wanted.rounded);
+    this.#showObjectives();
+    this.#edited();
+  }
+
+  get asked() {
+    const typed = { text: element("cities").value, whole: element("rounded").checked };
+    return askedFor(this.#brought, this.#fields.members, typed);
+  }
+
+  get request() {
+    return requestFor(this.asked);
+  }
+
+  get objectives() {
+    return this.#objectives;
+  }
+
+  /** The ids of the stops, null where they have none. */
+  get ids() {
+    return this.#brought.stops?.map(({ id }) => id) ?? this.#brought.ids ?? null;
+  }
+
+  /** What was typed is seen at once, and not in the next frame. */
+  settle() {
+    if (this.#frame) this.#edited();
+  }
+
+  addCity(row) {
+    this.#write([...this.#rows, row], false);
+  }
+
+  get #rows() {
+    return rowsOf(element("cities").value);
+  }
+
+  /** Between two frames, however much is typed, it is drawn once. */
+  #typed() {
+    this.#frame ||= requestAnimationFrame(() => this.#edited());
+  }
+
+  #write(rows, fit) {
+    element("cities").value = textOf(rows);
+    this.#edited(fit);
+  }
+
+  #edited(fit = true) {
+    cancelAnimationFrame(this.#frame);
+    this.#frame = 0;
+    const kind = kindOf(this.#brought);
+    const rows = this.#tableRows(kind);
+    this.#table.show(COLUMNS[kind] ?? [], rows);
+    element("count").textContent = COLUMNS[kind] ? counted(rows.length, "stop", "stops") : "";
+    element("add").disabled = kind !== "coordinates" && !isMeasured(this.#brought);
+    element("add").hidden = !COLUMNS[kind];
+    this.#fields.name(this.ids, rows.length);
+    this.#onEdited(kind === "coordinates" ? { coordinates: this.#rows.filter(isCity) } : this.#brought, fit);
+  }
+
+  #tableRows(kind) {
+    if (kind === "coordinates") return this.#rows.map((numbers, city) => ({ name: nameOf(this.ids, city), numbers }));
+    return (this.#brought.stops ?? []).map(({ id, location }) => ({ name: id, numbers: location ?? [] }));
+  }
+
+  #rename(row, text) {
+    if (this.#brought.stops) this.#brought = renamed(this.#brought, row, text);
+    else this.#brought.ids = this.#rows.map((_, city) => (city === row ? text : nameOf(this.ids, city)));
+    this.#edited(false);
+  }
+
+  #move(row, column, text) {
+    const value = numberOr(text.replace(",", "."));
+    if (this.#brought.stops) this.#brought = moved(this.#brought, row, column, value);
+    else return this.#write(this.#rows.map((each, at) => (at === row ? each.with(column, value) : each)), true);
+    this.#edited();
+  }
+
+  #delete(row) {
+    if (this.#brought.stops) {
+      this.#brought = without(this.#brought, row);
+      this.#showObjectives();
+      return this.#edited(false);
+    }
+    this.#brought.ids = this.#brought.ids?.toSpliced(row, 1);
+    this.#write(this.#rows.toSpliced(row, 1), false);
+  }
+
+  /** Adds a stop in the middle of the others, from where it is moved. */
+  #add() {
+    const name = this.#freeName();
+    const { stops, ids } = this.#brought;
+    const rows = stops ? stops.map(({ location }) => location ?? []) : this.#rows.filter(isCity);
+    const middle = middleOf(rows, stops ? 2 : 4);
+    if (ids) this.#brought.ids = [...ids, name];
+    if (stops) this.#brought = withAnother(this.#brought, name, middle);
+    if (stops) this.#edited(false);
+    else this.#write([...this.#rows, middle], false);
+    this.#table.focus((stops ? this.#brought.stops : this.#rows).length - 1);
+  }
+
+  /** A number that no stop has as its name. */
+  #freeName() {
+    const ids = this.ids ?? [];
+    let number = ids.length + 1;
+    while (ids.includes(String(number))) number += 1;
+    return String(number);
+  }
+
+  #measure(axis, change) {
+    const { objectives } = this.#brought;
+    const changed = (each, at) => (at === axis ? { ...each, ...change } : each);
+    if (objectives) this.#brought.objectives = objectives.map(changed);
+    else this.#brought.names = this.#objectives.map(changed);
+    this.#objectives = objectives ? namesIn(this.#brought) : this.#brought.names;
+    this.#edited(false);
+  }
+
+  #showObjectives() {
+    const { stops, objectives } = this.#brought;
+    const sourced = Boolean(stops && Array.isArray(objectives) && objectives.length === 2);
+    this.#objectiveFields.show(sourced ? objectives : this.#objectives, sourced);
+  }
+}
+
+function numberOr(text) {
+  return text === "" || Number.isNaN(Number(text)) ? text : Number(text);
+}
+
+function middleOf(rows, width) {
+  const sum = (column) => rows.reduce((all, row) => all + (Number(row[column]) || 0), 0);
+  return Array.from({ length: width }, (_, column) => Number((sum(column) / (rows.length || 1)).toPrecision(7)));
+}

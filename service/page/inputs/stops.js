@@ -1,0 +1,38 @@
+/** Change the stops of a request and, with them, its costs: rename, move, add, delete. */
+
+export const isMeasured = ({ objectives }) => Boolean(objectives?.every(({ from }) => from));
+
+/** The same request with other stops, whose objectives keep the rows and columns of `kept`. */
+function withStops(asked, stops, kept) {
+  return { ...asked, stops, objectives: asked.objectives?.map((objective) => costsOf(objective, kept)) };
+}
+
+function costsOf(objective, kept) {
+  const { matrix, coordinates } = objective;
+  if (matrix) return { ...objective, matrix: kept.map((from) => kept.map((to) => matrix[from][to])) };
+  if (coordinates) return { ...objective, coordinates: kept.map((row) => coordinates[row]) };
+  return objective;
+}
+
+export function renamed(asked, row, id) {
+  const before = asked.stops[row].id;
+  const stops = asked.stops.map((stop, at) => (at === row ? { ...stop, id } : stop));
+  const ends = ["start", "end"].filter((end) => asked[end] === before).map((end) => [end, id]);
+  return { ...asked, stops, ...Object.fromEntries(ends) };
+}
+
+/** With one of both numbers of a stop's location changed. */
+export function moved(asked, row, column, value) {
+  const stops = asked.stops.map((stop, at) =>
+    at === row ? { ...stop, location: (stop.location ?? [0, 0]).with(column, value) } : stop,
+  );
+  return { ...asked, stops };
+}
+
+export function without(asked, row) {
+  const kept = asked.stops.map((_, at) => at).filter((at) => at !== row);
+  return withStops(asked, kept.map((at) => asked.stops[at]), kept);
+}
+
+/** With one more stop, of which only measured objectives know the costs. */
+export const withAnother = (asked, id, location) => ({ ...asked, stops: [...asked.stops, { id, location }] });

@@ -1,0 +1,157 @@
+"""Stops and objectives on the page: CSV, a table that can be typed in, names and units."""
+
+import csv
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import (
+    curl_body,
+    needs_chromium,
+    open_files,
+    open_page,
+    stops_as_text,
+    wait_until_planned,
+)
+
+pytestmark = needs_chromium
+
+PLANES = "name,x,y,u,v\ndepot,0,0,5,5\nshop,3,1,9,1\nschool,5,2,2,8\n"
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, released: str) -> Iterator[Page]:
+    """A page for all of these tests, each of which opens its own stops."""
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        yield page
+
+
+LOCATED = [[24.94, 60.17], [24.95, 60.18], [24.93, 60.16]]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "id,lon,lat\ndepot,24.94,60.17\na,24.95,60.18\nb,24.93,60.16\n",
+        "Latitude;ID;Longitude\n60,17;depot;24,94\n60,18;a;24,95\n60,16;b;24,93\n",
+        "name\tlng\tlat\ndepot\t24.94\t60.17\na\t24.95\t60.18\nb\t24.93\t60.16\n",
+        '"id","lat","lon","note"\n"depot",60.17,24.94,"1, north"\na,60.18,24.95,\nb,60.16,24.93,',
+    ],
+    ids=["commas", "semicolons", "tabs", "quotation marks"],
+)
+def test_tables_with_longitude_and_latitude_are_stops(opened: Page, text: str) -> None:
+    open_files(opened, {"stops.csv": text})
+    expect(opened.locator("#count")).to_have_text("3 stops")
+    body = curl_body(opened)
+    assert [stop["id"] for stop in body["stops"]] == ["depot", "a", "b"]
+    assert [stop["location"] for stop in body["stops"]] == LOCATED
+    assert [each["from"] for each in body["objectives"]] == ["great_circle", "road_time"]
+
+
+def test_a_column_of_numbers_says_what_a_metre_costs(opened: Page) -> None:
+    rows = "id,lon,lat,risk\na,0,0,2\nb,1,0,4\nc,0,1,0\n"
+    open_files(opened, {"stops.csv": rows})
+    expect(opened.get_by_label("Second objective", exact=True)).to_have_value("risk")
+    costs = curl_body(opened)["objectives"][1]["matrix"]
+    degree = 6371008.8 * 3.141592653589793 / 180
+    assert costs[0][1] == pytest.approx(3 * degree, rel=1e-6)
+    assert costs[2][0] == pytest.approx(degree, rel=1e-6)
+
+
+MATRICES: list[list[list[float]]] = [
+    [[0, 1, 2], [3, 0, 4], [5, 6, 0]],
+    [[0, 9, 8], [7, 0, 6], [5, 4, 0]],
+]
+
+
+def test_two_tables_are_planes_or_costs(opened: Page) -> None:
+    one, other = ("\n".join(",".join(map(str, row)) for row in costs) for costs in MATRICES)
+    open_files(opened, {"a.csv": one, "b.csv": other})
+    expect(opened.get_by_text("Two matrices of 3 stops.")).to_be_visible()
+    assert curl_body(opened)["matrices"] == MATRICES
+    open_files(opened, {"a.csv": "x,y\n1,2\n3,4\n5,6", "b.csv": "1;2\n3,5;4\n5;6"})
+    expect(opened.locator("#count")).to_have_text("3 stops")
+    assert curl_body(opened)["coordinates"] == [[1, 2, 1, 2], [3, 4, 3.5, 4], [5, 6, 5, 6]]
+    open_files(opened, {"b.csv": other, "stops.csv": "lon,lat\n0,0\n1,0\n0,1"})
+    expect(opened.get_by_label("Second objective", exact=True)).to_have_value("b")
+    assert curl_body(opened)["objectives"][1]["matrix"] == MATRICES[1]
+    open_files(opened, {"b.csv": other, "stops.csv": "lon,lat\n0,0\n1,0"})
+    expect(opened.locator("#file-fault")).to_contain_text("for each of the 2 stops of stops.csv")
+
+
+def test_the_table_renames_moves_adds_and_deletes_stops(opened: Page) -> None:
+    open_files(opened, {"stops.csv": PLANES})
+    table = opened.locator("#stops")
+    assert "coordinates" not in curl_body(opened)
+    expect(stops_as_text(opened)).to_have_value("0, 0, 5, 5\n3, 1, 9, 1\n5, 2, 2, 8")
+    commit(opened, "Name of stop 2", "market")
+    commit(opened, "x₁ of market", "3,5")
+    table.get_by_role("button", name="Delete school").click()
+    opened.get_by_role("button", name="Add", exact=True).click()
+    expect(opened.get_by_label("Name of stop 3")).to_be_focused()
+    body = curl_body(opened)
+    assert [stop["id"] for stop in body["stops"]] == ["depot", "market", "3"]
+    assert body["objectives"][0]["coordinates"] == [[0, 0], [3.5, 1], [1.75, 0.5]]
+    assert body["start"] == "depot"
+
+
+def test_stops_with_costs_keep_them_when_one_is_deleted(opened: Page) -> None:
+    request = {
+        "stops": [
+            {"id": name, "location": place} for name, place in zip("abc", LOCATED, strict=True)
+        ],
+        "objectives": [
+            {"name": "way", "from": "great_circle"},
+            {"name": "risk", "matrix": MATRICES[0]},
+        ],
+    }
+    open_files(opened, {"stops.json": json.dumps(request)})
+    expect(opened.get_by_role("button", name="Add", exact=True)).to_be_disabled()
+    opened.get_by_role("button", name="Delete a").click()
+    body = curl_body(opened)
+    assert body["objectives"][1]["matrix"] == [[0, 4], [6, 0]]
+    opened.get_by_label("What the second objective is measured by").select_option("Way by road, m")
+    assert curl_body(opened)["objectives"][1] == {"name": "risk", "from": "road_distance"}
+
+
+def test_both_objectives_have_names_and_units_of_the_user(opened: Page) -> None:
+    open_files(
+        opened,
+        {
+            "stops.csv": PLANES.replace("name,", "")
+            .replace("depot,", "")
+            .replace("shop,", "")
+            .replace("school,", "")
+        },
+    )
+    assert "coordinates" in curl_body(opened)
+    commit(opened, "First objective", "way")
+    commit(opened, "Unit of the first objective", "km")
+    commit(opened, "Second objective", "noise")
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    expect(opened.locator("#comparison")).to_contain_text("Way, km")
+    expect(opened.locator("#less-2")).to_have_text("less noise")
+    with opened.expect_download() as saved:
+        opened.get_by_role("button", name="Save CSV").click()
+    head = next(csv.reader(saved.value.path().read_text().splitlines()))
+    assert head == ["angle", "way (km)", "noise", "tour"]
+
+
+def test_roads_that_the_service_has_not_are_refused_at_their_objective(opened: Page) -> None:
+    open_files(opened, {"stops.csv": "lon,lat\n0,0\n1,0\n0,1"})
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    expect(opened.locator("#objectives-fault")).to_contain_text("routing engine")
+    source: Any = opened.get_by_label("What the second objective is measured by")
+    expect(source).to_be_focused()
+
+
+def commit(page: Page, label: str, text: str) -> None:
+    """Type into a field, and leave it."""
+    field = page.get_by_label(label, exact=True)
+    field.fill(text)
+    field.press("Tab")
