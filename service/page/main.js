@@ -8,6 +8,8 @@ import { fragment, linked } from "./result/link.js";
 import { counted } from "./common/numbers.js";
 import { UNNAMED, namesIn } from "./common/objectives.js";
 import { Placing } from "./inputs/placing.js";
+import { ReplanForm } from "./planning/replan_form.js";
+import { Way } from "./planning/replanning.js";
 import { RequestForm } from "./inputs/request_form.js";
 import { Planning } from "./planning/planning.js";
 import { Result } from "./result/result.js";
@@ -17,10 +19,15 @@ const element = (id) => document.getElementById(id);
 const form = element("request");
 const service = new Service(() => element("key").value.trim());
 const narrow = matchMedia("(max-width: 860px)"); // the form stands above what it gives, not beside
-const result = new Result((plane, place) => placing.clicked(plane, place));
+const result = new Result((...place) => {
+  placing.clicked(...place);
+  replanForm.clicked(...place);
+});
 const input = new RequestForm(form, edited);
 const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row));
+const replanForm = new ReplanForm(replan);
 
+let way = null; // on which the front that is shown may be replanned
 let objectives = UNNAMED; // as the front that is shown calls them
 let planning = null; // what is under way
 let answer = null; // the best front so far
@@ -40,6 +47,7 @@ function edited(instance, fit) {
   say("");
   result.name((objectives = input.objectives), input.ids);
   result.clear(instance, fit);
+  way = null;
   answered(null);
 }
 
@@ -47,6 +55,7 @@ function answered(found) {
   answer = found;
   element("link-help").textContent = "";
   for (const id of ["link", "json", "csv"]) element(id).disabled = !found;
+  if (!found) replanForm.show(null);
 }
 
 /** Said once, however often it comes: screen readers read each change. */
@@ -85,14 +94,46 @@ async function run(states) {
 
 function show(state) {
   if (state.answer) {
-    if (state.answer.objectives) result.name((objectives = namesIn(state.answer)), input.ids);
-    result.show(state);
+    if (state.answer.objectives) objectives = namesIn(state.answer);
+    result.name(objectives, way?.names ?? input.ids);
+    result.show(way ? { ...state, answer: way.answer(state.answer) } : state);
     answered(state.answer);
+    if (state.stage === "done" && !["grid", "unknown"].includes(kindOf(input.instance))) {
+      way ??= new Way(input.instance, input.ids, state.answer.cities);
+      replanForm.show(way);
+    }
   }
   say(SAID[state.stage] ?? ended(state));
 }
 
-const plan = () => run((mine) => mine.plan(input.request));
+function plan() {
+  way = null;
+  replanForm.show(null);
+  return run((mine) => mine.plan(input.request));
+}
+
+/** Plans what is left of the selected tour. */
+async function replan() {
+  clearFaults();
+  try {
+    const body = way.body(replanForm.changes, result.selected.tour);
+    const longer = way.with(replanForm.places);
+    const { id } = answer;
+    await run((mine) => replanned(mine.replan(id, body), longer));
+  } catch (error) {
+    showFault("replan", error.message);
+  }
+}
+
+async function* replanned(states, longer) {
+  for await (const state of states) {
+    if (state.answer) {
+      way = longer;
+      result.replan(way.instance, way.names);
+    }
+    yield state;
+  }
+}
 
 function leave() {
   planning?.leave();

@@ -1,29 +1,45 @@
-/** Cities clicked into place: first in one plane, then the same city in the other. */
+/** Cities clicked into place: where there are two planes, first in one, then in the other. */
 
 export class Placing {
   #button;
   #help;
   #onCity;
+  #once;
   #waiting = null; // { plane, place } of a city that has no second place yet
 
-  /** @param {(row: number[]) => void} onCity told of each city that has both its places */
-  constructor(button, help, onCity) {
+  /**
+   * @param {(row: number[]) => void} onCity told of each city that has all its places
+   * @param {{ once?: boolean }} options whether one city is all that is clicked
+   */
+  constructor(button, help, onCity, { once = false } = {}) {
     this.#button = button;
+    this.#once = once;
     this.#help = help;
     this.#onCity = onCity;
     button.addEventListener("click", () => this.#turn(!this.#on));
   }
 
-  clicked(plane, place) {
+  /** Takes a click into a plane, or into the only one there is. */
+  clicked(plane, place, only = false) {
     if (!this.#on) return;
+    if (only) return this.#done(place);
     if (this.#waiting && this.#waiting.plane !== plane) {
       const first = this.#waiting.place;
-      this.#onCity((plane === 1 ? [...first, ...place] : [...place, ...first]).map(rounded));
-      this.#waiting = null;
+      this.#done(plane === 1 ? [...first, ...place] : [...place, ...first]);
     } else {
       this.#waiting = { plane, place };
+      this.#say();
     }
-    this.#say();
+  }
+
+  /** Clicks place nothing any more. */
+  stop() {
+    if (this.#on) this.#turn(false);
+  }
+
+  #done(row) {
+    this.#turn(!this.#once);
+    this.#onCity(row.map(rounded));
   }
 
   get #on() {
@@ -37,9 +53,9 @@ export class Placing {
   }
 
   #say() {
-    const next = this.#waiting ? `Now click where that city lies in plane ${2 - this.#waiting.plane}.` : "Click a place on either map.";
+    const next = this.#waiting ? `Now click where that is on the other map.` : "Click a place on a map.";
     this.#help.textContent = this.#on ? next : "";
   }
 }
 
-const rounded = (value) => Number(value.toPrecision(5));
+const rounded = (value) => Number(value.toPrecision(7));

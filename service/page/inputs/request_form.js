@@ -42,7 +42,7 @@ export class RequestForm {
     const kind = kindOf(wanted);
     this.#brought = this.#fields.take(wanted, kind);
     this.#objectives = wanted.names ?? names;
-    element("typed").hidden = element("place").hidden = kind !== "coordinates";
+    element("typed").hidden = kind !== "coordinates";
     element("named").hidden = kind === "unknown";
     element("brought").textContent = described(wanted);
     element("brought").hidden = !element("brought").textContent;
@@ -66,6 +66,12 @@ export class RequestForm {
     return this.#objectives;
   }
 
+  /** What is drawn of the stops. */
+  get instance() {
+    const kind = kindOf(this.#brought);
+    return kind === "coordinates" ? { coordinates: this.#rows.filter(isCity) } : this.#brought;
+  }
+
   /** The ids of the stops, null where they have none. */
   get ids() {
     return this.#brought.stops?.map(({ id }) => id) ?? this.#brought.ids ?? null;
@@ -76,8 +82,9 @@ export class RequestForm {
     if (this.#frame) this.#edited();
   }
 
+  /** Adds a stop where it was clicked: a row of four numbers, or longitude and latitude. */
   addCity(row) {
-    this.#write([...this.#rows, row], false);
+    this.#insert(row);
   }
 
   get #rows() {
@@ -101,10 +108,10 @@ export class RequestForm {
     const rows = this.#tableRows(kind);
     this.#table.show(COLUMNS[kind] ?? [], rows);
     element("count").textContent = COLUMNS[kind] ? counted(rows.length, "stop", "stops") : "";
-    element("add").disabled = kind !== "coordinates" && !isMeasured(this.#brought);
-    element("add").hidden = !COLUMNS[kind];
+    for (const id of ["add", "place"]) element(id).disabled = kind !== "coordinates" && !isMeasured(this.#brought);
+    element("add").hidden = element("place").hidden = !COLUMNS[kind];
     this.#fields.name(this.ids, rows.length);
-    this.#onEdited(kind === "coordinates" ? { coordinates: this.#rows.filter(isCity) } : this.#brought, fit);
+    this.#onEdited(this.instance, fit);
   }
 
   #tableRows(kind) {
@@ -137,15 +144,19 @@ export class RequestForm {
 
   /** Adds a stop in the middle of the others, from where it is moved. */
   #add() {
+    const { stops } = this.#brought;
+    const rows = stops ? stops.map(({ location }) => location ?? []) : this.#rows.filter(isCity);
+    this.#insert(middleOf(rows, stops ? 2 : 4));
+    this.#table.focus((this.#brought.stops ?? this.#rows).length - 1);
+  }
+
+  #insert(row) {
     const name = this.#freeName();
     const { stops, ids } = this.#brought;
-    const rows = stops ? stops.map(({ location }) => location ?? []) : this.#rows.filter(isCity);
-    const middle = middleOf(rows, stops ? 2 : 4);
     if (ids) this.#brought.ids = [...ids, name];
-    if (stops) this.#brought = withAnother(this.#brought, name, middle);
-    if (stops) this.#edited(false);
-    else this.#write([...this.#rows, middle], false);
-    this.#table.focus((stops ? this.#brought.stops : this.#rows).length - 1);
+    if (!stops) return this.#write([...this.#rows, row], false);
+    this.#brought = withAnother(this.#brought, name, row);
+    this.#edited(false);
   }
 
   /** A number that no stop has as its name. */

@@ -6,12 +6,10 @@ import { Planes } from "./planes.js";
 
 const element = (id) => document.getElementById(id);
 
-/** Rows of cities for stops: how far east and north in degrees of latitude; none without locations. */
-function rowsOfStops(stops) {
-  if (!stops.every(({ location }) => location?.every(Number.isFinite))) return [];
-  const middle = stops.reduce((sum, { location }) => sum + location[1], 0) / stops.length;
-  const narrowing = Math.cos((middle * Math.PI) / 180);
-  return stops.map(({ location: [longitude, latitude] }) => [longitude * narrowing, latitude, 0, 0]);
+/** How much shorter a degree of longitude is than one of latitude, in the middle of the stops. */
+function narrowingOf(stops) {
+  const middle = stops.reduce((sum, { location }) => sum + location[1], 0) / (stops.length || 1);
+  return Math.cos((middle * Math.PI) / 180);
 }
 
 export class Maps {
@@ -19,10 +17,15 @@ export class Maps {
   #grid;
   #kind = "coordinates";
   #drawn = 2; // of the planes
+  #narrowing = 1; // of degrees of longitude
 
-  /** @param {(plane: number, place: number[]) => void} onClick told where a plane was clicked */
+  /**
+   * @param {(plane: number, place: number[], only: boolean) => void} onClick told where a plane was
+   *   clicked, in longitude and latitude where it is the only one
+   */
   constructor(onClick) {
-    this.#planes = new Planes([element("plane-1"), element("plane-2")], onClick);
+    const clicked = (plane, [x, y]) => onClick(plane, [x / this.#narrowing, y], this.#kind === "stops");
+    this.#planes = new Planes([element("plane-1"), element("plane-2")], clicked);
     this.#grid = new GridMap(element("grid"));
   }
 
@@ -34,13 +37,21 @@ export class Maps {
   /** Shows an instance without tours; `fit` says whether the view moves to hold all of it. */
   show(instance, fit) {
     this.#kind = kindOf(instance);
-    const rows = this.#kind === "stops" ? rowsOfStops(instance.stops) : (instance.coordinates ?? []);
+    const rows = this.#kind === "stops" ? this.#rowsOfStops(instance.stops) : (instance.coordinates ?? []);
+    if (this.#kind !== "stops") this.#narrowing = 1;
     // Stops lie in one plane, whatever their objectives.
     this.#drawn = this.#kind === "coordinates" ? 2 : Math.sign(rows.length);
     document.querySelectorAll(".plane").forEach((figure, plane) => (figure.hidden = plane >= this.#drawn));
     document.querySelector(".wide").hidden = this.#kind !== "grid";
     if (this.#kind === "grid") this.#grid.show(instance);
     else this.#planes.show(rows, fit);
+  }
+
+  /** How far east and north stops are in degrees of latitude, as rows; none without locations. */
+  #rowsOfStops(stops) {
+    if (!stops.every(({ location }) => location?.every(Number.isFinite))) return [];
+    this.#narrowing = narrowingOf(stops);
+    return stops.map(({ location: [longitude, latitude] }) => [longitude * this.#narrowing, latitude, 0, 0]);
   }
 
   /** Shows the places that the service laid out on the grid. */

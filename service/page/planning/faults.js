@@ -1,6 +1,7 @@
 /** Show each fault of a refusal at the field that it is about. */
 
 const FIELD_OF = { coordinates: "cities", matrices: "cities", stops: "cities", closed: "end" };
+for (const member of ["tour", "done", "remove", "add", "position"]) FIELD_OF[member] = "replan";
 const COLUMNS = ["x₁", "y₁", "x₂", "y₂"];
 const FIELD_OF_CODE = { unauthorized: "key" };
 

@@ -42,6 +42,14 @@ export class Planning {
     }
   }
 
+  /** The front of what is left of a way, from what has changed since its front was planned. */
+  async *replan(id, body) {
+    for await (const answer of this.#patiently({ path: `front/${id}/replan`, body })) {
+      if (answer) yield { stage: "done", alone: null, answer, growth: [] };
+      else yield { stage: "warming-up", alone: null, answer: null };
+    }
+  }
+
   /** What becomes of a front that the service has already. */
   async *follow(id, alone = null) {
     this.#id = id;

@@ -5,6 +5,11 @@ import { shortUnit } from "../common/objectives.js";
 
 /** The sentence about a tour of a front, whose tours go from the least first length to the least second. */
 export function choiceOf(front, tour, objectives) {
+  const kept = tour.kept == null ? "" : ` Keeps ${Math.round(100 * tour.kept)} % of the legs.`;
+  return `${sentence(front, tour, objectives)}${kept}`;
+}
+
+function sentence(front, tour, objectives) {
   if (front.length < 2) return "This tour is the best under both objectives.";
   const [first, second] = objectives.map(({ name }) => name);
   const least = front[0];

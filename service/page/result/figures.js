@@ -8,7 +8,9 @@ export const showFigures = (list, alone, answer) =>
 
 /** Fills a list with what else is known of a tour, if there is one. */
 export const showTourFigures = (list, tour) =>
-  list.replaceChildren(...(tour ? [["Angle of the tour", degrees(tour.angle)]] : []).flatMap(pair));
+  list.replaceChildren(...(tour ? [["Angle of the tour", degrees(tour.angle)], ...kept(tour)] : []).flatMap(pair));
+
+const kept = (tour) => (tour.kept == null ? [] : [["Legs kept of the tour before", `${Math.round(100 * tour.kept)} %`]]);
 
 const worth = (alone, answer) => [
   ["Hypervolume", share(answer.hypervolume)],

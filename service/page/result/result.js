@@ -23,6 +23,7 @@ export class Result {
   #slider;
   #front = [];
   #closed = true;
+  #before = null; // the tour that was replanned, and whether it was closed
   #balance = MIDDLE; // wanted by the viewer
   #selected = null;
   #previewed = null; // pointed at on the chart
@@ -64,7 +65,7 @@ export class Result {
     element("shade").textContent = instance.cost_layer ? `shaded: ${this.#objectives[1].name}` : "";
     this.#front = [];
     this.#balance = MIDDLE;
-    this.#selected = this.#pinned = this.#previewed = null;
+    this.#selected = this.#pinned = this.#previewed = this.#before = null;
     this.#chart.show([], []);
     this.#legend("alone", false);
     this.#legend("improved", false);
@@ -90,6 +91,21 @@ export class Result {
     this.#maps.place(answer.places);
     if (this.#front.length) this.#select(nearest(this.#front, this.#balance));
     showFigures(element("figures"), alone, answer);
+  }
+
+  /** The tour that is shown. */
+  get selected() {
+    return this.#selected;
+  }
+
+  /** Keeps the selected tour on the maps of an instance of which the rest is planned. */
+  replan(instance, names) {
+    const before = this.#selected && { tour: this.#selected.tour, closed: this.#closed };
+    this.clear(instance, false);
+    this.#ids = names;
+    this.#maps.name(names);
+    this.#before = before;
+    this.#drawPin();
   }
 
   #choose(index) {
@@ -128,7 +144,9 @@ export class Result {
     element("pin").textContent = this.#pinned ? "Unpin" : "Pin to compare";
     this.#legend("pinned", this.#pinned !== null);
     this.#chart.mark("pinned", this.#pinned?.lengths ?? null);
-    this.#maps.draw("pinned", this.#pinned, this.#closed);
+    this.#legend("before", this.#before !== null);
+    const dashed = this.#pinned ?? this.#before;
+    this.#maps.draw("pinned", dashed, dashed?.closed ?? this.#closed);
   }
 
   #draw() {
@@ -160,4 +178,7 @@ export class Result {
 }
 
 /** The names of the stops of a tour, in its order. */
-const named = (tour, ids) => tour?.stops ?? tour?.tour.map((city) => nameOf(ids, city)) ?? [];
+function named(tour, ids) {
+  if (!tour) return [];
+  return !ids && tour.stops ? tour.stops : tour.tour.map((city) => nameOf(ids, city));
+}

@@ -1,0 +1,53 @@
+/** Replanning: what has changed on the way, as the body of `POST /front/{id}/replan`, and its stops. */
+
+/**
+ * The stops of a front that may be replanned: all that there ever were, in the order in which they are
+ * drawn. `keys` are what the service calls them, `names` what the page does.
+ */
+export class Way {
+  constructor(instance, ids, cities) {
+    this.instance = instance;
+    this.keys = ids ?? Array.from({ length: cities }, (_, city) => city);
+    this.names = this.keys.map((key) => (typeof key === "number" ? String(key + 1) : key));
+  }
+
+  /** What has changed: `at` is the last stop visited, of a tour with these cities. */
+  body({ at, removed, added, vehicle }, tour) {
+    const visit = (name) => tour.indexOf(this.names.indexOf(name));
+    const unknown = [at, ...removed].find((name) => name && visit(name) < 0);
+    if (unknown) throw new Error(`the selected tour has no stop "${unknown}"`);
+    const keys = tour.map((city) => this.keys[city]);
+    return {
+      tour: keys,
+      done: at ? keys.slice(0, visit(at) + 1) : [],
+      remove: removed.map((name) => keys[visit(name)]),
+      add: added.map((stop) => this.#placed(stop)),
+      ...(vehicle && { position: this.#placed(vehicle) }),
+    };
+  }
+
+  /** The way with the stops that came to it, once it is replanned. */
+  with(stops) {
+    const { coordinates, stops: before } = this.instance;
+    const rows = stops.map(({ row }) => row);
+    const instance = coordinates
+      ? { coordinates: [...coordinates, ...rows] }
+      : before
+        ? { stops: [...before, ...stops.map(({ id, row }) => ({ id, location: row }))] }
+        : this.instance;
+    const way = new Way(instance, [...this.keys.map(String), ...stops.map(({ id }) => id)]);
+    way.names = [...this.names, ...stops.map(({ id }) => id)];
+    return way;
+  }
+
+  /** The answer about what is left, its tours in cities of this way. */
+  answer(found) {
+    const city = new Map(this.keys.map((key, index) => [String(key), index]));
+    return { ...found, front: found.front.map((item) => ({ ...item, tour: item.stops.map((id) => city.get(id)) })) };
+  }
+
+  #placed({ id, row }) {
+    if (this.instance.coordinates) return { id, coordinates: [row.slice(0, 2), row.slice(2)] };
+    return { id, location: row };
+  }
+}
