@@ -95,6 +95,13 @@ def stops_as_text(page: Page) -> Locator:
     return page.get_by_label("x1, y1, x2, y2")
 
 
+def shown_front(page: Page) -> Any:
+    """Return the front that is shown, as the page saves it in JSON."""
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save JSON").click()
+    return json.loads(saved.value.path().read_text())
+
+
 def curl_body(page: Page) -> Any:
     """Return the body of the request that the page copies as a curl command."""
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])

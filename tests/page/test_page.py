@@ -13,6 +13,7 @@ from tests.helpers.browsing import (
     curl_body,
     needs_chromium,
     open_page,
+    shown_front,
     stops_as_text,
     tours_of_front,
     wait_for_next_frame,
@@ -96,7 +97,7 @@ def test_a_name_on_the_chart_previews_its_tour_and_selects_it(page: Page) -> Non
     assert drawn.first.evaluate("canvas => canvas.toDataURL()") == last
     page.get_by_role("button", name="knee").click()
     knee = httpx.get(
-        f"{page.url.partition('#')[0]}tour", params={"knee": "", "front": shown_id(page)}
+        f"{page.url.partition('#')[0]}tour", params={"knee": "", "front": shown_front(page)["id"]}
     )
     place = f"distance {knee.json()['lengths'][0]:,.6g}"
     expect(slider).to_have_attribute("aria-valuetext", re.compile(place))
@@ -233,10 +234,3 @@ def figure(page: Page, name: str) -> float:
 
 def number(cell: Locator) -> float:
     return float(cell.inner_text().replace(",", ""))
-
-
-def shown_id(page: Page) -> str:
-    """Return the id of the front that is shown."""
-    with page.expect_download() as saved:
-        page.get_by_role("button", name="Save JSON").click()
-    return json.loads(saved.value.path().read_text())["id"]

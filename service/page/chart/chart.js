@@ -4,6 +4,7 @@ import uPlot from "../vendor/uplot/uPlot.esm.js";
 import { colour, onSchemeChange } from "../common/colours.js";
 import { counted, length } from "../common/numbers.js";
 import { UNNAMED, withUnit } from "../common/objectives.js";
+import { Budget } from "./budget.js";
 import { Labels } from "./labels.js";
 import { drawnNearest } from "../result/tours.js";
 
@@ -15,6 +16,7 @@ export class FrontChart {
   #chart;
   #front = [];
   #labels;
+  #budget;
   #markers = {};
   #marked = {};
   #objectives = UNNAMED;
@@ -23,11 +25,13 @@ export class FrontChart {
    * @param {HTMLElement} names holds the names of both ends and the knee, over the chart
    * @param {(index: number) => void} onSelect told which point was clicked
    * @param {(index: number | null) => void} onPreview told which point is pointed at
+   * @param {(index: number) => void} onBudget told which tour is the best within a budget
    */
-  constructor(element, names, onSelect, onPreview) {
+  constructor(element, names, { onSelect, onPreview, onBudget }) {
     this.#element = element;
     this.#labels = new Labels(names, onSelect, onPreview);
     this.#chart = new uPlot(options(element), [[], [], []], element);
+    this.#budget = new Budget(this.#chart, onBudget);
     for (const name of ["pinned", "selected", "previewed"]) {
       const marker = document.createElement("i");
       marker.className = `marker ${name}`;
@@ -46,6 +50,12 @@ export class FrontChart {
     this.#objectives = objectives;
     objectives.forEach((objective, axis) => (this.#chart.axes[axis].label = withUnit(objective)));
     this.#labels.show(this.#front, objectives);
+    this.#budget.name(objectives);
+  }
+
+  /** The best tour within the budget that was drawn, null where there is none; and the same in words. */
+  get budget() {
+    return { index: this.#budget.index, said: this.#budget.said };
   }
 
   /** Shows the network's front, the improved one, and lets the points of the latter be clicked. */
@@ -53,6 +63,7 @@ export class FrontChart {
     this.#front = improved.length ? improved : alone;
     this.#labels.show(this.#front, this.#objectives);
     this.#chart.setData(uPlot.join([columns(alone), columns(improved)]));
+    this.#budget.show(this.#front);
     this.#element.classList.toggle("empty", !this.#front.length);
     this.#element.setAttribute("aria-label", described(this.#front, this.#objectives));
     this.#place();
@@ -61,10 +72,12 @@ export class FrontChart {
   /** Marks a point as "selected", "pinned" or "previewed"; null takes the mark away. */
   mark(name, lengths) {
     this.#marked[name] = lengths;
+    if (name === "selected" && lengths) this.#budget.release(lengths);
     this.#place();
   }
 
   #place() {
+    this.#budget.place();
     for (const [name, marker] of Object.entries(this.#markers)) {
       const lengths = this.#marked[name];
       marker.hidden = !lengths;
@@ -112,7 +125,7 @@ function options(element) {
     ...size(element),
     legend: { show: false },
     cursor: { show: false },
-    padding: [12, 26, 0, 0],
+    padding: [24, 28, 0, 0],
     scales: { x: { time: false, range: roomy }, y: { range: roomy } },
     axes: [axis(UNNAMED[0], 28, apart), axis(UNNAMED[1], 64, 40)],
     series: [{}, line("alone", 1, 4), line("improved", 1.5, 5)],

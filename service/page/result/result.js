@@ -37,7 +37,8 @@ export class Result {
     const onSelect = (index) => this.#choose(index);
     this.#maps = new Maps(onClick);
     const onPreview = (index) => this.#preview(index);
-    this.#chart = new FrontChart(element("front-chart"), element("front-labels"), onSelect, onPreview);
+    const told = { onSelect, onPreview, onBudget: (index) => this.#choose(index) };
+    this.#chart = new FrontChart(element("front-chart"), element("front-labels"), told);
     this.#growth = new Growth(element("growth"), element("growth-help"));
     this.#slider = new BalanceSlider(element("balance"), element("balance-shown"), onSelect);
     element("pin").addEventListener("click", () => this.#pin());
@@ -89,7 +90,7 @@ export class Result {
     this.#growth.show(growth);
     this.#slider.show(answer.front);
     this.#maps.place(answer.places);
-    if (this.#front.length) this.#select(nearest(this.#front, this.#balance));
+    if (this.#front.length) this.#select(this.#chart.budget.index ?? nearest(this.#front, this.#balance));
     showFigures(element("figures"), alone, answer);
   }
 
@@ -154,6 +155,7 @@ export class Result {
     element("pin").disabled = !this.#selected;
     this.#legend("selected", shown !== null);
     this.#chart.mark("selected", this.#selected?.lengths ?? null);
+    element("budget").textContent = this.#chart.budget.said;
     this.#chart.mark("previewed", this.#previewed?.lengths ?? null);
     this.#maps.draw("selected", shown, this.#closed);
     compare(element("comparison"), this.#objectives, shown, this.#pinned);

@@ -1,0 +1,133 @@
+/** Budget lines on the chart: at most so much of one objective, dragged or moved by keys. */
+
+import { length } from "../common/numbers.js";
+import { UNNAMED, shortUnit } from "../common/objectives.js";
+
+const STEPS = [
+  { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 },
+  // Along the front the second length falls.
+  { ArrowRight: -1, ArrowUp: -1, ArrowLeft: 1, ArrowDown: 1, PageUp: -10, PageDown: 10 },
+];
+
+export class Budget {
+  #lines;
+  #plot;
+  #onBudget;
+  #front = [];
+  #objectives = UNNAMED;
+  #limit = null; // { axis, most }, at most one at a time
+
+  /**
+   * @param {uPlot} plot the chart on which the lines lie
+   * @param {(index: number) => void} onBudget told which tour is the best within a budget
+   */
+  constructor(plot, onBudget) {
+    this.#plot = plot;
+    this.#onBudget = onBudget;
+    this.#lines = [0, 1].map((axis) => this.#made(axis));
+    plot.over.append(...this.#lines);
+  }
+
+  name(objectives) {
+    this.#objectives = objectives;
+    this.#lines.forEach((line, axis) => line.setAttribute("aria-label", `At most this much ${objectives[axis].name}`));
+    this.place();
+  }
+
+  /** Lies on another front, whose tours go from the least first length to the least second. */
+  show(front) {
+    if (!front.length) this.#limit = null;
+    this.#front = front;
+    this.place();
+  }
+
+  /** The best tour within the budget, null where there is no budget. */
+  get index() {
+    if (!this.#limit) return null;
+    const { axis, most } = this.#limit;
+    if (axis === 1) return Math.max(0, this.#front.findIndex(({ lengths }) => lengths[1] <= most));
+    return Math.max(0, this.#front.findLastIndex(({ lengths }) => lengths[0] <= most));
+  }
+
+  /** What the budget is, in words, or how to have one. */
+  get said() {
+    if (this.#front.length < 2) return "";
+    if (!this.#limit) return "For a budget, drag a handle on the edge of the chart.";
+    return `Budget: ${this.#amount(this.#limit.axis, this.#limit.most)} of ${this.#objectives[this.#limit.axis].name}.`;
+  }
+
+  /** A tour beyond the budget was chosen, which ends it. */
+  release(lengths) {
+    if (!this.#limit || lengths[this.#limit.axis] <= this.#limit.most) return;
+    this.#limit = null;
+    this.place();
+  }
+
+  /** Puts the lines where the chart has their budgets now. */
+  place() {
+    this.#lines.forEach((line, axis) => {
+      line.hidden = this.#front.length < 2;
+      if (!line.hidden) this.#put(line, axis);
+    });
+  }
+
+  #put(line, axis) {
+    const limited = this.#limit?.axis === axis;
+    const most = limited ? this.#limit.most : this.#ends(axis)[1];
+    const at = this.#plot.valToPos(most, axis ? "y" : "x");
+    line.style.translate = axis ? `0 ${at}px` : `${at}px 0`;
+    line.classList.toggle("limited", limited);
+    const { clientWidth, clientHeight } = this.#plot.over;
+    line.style.setProperty("--reach", `${axis ? clientWidth : clientHeight}px`);
+    const [least, all] = this.#ends(axis);
+    for (const [name, value] of Object.entries({ valuemin: least, valuemax: all, valuenow: most })) line.setAttribute(`aria-${name}`, value);
+    line.setAttribute("aria-valuetext", limited ? `at most ${this.#amount(axis, most)}` : "no limit");
+  }
+
+  #made(axis) {
+    const line = Object.assign(document.createElement("div"), { className: `budget ${axis ? "second" : "first"}`, tabIndex: 0, title: "Drag: at most so much" });
+    line.setAttribute("role", "slider");
+    line.setAttribute("aria-orientation", axis ? "vertical" : "horizontal");
+    line.addEventListener("pointerdown", (event) => line.setPointerCapture(event.pointerId));
+    line.addEventListener("pointermove", (event) => line.hasPointerCapture(event.pointerId) && this.#drag(axis, event));
+    line.addEventListener("click", (event) => event.stopPropagation());
+    line.addEventListener("keydown", (event) => this.#step(axis, event));
+    return line;
+  }
+
+  #drag(axis, event) {
+    const box = this.#plot.over.getBoundingClientRect();
+    const place = axis ? event.clientY - box.top : event.clientX - box.left;
+    this.#set(axis, this.#plot.posToVal(place, axis ? "y" : "x"));
+  }
+
+  /** From tour to tour; Home is the tightest budget, End and Escape none. */
+  #step(axis, event) {
+    const [least, most] = this.#ends(axis);
+    const jumps = { Home: least, End: most, Escape: most };
+    const steps = STEPS[axis][event.key];
+    if (steps === undefined && !(event.key in jumps)) return;
+    event.preventDefault();
+    if (steps === undefined) return this.#set(axis, jumps[event.key]);
+    const from = this.#limit?.axis === axis ? this.index : axis ? 0 : this.#front.length - 1;
+    const to = Math.min(Math.max(from + steps, 0), this.#front.length - 1);
+    this.#set(axis, this.#front[to].lengths[axis]);
+  }
+
+  #set(axis, wanted) {
+    const [least, most] = this.#ends(axis);
+    this.#limit = wanted >= most ? null : { axis, most: Math.max(wanted, least) };
+    this.place();
+    this.#onBudget(this.index ?? (axis ? 0 : this.#front.length - 1));
+  }
+
+  #ends(axis) {
+    const ends = [this.#front[0], this.#front.at(-1)].map(({ lengths }) => lengths[axis]);
+    return [Math.min(...ends), Math.max(...ends)];
+  }
+
+  #amount(axis, value) {
+    const unit = shortUnit(this.#objectives[axis]);
+    return `${length(Number(value.toPrecision(5)))}${unit && ` ${unit}`}`;
+  }
+}
