@@ -1,10 +1,10 @@
 /** The page, put together: a request on the left, its front on the right. */
 
-import { csv, curl, download } from "./result/exports.js";
+import { ExportButtons } from "./result/export_buttons.js";
 import { clearFaults, showFault, showFaults } from "./planning/faults.js";
 import { isRequest, read, readPasted } from "./inputs/files.js";
 import { kindOf } from "./inputs/instance.js";
-import { fragment, linked } from "./result/link.js";
+import { linked } from "./result/link.js";
 import { counted } from "./common/numbers.js";
 import { UNNAMED, namesIn } from "./common/objectives.js";
 import { Placing } from "./inputs/placing.js";
@@ -25,6 +25,7 @@ const result = new Result((...place) => {
 });
 const input = new RequestForm(form, edited);
 const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row));
+const exporting = new ExportButtons(service, screen);
 const replanForm = new ReplanForm(replan);
 
 let way = null; // on which the front that is shown may be replanned
@@ -53,9 +54,19 @@ function edited(instance, fit) {
 
 function answered(found) {
   answer = found;
-  element("link-help").textContent = "";
-  for (const id of ["link", "json", "csv"]) element(id).disabled = !found;
+  exporting.show(found);
   if (!found) replanForm.show(null);
+}
+
+/** What is on the screen. The rest of a way was not asked for as the form says. */
+function screen() {
+  return {
+    request: input.request,
+    asked: way?.replanned ? null : input.asked,
+    objectives,
+    picture: result.selected && result.picture,
+    balance: result.selected?.balance,
+  };
 }
 
 /** Said once, however often it comes: screen readers read each change. */
@@ -69,8 +80,6 @@ const SAID = {
   queued: "This is the network’s front; the search waits for its turn.",
   running: "The search is improving the network’s front.",
 };
-
-const ALONE = "This link opens the front without its maps: what was asked for is too long for an address.";
 
 /** Shows what comes of a plan; `states` asks a planning for it. */
 async function run(states) {
@@ -215,28 +224,26 @@ async function openLinked() {
   if (!link) return false;
   forgetExample();
   open(link.asked?.request ?? {}, link.asked?.objectives);
+  result.want(link.balance);
   const searched = link.asked?.request.time_limit !== 0;
-  await run((mine) => (searched ? mine.follow(link.id) : unsearched(mine.follow(link.id))));
+  const states = (mine) => (searched ? mine.follow(link.id) : unsearched(mine.follow(link.id)));
+  await run((mine) => (link.asked ? again(states(mine), mine) : states(mine)));
   return true;
+}
+
+/** A front that the service has no more is planned again. */
+async function* again(states, mine) {
+  try {
+    yield* states;
+  } catch (error) {
+    if (!["unknown-front", "front-expired"].includes(error.code)) throw error;
+    yield* mine.plan(input.request);
+  }
 }
 
 /** Of a front that no search was to improve, the network's is all there is. */
 async function* unsearched(states) {
   for await (const state of states) yield { ...state, alone: state.answer, growth: [] };
-}
-
-async function copy(text, button) {
-  await navigator.clipboard.writeText(text);
-  const label = button.textContent;
-  button.textContent = "Copied";
-  setTimeout(() => (button.textContent = label), 1500);
-}
-
-async function copyLink(button) {
-  const { hash, whole } = await fragment(answer.id, { request: input.asked, objectives });
-  history.replaceState(null, "", hash);
-  element("link-help").textContent = whole ? "" : ALONE;
-  await copy(location.href, button);
 }
 
 form.addEventListener("submit", (event) => {
@@ -254,12 +261,6 @@ element("file").addEventListener("change", (event) => {
   openFiles([...event.target.files]);
   event.target.value = "";
 });
-element("curl").addEventListener("click", (event) => copy(curl(input.request), event.target));
-element("link").addEventListener("click", (event) => copyLink(event.target));
-element("json").addEventListener("click", () =>
-  download("front.json", "application/json", JSON.stringify(answer)),
-);
-element("csv").addEventListener("click", () => download("front.csv", "text/csv", csv(answer)));
 for (const kind of ["dragover", "drop"]) addEventListener(kind, (event) => event.preventDefault());
 addEventListener("dragover", () => element("drop").classList.add("over"));
 addEventListener("dragleave", () => element("drop").classList.remove("over"));

@@ -59,6 +59,11 @@ export class Maps {
     if (this.#kind === "grid" && places) this.#grid.place(places);
   }
 
+  /** The places of the stops on each map that is drawn, for a picture; none of a grid. */
+  get places() {
+    return this.#kind === "grid" ? [] : this.#planes.places.slice(0, this.#drawn);
+  }
+
   /** Draws a tour as "selected" or "pinned", closed or open; null takes it away. */
   draw(name, item, closed = true) {
     if (this.#kind === "grid") this.#grid.draw(name, item);

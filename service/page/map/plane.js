@@ -48,6 +48,10 @@ export class Plane {
     this.#colour();
   }
 
+  get places() {
+    return this.#places;
+  }
+
   /** Draws a tour as "selected" or "pinned", closed or open; null takes it away. */
   draw(name, tour, closed = true) {
     const stops = tour && closed ? [...tour, tour[0]] : (tour ?? []);

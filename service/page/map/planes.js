@@ -27,6 +27,11 @@ export class Planes {
     this.#maps[1].show(rows.map((row) => row.slice(2, 4)), fit);
   }
 
+  /** The places of the cities on both maps. */
+  get places() {
+    return this.#maps.map(({ places }) => places);
+  }
+
   /** Draws a tour as "selected" or "pinned"; null takes it away. */
   draw(name, tour, closed = true) {
     if (name === "selected") this.#tour = tour;

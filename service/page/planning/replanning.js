@@ -36,6 +36,7 @@ export class Way {
         ? { stops: [...before, ...stops.map(({ id, row }) => ({ id, location: row }))] }
         : this.instance;
     const way = new Way(instance, [...this.keys.map(String), ...stops.map(({ id }) => id)]);
+    way.replanned = true;
     way.names = [...this.names, ...stops.map(({ id }) => id)];
     return way;
   }

@@ -20,9 +20,9 @@ export function csv({ front, objectives }) {
 /** The text between quotation marks, where it has a character that would end it. */
 const quoted = (text, ending) => (ending.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
 
-/** Lets the browser save a text as a file. */
-export function download(name, type, text) {
-  const address = URL.createObjectURL(new Blob([text], { type }));
+/** Lets the browser save a text, or a blob, as a file. */
+export function download(name, type, content) {
+  const address = URL.createObjectURL(new Blob([content], { type }));
   const link = Object.assign(document.createElement("a"), { href: address, download: name });
   link.click();
   URL.revokeObjectURL(address);

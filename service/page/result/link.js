@@ -1,4 +1,4 @@
-/** Links to a stored front that carry its request: `#front=ID&asked=...`. */
+/** Links to a stored front that carry its request and the selected tour: `#front=ID&balance=B&asked=...`. */
 
 const MOST = 16000; // characters, beyond which chats, mail and some servers cut addresses off
 
@@ -6,20 +6,22 @@ const MOST = 16000; // characters, beyond which chats, mail and some servers cut
  * The link's fragment, with what was asked for deflated, and in base64 as addresses may hold it;
  * `whole` says whether that was short enough to be in it.
  */
-export async function fragment(id, asked) {
+export async function fragment(id, asked, balance) {
+  const front = `#front=${encodeURIComponent(id)}${balance === undefined ? "" : `&balance=${balance}`}`;
+  if (!asked) return { hash: front, whole: false };
   const text = await packed(asked);
-  const front = `#front=${encodeURIComponent(id)}`;
   const whole = text.length <= MOST;
   return { hash: whole ? `${front}&asked=${text}` : front, whole };
 }
 
-/** `{ id, asked }` of a fragment, null where it names no front; what was asked may be missing. */
+/** `{ id, balance, asked }` of a fragment, null where it names no front; the others may be missing. */
 export async function linked(hash) {
   const members = new URLSearchParams(hash.slice(1));
   const id = members.get("front");
   if (!id) return null;
   const text = members.get("asked");
-  return { id, asked: text ? await unpacked(text) : null };
+  const balance = Number(members.get("balance") ?? NaN);
+  return { id, balance: balance >= 0 && balance <= 1 ? balance : undefined, asked: text ? await unpacked(text) : null };
 }
 
 async function packed(asked) {

@@ -99,6 +99,24 @@ export class Result {
     return this.#selected;
   }
 
+  /** The balance that the viewer wants of the next front. */
+  want(balance) {
+    this.#balance = balance ?? MIDDLE;
+  }
+
+  /** What is to be seen on a picture of it. */
+  get picture() {
+    const lines = [this.#pinned ?? this.#before, this.#selected].filter(Boolean);
+    const tours = lines.map((line) => ({ cities: this.#round(line), dashed: line !== this.#selected }));
+    const maps = this.#maps.places.map((places, plane) => ({ title: element(`plane-${plane + 1}-title`).textContent, places, tours }));
+    const choice = choiceOf(this.#front, this.#selected, this.#objectives);
+    return { front: this.#front, selected: this.#selected, choice, objectives: this.#objectives, maps };
+  }
+
+  #round({ tour, closed = this.#closed }) {
+    return closed ? [...tour, tour[0]] : tour;
+  }
+
   /** Keeps the selected tour on the maps of an instance of which the rest is planned. */
   replan(instance, names) {
     const before = this.#selected && { tour: this.#selected.tour, closed: this.#closed };

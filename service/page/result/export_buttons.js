@@ -1,0 +1,61 @@
+/** The buttons that copy what is on the screen, or save it as a file. */
+
+import { csv, curl, download } from "./exports.js";
+import { fragment } from "./link.js";
+import { pngOf, svgOf } from "./picture.js";
+import { python } from "./python.js";
+
+const ALONE = "This link opens the front without its maps: what was asked for is too long for an address.";
+const OF_FRONT = ["link", "json", "csv", "geojson", "svg", "png"];
+
+const element = (id) => document.getElementById(id);
+
+export class ExportButtons {
+  #shown = null;
+  #service;
+
+  /**
+   * @param {Service} service that has the front
+   * @param {() => { request: object, asked: object, objectives: object[], picture: object,
+   *   balance: number }} screen what is on the screen
+   */
+  constructor(service, screen) {
+    this.#service = service;
+    const on = (id, act) => element(id).addEventListener("click", ({ target }) => act(screen(), target));
+    on("curl", ({ request }, button) => copy(curl(request), button));
+    on("python", ({ request, balance }, button) => copy(python(request, balance), button));
+    on("link", (shown, button) => this.#copyLink(shown, button));
+    on("json", () => download("front.json", "application/json", JSON.stringify(this.#shown)));
+    on("csv", () => download("front.csv", "text/csv", csv(this.#shown)));
+    on("geojson", () => this.#saveGeojson());
+    on("svg", ({ picture }) => download("front.svg", "image/svg+xml", svgOf(picture)));
+    on("png", async ({ picture }) => download("front.png", "image/png", await pngOf(svgOf(picture))));
+  }
+
+  /** Takes a front along, or none. */
+  show(answer) {
+    this.#shown = answer;
+    element("link-help").textContent = "";
+    for (const id of OF_FRONT) element(id).disabled = !answer;
+    element("geojson").hidden = !answer?.stops?.every(({ location }) => location);
+  }
+
+  async #copyLink({ asked, objectives, balance }, button) {
+    const { hash, whole } = await fragment(this.#shown.id, asked && { request: asked, objectives }, balance);
+    history.replaceState(null, "", hash);
+    element("link-help").textContent = whole || !asked ? "" : ALONE;
+    await copy(location.href, button);
+  }
+
+  async #saveGeojson() {
+    const response = await this.#service.ask(`front/${this.#shown.id}`, { headers: { Accept: "application/geo+json" } });
+    download("front.geojson", "application/geo+json", await response.text());
+  }
+}
+
+async function copy(text, button) {
+  await navigator.clipboard.writeText(text);
+  const label = button.textContent;
+  button.textContent = "Copied";
+  setTimeout(() => (button.textContent = label), 1500);
+}

@@ -1,0 +1,29 @@
+/** Write a request as a Python program with the client. */
+
+const CALLS = { front: "front", coverage: "coverage" };
+
+/** The program that plans the same, and prints the tour of the same balance. */
+export function python({ path, body }, balance) {
+  const service = new URL(".", document.baseURI).href.replace(/\/$/, "");
+  const choice = balance === undefined ? "knee=True" : `balance=${balance}`;
+  return `from paretour import Client
+
+request = ${literal(body)}
+
+with Client(${literal(service)}) as client:
+    front = client.${CALLS[path]}(**request)
+    tour = front.choose(${choice})
+print(tour.lengths, tour.stops or tour.tour)
+`;
+}
+
+const NAMES = new Map([[null, "None"], [undefined, "None"], [true, "True"], [false, "False"]]);
+
+/** A value of JSON as a literal of Python. */
+function literal(value) {
+  if (NAMES.has(value)) return NAMES.get(value);
+  if (Array.isArray(value)) return `[${value.map(literal).join(", ")}]`;
+  if (typeof value !== "object") return JSON.stringify(value);
+  const members = Object.entries(value).filter(([, each]) => each !== undefined);
+  return `{${members.map(([name, each]) => `${literal(name)}: ${literal(each)}`).join(", ")}}`;
+}

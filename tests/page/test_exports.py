@@ -1,0 +1,93 @@
+"""What the page gives away: pictures, programs, GeoJSON, and links to one tour."""
+
+import io
+import json
+import re
+from contextlib import redirect_stdout
+from xml.etree import ElementTree
+
+import pytest
+from PIL import Image
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import (
+    needs_chromium,
+    open_files,
+    open_page,
+    shown_front,
+    wait_for_next_frame,
+    wait_until_planned,
+)
+
+pytestmark = needs_chromium
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def test_pictures_show_the_front_and_the_selected_tour(page: Page) -> None:
+    page.get_by_role("slider", name="Balance").press("Home")
+    wait_for_next_frame(page)
+    front = shown_front(page)["front"]
+    drawing = ElementTree.fromstring(saved(page, "SVG"))
+    texts = [text.text for text in drawing.iter(f"{SVG}text")]
+    assert page.locator("#choice").inner_text() in texts
+    assert {"Distance, m", "Risk", "Distance"} <= set(texts)
+    dots = list(drawing.iter(f"{SVG}circle"))
+    assert len(dots) == len(front) + 1 + 2 * (61 + 1)  # a ring at the selected tour, and its start
+    paths = [path.get("d") or "" for path in drawing.iter(f"{SVG}path")]
+    assert [path.count("L") for path in paths] == [0, 61, 61]
+    picture = Image.open(io.BytesIO(saved(page, "PNG")))
+    assert picture.size == (2 * int(drawing.get("width") or 0), 2 * int(drawing.get("height") or 0))
+    colours = picture.convert("RGB").getcolors(1_000_000) or []
+    assert (194, 65, 12) in [colour for _, colour in colours]  # of the selected tour
+
+
+def test_the_python_program_plans_the_front_that_is_on_the_screen(page: Page) -> None:
+    open_files(page, {"stops.csv": "id,lon,lat,risk\n\"a '1'\",0,0,1\nb,0.1,0,0\nc,0,0.1,3\n"})
+    page.get_by_label("Open route").check()
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+    page.get_by_role("slider", name="Balance").press("End")
+    wait_for_next_frame(page)
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Copy as Python").click()
+    expect(page.get_by_text("Copied")).to_be_visible()
+    output = io.StringIO()
+    with redirect_stdout(output):
+        exec(page.evaluate("navigator.clipboard.readText()"), {})
+    last = shown_front(page)["front"][-1]
+    assert output.getvalue().endswith(f"{tuple(last['stops'])}\n")
+    collection = json.loads(saved(page, "GeoJSON"))
+    kinds = [feature["geometry"]["type"] for feature in collection["features"]]
+    assert kinds.count("Point") == 3
+
+
+@pytest.mark.parametrize("expired", [False, True], ids=["stored", "expired"])
+def test_a_link_opens_the_selected_tour_and_plans_what_has_expired(
+    page: Page, browser: Browser, expired: bool
+) -> None:
+    slider = page.get_by_role("slider", name="Balance")
+    slider.press("End")
+    slider.press("ArrowLeft")
+    wait_for_next_frame(page)
+    said = slider.get_attribute("aria-valuetext") or ""
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Copy link").click()
+    expect(page.get_by_text("Copied")).to_be_visible()
+    link = page.evaluate("navigator.clipboard.readText()")
+    if expired:
+        link = re.sub("front=[0-9a-f]+", "front=" + 32 * "0", link)
+    with open_page(browser, link) as other:
+        wait_until_planned(other)
+        expect(other.locator("#count")).to_have_text("61 stops")
+        if not expired:
+            expect(other.get_by_role("slider", name="Balance")).to_have_attribute(
+                "aria-valuetext", said
+            )
+
+
+def saved(page: Page, name: str) -> bytes:
+    """Return the file that the button of this name saves."""
+    with page.expect_download() as download:
+        page.get_by_role("button", name=f"Save {name}").click()
+    return download.value.path().read_bytes()
