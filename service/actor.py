@@ -36,7 +36,6 @@ class OnnxActor:
     def __init__(self, path: Path, threads: int) -> None:
         content = path.read_bytes()
         self._session = _open_session(content, path, threads)
-        self._repairs = any(value.name == "repairs" for value in self._session.get_inputs())
         self._lock = Lock()
         self._running = onnxruntime.RunOptions()
         metadata = self._session.get_modelmeta().custom_metadata_map
@@ -45,6 +44,7 @@ class OnnxActor:
         self.info = ActorInfo(
             digest=hashlib.sha256(content).hexdigest(),
             inputs=_kind(metadata["inputs"], path),
+            repairs=any(value.name == "repairs" for value in self._session.get_inputs()),
             **{name: metadata[name] for name in ("name", "commit")},
             **{name: _decoded(metadata[name]) for name in ("sizes", "angles", "config", "figures")},
         )
@@ -62,7 +62,7 @@ class OnnxActor:
             RuntimeError: A tour is not a permutation, which is a fault of the file.
             Cancelled: `terminate` was called.
         """
-        if repairs > 0 and not self._repairs:
+        if repairs > 0 and not self.info.repairs:
             raise ValueError(f"{self.info.name} cannot repair tours, got repairs {repairs}")
         outputs = ["tours", "visited"] if repairs > 0 else ["tours"]
         options = self._begin(max(instance.n, len(preferences)))
@@ -77,7 +77,7 @@ class OnnxActor:
         if len(first) < _MIN_PLACES:
             return np.tile(np.argsort(place, kind="stable"), (len(outputs) * len(preferences), 1))
         inputs["preferences"] = preferences.clip(_LEAST_PREFERENCE).astype(np.float32)
-        if self._repairs:
+        if self.info.repairs:
             inputs["repairs"] = np.array(repairs, dtype=np.int64)
         tours = self._run(inputs, outputs, options)
         if not (np.sort(tours, axis=1) == np.arange(len(first))).all():

@@ -24,6 +24,7 @@ class ActorInfo:
         angles: Least and greatest angle that it was trained on, in degrees.
         config: Of the training run.
         figures: Hypervolumes measured after training, by number of cities.
+        repairs: Whether it can repair the tours that it has built.
     """
 
     name: str
@@ -34,6 +35,7 @@ class ActorInfo:
     angles: Any
     config: Any
     figures: Any
+    repairs: bool = False
 
     @property
     def identity(self) -> dict[str, str]:

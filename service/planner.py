@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.construction.first_tours import MIN_CONSTRUCTED, SHARE, Constructor, construct
+from service.construction.repairs import TOURS_REPAIRED, repairs_worth
 from service.instance import Instance, tour_lengths
 from service.pareto import best_subset, hypervolume, nondominated, selection_seconds
 from service.preferences import angles
@@ -44,8 +45,9 @@ class PlanOptions:
         bound: Whether to compute an upper bound on the hypervolume of any front.
         seed: Of the search's random choices.
         search_constructs: Whether the search begins with tours of its own as well.
-        augment: How often the constructor is called, each time with another symmetry of the
-            coordinates and with angles between those of the other calls.
+        repairs: How often the constructor repairs each of its tours, at most; with a time limit
+            only as often as is estimated to fit.
+        fewer_repairs: Whether as many repairs will do as are worth their time at this size.
     """
 
     angles: Array
@@ -58,12 +60,13 @@ class PlanOptions:
     bound: bool = False
     seed: int = 0
     search_constructs: bool = True
-    augment: int = 1
+    repairs: int = 0
+    fewer_repairs: bool = False
 
     @property
     def needs_compiled_code(self) -> bool:
         """Whether the plan runs compiled code: the search, the bound or the best subset."""
-        constructed = len(self.angles) * self.augment
+        constructed = len(self.angles) * (TOURS_REPAIRED if self.repairs > 0 else 1)
         return self.time_limit > 0 or self.bound or constructed > self.size
 
 
@@ -144,7 +147,7 @@ def plan(
     if reference_point is None:
         reference_point = instance.n * instance.scale
     options = replace(options, reference_point=reference_point)
-    constructed = _constructed(constructor, instance, options, deadline, stop)
+    constructed = _constructed(constructor, instance, options)
     first = _first_tours(instance, constructed, options)
     searched = options.time_limit > 0
     before = hypervolume(tour_lengths(instance, first), reference_point) if searched else None
@@ -176,23 +179,14 @@ def plan(
     )
 
 
-def _constructed(
-    constructor: Constructor,
-    instance: Instance,
-    options: PlanOptions,
-    deadline: float,
-    stop: Callable[[], bool],
-) -> Tours:
-    """Return the constructor's tours; after the deadline it is not called once more."""
-    limited = options.time_limit > 0
-    return construct(
-        constructor,
-        instance,
-        options.angles,
-        options.augment,
-        within=SHARE * options.time_limit if limited and options.fewer else None,
-        stop=lambda: stop() or (limited and time.monotonic() >= deadline),
-    )
+def _constructed(constructor: Constructor, instance: Instance, options: PlanOptions) -> Tours:
+    """Return the constructor's tours."""
+    repairs = options.repairs
+    if options.fewer_repairs:
+        repairs = min(repairs, repairs_worth(constructor.estimate.inputs, instance.n))
+    limit = options.time_limit if options.time_limit > 0 else None
+    within = SHARE * limit if limit is not None and options.fewer else None
+    return construct(constructor, instance, options.angles, repairs, within=within, limit=limit)
 
 
 def _first_tours(instance: Instance, constructed: Tours, options: PlanOptions) -> Tours:

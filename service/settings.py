@@ -122,6 +122,7 @@ class Settings(BaseSettings):
     max_cells: int = Field(2**20, ge=1, description="the most cells of a map")
     max_path_cells: int = Field(2**21, ge=1, description="the most cells of all paths of an answer")
     max_preferences: int = Field(200, ge=1, description="the most preferences of a request")
+    max_repairs: int = Field(200, ge=0, description="the most repairs of the network's tours")
     max_size: int = Field(1000, ge=1, description="the most tours that a request may ask for")
     max_time_limit: float = Field(60.0, ge=0, description="the most seconds of planning")
 
@@ -230,6 +231,7 @@ class Settings(BaseSettings):
             cells=self.max_cells,
             path_cells=self.max_path_cells,
             preferences=self.max_preferences,
+            repairs=self.max_repairs,
             size=self.max_size,
             seconds=self.max_time_limit,
             roads=self.router_url is not None,

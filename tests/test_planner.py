@@ -11,9 +11,8 @@ from hypothesis.extra.numpy import arrays
 
 from service.actor import OnnxActor
 from service.construction.call_estimate import CallEstimate
-from service.construction.symmetries import symmetries
-from service.errors import Cancelled
-from service.instance import Instance, tour_lengths
+from service.construction.repairs import TOURS_REPAIRED, repairs_worth
+from service.instance import Instance, RouteEnds, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.planner import Front, PlanOptions, plan
 from service.preferences import fan
@@ -35,7 +34,7 @@ class Everything:
 
     estimate = CallEstimate("coordinates")
 
-    def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:  # noqa: ARG002
+    def tours(self, instance: Instance, *_: object) -> np.ndarray:
         return np.array(list(permutations(range(instance.n))))
 
     def terminate(self) -> None:
@@ -45,7 +44,7 @@ class Everything:
 class InOrder(Everything):
     """A constructor whose tours all visit the cities in their order."""
 
-    def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
+    def tours(self, instance: Instance, preferences: np.ndarray, *_: object) -> np.ndarray:
         return np.tile(np.arange(instance.n), (len(preferences), 1))
 
 
@@ -206,42 +205,30 @@ def test_what_the_search_gained_is_what_it_added_to_the_first_tours(actor: OnnxA
     assert np.isclose(improved.gained, improved.hypervolume - first.hypervolume)
 
 
-@given(SMALL, st.integers(1, 8))
-def test_symmetries_change_no_length_and_are_all_different(instance: Instance, count: int) -> None:
-    seen = list(symmetries(instance, count))
-    tours = Everything().tours(instance, fan(1))
-    for each in seen:
-        np.testing.assert_allclose(tour_lengths(each, tours), tour_lengths(instance, tours))
-    crooked = Instance(coordinates=np.array([[0.0, 0, 0, 0], [1, 3, 2, 7]]))
-    views = [each.scaled_coordinates.tobytes() for each in symmetries(crooked, count)]
-    assert len(set(views)) == count
-
-
 @pytest.mark.parametrize("n", [40, 200])
-def test_with_more_symmetries_a_front_is_no_worse(actor: OnnxActor, n: int) -> None:
+def test_repairs_make_a_front_better_and_may_fill_it_up(actor: OnnxActor, n: int) -> None:
     instance, demand = random_instance(n), PlanOptions(angles=fan(20), size=100)
-    once, often = (plan(actor, instance, replace(demand, augment=count)) for count in (1, 8))
-    check(often, instance)
-    assert often.hypervolume > once.hypervolume
+    plain, repaired = (plan(actor, instance, replace(demand, repairs=r)) for r in (0, 5))
+    check(repaired, instance)
+    assert repaired.hypervolume > plain.hypervolume
+    assert repaired.constructed == TOURS_REPAIRED * plain.constructed
+    assert len(plan(actor, instance, replace(demand, repairs=5, size=7)).tours) == 7
 
 
-def test_a_plan_that_is_stopped_looks_at_no_further_symmetry(actor: OnnxActor) -> None:
-    demand = PlanOptions(angles=fan(20), size=100, augment=8)
-    stopped = plan(actor, random_instance(40), demand, stop=lambda: True)
-    at_once = plan(actor, random_instance(40), replace(demand, augment=1))
-    np.testing.assert_array_equal(stopped.points, at_once.points)
+@pytest.mark.parametrize("ends", [RouteEnds(False), RouteEnds(False, 3), RouteEnds(False, 3, 7)])
+def test_repairs_make_open_routes_better(actor: OnnxActor, ends: RouteEnds) -> None:
+    instance = replace(random_instance(40), **ends._asdict())
+    demand = PlanOptions(angles=fan(20), size=100)
+    plain, repaired = (plan(actor, instance, replace(demand, repairs=r)) for r in (0, 5))
+    check(repaired, instance)
+    assert repaired.hypervolume > plain.hypervolume
 
 
-def test_a_network_that_is_ended_leaves_the_tours_of_its_earlier_calls() -> None:
-    class Ended(Everything):
-        calls = 0
-
-        def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
-            self.calls += 1
-            if self.calls > 1:
-                raise Cancelled
-            return np.tile(np.arange(instance.n), (len(preferences), 1))
-
-    instance = Instance(coordinates=np.random.default_rng(1).random((9, 4)))
-    options = PlanOptions(angles=fan(2), size=5, augment=3)
-    assert plan(Ended(), instance, options).tours.tolist() == [list(range(9))]
+def test_fewer_repairs_are_as_many_as_are_worth_their_time(actor: OnnxActor) -> None:
+    instance = random_instance(24)
+    default = PlanOptions(angles=fan(20), size=100, repairs=200, fewer_repairs=True)
+    worth = replace(default, repairs=repairs_worth("coordinates", 24), fewer_repairs=False)
+    least = replace(default, repairs=1)
+    fronts = [plan(actor, instance, each) for each in (default, worth, least)]
+    np.testing.assert_array_equal(fronts[0].points, fronts[1].points)
+    assert fronts[2].hypervolume < fronts[0].hypervolume

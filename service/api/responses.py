@@ -203,6 +203,7 @@ class ActorItem(ActorName):
     angles: Any = Field(description="angles that it was trained on")
     config: Any
     figures: Any = Field(description="what was measured of it")
+    repairs: bool = Field(description="whether it can repair its tours")
 
 
 class ActorsAnswer(BaseModel):

@@ -34,6 +34,7 @@ from service.cli.options import (
     Paths,
     Plot,
     PlotMap,
+    Repairs,
     RobotRadius,
     SecondAtMost,
     SecondFile,
@@ -90,6 +91,7 @@ def front(  # noqa: PLR0913  an option each
     open_routes: Open = None,
     seed: Seed = None,
     actor: ActorName = None,
+    repairs: Repairs = None,
     augment: Augment = None,
     unrounded: Unrounded = False,
     as_json: AsJson = False,
@@ -112,6 +114,7 @@ def front(  # noqa: PLR0913  an option each
         "closed": None if open_routes is None else not open_routes,
         "seed": seed,
         "actor": actor,
+        "repairs": repairs,
         "augment": augment,
     }
     run_front(
@@ -137,6 +140,7 @@ def tour(  # noqa: PLR0913  an option each
     open_routes: Open = None,
     seed: Seed = None,
     actor: ActorName = None,
+    repairs: Repairs = None,
     augment: Augment = None,
     unrounded: Unrounded = False,
     as_json: AsJson = False,
@@ -157,6 +161,7 @@ def tour(  # noqa: PLR0913  an option each
         "closed": None if open_routes is None else not open_routes,
         "seed": seed,
         "actor": actor,
+        "repairs": repairs,
         "augment": augment,
     }
     build_plan = partial(plan_cities, file, file2, unrounded=unrounded, options=options)
@@ -191,6 +196,7 @@ def coverage(  # noqa: PLR0913  an option each
     open_routes: Open = None,
     seed: Seed = None,
     actor: ActorName = None,
+    repairs: Repairs = None,
     as_json: AsJson = False,
     as_csv: AsCsv = False,
     as_table: AsTable = False,
@@ -217,6 +223,7 @@ def coverage(  # noqa: PLR0913  an option each
         "closed": None if open_routes is None else not open_routes,
         "seed": seed,
         "actor": actor,
+        "repairs": repairs,
     }
     run_front(
         partial(

@@ -47,8 +47,13 @@ EndOrId = Annotated[
     str | None,
     Option("--end", help="The city at which open routes end, by index or id.", show_default="any"),
 ]
-Augment = Annotated[
-    int | None, Option(help="How many symmetries of the cities the network sees.", show_default="1")
+Augment = Annotated[int | None, Option(help="Deprecated: without effect.", hidden=True)]
+Repairs = Annotated[
+    int | None,
+    Option(
+        help="How often the network repairs each of its tours.",
+        show_default="with --time-limit 0 by the number of cities, else 0",
+    ),
 ]
 Seed = Annotated[int | None, Option(help="Of all that is random.", show_default="0")]
 ActorName = Annotated[str | None, Option("--actor", help="The network, one of `paretour actors`.")]

@@ -10,18 +10,24 @@ _FORGOTTEN = 0.95  # each time that nothing fits; else one slow hour would end a
 
 
 class _Formula(NamedTuple):
-    """The seconds of a call: least + each (k + first) n^power, for k preferences of n cities."""
+    """The seconds of a call: least + each (k + first) n^power, for k preferences of n cities.
+
+    A repair of all its tours takes repair_least + k (repair_each + repair_city n).
+    """
 
     least: float
     each: float
     power: float
     first: float
+    repair_least: float
+    repair_each: float
+    repair_city: float
 
 
 # Of pa-one and pa-one-matrix: one thread of a 2.5 GHz Xeon, up to 1000 cities and 100 preferences.
 _FORMULAS: dict[Kind, _Formula] = {
-    "coordinates": _Formula(0.001, 2.2e-6, 1.25, 4.0),
-    "matrices": _Formula(0.004, 3.0e-8, 2.0, 60.0),
+    "coordinates": _Formula(0.001, 2.2e-6, 1.25, 4.0, 0.0015, 1.1e-4, 4e-7),
+    "matrices": _Formula(0.004, 3.0e-8, 2.0, 60.0, 0.004, 2.2e-4, 6e-7),
 }
 
 
@@ -33,26 +39,38 @@ class CallEstimate:
     """
 
     def __init__(self, inputs: Kind) -> None:
+        self.inputs = inputs
         self._formula = _FORMULAS[inputs]
         self._factor = 1.0  # of this network on this machine, against the formula
 
-    def seconds(self, n: int, k: int) -> float:
-        """Return the estimate for n cities and k preferences."""
-        least, each, power, first = self._formula
-        return self._factor * (least + each * (k + first) * n**power)
+    def seconds(self, n: int, k: int, repairs: int = 0) -> float:
+        """Return the estimate for n cities, k preferences and so many repairs."""
+        least, each, power, first, *_ = self._formula
+        building = least + each * (k + first) * n**power
+        return self._factor * (building + repairs * self._repair(n, k))
 
     def fitting(self, n: int, seconds: float) -> int:
         """Return the greatest number of preferences whose call is estimated to take so long."""
-        least, each, power, first = self._formula
+        least, each, power, first, *_ = self._formula
         fitting = math.floor((seconds / self._factor - least) / (each * n**power) - first)
         if fitting < 1:
             self._factor = max(min(self._factor, 1.0), _FORGOTTEN * self._factor)
         return max(fitting, 0)
 
-    def correct(self, n: int, k: int, seconds: float) -> None:
+    def fitting_repairs(self, n: int, k: int, seconds: float) -> int:
+        """Return the greatest number of repairs in a call that is estimated to take so long."""
+        left = seconds - self.seconds(n, k)
+        return max(math.floor(left / (self._factor * self._repair(n, k))), 0)
+
+    def correct(self, n: int, k: int, seconds: float, repairs: int = 0) -> None:
         """Correct the estimate by a call that took so many seconds."""
-        self._factor *= math.sqrt(seconds / self.seconds(n, k))
+        self._factor *= math.sqrt(seconds / self.seconds(n, k, repairs))
 
     def correct_ended(self) -> None:
         """Correct the estimate by a call that was ended."""
         self._factor *= _SLOWER
+
+    def _repair(self, n: int, k: int) -> float:
+        """Return the seconds of one repair by the formula."""
+        *_, least, each, city = self._formula
+        return least + k * (each + city * n)

@@ -11,7 +11,8 @@ _ALL = ("*",)
 _NONE = ()  # no operation is at fault, but the path, the method or the service
 _REPLAN = ("POST /front/{id}/replan",)
 _FLEET = ("POST /fleet",)
-_PLANS = ("POST /front", "POST /coverage", *_FLEET, *_REPLAN)
+_PLANNED = ("POST /front", "POST /coverage", *_REPLAN)
+_PLANS = (*_PLANNED, *_FLEET)
 _TOUR = ("GET /tour",)
 _STORED = "GET /front/{id}"
 _ROADS = ("POST /front", *_FLEET, *_REPLAN, _STORED, *_TOUR)
@@ -81,6 +82,9 @@ PROBLEMS: Mapping[str, Problem] = {
     "invalid-request": Problem(422, "{detail}", (*_PLANS, _STORED, *_TOUR)),
     "no-plan": Problem(422, "{reason}", _FLEET),
     "no-actor": Problem(422, "{kind} need an actor that reads them, and none is loaded", _PLANS),
+    "no-repairs": Problem(
+        422, "repairs must be 0 for {name}, which cannot repair tours, got {came}", _PLANNED
+    ),
     "no-router": Problem(
         422, "{name} {measure} needs a routing engine, and none is configured", _ROADS
     ),
@@ -138,7 +142,8 @@ PROBLEMS: Mapping[str, Problem] = {
     ),
     "warming-up": Problem(
         503,
-        "the search is being compiled, once: ask again, or for the network alone with time_limit 0",
+        "the search is being compiled, once: ask again, or for the network alone, with time_limit"
+        " and repairs 0",
         (*_PLANS, "GET /health/ready"),
     ),
     "worker-lost": Problem(

@@ -9,9 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field, GetPydanticSchema
 from pydantic_core.core_schema import no_info_after_validator_function
 
-from service.construction.symmetries import MAX_SYMMETRIES
 from service.instance import OBJECTIVES, Instance, Kind
-from service.planner import PlanOptions
 from service.requests.arrays import stack_matrices
 from service.requests.schemas import (
     END,
@@ -42,6 +40,7 @@ from service.requests.stops import (
 from service.requests.validation import invalid
 
 _COLUMNS = 2 * OBJECTIVES  # x and y in the plane of each objective
+_MOST_SYMMETRIES = 8  # that earlier versions showed the network
 FORMS = ("coordinates", "matrices", "stops")  # of a request, each by the member that tells it
 City = Annotated[list[Number], Field(min_length=_COLUMNS, max_length=_COLUMNS, fail_fast=True)]
 _MatrixRows = Annotated[
@@ -92,10 +91,10 @@ class FrontRequest(PlanRequest):
         default_factory=list,
         description="tours that the front shall dominate or equal, of indexes or ids",
     )
-    augment: Annotated[int, Field(ge=1, le=MAX_SYMMETRIES), AsInteger] = Field(
+    augment: Annotated[int, Field(ge=1, le=_MOST_SYMMETRIES), AsInteger] = Field(
         default=1,
-        description="how many times the network is called: each time it sees the coordinates under"
-        " another symmetry of the square, and aims between the angles of the other calls",
+        description="without effect; repairs find better tours in less time",
+        json_schema_extra={"deprecated": True},
     )
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
 
@@ -135,10 +134,6 @@ class FrontRequest(PlanRequest):
         if self.kind == "matrices":
             return Instance(matrices=self.matrices, **ends)
         return Instance(coordinates=np.array(self.coordinates, dtype=np.float64), **ends)
-
-    def options(self) -> PlanOptions:
-        """Return the options for the planner."""
-        return replace(super().options(), augment=self.augment)
 
     def _sources(self, stops: tuple[Stop, ...]) -> tuple[Source, ...]:
         """Return the source of each objective, which is a matrix of the file where one came."""

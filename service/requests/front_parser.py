@@ -61,9 +61,6 @@ def _check_cities(request: FrontRequest, limits: Limits) -> None:
         _check_matrices(request)
     if request.stops:
         check_router(request.unmeasured, limits)
-    if request.kind == "matrices" and request.augment > 1:
-        demand = "must be 1 for matrices, which cannot be turned or mirrored"
-        raise invalid("augment", f"{demand}, got {request.augment}")
 
 
 def _check_matrices(request: FrontRequest) -> None:

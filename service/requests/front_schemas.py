@@ -33,12 +33,12 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
         whole["properties"]["geometry"]["enum"].remove("roads")
     cities = _by_index(whole)
     stops = _with_objectives(whole, ["MatrixObjective", "PlaneObjective", "MeasuredObjective"])
-    file_stops = _unaugmented(_with_objectives(whole, ["NamedObjective"]))
+    file_stops = _with_objectives(whole, ["NamedObjective"])
     forms = [
         _form(cities, "CoordinatesRequest", "Cities in two planes", ["coordinates"]),
-        _form(_unaugmented(cities), "MatricesRequest", "Cities by their costs", ["matrices"]),
+        _form(cities, "MatricesRequest", "Cities by their costs", ["matrices"]),
         _form(stops, "StopsRequest", "Stops under two objectives", ["stops", "objectives"]),
-        _form(_unaugmented(cities), "MatricesFileRequest", "Cities by costs in a file", []),
+        _form(cities, "MatricesFileRequest", "Cities by costs in a file", []),
         _form(file_stops, "StopsFileRequest", "Stops by costs in a file", ["stops", "objectives"]),
     ]
     stop, objective = (without_null(parts[name]) for name in ("StopItem", "ObjectiveItem"))
@@ -82,11 +82,6 @@ def _by_index_or_null(field: Schema) -> Schema:
     reference, null = field["anyOf"]
     index, _ = reference["oneOf"]
     return {**field, "anyOf": [index, null]}
-
-
-def _unaugmented(schema: Schema) -> Schema:
-    """Return the schema of a request with matrices, which have no symmetries."""
-    return _with(schema, augment={**schema["properties"]["augment"], "maximum": 1})
 
 
 def _with_objectives(schema: Schema, names: Sequence[str]) -> Schema:

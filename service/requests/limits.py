@@ -26,6 +26,7 @@ class Limits:
         cells: Cells of a map.
         path_cells: Cells of all paths of an answer, and stops of all its tours with arrivals.
         preferences: Preferences of a front.
+        repairs: Repairs of the network's tours.
         size: Tours to return, or to bring as initial tours.
         seconds: The time limit of planning.
         roads: Whether a routing engine is configured, so that costs may be those of roads.
@@ -39,6 +40,7 @@ class Limits:
     seconds: float
     path_cells: int = 2**21
     fleet_stops: int = 500
+    repairs: int = 200
     roads: bool = False
 
 
@@ -69,6 +71,7 @@ def check_amounts(request: PlanFields, n: int, limits: Limits) -> None:
     asked = {
         "preferences": (limits.preferences, request.preference_count),
         "size": (limits.size, request.size),
+        "repairs": (limits.repairs, request.repairs),
         "time_limit": (limits.seconds, request.time_limit),
     }
     for name, (limit, actual) in asked.items():
@@ -154,6 +157,7 @@ def defaults(limits: Limits) -> dict[str, float]:
     most = {
         "preferences": limits.preferences,
         "size": limits.size,
+        "repairs": limits.repairs,
         "time_limit": limits.seconds,
     }
     fields = PlanFields.model_fields
@@ -172,9 +176,11 @@ def limited_schema(
     count, angles = fields["preferences"]["oneOf"]
     count["maximum"] = angles["maxItems"] = limits.preferences
     fields["size"]["maximum"] = limits.size
+    fields["repairs"]["maximum"] = limits.repairs
     for name, default in defaults(limits).items():
         fields[name]["default"] = default
-    del fields["preferences"]["default"]  # it depends on the time limit
+    for name in ("preferences", "repairs"):
+        del fields[name]["default"]  # it depends on the time limit
     for name in {"start", "end"}.intersection(fields):
         reference, _ = fields[name]["anyOf"]  # the other is null
         index, *_ = reference.get("oneOf", [reference])

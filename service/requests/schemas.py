@@ -77,6 +77,14 @@ class PlanFields(BaseModel):
         max_length=OBJECTIVES,
         description="of the hypervolume; by default the number of cities times the scale",
     )
+    repairs: NonNegativeInteger = Field(
+        default=_MOST_INTEGER,
+        description="how often the network cuts each of its tours open somewhere and joins it"
+        " again, which never makes it worse; the other tours that it meets on the way count for the"
+        " front, too. By default 0 with a time limit, else as many as are worth their time: an"
+        " eighth of the number of cities with coordinates, a sixteenth with matrices, at least 3"
+        " or 2",
+    )
     arrivals: bool = Field(
         default=False, description="whether each tour comes with both its lengths up to each stop"
     )
@@ -106,12 +114,15 @@ class PlanFields(BaseModel):
     def options(self) -> PlanOptions:
         """Return the options for the planner."""
         angles = self.preferences
+        given = "repairs" in self.model_fields_set
         return PlanOptions(
             angles=fan(angles) if isinstance(angles, int) else np.array(angles),
             fewer="preferences" not in self.model_fields_set,
             size=self.size,
             reference_point=np.array(self.reference_point) if self.reference_point else None,
             time_limit=self.time_limit,
+            repairs=self.repairs if given or self.time_limit == 0 else 0,
+            fewer_repairs=not given,
             bound=self.bound,
             seed=self.seed,
         )

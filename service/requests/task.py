@@ -1,7 +1,7 @@
 """Parse a request body into a Task: the instance or map, the options and the chosen actor."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from service.actor_info import ActorInfo
@@ -22,7 +22,7 @@ from service.requests.limits import (
     check_structure,
 )
 from service.requests.replan.rest_request import RestRequest
-from service.requests.schemas import Geometry
+from service.requests.schemas import Geometry, PlanRequest
 from service.requests.stops import Labels, UnmeasuredStops
 
 TaskKind = Literal["front", "coverage", "fleet", "replan"]
@@ -88,10 +88,11 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
     check_structure(source.body, limits)
     if source.kind == "coverage":
         coverage_request = parse_coverage_request(source.body, limits, source.upload)
+        name = choose_actor(actors, coverage_request.kind, coverage_request.requested_actor)
         return Task(
             subject=coverage_request.coverage(),
-            options=coverage_request.options(),
-            actor=choose_actor(actors, coverage_request.kind, coverage_request.requested_actor),
+            options=_options(coverage_request, actors[name]),
+            actor=name,
             paths=coverage_request.paths,
             arrivals=coverage_request.arrivals,
         )
@@ -99,18 +100,29 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
         return _fleet_task(source.body, limits)
     model = RestRequest if source.kind == "replan" else FrontRequest
     request = parse_front_request(source.body, limits, source.upload, model)
-    subject, options = request.subject(), request.options()
+    name = choose_actor(actors, request.kind, request.requested_actor)
+    subject, options = request.subject(), _options(request, actors[name])
     if isinstance(subject, Instance):
         check_reference_point(subject, options)
     return Task(
         subject=subject,
         options=options,
-        actor=choose_actor(actors, request.kind, request.requested_actor),
+        actor=name,
         labels=request.labels,
         arrivals=request.arrivals,
         geometry=request.geometry,
         earlier=request.earlier if isinstance(request, RestRequest) else None,
     )
+
+
+def _options(request: PlanRequest, actor: ActorInfo) -> PlanOptions:
+    """Return the options of a request, without repairs by an actor that makes none."""
+    options = request.options()
+    if actor.repairs or options.repairs == 0:
+        return options
+    if "repairs" in request.model_fields_set:
+        raise Refusal("no-repairs", name=actor.name, came=request.repairs, pointer="/repairs")
+    return replace(options, repairs=0)
 
 
 def _fleet_task(body: bytes, limits: Limits) -> Task:

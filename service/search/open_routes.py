@@ -17,13 +17,14 @@ MIN_JOINED = 3  # cities: with two ends joined to one, fewer are left than a net
 
 
 def built_tours(build: Build, instance: Instance, preferences: Array) -> Tours:
-    """Return tours of an instance, shape (k, n), by a network that builds closed tours.
+    """Return tours of an instance, shape (m, n), by a network that builds closed tours.
 
     Its tours are opened to routes. But matrices can say that a tour leads from the fixed end to
     the fixed start, and the front is then better; other ends said by matrices make it worse.
 
     Args:
-        build: Returns closed tours, one for each preference.
+        build: Returns closed tours, shape (m, n): one for each preference, then maybe one more for
+            each, and so on.
         instance: The instance, closed or open.
         preferences: Shape (k, 2).
     """
@@ -32,7 +33,9 @@ def built_tours(build: Build, instance: Instance, preferences: Array) -> Tours:
     if instance.kind == "matrices" and len(instance.fixed_ends) == 2 and instance.n > MIN_JOINED:
         return _with_ends_apart(instance, build(_with_ends_joined(instance), preferences))
     # Where the first length may be long, in the direction (1, 0), only the second counts.
-    return opened(instance, build(instance, preferences), weights=preferences[:, ::-1])
+    tours = build(instance, preferences)
+    weights = np.resize(preferences[:, ::-1], (len(tours), preferences.shape[1]))
+    return opened(instance, tours, weights)
 
 
 def plain_tours(instance: Instance) -> Tours:

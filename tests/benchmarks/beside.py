@@ -45,7 +45,7 @@ class Nothing:
 
     estimate = CallEstimate("coordinates")
 
-    def tours(self, instance: Instance, preferences: NDArray[np.float64]) -> NDArray[np.int64]:  # noqa: ARG002
+    def tours(self, instance: Instance, *_: object) -> NDArray[np.int64]:
         """Return no tour."""
         return np.empty((0, instance.n), np.int64)
 

@@ -29,7 +29,7 @@ def found(answer: dict[str, Any]) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     "options",
-    [{"time_limit": 0, "augment": 3}, {"time_limit": 60, "seed": 3, "start": 2}],
+    [{"time_limit": 0, "repairs": 2, "augment": 3}, {"time_limit": 60, "seed": 3, "start": 2}],
     ids=["network", "converged"],
 )
 def test_every_way_to_ask_gives_the_same_front(
@@ -56,7 +56,7 @@ def test_a_front_is_a_table_and_a_line_on_stderr(cities: Path) -> None:
 
 
 def test_a_front_may_be_lines_of_csv(cities: Path) -> None:
-    arguments = ("front", cities, "--time-limit", 0, "--angles", "10,45,80")
+    arguments = ("front", cities, "--time-limit", 0, "--repairs", 0, "--angles", "10,45,80")
     rows = list(csv.DictReader(io.StringIO(paretour(*arguments, "--csv").stdout)))
     front = json.loads(paretour(*arguments, "--json").stdout)["front"]
     assert len(front) <= 3

@@ -18,6 +18,14 @@ def test_as_many_fit_as_the_estimate_says(kind: Kind, n: int, k: int) -> None:
     assert estimate.fitting(n, estimate.seconds(n, k) * (1 - 1e-6)) in (k - 1, k)
 
 
+@given(KINDS, CITIES, PREFERENCES, st.integers(0, 1000))
+def test_as_many_repairs_fit_as_the_estimate_says(kind: Kind, n: int, k: int, repairs: int) -> None:
+    estimate = CallEstimate(kind)
+    seconds = estimate.seconds(n, k, repairs)
+    assert estimate.fitting_repairs(n, k, seconds * (1 + 1e-9)) == repairs
+    assert estimate.fitting_repairs(n, k, 0.99 * estimate.seconds(n, k)) == 0
+
+
 @given(KINDS, CITIES, PREFERENCES, st.floats(0.01, 100))
 def test_calls_teach_how_fast_the_machine_is(kind: Kind, n: int, k: int, slower: float) -> None:
     known, learnt = CallEstimate(kind), CallEstimate(kind)

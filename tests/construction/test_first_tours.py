@@ -1,7 +1,7 @@
 """First tours: as many as fit, by calls that end in time."""
 
 import time
-from threading import Event
+from threading import Event, Timer
 
 import numpy as np
 import pytest
@@ -27,11 +27,13 @@ class Counted:
     def __init__(self, seconds: float = 0.0) -> None:
         self.estimate = CallEstimate("coordinates")
         self.calls: list[np.ndarray] = []
+        self.repairs = 0  # of the last call
         self._seconds = seconds
         self._ended = Event()
 
-    def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
+    def tours(self, instance: Instance, preferences: np.ndarray, repairs: int = 0) -> np.ndarray:
         self.calls.append(preferences)
+        self.repairs = repairs
         self._ended.clear()
         if self._ended.wait(self._seconds):
             raise Cancelled
@@ -52,22 +54,34 @@ def test_all_angles_that_were_asked_for_are_honoured() -> None:
     np.testing.assert_array_equal(constructor.calls, [from_angles(angles)])
 
 
-@given(st.floats(0, 2), st.integers(3, 300), st.integers(1, 8))
-def test_within_a_time_only_preferences_that_fit_are_constructed(
-    within: float, n: int, augment: int
+@given(st.floats(0, 2), st.integers(3, 300), st.integers(0, 200))
+def test_within_a_time_only_preferences_and_repairs_that_fit_are_made(
+    within: float, n: int, repairs: int
 ) -> None:
     constructor, estimate = Counted(), CallEstimate("coordinates")
-    tours = construct(constructor, cities(n), fan(100), augment, within=within)
-    sizes = {len(preferences) for preferences in constructor.calls}
-    if not sizes:
-        assert estimate.fitting(n, 0.5 * within / augment) == 0
+    tours = construct(constructor, cities(n), fan(100), repairs, within=within)
+    if not constructor.calls:
+        assert estimate.fitting(n, 0.25 * within) == 0
         assert tours.shape == (0, n)
         return
-    [k] = sizes
+    [preferences] = constructor.calls
+    k = len(preferences)
     assert 1 <= k <= 100
-    assert len(constructor.calls) == augment
-    assert augment * estimate.seconds(n, k) <= within
-    np.testing.assert_allclose(constructor.calls[0], from_angles(fan(k)))
+    assert constructor.repairs <= repairs
+    assert estimate.seconds(n, k, constructor.repairs) <= within
+    np.testing.assert_allclose(preferences, from_angles(fan(k)))
+
+
+@given(st.floats(0, 2), st.integers(3, 300), st.integers(0, 200))
+def test_repairs_never_exceed_a_limit_though_all_angles_are_honoured(
+    limit: float, n: int, repairs: int
+) -> None:
+    constructor, estimate = Counted(), CallEstimate("coordinates")
+    assert len(construct(constructor, cities(n), fan(50), repairs, limit=limit)) == 50
+    made = constructor.repairs
+    assert made <= repairs
+    assert made == 0 or estimate.seconds(n, 50, made) <= limit
+    assert made == repairs or estimate.seconds(n, 50, made + 1) > limit * (1 - 1e-9)
 
 
 def test_a_call_that_takes_longer_than_its_time_is_ended_and_brings_nothing() -> None:
@@ -82,7 +96,7 @@ def test_a_call_that_takes_longer_than_its_time_is_ended_and_brings_nothing() ->
 
 def test_a_call_that_somebody_else_ends_is_cancelled() -> None:
     class Ended(Counted):
-        def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:  # noqa: ARG002
+        def tours(self, *_: object) -> np.ndarray:
             raise Cancelled
 
     with pytest.raises(Cancelled):
@@ -113,13 +127,21 @@ def test_a_plan_is_over_in_time_though_the_network_is_slow() -> None:
 
 def test_preferences_that_were_asked_for_exceed_the_limit_by_one_call_at_most() -> None:
     constructor = Counted(seconds=0.2)
-    options = PlanOptions(angles=fan(7), size=10, time_limit=0.1, augment=8)
+    options = PlanOptions(angles=fan(7), size=10, time_limit=0.1)
     front = plan(constructor, cities(60), options)
     assert (len(constructor.calls), front.constructed) == (1, 7)
     assert front.terminated == "time_limit"
 
 
-def test_without_a_limit_every_symmetry_is_called() -> None:
+def test_without_a_limit_all_repairs_are_made() -> None:
     constructor = Counted()
-    front = plan(constructor, cities(60), PlanOptions(angles=fan(7), size=10, augment=8))
-    assert (len(constructor.calls), front.constructed) == (8, 56)
+    plan(constructor, cities(60), PlanOptions(angles=fan(7), size=10, repairs=150))
+    assert (len(constructor.calls), constructor.repairs) == (1, 150)
+
+
+def test_repairs_of_the_released_network_end_when_it_is_told_to_stop() -> None:
+    actor = OnnxActor(Settings().actors / "pa-one.onnx", threads=1)
+    timer = Timer(0.2, actor.terminate)
+    timer.start()
+    with pytest.raises(Cancelled):
+        construct(actor, cities(30), fan(100), 10**6)  # hours

@@ -11,7 +11,7 @@ from service.construction.call_estimate import CallEstimate
 from service.instance import Instance, Kind
 
 
-def info_of(name: str, inputs: Kind) -> ActorInfo:
+def info_of(name: str, inputs: Kind, repairs: bool = False) -> ActorInfo:
     """Return the information of an actor with this name that reads coordinates or matrices."""
     return ActorInfo(
         name=name,
@@ -22,6 +22,7 @@ def info_of(name: str, inputs: Kind) -> ActorInfo:
         angles=[0, 90],
         config={},
         figures={},
+        repairs=repairs,
     )
 
 
@@ -54,7 +55,7 @@ class Shuffler:
         for mark in (self.gate, self.gate.with_suffix(".started")):
             mark.unlink(missing_ok=True)
 
-    def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
+    def tours(self, instance: Instance, preferences: np.ndarray, _repairs: int = 0) -> np.ndarray:
         """Return one random tour for each preference, once the gate is open."""
         if self.gate is not None:
             self.gate.with_suffix(".started").touch()
@@ -70,6 +71,6 @@ class Shuffler:
 class Broken(Shuffler):
     """An actor that raises RuntimeError at every call."""
 
-    def tours(self, instance: Instance, preferences: np.ndarray) -> np.ndarray:
+    def tours(self, instance: Instance, preferences: np.ndarray, _repairs: int = 0) -> np.ndarray:
         """Raise RuntimeError."""
         raise RuntimeError(f"no tour of {instance.n} cities for {len(preferences)} preferences")

@@ -103,7 +103,7 @@ def _make_plannable(body: dict[str, Any]) -> None:
         {name: fit.get(name, f"{m}" if name == "name" else "m") for name in objective}
         for m, objective in enumerate(body["objectives"])
     ]
-    body |= {"start": "0", "augment": 1, "actor": "pa-one-matrix"}
+    body |= {"start": "0", "actor": "pa-one-matrix"}
     _reach(body)
     body.pop("end", None)
     if "initial_tours" in body:

@@ -64,9 +64,14 @@ def instance_of(request: FrontRequest) -> Instance:
             "augment must be at most 8, got 9",
         ),
         (
-            f'{{"matrices": [{SQUARE}, {SQUARE}], "augment": 8}}',
-            "/augment",
-            "augment must be 1 for matrices, which cannot be turned or mirrored, got 8",
+            '{"coordinates": [[1, 2, 3, 4]], "repairs": -1}',
+            "/repairs",
+            "repairs must be at least 0, got -1",
+        ),
+        (
+            '{"coordinates": [[1, 2, 3, 4]], "repairs": 1.5}',
+            "/repairs",
+            "repairs must be a valid integer, got 1.5",
         ),
     ],
 )

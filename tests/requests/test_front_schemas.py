@@ -71,7 +71,9 @@ def test_the_schemas_have_the_limits_and_the_actors() -> None:
         rows = fields[member]["items"] if member == "matrices" else fields[member]
         assert rows["maxItems"] == LIMITS.cities
         assert fields["actor"]["enum"] == ["pa-one"]
-    assert SCHEMAS["MatricesRequest"]["properties"]["augment"]["maximum"] == 1
+        assert fields["repairs"]["maximum"] == LIMITS.repairs
+        assert "default" not in fields["repairs"]  # it depends on the time limit
+        assert fields["augment"]["deprecated"] is True
 
 
 def references(value: Any) -> set[str]:

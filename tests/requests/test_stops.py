@@ -258,7 +258,6 @@ def test_an_id_stands_where_an_index_may() -> None:
             "/initial_tours/0",
             "initial_tours/0 must visit each city, 0 to 3, once",
         ),
-        ({"augment": 2}, "/augment", "augment must be 1 for matrices"),
     ],
 )
 def test_what_is_no_request_with_stops_is_named(

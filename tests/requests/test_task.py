@@ -1,10 +1,12 @@
 """A body becomes a task, and an actor is chosen for it."""
 
 import json
+from collections.abc import Mapping
 
 import numpy as np
 import pytest
 
+from service.actor_info import ActorInfo
 from service.coverage.survey import Coverage
 from service.errors import InvalidCoverage, Refusal
 from service.instance import Instance
@@ -13,8 +15,8 @@ from tests.helpers.actors import info_of
 from tests.helpers.serving import LIMITS
 
 FACTS = {
-    "pa-one": info_of("pa-one", "coordinates"),
-    "pa-one-matrix": info_of("pa-one-matrix", "matrices"),
+    "pa-one": info_of("pa-one", "coordinates", repairs=True),
+    "pa-one-matrix": info_of("pa-one-matrix", "matrices", repairs=True),
 }
 COVERAGE = {
     "grid": [[0, 0]],
@@ -26,10 +28,9 @@ COVERAGE = {
 
 
 def test_a_body_becomes_a_task() -> None:
-    front = json.dumps({"coordinates": np.eye(4).tolist(), "augment": 2, "time_limit": 0})
-    task = parse_task(TaskSource("front", front.encode()), LIMITS, FACTS)
+    task = parse_front({"coordinates": np.eye(4).tolist(), "repairs": 2, "time_limit": 0})
     assert isinstance(task.subject, Instance)
-    assert (task.actor, task.options.augment, task.paths) == ("pa-one", 2, False)
+    assert (task.actor, task.options.repairs, task.paths) == ("pa-one", 2, False)
     assert task.needs_compiled_code  # twice 20 preferences make more tours than the limit of 30
     task = parse_task(TaskSource("coverage", json.dumps(COVERAGE).encode()), LIMITS, FACTS)
     assert isinstance(task.subject, Coverage)
@@ -63,8 +64,42 @@ def test_any_reference_point_is_above_tours_of_no_length(cities: list[list[int]]
     parse_front({"coordinates": cities, "reference_point": [1e-150, 1e-150]})
 
 
-def parse_front(request: dict[str, object]) -> Task:
-    return parse_task(TaskSource("front", json.dumps(request).encode()), LIMITS, FACTS)
+def parse_front(request: dict[str, object], facts: Mapping[str, ActorInfo] = FACTS) -> Task:
+    return parse_task(TaskSource("front", json.dumps(request).encode()), LIMITS, facts)
+
+
+@pytest.mark.parametrize(
+    ("request_", "repairs", "fewer"),
+    [
+        ({}, 0, True),
+        ({"time_limit": 0}, LIMITS.repairs, True),
+        ({"time_limit": 0, "repairs": 7}, 7, False),
+        ({"time_limit": 0.1, "repairs": 7}, 7, False),
+        ({"time_limit": 0, "augment": 8}, LIMITS.repairs, True),
+    ],
+)
+def test_repairs_are_as_many_as_asked_for_or_with_a_time_limit_none(
+    request_: dict[str, object], repairs: int, fewer: bool
+) -> None:
+    options = parse_front({"coordinates": CITIES, **request_}).options
+    assert (options.repairs, options.fewer_repairs) == (repairs, fewer)
+
+
+def test_more_repairs_than_the_limit_are_refused() -> None:
+    with pytest.raises(Refusal, match=f"repairs must be at most {LIMITS.repairs}, got ") as refused:
+        parse_front({"coordinates": CITIES, "repairs": LIMITS.repairs + 1})
+    assert refused.value.code == "over-limit"
+
+
+def test_repairs_are_refused_where_the_actor_makes_none_and_not_made_by_default() -> None:
+    facts = {"own": info_of("own", "matrices")}
+    asked = {"coordinates": CITIES, "time_limit": 0}
+    assert parse_front(asked, facts).options.repairs == 0
+    assert parse_front({**asked, "repairs": 0}, facts).options.repairs == 0
+    with pytest.raises(Refusal) as refused:
+        parse_front({**asked, "repairs": 3}, facts)
+    assert (refused.value.status, refused.value.code) == (422, "no-repairs")
+    assert refused.value.detail == "repairs must be 0 for own, which cannot repair tours, got 3"
 
 
 def test_what_cannot_be_planned_is_refused() -> None:

@@ -29,7 +29,7 @@ class OneOrder:
 
     estimate = CallEstimate("coordinates")
 
-    def tours(self, instance: Instance, preferences: Array) -> NDArray[np.int64]:
+    def tours(self, instance: Instance, preferences: Array, _repairs: int) -> NDArray[np.int64]:
         return np.tile(np.arange(instance.n), (len(preferences), 1))
 
     def terminate(self) -> None:

@@ -14,7 +14,7 @@ from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
 from paretour.fleets import FleetFront, parse_fleet
 from paretour.requests import Plan
-from paretour.values import FINAL_STATUSES, Actor, Front, Tour, parse_front, parse_tour
+from paretour.values import FINAL_STATUSES, Actor, Front, Tour, parse_actor, parse_front, parse_tour
 
 T = TypeVar("T")
 Geometry = Literal["straight", "roads"]
@@ -111,7 +111,7 @@ class Calls:
     def actors(self) -> Call[tuple[Actor, ...]]:
         """Return the actors that the service has loaded."""
         response = yield from self._get("/actors")
-        return tuple(Actor(**facts) for facts in response.json()["actors"])
+        return tuple(map(parse_actor, response.json()["actors"]))
 
     def events(self, front_id: str) -> JobEvents:
         """Return the events of a job, none of them read yet."""

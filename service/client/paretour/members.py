@@ -12,6 +12,7 @@ class PlanOptions(TypedDict, total=False):
     preferences: int | ArrayLike
     time_limit: float
     size: int
+    repairs: int
     reference_point: ArrayLike
     arrivals: bool
     bound: bool
@@ -50,7 +51,7 @@ ObjectiveRequest = TypedDict(
 class FrontRequest(PlanRequest, total=False):
     """The members of a request to POST /front: coordinates, matrices, or stops with objectives.
 
-    With stops, `start` and `initial_tours` may name them by id.
+    With stops, `start` and `initial_tours` may name them by id. `augment` is without effect.
     """
 
     coordinates: ArrayLike

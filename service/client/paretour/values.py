@@ -1,7 +1,7 @@
 """Answers as immutable values with arrays."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Literal, TypeVar, Unpack
 
 import numpy as np
@@ -166,6 +166,7 @@ class Actor:
         angles: The least and the greatest angle that it was trained on, in degrees.
         config: The configuration of its training.
         figures: Its hypervolumes, as measured at export.
+        repairs: Whether it can repair its tours.
     """
 
     name: str
@@ -176,6 +177,13 @@ class Actor:
     angles: Any
     config: Any
     figures: Any
+    repairs: bool = False
+
+
+def parse_actor(document: Mapping[str, Any]) -> Actor:
+    """Return the actor in a JSON answer, of which members that are not known are left out."""
+    known = {field.name for field in fields(Actor)}
+    return Actor(**{name: value for name, value in document.items() if name in known})
 
 
 def parse_front(document: Mapping[str, Any]) -> Front:
