@@ -10,6 +10,7 @@ from typing import Annotated
 from typer import Argument, Exit, Option, Typer, echo
 
 from service import installed_version
+from service.cli.coverage import coverage
 from service.cli.fleets import fleet
 from service.cli.options import (
     ActorName,
@@ -21,31 +22,19 @@ from service.cli.options import (
     AsTable,
     Augment,
     Balance,
-    CellSize,
-    CostLayer,
-    End,
     EndOrId,
-    EndPose,
     File,
     FirstAtMost,
     Knee,
-    MapFile,
     Open,
-    Paths,
     Plot,
-    PlotMap,
     Repairs,
-    RobotRadius,
     SecondAtMost,
     SecondFile,
     Seed,
     Size,
-    Spacing,
-    Start,
     StartOrId,
-    StartPose,
     TimeLimit,
-    Unknown,
     Unrounded,
     Url,
     Workers,
@@ -176,62 +165,7 @@ def tour(  # noqa: PLR0913  an option each
 
 app.command()(replan)
 app.command()(fleet)
-
-
-@app.command()
-def coverage(  # noqa: PLR0913  an option each
-    file: MapFile,
-    cell_size: CellSize = None,
-    robot_radius: RobotRadius = None,
-    spacing: Spacing = None,
-    cost_layer: CostLayer = None,
-    start_pose: StartPose = None,
-    end_pose: EndPose = None,
-    unknown: Unknown = None,
-    paths: Paths = None,
-    time_limit: TimeLimit = None,
-    size: Size = None,
-    start: Start = None,
-    end: End = None,
-    open_routes: Open = None,
-    seed: Seed = None,
-    actor: ActorName = None,
-    repairs: Repairs = None,
-    as_json: AsJson = False,
-    as_csv: AsCsv = False,
-    as_table: AsTable = False,
-    plot: PlotMap = None,
-    url: Url = None,
-    api_key: ApiKey = None,
-) -> None:
-    """Plan the front of tours of a robot through places all over a map."""
-    from service.cli.backends import backend_for
-    from service.cli.output import OutputFormat, run_front
-    from service.cli.plans import plan_map
-
-    options = {
-        "cell_size": cell_size,
-        "robot_radius": robot_radius,
-        "spacing": spacing,
-        "unknown": unknown,
-        # A picture of tours is one of their paths.
-        "paths": True if plot is not None else paths,
-        "time_limit": time_limit,
-        "size": size,
-        "start": start,
-        "end": end,
-        "closed": None if open_routes is None else not open_routes,
-        "seed": seed,
-        "actor": actor,
-        "repairs": repairs,
-    }
-    run_front(
-        partial(
-            plan_map, file, cost_layer, options, {"start_pose": start_pose, "end_pose": end_pose}
-        ),
-        backend_for(url, api_key),
-        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
-    )
+app.command()(coverage)
 
 
 @app.command()
