@@ -31,11 +31,11 @@ from models.networks.joining.candidates import (
 )
 from models.networks.joining.costs import CANDIDATES, Costs, Problem, padded_distances
 from models.networks.joining.fragments import NEVER, Fragments, mutual_best
+from models.networks.joining.neighbours import EDGE, Neighbours, of_both_ends
 from models.networks.joining.repairs import last_two_joined
 from models.networks.layers import SilenceableLayer, feedforward
 
 _MESSAGE = 4  # features that an end sends its neighbours
-_EDGE = 4  # hidden features of an edge
 
 # Bounds on the network's inputs. Costs are in units of their mean over the candidates of a row.
 _MOST = 5.0  # of a cost against the mean of the candidates of an end
@@ -62,9 +62,9 @@ class OneActor(Actor):
         self.layers = nn.ModuleList(
             MessagePassingLayer(config.width, config.feedforward) for _ in range(config.layers)
         )
-        self.project_end = nn.Linear(config.width, (1 + self.has_directions) * _EDGE)
-        self.project_edge = nn.Linear(2 + self.has_directions, _EDGE, bias=False)
-        self.judge = nn.Linear(_EDGE, 1, bias=False)
+        self.project_end = nn.Linear(config.width, (1 + self.has_directions) * EDGE)
+        self.project_edge = nn.Linear(2 + self.has_directions, EDGE, bias=False)
+        self.judge = nn.Linear(EDGE, 1, bias=False)
 
     @property
     def encoder_layers(self) -> nn.ModuleList:
@@ -79,7 +79,7 @@ class OneActor(Actor):
         self, costs: Costs | Problem, fragments: Fragments, candidates: Candidates
     ) -> Float[Tensor, "r e c"]:
         """Return the log-odds of each edge to a candidate; -NEVER where it is impossible."""
-        real, near = candidates.real, _Neighbours(candidates, fragments.partners)
+        real, near = candidates.real, Neighbours(candidates, fragments.partners)
         of_candidates = candidates.costs.clamp(min=0.0)  # prices may be a little too high
         total = torch.where(real, of_candidates, 0.0).sum(dim=-1)
         count = real.sum(dim=-1)
@@ -113,7 +113,7 @@ class OneActor(Actor):
         features = self.embed(torch.cat(inputs, dim=-1).flatten(0, 1))
         for layer in self.layers:
             features = layer(features, near)
-        hidden = _of_both_ends(self.project_end(features), near, directions)
+        hidden = of_both_ends(self.project_end(features), near, directions)
         hidden = hidden + self.project_edge(torch.stack(of_edges, dim=-1).flatten(0, 1))
         logits = self.judge(hidden.relu()).view_as(relative_costs) - _STEEPNESS * relative_costs
         return torch.where(real, logits, -NEVER)
@@ -212,45 +212,6 @@ def _leans_in_units(
     return torch.cat((edges, fragments.leans[..., None]), dim=-1) / unit[..., None]
 
 
-def _of_both_ends(
-    of_ends: Float[Tensor, "x d"], near: "_Neighbours", directions: Float[Tensor, "r e c"] | None
-) -> Float[Tensor, "x c f"]:
-    """Return the same for an edge seen from either of its ends: the sum of what both say.
-
-    Where edges have directions, ends say another thing as well, that they start it or end it.
-    """
-    if directions is None:
-        return near.candidates_of(of_ends) + of_ends[:, None]
-    own, start = of_ends.chunk(2, dim=-1)
-    their_own, their_start = near.candidates_of(of_ends).chunk(2, dim=-1)
-    towards = directions.flatten(0, 1)[..., None]
-    return their_own + own[:, None] + towards * (their_start - start[:, None])
-
-
-class _Neighbours:
-    """Lookups of features of other ends of the same row; zeros where a candidate is impossible.
-
-    Axis x is rows and ends, ends inner.
-    """
-
-    def __init__(self, candidates: Candidates, partners: Int[Tensor, "r e"]) -> None:
-        r, e, c = candidates.positions.shape
-        first = e * torch.arange(r, device=partners.device)
-        of_candidates = candidates.positions + first[:, None, None]
-        self._candidates = torch.where(candidates.real, of_candidates, r * e).flatten()
-        self._partners = (partners + first[:, None]).flatten()
-        self._count = c
-
-    def candidates_of(self, features: Float[Tensor, "x d"]) -> Float[Tensor, "x c d"]:
-        """Return the features of each end's candidates."""
-        table = nn.functional.pad(features, (0, 0, 0, 1))
-        return table.index_select(0, self._candidates).unflatten(0, (-1, self._count))
-
-    def partners_of(self, features: Float[Tensor, "x d"]) -> Float[Tensor, "x d"]:
-        """Return the features of each end's partner."""
-        return features.index_select(0, self._partners)
-
-
 class MessagePassingLayer(SilenceableLayer):
     """A layer in which each end reads a message of its partner and of each of its candidates.
 
@@ -269,7 +230,7 @@ class MessagePassingLayer(SilenceableLayer):
         for last in self.think[-1].parameters():
             nn.init.zeros_(last)
 
-    def forward(self, features: Float[Tensor, "x d"], near: _Neighbours) -> Float[Tensor, "x d"]:
+    def forward(self, features: Float[Tensor, "x d"], near: Neighbours) -> Float[Tensor, "x d"]:
         """Return the features of the ends, each after the messages of its neighbours."""
         messages = self.tell(features).relu()
         received = near.candidates_of(messages).flatten(1)
