@@ -1,13 +1,15 @@
 """`python -m tests.benchmarks actors [NAME ...]`: the released actors on the paper's instances.
 
-For each: one inference call with 100 preferences an instance, the network alone and greedy. The
-plain construction heuristics stand beside them, with 100 weights. Prints a table and stores
-`results/actors.json`.
+For each: one inference call with 100 preferences an instance, the network alone and greedy; and
+where it can, the best 100 of the tours of a call with as many repairs as the service makes by
+default. The plain construction heuristics stand beside them, with 100 weights. Prints a table and
+stores `results/actors.json`.
 """
 
 import argparse
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +18,10 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from service.actor import OnnxActor
+from service.construction.repairs import repairs_worth
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
+from service.planner import PlanOptions, plan
 from service.preferences import fan, from_angles
 from tests.benchmarks.instances import COUNT, SIZES, check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import provenance, store
@@ -37,7 +41,9 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--count", type=int, default=COUNT, help="instances of each size")
     options = parser.parse_args(arguments)
     names = options.names or sorted(path.stem for path in ACTORS.glob("*.onnx"))
-    rows = {name: _actor_row(name, options.threads, options.count) for name in names}
+    rows: dict[str, dict[str, Any]] = {}
+    for name in names:
+        rows |= _actor_rows(name, options.threads, options.count)
     rows |= {
         "nearest neighbour": _heuristic_row(nearest_neighbour, options.count),
         "greedy edge": _heuristic_row(greedy_edge, options.count),
@@ -67,14 +73,27 @@ def measure(build: Build, n: int, count: int) -> dict[str, Any]:
     }
 
 
-def _actor_row(name: str, threads: int, count: int) -> dict[str, Any]:
+def _actor_rows(name: str, threads: int, count: int) -> dict[str, dict[str, Any]]:
     actor = OnnxActor(ACTORS / f"{name}.onnx", threads)
     preferences = from_angles(fan(PREFERENCES))
-    row: dict[str, Any] = {
-        str(n): measure(lambda instance: actor.tours(instance, preferences), n, count)
-        for n in SIZES
+    builders: dict[str, Build] = {name: lambda instance: actor.tours(instance, preferences)}
+    if actor.info.repairs:
+        builders[f"{name}, repaired"] = partial(_repaired, actor)
+    return {
+        row: {
+            "digest": actor.info.digest,
+            **{str(n): measure(build, n, count) for n in SIZES},
+        }
+        for row, build in builders.items()
     }
-    return {"digest": actor.info.digest, **row}
+
+
+def _repaired(actor: OnnxActor, instance: Instance) -> NDArray[np.integer]:
+    angles = fan(PREFERENCES)
+    repairs = repairs_worth(actor.info.inputs, instance.n)
+    return plan(
+        actor, instance, PlanOptions(angles=angles, size=len(angles), repairs=repairs)
+    ).tours
 
 
 def _heuristic_row(construct: Callable[..., NDArray[np.int64]], count: int) -> dict[str, Any]:

@@ -1,7 +1,8 @@
 """Paretour beside OR-Tools on instances of two matrices.
 
-The rows: each actor of a directory that reads matrices, by default the released ones, alone and
-with half a second of search after it; the search alone; OR-Tools' routing solver under 100
+The rows: each actor of a directory that reads matrices, by default the released ones, alone, with
+as many repairs as the service makes by default, and with half a second of search after it; the
+search alone; OR-Tools' routing solver under 100
 weights, with the paper's two limits on its solutions. Every row gives at most 100 tours an
 instance, on one thread. Seconds are those of the processor, which another program's load does not
 stretch. The reference point is n times the scale, the largest entry of each matrix. What is stored
@@ -20,6 +21,7 @@ from numpy.typing import NDArray
 
 from service.actor import OnnxActor, load_actors
 from service.construction.call_estimate import CallEstimate
+from service.construction.repairs import repairs_worth
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.planner import PlanOptions, plan
@@ -72,6 +74,8 @@ def methods(actors: Path) -> dict[str, tuple[str, Method]]:
         if actor.info.inputs == "matrices":
             digest = actor.info.digest
             rows[f"{name}, network alone"] = digest, partial(_planned, actor, 0.0)
+            if actor.info.repairs:
+                rows[f"{name}, repaired"] = digest, partial(_planned, actor, 0.0, repaired=True)
             rows[f"{name}, {SECONDS} s of search"] = digest, partial(_planned, actor, SECONDS)
     rows[f"search alone, {SECONDS} s"] = "", partial(_planned, Nothing(), SECONDS)
     rows["OR-Tools, n_l = 10"] = "", partial(_ortools, 10)
@@ -91,9 +95,12 @@ def measure(
     _print_table(load(benchmark), list(groups))
 
 
-def _planned(constructor: OnnxActor | Nothing, seconds: float, instance: Instance) -> Tours:
+def _planned(
+    constructor: OnnxActor | Nothing, seconds: float, instance: Instance, *, repaired: bool = False
+) -> Tours:
     # The time of the network comes on top of the seconds of search.
-    tours = constructor.tours(instance, from_angles(fan(TOURS)))
+    repairs = repairs_worth("matrices", instance.n) if repaired else 0
+    tours = constructor.tours(instance, from_angles(fan(TOURS)), repairs)
     demand = PlanOptions(angles=fan(TOURS), size=TOURS, time_limit=seconds, initial_tours=tours)
     return plan(Nothing(), instance, demand).tours
 
