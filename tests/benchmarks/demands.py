@@ -75,7 +75,9 @@ def _unmet_of_workers(results: Mapping[str, Any]) -> Iterator[str]:
 
 def _unmet_at_end(results: Mapping[str, Any]) -> Iterator[str]:
     if results["tracebacks_in_log"]:
-        found = f"{results['tracebacks_in_log']}: {'; '.join(results['tracebacks'])}"
+        found = str(results["tracebacks_in_log"])
+        if named := results.get("tracebacks"):  # which earlier runs did not store
+            found += f": {'; '.join(named)}"
         yield f"the log must have no traceback, got {found}"
     if results["exit_status"]:
         yield f"the service must end with 0, got {results['exit_status']}"
