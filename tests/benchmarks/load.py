@@ -144,7 +144,7 @@ def _asides(address: tuple[str, int], cores: int, seconds: float) -> dict[str, A
 
 def _bodies() -> list[bytes]:
     return [
-        json.dumps({"coordinates": cities.tolist(), "time_limit": 0}).encode()
+        json.dumps({"coordinates": cities.tolist(), "time_limit": 0, "repairs": 0}).encode()
         for cities in paper_instances(CITIES)
     ]
 
