@@ -157,7 +157,7 @@ def plan(
     clock.ends("improvement")
     gained = None if before is None else hypervolume(found.points, reference_point) - before
     chosen = best_subset(found.points, options.size, reference_point, stop)
-    tours = found.tours[chosen].astype(np.int64)
+    tours = found.tours_at(chosen).astype(np.int64)
     clock.ends("selection")
     bound = None
     if options.bound and not stop():
@@ -211,7 +211,7 @@ def _improved(
     if options.time_limit == 0:
         points = tour_lengths(instance, tours)
         front = nondominated(points)
-        return SearchResult(tours[front], points[front], "converged")
+        return SearchResult(points[front], tours[front].__getitem__, "converged")
     return improve(
         instance,
         tours,

@@ -28,11 +28,23 @@ REPORT_EVERY = 0.1  # seconds
 
 @dataclass(frozen=True, eq=False)
 class SearchResult:
-    """A front: tours, shape (p, n), and points, shape (p, 2), by ascending first length."""
+    """A front: points, shape (p, 2), by ascending first length, and their tours.
 
-    tours: NDArray[np.integer]
+    Args:
+        points: The points.
+        tours_at: Returns the tours, shape (k, n), of the points at indices, shape (k,). To copy
+            those of a few takes far less than all, which can be a quarter of a GB.
+        terminated: How the search ended; None while it goes on.
+    """
+
     points: Array
-    terminated: Termination | None  # None while the search goes on
+    tours_at: Callable[[NDArray[np.intp]], NDArray[np.integer]]
+    terminated: Termination | None
+
+    @property
+    def tours(self) -> NDArray[np.integer]:
+        """All tours, shape (p, n)."""
+        return self.tours_at(np.arange(len(self.points)))
 
 
 @dataclass(frozen=True)
@@ -98,7 +110,7 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
     dropped = search.not_covered(tours)
     if len(dropped):
         return _front(instance, np.concatenate((search.tours(), dropped)), terminated)
-    return SearchResult(search.tours(), search.points(), terminated)
+    return SearchResult(search.points(), search.tours, terminated)
 
 
 def _run(
@@ -132,14 +144,14 @@ def _best_found(search: Search, size: int) -> SearchResult:
     """Return the best subset of a size of the front that a search has found so far."""
     points = search.points()
     indices = best_subset(points, size, search.reference_point)
-    return SearchResult(search.tours(indices), points[indices], None)
+    return SearchResult(points[indices], search.tours(indices).__getitem__, None)
 
 
 def _front(instance: Instance, tours: NDArray[np.integer], terminated: Termination) -> SearchResult:
     """Return the nondominated among tours."""
     points = tour_lengths(instance, tours)
     indices = nondominated(points)
-    return SearchResult(tours[indices].astype(np.int32), points[indices], terminated)
+    return SearchResult(points[indices], tours[indices].astype(np.int32).__getitem__, terminated)
 
 
 def warm_up() -> None:
