@@ -44,7 +44,8 @@ class PlanOptions:
         initial_tours: Shape (m, n): tours that the front shall dominate or equal as well.
         bound: Whether to compute an upper bound on the hypervolume of any front.
         seed: Of the search's random choices.
-        search_constructs: Whether the search begins with tours of its own as well.
+        touched: Where the initial tours are of an earlier front: the cities at which they may have
+            become worse. The search sets out from these tours alone then, and looks there first.
         repairs: How often the constructor repairs each of its tours, at most; with a time limit
             only as often as is estimated to fit.
         fewer_repairs: Whether as many repairs will do as are worth their time at this size.
@@ -59,7 +60,7 @@ class PlanOptions:
     initial_tours: Tours | None = None
     bound: bool = False
     seed: int = 0
-    search_constructs: bool = True
+    touched: NDArray[np.integer] | None = None
     repairs: int = 0
     fewer_repairs: bool = False
 
@@ -221,7 +222,7 @@ def _improved(
         stop=stop,
         report=report,
         reference_point=options.reference_point,
-        construct=options.search_constructs,
+        touched=options.touched,
     )
 
 

@@ -23,10 +23,13 @@ class EarlierTours:
             each of its tours, shape (m, k), m at least 1. The first is the tour being driven. All
             begin and end at the fixed ends of the instance, if it has any.
         min_kept: The least share of the driven tour's legs that a tour shall keep.
+        touched: The cities beside which another has gone from one of the tours, or to or from which
+            a cost has changed; None where that may be any.
     """
 
     tours: Tours
     min_kept: float = 0.0
+    touched: NDArray[np.int64] | None = None
 
     @property
     def driven(self) -> NDArray[np.int64]:
@@ -53,6 +56,18 @@ def completed(instance: Instance, earlier: EarlierTours) -> Tours:
     scaled = weights / np.ldexp(instance.scale, instance.shifts)
     insert_cheapest(costs, tours, tours.shape[1] - len(added), scaled)
     return (tours if instance.closed else open_tours(instance, tours)).astype(np.int64)
+
+
+def touched_cities(instance: Instance, earlier: EarlierTours, tours: Tours) -> NDArray[np.int64]:
+    """Return the cities where the completed earlier tours may be improved at first, ascending.
+
+    Those are the cities touched, the ones inserted, and those before and after these.
+    """
+    if earlier.touched is None:
+        return np.arange(instance.n)
+    inserted = ~np.isin(tours, earlier.driven)
+    beside = inserted | np.roll(inserted, 1, axis=1) | np.roll(inserted, -1, axis=1)
+    return np.union1d(earlier.touched, tours[beside])
 
 
 def _weights(instance: Instance, routes: Tours) -> Array:

@@ -11,7 +11,7 @@ from service.errors import Refusal
 from service.instance import Instance, tour_lengths
 from service.pareto import best_subset, nondominated
 from service.planner import Front, PlanOptions, Report, plan
-from service.replanning.earlier_tours import EarlierTours, Tours, completed
+from service.replanning.earlier_tours import EarlierTours, Tours, completed, touched_cities
 from service.replanning.kept_legs import kept_shares, most_like_driven
 from service.search.improve import Progress
 
@@ -48,7 +48,7 @@ def replan(
     """
     began = time.perf_counter()
     first = _first_tours(instance, earlier)
-    wanted = _without_constructions(options) if len(first) else options
+    wanted = _as_remembered(options, instance, earlier, first) if len(first) else options
     spent = time.perf_counter() - began
     if wanted.time_limit > 0:
         wanted = replace(wanted, time_limit=max(_LEAST_SECONDS, wanted.time_limit - spent))
@@ -79,10 +79,13 @@ def _first_tours(instance: Instance, earlier: EarlierTours) -> Tours:
     return tours[np.argsort(-kept, kind="stable")]
 
 
-def _without_constructions(options: PlanOptions) -> PlanOptions:
+def _as_remembered(
+    options: PlanOptions, instance: Instance, earlier: EarlierTours, first: Tours
+) -> PlanOptions:
+    """Return the options of a plan that sets out from the earlier tours, and not from others."""
     if options.fewer and options.time_limit > 0:
         options = replace(options, angles=np.empty(0))
-    return replace(options, search_constructs=False)
+    return replace(options, touched=touched_cities(instance, earlier, first))
 
 
 def _keeping(

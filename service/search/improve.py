@@ -18,7 +18,7 @@ from service.pareto import best_subset, nondominated
 from service.search.archive import MAX_POINTS
 from service.search.bound import hypervolume_bound
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
-from service.search.schedule import CONSTRUCTIONS, Search
+from service.search.schedule import Search
 
 Array = NDArray[np.float64]
 Termination = Literal["converged", "time_limit", "cancelled"]
@@ -71,7 +71,7 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
     report: Report | None = None,
     reference_point: Array | None = None,
     capacity: int = MAX_POINTS,
-    construct: bool = True,
+    touched: NDArray[np.integer] | None = None,
 ) -> SearchResult:
     """Return the front that a search finds; it dominates or equals each of the given tours.
 
@@ -94,15 +94,14 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
             times the scale. The search works where this hypervolume grows fastest.
         capacity: The most tours that the search keeps, at least 16; the result has more only where
             it was given more.
-        construct: Whether to begin with constructed tours as well; it takes half of the time until
-            every weight has a local optimum, and is no use where good tours are given.
+        touched: Where the given tours are of an earlier front: the cities at which they may have
+            become worse, where the search looks first. It constructs no tours then.
     """
     if instance.n <= MAX_ENUMERATED:
         return _front(instance, exact_tours(instance), "converged")
     if reference_point is None:
         reference_point = instance.n * instance.scale
-    constructions = CONSTRUCTIONS if construct else 0
-    search = Search(instance, seed, reference_point, capacity, constructions)
+    search = Search(instance, seed, reference_point, capacity, touched)
     search.add(tours)
     terminated = _run(search, deadline, reserve, iterations, stop, report)
     if not search.size:

@@ -2,6 +2,7 @@
 
 First every weight gets a tour by descent, then each gets iterated local search, twice. From then
 on weights and gaps in the front compete for the time, by the hypervolume that they lately gained.
+Tours of an earlier front that changed in places are descended from these, and then all compete.
 """
 
 from collections.abc import Iterator
@@ -39,7 +40,7 @@ from service.search.local_search import (
 )
 from service.search.open_routes import moved_ends
 from service.search.pareto_local_search import STEPS, SearchState, WeightedCandidates, fill_gaps
-from service.search.working_tour import enqueue_all, load, make_working_tour
+from service.search.working_tour import enqueue_cities, load, make_working_tour
 
 Array = NDArray[np.float64]
 
@@ -79,7 +80,8 @@ class Search:
         seed: Of all random choices.
         reference_point: Shape (2,), positive, in the instance's units.
         capacity: The most tours that the archive holds.
-        constructions: For how many weights a tour is constructed, beside those that are added.
+        touched: If the tours that are added are those of an earlier front: the cities of the
+            instance at which they may have become worse. Then no tour is constructed.
     """
 
     def __init__(
@@ -88,10 +90,10 @@ class Search:
         seed: int,
         reference_point: Array,
         capacity: int = MAX_POINTS,
-        constructions: int = CONSTRUCTIONS,
+        touched: NDArray[np.integer] | None = None,
     ) -> None:
         self.instance = instance
-        self.constructions = constructions
+        self.touched = None if touched is None else self._closed(touched[np.newaxis])[0]
         self.shifts = instance.shifts
         self.reference_point = reference_point
         self.corner = scaled_reference(instance, reference_point)
@@ -163,8 +165,8 @@ class Search:
         """
         yield from self.pool_candidates()
         for rank, k in enumerate(bisection_order(WEIGHTS)):
-            yield from self._descend(k, construct=rank < self.constructions)
-        for divisor in (FIRST_DIVISOR, 1):
+            yield from self._descend(k, construct=rank < CONSTRUCTIONS and self.touched is None)
+        for divisor in (FIRST_DIVISOR, 1) if self.touched is None else ():
             for k in bisection_order(WEIGHTS):
                 yield from self._iterate(k, self.n // divisor)
         yield from self._compete()
@@ -222,7 +224,7 @@ class Search:
             scalarization.w1,
         )
         self._load_start(scalarization, construct)
-        enqueue_all(working)
+        enqueue_cities(working, working.tour if self.touched is None else self.touched)
         threshold = LEAST_GAIN * float(self.weights[k] @ working.length)
         while descend(working, scalarization, threshold, DESCENT_BLOCK) == 0:
             yield 0

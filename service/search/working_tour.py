@@ -85,10 +85,10 @@ def set_city(working: WorkingTour, place: int, city: int) -> None:
 
 
 @compiled
-def enqueue_all(working: WorkingTour) -> None:
-    """Queue all cities in the order of the tour."""
-    for k in range(len(working.tour)):
-        enqueue(working, working.tour[k])
+def enqueue_cities(working: WorkingTour, cities: Cities) -> None:
+    """Queue cities in this order."""
+    for city in cities:
+        enqueue(working, city)
 
 
 @inlined

@@ -9,7 +9,7 @@ from service.errors import Refusal
 from service.instance import Instance
 from service.pareto import nondominated
 from service.planner import Front, PlanOptions
-from service.replanning.earlier_tours import EarlierTours, completed
+from service.replanning.earlier_tours import EarlierTours, completed, touched_cities
 from service.replanning.kept_legs import kept_shares
 from service.replanning.replan import replan
 from service.requests.limits import Limits
@@ -122,6 +122,52 @@ def test_earlier_tours_are_completed_where_it_costs_least() -> None:
 
         others = [[*begun[0, :k], 6, *begun[0, k:]] for k in range(1, 7)]
         assert length(tour) == pytest.approx(min(map(length, others)))
+
+
+def test_cities_that_are_not_touched_have_the_neighbours_and_costs_that_they_had() -> None:
+    left_alone = 0
+    for seed in range(60):
+        change = random_change(seed, least=7)
+        task = task_of(change)
+        assert task.earlier is not None
+        tours = completed(instance_of(task), task.earlier)
+        touched = touched_cities(instance_of(task), task.earlier, tours)
+        [looked_at] = ways(task, _FrontOf(touched[np.newaxis]), change)  # type: ignore[arg-type]
+        known = _neighbours(change)
+        for way in ways(task, _FrontOf(tours), change):  # type: ignore[arg-type]
+            for leg in change.legs(way):
+                if set(leg) - set(looked_at):
+                    assert frozenset(leg) in known
+        for entry in change.request["costs"]:
+            ends = [_index(change, entry[name]) for name in ("from", "to")]
+            assert not set(ends) & set(ways(task, _FrontOf(tours), change)[0]) - set(looked_at)
+        left_alone += tours.shape[1] - len(looked_at)
+    assert left_alone > 0
+
+
+def _neighbours(change: Change) -> set[frozenset[int]]:
+    """The stops of a front that follow each other in one of its tours, or in the driven one."""
+    closed = json.loads(change.front.source.body).get("closed", True)
+    tours = [item["tour"] for item in json.loads(b"[" + change.front.tours + b"]")]
+    tours.append([change.ids.index(stop) for stop in change.request["tour"]])
+    pairs = [
+        pair for tour in tours for pair in zip(tour, tour[1:] + tour[: int(closed)], strict=False)
+    ]
+    return {frozenset(pair) for pair in pairs}
+
+
+def _index(change: Change, stop: int | str) -> int:
+    return stop if isinstance(stop, int) else change.ids.index(stop)
+
+
+def test_new_objectives_may_have_touched_every_city() -> None:
+    change = random_change(0)
+    first, second = change.costs.tolist()
+    objectives = [{"name": "a", "matrix": first}, {"name": "b", "matrix": second}]
+    places = [{"id": each["id"]} for each in change.request["add"]]
+    task = task_of(change, objectives=objectives, add=places, position=None, costs=[])
+    assert task.earlier is not None
+    assert task.earlier.touched is None
 
 
 def test_of_equal_lengths_the_tour_most_like_the_driven_one_is_returned() -> None:

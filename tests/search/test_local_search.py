@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from service.search.costs import lengths
 from service.search.local_search import improve_at, nearest_neighbour
-from service.search.working_tour import dequeue, enqueue_all, load, make_working_tour
+from service.search.working_tour import dequeue, enqueue_cities, load, make_working_tour
 from tests.helpers.instances import random_matrices, scalarization_of
 
 
@@ -17,7 +17,7 @@ def test_every_improving_move_gains_what_it_says(seed: int, symmetric: bool, n: 
     scalarization = scalarization_of(random_matrices(n, seed, symmetric))
     working = make_working_tour(n)
     load(working, working.tour.copy(), *lengths(scalarization.costs, working.tour))
-    enqueue_all(working)
+    enqueue_cities(working, working.tour)
     while working.ring[1] > 0:
         before = working.length.sum()
         if improve_at(working, scalarization, dequeue(working), 1e-9):

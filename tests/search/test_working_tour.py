@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from service.search.working_tour import (
     dequeue,
     enqueue,
-    enqueue_all,
+    enqueue_cities,
     make_working_tour,
     reverse_block,
     swap_blocks,
@@ -47,6 +47,6 @@ def test_reversing_equals_reversing_a_list_up_to_direction(n: int, start: int, s
 
 def test_a_city_is_queued_only_once() -> None:
     working = make_working_tour(9)
-    enqueue_all(working)
+    enqueue_cities(working, working.tour)
     enqueue(working, 4)
     assert [dequeue(working) for _ in range(int(working.ring[1]))] == list(range(9))

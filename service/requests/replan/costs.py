@@ -185,6 +185,21 @@ def _with_entries(
     ]
 
 
+def changed_stops(request: ReplanRequest, stops: AllStops) -> NDArray[np.int64]:
+    """Return the stops to or from which a request changes single costs, as `all_costs` finds them.
+
+    Raises:
+        Refusal: One is no stop.
+    """
+    ids = stops.ids
+    found = [
+        _stop(reference, ids, stops, f"costs/{index}/{name}")
+        for index, entry in enumerate(request.costs)
+        for name, reference in (("from", entry.origin), ("to", entry.destination))
+    ]
+    return np.array(found, np.int64)
+
+
 def _changed(source: Source, entries: Mapping[tuple[int, int], float]) -> Source:
     if isinstance(source, Changed):
         known = zip(source.steps.tolist(), source.costs.tolist(), strict=True)

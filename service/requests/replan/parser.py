@@ -12,7 +12,7 @@ from pydantic_core import to_json
 from service.actor_info import ActorInfo
 from service.instance import PLANE
 from service.requests.limits import Limits, check_amounts
-from service.requests.replan.costs import all_costs, all_stops, between
+from service.requests.replan.costs import AllStops, all_costs, all_stops, between, changed_stops
 from service.requests.replan.earlier_front import StoredFront, read_earlier_front
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.way import RestOfWay, left_of_tours, rest_of_way
@@ -69,7 +69,7 @@ def rest_source(source: ReplanSource, limits: Limits) -> TaskSource:
     sources = [between(each, rest.stops) for each in sources]
     place = np.full(len(stops.stops), -1)
     place[rest.stops] = np.arange(len(rest.stops))
-    tours = place[left_of_tours(front, request, rest)]
+    left, moved = left_of_tours(front, request, rest)
     file = _matrices_file(sources)
     members = {
         "stops": [vars(stops.stops[index]) for index in rest.stops],
@@ -78,11 +78,30 @@ def rest_source(source: ReplanSource, limits: Limits) -> TaskSource:
             for objective, each in zip(objectives, sources, strict=True)
         ],
         **_ends(rest, place),
-        "earlier_tours": tours.tolist(),
+        "earlier_tours": place[left].tolist(),
+        "touched": _touched(request, stops, moved, place),
         "min_kept": request.min_kept,
         **request.model_dump(include=_OPTIONS & request.model_fields_set),
     }
     return TaskSource("replan", to_json(members), file)
+
+
+def _touched(
+    request: ReplanRequest,
+    stops: AllStops,
+    moved: NDArray[np.int64],
+    place: NDArray[np.int64],
+) -> list[int] | None:
+    """Return the stops of the rest at which the earlier tours may have become worse, ascending.
+
+    Those are the ones with new neighbours, and those to or from which a single cost has changed.
+
+    None where that may be any, as the request brings whole new objectives.
+    """
+    if request.objectives:
+        return None
+    touched = place[np.union1d(moved, changed_stops(request, stops))]
+    return touched[touched >= 0].tolist()
 
 
 def _ends(rest: RestOfWay, place: NDArray[np.int64]) -> dict[str, Any]:

@@ -55,6 +55,9 @@ class RestRequest(FrontRequest):
         Field(min_length=1, fail_fast=True),
     ] = Field(description="what is left of each tour, first of the one being driven")
     min_kept: float = Field(default=0.0, ge=0, le=1, allow_inf_nan=False)
+    touched: Annotated[list[_Index], Field(fail_fast=True)] | None = Field(
+        default=None, description="the stops at which these may have become worse; null is any"
+    )
 
     @property
     def earlier(self) -> EarlierTours:
@@ -68,7 +71,11 @@ class RestRequest(FrontRequest):
         tours = np.array(self.earlier_tours, np.int64).reshape(len(self.earlier_tours), -1)
         if not self._are_tours(tours):
             raise invalid("earlier_tours", "must be of the same stops, between the ends")
-        return EarlierTours(tours, self.min_kept)
+        if self.touched is None:
+            return EarlierTours(tours, self.min_kept)
+        if max(self.touched, default=0) >= self.n:
+            raise invalid("touched", "must be of stops that there are")
+        return EarlierTours(tours, self.min_kept, np.array(self.touched, np.int64))
 
     def _are_tours(self, tours: NDArray[np.int64]) -> bool:
         if tours.shape[1] == 0:

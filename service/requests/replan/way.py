@@ -75,11 +75,14 @@ def rest_of_way(front: EarlierFront, request: ReplanRequest, stops: AllStops) ->
     return RestOfWay(np.array(sorted(chosen), np.int64), ends, start, done, left)
 
 
-def left_of_tours(front: EarlierFront, request: ReplanRequest, rest: RestOfWay) -> Tours:
-    """Return what is left of the earlier tours, in indexes of all stops, shape (m, k).
+def left_of_tours(
+    front: EarlierFront, request: ReplanRequest, rest: RestOfWay
+) -> tuple[Tours, NDArray[np.int64]]:
+    """Return what is left of the earlier tours, shape (m, k), and the stops with new neighbours.
 
-    The first is left of the tour being driven. One that begins with its last stops, more of which
-    are done than of its first, is driven the other way round.
+    In indexes of all stops. The first tour is left of the one being driven. One that begins with
+    its last stops, more of which are done than of its first, is driven the other way round. New
+    neighbours may have the ends, and the stops beside which another has gone from a tour.
 
     Raises:
         Refusal: The tour being driven has not all stops of the front once.
@@ -95,7 +98,15 @@ def left_of_tours(front: EarlierFront, request: ReplanRequest, rest: RestOfWay) 
     last = [] if rest.ends.closed or rest.ends.end is None else [rest.ends.end]
     sides = (np.tile(np.array(side, np.int64), (len(tours), 1)) for side in (first, last))
     before, after = sides
-    return np.concatenate((before, kept, after), axis=1)
+    beside = np.union1d(_beside_gone(tours, is_left), np.array([*first, *last], np.int64))
+    return np.concatenate((before, kept, after), axis=1), beside
+
+
+def _beside_gone(tours: Tours, is_left: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Return the stops left before or after which a tour has one that is not, ascending."""
+    gone = ~is_left[tours]
+    beside = np.roll(gone, 1, axis=1) | np.roll(gone, -1, axis=1)
+    return np.unique(tours[beside & ~gone])
 
 
 def _ends(front: EarlierFront) -> tuple[int | None, int | None]:
