@@ -115,7 +115,7 @@ class PlanRoutes:
         router.post(
             "/front/{id}/replan",
             operation_id="replan_front",
-            response_model=FrontAnswer,
+            response_model=FrontAnswer | CoverageAnswer,
             responses={200: CONTENT, **responses, **problem_responses(404, 409, 410, 502)},
             openapi_extra=_openapi_request(REPLAN_BODY),
         )(self.replan_front)
@@ -165,10 +165,11 @@ class PlanRoutes:
     async def replan_front(self, request: Request, id: str) -> Response:  # noqa: A002
         """Plan the rest of the way of a front, from what has changed.
 
-        Stops are done, added or removed, the vehicle is somewhere else, costs have changed. The
-        answer is a front of open routes from the position through what is left to the old end, or
-        of a closed tour back to its start. Each tour has `kept`, the share of the remaining legs of
-        the tour being driven that it keeps. The front that is replanned stays as it is.
+        Stops are done, added or removed, the vehicle is somewhere else, costs or the map of a front
+        of `POST /coverage` have changed. The answer is a front of open routes from the position
+        through what is left to the old end, or of a closed tour back to its start. Each tour has
+        `kept`, the share of the remaining legs of the tour being driven that it keeps. The front
+        that is replanned stays as it is.
 
         Headers are as of `POST /front`. The answer is a front of its own, to be replanned again.
         """
@@ -200,7 +201,7 @@ class PlanRoutes:
         if source is None:
             reason = "what it was planned from is not kept; plan what is left with POST /front"
             raise not_replannable(record.id, reason)
-        stored = StoredFront(record.id, source, record.front.tours)
+        stored = StoredFront(record.id, source, record.front.tours, record.front.places)
         return await self._parser.replan(ReplanSource(body.body, stored))
 
     async def _planned(self, request: Request, source: TaskSource, body: _Body) -> Response:

@@ -91,7 +91,9 @@ PROBLEMS: Mapping[str, Problem] = {
     "no-road": Problem(422, "{detail}", _ROADS),
     "off-road": Problem(422, "{detail}", _ROADS),
     "paths-too-long": Problem(
-        422, "paths must have at most {limit} cells, got {actual}: {advice}", ("POST /coverage",)
+        422,
+        "paths must have at most {limit} cells, got {actual}: {advice}",
+        ("POST /coverage", *_REPLAN),
     ),
     "over-limit": Problem(422, "{name} must be at most {limit:g}, got {actual:g}", _PLANS),
     "streets-too-long": Problem(

@@ -1,7 +1,7 @@
 """Requests of `POST /coverage`: their fields, their JSON schema and their parser."""
 
 from collections.abc import Iterable
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,6 +96,9 @@ class CoverageRequest(MapRequest):
         )
 
 
+AnyCoverageRequest = TypeVar("AnyCoverageRequest", bound=CoverageRequest)
+
+
 def coverage_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str, Any]]:
     """Return the JSON schema of a request, and of one beside a file of the map, by name."""
     whole = _coverage_schema(limits, actors)
@@ -145,14 +148,17 @@ def _coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
 
 
 def parse_coverage_request(
-    body: bytes, limits: Limits, picture: bytes | None = None
-) -> CoverageRequest:
+    body: bytes,
+    limits: Limits,
+    picture: bytes | None = None,
+    model: type[AnyCoverageRequest] = CoverageRequest,  # type: ignore[assignment]
+) -> AnyCoverageRequest:
     """Return the request in a JSON body, with the map of a picture where one came with it.
 
     Raises:
         Refusal: The body is not JSON, misses the schema, is over a limit or has no map.
     """
-    request = parse_json(CoverageRequest, body).with_map(picture, limits.cells)
+    request = parse_json(model, body).with_map(picture, limits.cells)
     if len(request.places) > limits.cities:
         raise too_many_cities("places", limits.cities, len(request.places))
     _check_poses(request)

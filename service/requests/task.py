@@ -10,7 +10,7 @@ from service.errors import Refusal
 from service.instance import Instance, Kind
 from service.planner import PlanOptions
 from service.replanning.earlier_tours import EarlierTours
-from service.requests.coverage import parse_coverage_request
+from service.requests.coverage import CoverageRequest, parse_coverage_request
 from service.requests.fleets.request import parse_fleet_request
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.front import FrontRequest
@@ -21,11 +21,11 @@ from service.requests.limits import (
     check_router,
     check_structure,
 )
-from service.requests.replan.rest_request import RestRequest
+from service.requests.replan.rest_request import RestOfMapRequest, RestRequest
 from service.requests.schemas import Geometry, PlanRequest
 from service.requests.stops import Labels, UnmeasuredStops
 
-TaskKind = Literal["front", "coverage", "fleet", "replan"]
+TaskKind = Literal["front", "coverage", "fleet", "replan", "replan-coverage"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -66,8 +66,9 @@ class TaskSource:
     """A front to plan, as it came: the form in which it is stored and sent to other machines.
 
     Args:
-        kind: The kind of request, named after its path.
-        body: The request as JSON; of kind replan, as the service writes it (see `RestRequest`).
+        kind: The kind of request, named after its path; of the rest of a map, replan-coverage.
+        body: The request as JSON; of the kinds to replan, as the service writes it (see
+            `RestRequest` and `RestOfMapRequest`).
         upload: The .npy file of matrices, or the PNG or PGM file of a map, where one came with it.
         task: The parsed task, where this process has it, so that no worker parses it again.
     """
@@ -86,16 +87,8 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
         InvalidInstance: The cities or the map cannot be planned.
     """
     check_structure(source.body, limits)
-    if source.kind == "coverage":
-        coverage_request = parse_coverage_request(source.body, limits, source.upload)
-        name = choose_actor(actors, coverage_request.kind, coverage_request.requested_actor)
-        return Task(
-            subject=coverage_request.coverage(),
-            options=_options(coverage_request, actors[name]),
-            actor=name,
-            paths=coverage_request.paths,
-            arrivals=coverage_request.arrivals,
-        )
+    if source.kind in ("coverage", "replan-coverage"):
+        return _coverage_task(source, limits, actors)
     if source.kind == "fleet":
         return _fleet_task(source.body, limits)
     model = RestRequest if source.kind == "replan" else FrontRequest
@@ -112,6 +105,20 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
         arrivals=request.arrivals,
         geometry=request.geometry,
         earlier=request.earlier if isinstance(request, RestRequest) else None,
+    )
+
+
+def _coverage_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
+    model = RestOfMapRequest if source.kind == "replan-coverage" else CoverageRequest
+    request = parse_coverage_request(source.body, limits, source.upload, model)
+    name = choose_actor(actors, request.kind, request.requested_actor)
+    return Task(
+        subject=request.coverage(),
+        options=_options(request, actors[name]),
+        actor=name,
+        paths=request.paths,
+        arrivals=request.arrivals,
+        earlier=request.earlier if isinstance(request, RestOfMapRequest) else None,
     )
 
 

@@ -19,11 +19,13 @@ from tests.helpers.stores import job, record
 
 CITIES = np.random.default_rng(1).random((12, 4))
 SHORT = {"coordinates": CITIES.tolist(), "time_limit": 0.1}
-COVERAGE = {
-    "grid": [[0, 0], [0, 0]],
+MAP = {
+    "grid": [[0] * 4] * 3,
     "cell_size": 1.0,
-    "places": [[0, 0], [1, 1]],
-    "second_coordinates": [[0, 0], [1, 1]],
+    "origin": [0.0, 0.0, 0.0],
+    "places": [[0, 0], [2, 0], [2, 3], [0, 3]],
+    "cost_layer": [[1, 2, 3, 1]] * 3,
+    "time_limit": 0.1,
 }
 NEW = {"id": "new", "coordinates": [[0.5, 0.5], [0.5, 0.5]]}
 
@@ -204,11 +206,40 @@ def test_the_end_of_an_open_route_is_not_passed_while_stops_are_left(client: htt
     assert [(tour["stops"], tour["lengths"]) for tour in rest["front"]] == [(["5"], [0.0, 0.0])]
 
 
+def test_a_front_of_a_map_is_replanned_on_the_map_as_it_is_now(client: httpx.Client) -> None:
+    front = client.post("/coverage", json=MAP).json()
+    driven = front["front"][0]["tour"]
+    rest = replan(client, front, done=driven[:2], tour=driven, blocked=[[1, 0]], paths=True).json()
+    end, *_, start = (front["places"][place] for place in driven[:2])
+    assert rest["closed"] is False
+    assert len(rest["places"]) == 4
+    for tour in rest["front"]:
+        assert (tour["path"]["cells"][0], tour["path"]["cells"][-1]) == (start, end)
+        assert [1, 0] not in tour["path"]["cells"]
+        assert 0 <= tour["kept"] <= 1
+    # Where the obstacle is gone, and the robot elsewhere, and a place is added.
+    again = replan(client, rest, pose=[2.5, 1.5], freed=[[1, 0]], add=[[1, 1]]).json()
+    assert {tuple(again["places"][tour["tour"][0]]) for tour in again["front"]} == {(1, 2)}
+    assert again["cities"] == 5
+    tour = client.get("/tour", params={"front": again["id"], "knee": ""}).json()
+    assert tour in [{"front": again["id"], **each} for each in again["front"]]
+    assert client.get(f"/front/{front['id']}").json() == front
+
+
+def test_what_is_of_a_map_alone_is_refused_of_stops(
+    client: httpx.Client, front: dict[str, Any]
+) -> None:
+    for request, pointer in (
+        ({"blocked": [[0, 0]]}, "/blocked"),
+        ({"paths": False}, "/paths"),
+        ({"add": [[0, 0]]}, "/add/0"),
+        ({"position": [0, 0]}, "/position"),
+    ):
+        refusal = problem(replan(client, front, **request))
+        assert (refusal["status"], refusal["errors"][0]["pointer"]) == (422, pointer)
+
+
 def test_fronts_that_cannot_be_replanned_say_why(client: httpx.Client, store: SqliteStore) -> None:
-    covered = client.post("/coverage", json=COVERAGE).json()
-    refusal = problem(replan(client, covered))
-    assert (refusal["status"], refusal["code"]) == (409, "not-replannable")
-    assert "/coverage" in refusal["detail"]
     asyncio.run(store.put(record("imported", caller="anonymous")))
     refusal = problem(replan(client, {"id": "imported"}))
     assert refusal["code"] == "not-replannable"

@@ -63,7 +63,9 @@ def _correct_body(body: Any, *, positive: bool) -> None:
 def _change_nothing(body: Any) -> None:
     """Leave only those members of a request to replan that hold for any front."""
     if isinstance(body, dict):
-        of_some_front = ("done", "position", "add", "remove", "costs", "objectives", "tour")
+        of_stops = ("costs", "objectives", "geometry")
+        of_a_map = ("pose", "grid", "blocked", "freed", "cost_layer", "paths")
+        of_some_front = ("done", "position", "add", "remove", "tour", *of_stops, *of_a_map)
         for name in (*of_some_front, "actor", "reference_point"):
             body.pop(name, None)
 

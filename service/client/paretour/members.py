@@ -141,15 +141,22 @@ class CoverageRequest(PlanRequest, total=False):
 class ReplanRequest(PlanOptions, total=False):
     """The members of a request to POST /front/{id}/replan: what has changed since.
 
-    Stops are named by their ids, or by their indexes in the front.
+    Stops are named by their ids, or by their indexes in the front. Of a front of a map, a place
+    that is added or where the robot is is given as row and column.
     """
 
-    done: Sequence[int | str]
-    position: int | str | Mapping[str, Any]
-    add: Sequence[Mapping[str, Any]]
-    remove: Sequence[int | str]
+    done: Sequence[int | str] | ArrayLike
+    position: int | str | Mapping[str, Any] | ArrayLike
+    add: Sequence[Mapping[str, Any]] | ArrayLike
+    remove: Sequence[int | str] | ArrayLike
     costs: Sequence[Mapping[str, Any]]
     objectives: Sequence[ObjectiveRequest]
-    tour: Sequence[int | str]
+    tour: Sequence[int | str] | ArrayLike
     min_kept: float
     geometry: Literal["straight", "roads"]
+    pose: ArrayLike
+    grid: ArrayLike
+    blocked: ArrayLike
+    freed: ArrayLike
+    cost_layer: ArrayLike
+    paths: bool

@@ -50,7 +50,11 @@ def all_stops(front: EarlierFront, request: ReplanRequest) -> AllStops:
     Raises:
         Refusal: Two have the same id.
     """
-    new = {f"add/{index}": item for index, item in enumerate(request.add)}
+    new: dict[str, NewStop] = {}
+    for index, item in enumerate(request.add):
+        new[f"add/{index}"] = _new_stop(item, f"add/{index}")
+    if isinstance(request.position, list):
+        _new_stop(request.position, "position")
     if isinstance(request.position, NewStop):
         new["position"] = request.position
     seen = {stop.id for stop in front.labels.stops}
@@ -60,6 +64,12 @@ def all_stops(front: EarlierFront, request: ReplanRequest) -> AllStops:
         seen.add(item.id)
     stops = (*front.labels.stops, *(Stop(item.id, item.location) for item in new.values()))
     return AllStops(stops, front.n, new)
+
+
+def _new_stop(item: NewStop | list[int], part: str) -> NewStop:
+    if isinstance(item, list):
+        raise invalid(part, "must be a stop with an id: row and column are of a place on a map")
+    return item
 
 
 def all_costs(

@@ -1,7 +1,7 @@
 """The front that is replanned: its stops, costs, ends and tours, from what was stored of it."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,11 +31,13 @@ class StoredFront:
         id: Its id.
         source: What it was planned from.
         tours: The JSON of its tours, with commas between, without brackets.
+        places: Of a front of a map, row and column of each place.
     """
 
     id: str
     source: TaskSource
     tours: bytes
+    places: Sequence[Sequence[int]] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,24 +75,44 @@ def read_earlier_front(stored: StoredFront, limits: Limits) -> EarlierFront:
     """
     source = stored.source
     if source.kind not in _MODELS:
-        reason = f"it is of POST /{source.kind}, and only those of POST /front can be"
+        reason = f"it is of POST /{source.kind}, and only those of POST /front and /coverage can be"
         raise not_replannable(stored.id, reason)
     try:
         model = _MODELS[source.kind]
         request = parse_front_request(source.body, limits, source.upload, model)
     except Refusal as refusal:
-        reason = f"what it was planned from is refused now ({refusal.detail})"
-        raise not_replannable(stored.id, reason) from None
-    tours, lengths = _read_tours(stored, request.n)
+        raise refused_now(stored.id, refusal) from None
+    start = request.start if isinstance(request.start, int) else 0
+    front = with_tours(stored, request.n, lambda _: (request.ends, start))
+    labels = request.labels or front.labels
+    return replace(front, labels=labels, sources=_sources(request))
+
+
+def with_tours(
+    stored: StoredFront,
+    n: int,
+    ends_of: Callable[[NDArray[np.int64]], tuple[RouteEnds, int]],
+) -> EarlierFront:
+    """Return an earlier front with its tours, of stops named by their numbers, without sources.
+
+    Args:
+        stored: The front as it is stored.
+        n: Its number of stops.
+        ends_of: Returns the ends of all tours, and the stop that closed ones are reported from, by
+            the first of them, shape (n,).
+
+    Raises:
+        Refusal: It has no tours, or such as are not of so many stops.
+    """
+    tours, lengths = _read_tours(stored, n)
     chosen = np.linspace(0, len(tours) - 1, min(len(tours), MOST_TOURS)).astype(np.intp)
-    return EarlierFront(
-        labels=request.labels or _numbered(request.n),
-        sources=_sources(request),
-        ends=request.ends,
-        start=request.start if isinstance(request.start, int) else 0,
-        tours=tours[chosen],
-        knee=tours[knee(lengths)],
-    )
+    ends, start = ends_of(tours[0])
+    return EarlierFront(_numbered(n), (), ends, start, tours[chosen], tours[knee(lengths)])
+
+
+def refused_now(front: str, refusal: Refusal) -> Refusal:
+    """Return the refusal of a front whose request is refused under the limits of now."""
+    return not_replannable(front, f"what it was planned from is refused now ({refusal.detail})")
 
 
 def not_replannable(front: str, reason: str) -> Refusal:

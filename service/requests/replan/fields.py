@@ -5,6 +5,8 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from service.instance import OBJECTIVES
+from service.requests.coverage import Cell
+from service.requests.replan.map_fields import MapChanges
 from service.requests.schemas import GEOMETRY, LARGEST, Geometry, PlanePoint, PlanFields, Text
 from service.requests.stop_fields import Latitude, Longitude, ObjectiveItem, StopReference
 
@@ -70,13 +72,25 @@ class CostEntry(BaseModel):
     cost: Cost = Field(description="of that step from now on")
 
 
+def _form_of_position(value: object) -> str:
+    if isinstance(value, int | float | str):
+        return "[stop]"
+    return "[cell]" if isinstance(value, list) else "[place]"
+
+
 Position = Annotated[
-    Annotated[StopReference, Tag("[stop]")] | Annotated[NewStop, Tag("[place]")],
-    Discriminator(lambda value: "[stop]" if isinstance(value, int | float | str) else "[place]"),
+    Annotated[StopReference, Tag("[stop]")]
+    | Annotated[NewStop, Tag("[place]")]
+    | Annotated[Cell, Tag("[cell]")],
+    Discriminator(_form_of_position),
+]
+_Added = Annotated[
+    Annotated[NewStop, Tag("[place]")] | Annotated[Cell, Tag("[cell]")],
+    Discriminator(lambda value: "[cell]" if isinstance(value, list) else "[place]"),
 ]
 
 
-class ReplanRequest(PlanFields):
+class ReplanRequest(MapChanges):
     """What has changed since a front was planned, and the options of the front of the rest.
 
     Stops are named by their ids, or by their indexes in the front. Those of a front without ids are
@@ -91,8 +105,9 @@ class ReplanRequest(PlanFields):
         description="where the way goes on: a stop, or a place, which is given as an added stop is;"
         " by default the last that is done",
     )
-    add: Annotated[list[NewStop], Field(fail_fast=True)] = Field(
-        default_factory=list, description="stops to visit as well"
+    add: Annotated[list[_Added], Field(fail_fast=True)] = Field(
+        default_factory=list,
+        description="stops to visit as well; of a front of a map row and column of each place",
     )
     remove: _References = Field(default_factory=list, description="stops not to visit any more")
     costs: Annotated[list[CostEntry], Field(fail_fast=True)] = Field(
@@ -119,3 +134,8 @@ class ReplanRequest(PlanFields):
         allow_inf_nan=False,
         description="return only tours that keep this share of the driven tour's remaining legs",
     )
+
+    @property
+    def options_given(self) -> frozenset[str]:
+        """The names of the options that the request has, as those of a new request."""
+        return frozenset({*PlanFields.model_fields, "geometry"} & self.model_fields_set)

@@ -14,14 +14,14 @@ from service.instance import PLANE
 from service.requests.limits import Limits, check_amounts
 from service.requests.replan.costs import AllStops, all_costs, all_stops, between, changed_stops
 from service.requests.replan.earlier_front import StoredFront, read_earlier_front
+from service.requests.replan.earlier_map import MAP_MODELS
 from service.requests.replan.fields import ReplanRequest
-from service.requests.replan.way import RestOfWay, left_of_tours, rest_of_way
-from service.requests.schemas import PlanFields
+from service.requests.replan.map_fields import check_of_stops
+from service.requests.replan.rest_of_map import rest_of_map
+from service.requests.replan.way import left_of_tours, rest_of_way
 from service.requests.stops import Changed, Matrix, Measured, Objective, Plane, Source
 from service.requests.task import TaskSource, parse_task
 from service.requests.validation import parse_json, too_many_cities
-
-_OPTIONS = {*PlanFields.model_fields, "geometry"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +59,9 @@ def rest_source(source: ReplanSource, limits: Limits) -> TaskSource:
         Refusal: The body is malformed or over a limit, or the front cannot be replanned so.
     """
     request = parse_json(ReplanRequest, source.body)
+    if source.front.source.kind in MAP_MODELS:
+        return rest_of_map(request, source.front, limits)
+    check_of_stops(request)
     front = read_earlier_front(source.front, limits)
     stops = all_stops(front, request)
     rest = rest_of_way(front, request, stops)
@@ -77,11 +80,11 @@ def rest_source(source: ReplanSource, limits: Limits) -> TaskSource:
             _objective(objective, each, file is not None)
             for objective, each in zip(objectives, sources, strict=True)
         ],
-        **_ends(rest, place),
+        **rest.end_members(place),
         "earlier_tours": place[left].tolist(),
         "touched": _touched(request, stops, moved, place),
         "min_kept": request.min_kept,
-        **request.model_dump(include=_OPTIONS & request.model_fields_set),
+        **request.model_dump(include=set(request.options_given)),
     }
     return TaskSource("replan", to_json(members), file)
 
@@ -102,15 +105,6 @@ def _touched(
         return None
     touched = place[np.union1d(moved, changed_stops(request, stops))]
     return touched[touched >= 0].tolist()
-
-
-def _ends(rest: RestOfWay, place: NDArray[np.int64]) -> dict[str, Any]:
-    """Return the members that say where the rest of the way begins and ends."""
-    begin = None if rest.start is None else int(place[rest.start])
-    if rest.ends.closed:
-        return {"closed": True, "start": begin}
-    end = rest.ends.end
-    return {"closed": False, "start": begin, "end": None if end is None else int(place[end])}
 
 
 def _matrices_file(sources: list[Source]) -> bytes | None:

@@ -5,6 +5,7 @@ from typing import Any
 
 from service.requests.limits import Limits, limited_schema
 from service.requests.replan.fields import ReplanRequest
+from service.requests.replan.map_fields import describe_map_changes
 
 _SHARED = "ObjectiveItem"  # of which each form has a name of its own, as in `front_schemas`
 _OBJECTIVES = ("MatrixObjective", "PlaneObjective", "MeasuredObjective")
@@ -22,6 +23,7 @@ def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str,
         fields["geometry"]["enum"].remove("roads")
     kinds = [{"$ref": f"#/components/schemas/{name}"} for name in _OBJECTIVES]
     fields["objectives"] = {**fields["objectives"], "items": {"oneOf": kinds}}
+    describe_map_changes(fields, limits.cells)
     for name in ("done", "remove", "tour", "add"):
         fields[name]["maxItems"] = limits.cities
     named = {name: part for name, part in parts.items() if name != _SHARED}

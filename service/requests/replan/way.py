@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 from service.instance import CLOSED, RouteEnds
 from service.requests.replan.costs import AllStops
 from service.requests.replan.earlier_front import EarlierFront
-from service.requests.replan.fields import NewStop, ReplanRequest
+from service.requests.replan.fields import ReplanRequest
 from service.requests.stop_fields import find_index
 from service.requests.validation import invalid, show
 from service.search.open_routes import rotated
@@ -34,6 +35,22 @@ class RestOfWay:
     start: int | None
     done: tuple[int, ...]
     left: frozenset[int]
+
+    def ends_at(self, place: NDArray[np.int64]) -> RouteEnds:
+        """Return the ends as indexes in the rest; `place` has those of all stops."""
+        if self.ends.closed:
+            return CLOSED
+        start, end = (
+            None if stop is None else int(place[stop]) for stop in (self.ends.start, self.ends.end)
+        )
+        return RouteEnds(False, start, end)
+
+    def end_members(self, place: NDArray[np.int64]) -> dict[str, Any]:
+        """Return the members of a request that say where the rest begins and ends."""
+        begin = None if self.start is None else int(place[self.start])
+        if self.ends.closed:
+            return {"closed": True, "start": begin}
+        return {"closed": False, "start": begin, "end": self.ends_at(place).end}
 
 
 def rest_of_way(front: EarlierFront, request: ReplanRequest, stops: AllStops) -> RestOfWay:
@@ -122,7 +139,7 @@ def _start(
     """Return the stop at which the way goes on, None where any may be the first."""
     if request.position is None:
         return default
-    if isinstance(request.position, NewStop):
+    if not isinstance(request.position, int | str):
         return len(stops.stops) - 1
     return _index(request.position, ids, "position")
 

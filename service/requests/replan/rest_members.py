@@ -1,0 +1,57 @@
+"""The members that the rest of a way has beside those of a new request: the earlier tours."""
+
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, Field
+
+from service.instance import RouteEnds
+from service.replanning.earlier_tours import EarlierTours
+from service.requests.validation import invalid
+
+# Without AsInteger: these are the service's own, and a hundred thousand of them take a while.
+Index = Annotated[int, Field(ge=0, le=2**31 - 1)]
+
+
+class EarlierMembers(BaseModel):
+    """What is left of the tours of an earlier front, as the service writes it."""
+
+    earlier_tours: Annotated[
+        list[Annotated[list[Index], Field(fail_fast=True)]],
+        Field(min_length=1, fail_fast=True),
+    ] = Field(description="what is left of each tour, first of the one being driven")
+    min_kept: float = Field(default=0.0, ge=0, le=1, allow_inf_nan=False)
+    touched: Annotated[list[Index], Field(fail_fast=True)] | None = Field(
+        default=None, description="the stops at which these may have become worse; null is any"
+    )
+
+    def earlier_of(self, n: int, ends: RouteEnds) -> EarlierTours:
+        """Return what is left of the earlier tours, of n stops between these ends.
+
+        Raises:
+            Refusal: They are not tours of the same stops between the ends.
+        """
+        if len({len(tour) for tour in self.earlier_tours}) != 1:
+            raise invalid("earlier_tours", "must be of one length")
+        tours = np.array(self.earlier_tours, np.int64).reshape(len(self.earlier_tours), -1)
+        if not _are_tours(tours, n, ends):
+            raise invalid("earlier_tours", "must be of the same stops, between the ends")
+        if self.touched is None:
+            return EarlierTours(tours, self.min_kept)
+        if max(self.touched, default=0) >= n:
+            raise invalid("touched", "must be of stops that there are")
+        return EarlierTours(tours, self.min_kept, np.array(self.touched, np.int64))
+
+
+def _are_tours(tours: NDArray[np.int64], n: int, ends: RouteEnds) -> bool:
+    if tours.shape[1] == 0:
+        return True
+    order = np.sort(tours, axis=1)
+    places = ((ends.start, 0), (ends.end, -1))
+    return bool(
+        (order == order[0]).all()
+        and (np.diff(order[0]) > 0).all()
+        and order[0, -1] < n
+        and all(end is None or (tours[:, place] == end).all() for end, place in places)
+    )
