@@ -15,6 +15,8 @@ from collections.abc import Iterator
 import httpx
 import numpy as np
 
+from service.errors import Refusal
+from service.requests.replan.parser import ReplanSource
 from service.requests.task import TaskSource
 from tests.fuzz.attack import largest_memory, parse_many, post_many, watching_health
 from tests.fuzz.bodies import GENERATORS, extreme
@@ -51,13 +53,13 @@ def main() -> int:
     return int(slowest > HEALTH_SECONDS or largest_memory() > MEGABYTES or lost > 0)
 
 
-def _sample(count: int, seed: int) -> Iterator[TaskSource]:
+def _sample(count: int, seed: int) -> Iterator[TaskSource | ReplanSource]:
     for number in range(count // ONE_IN // (len(GENERATORS) + 1)):
         rng = random.Random(f"http {seed} {number}")
         yield extreme(rng)
         for make in GENERATORS.values():
             made = make(rng)
-            if isinstance(made, TaskSource):
+            if not isinstance(made, Refusal):
                 yield made
 
 

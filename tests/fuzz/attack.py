@@ -16,6 +16,7 @@ import httpx
 from service.actor_info import ActorInfo
 from service.errors import PROBLEMS, Refusal
 from service.requests.limits import Limits
+from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.task import TaskSource, parse_task
 from tests.fuzz.bodies import GENERATORS
 
@@ -33,7 +34,10 @@ def parse_many(
         try:
             if isinstance(made, Refusal):
                 raise made
-            parse_task(made, limits, actors)
+            if isinstance(made, ReplanSource):
+                parse_replan(made, limits, actors)
+            else:
+                parse_task(made, limits, actors)
             outcomes["planned"] += 1
         except Refusal as refusal:
             json.dumps(refusal.document("x"), allow_nan=False)
@@ -42,16 +46,27 @@ def parse_many(
     return outcomes
 
 
-def post_many(url: str, sources: Iterable[TaskSource]) -> Counter[int]:
-    """Post bodies and return how often each status came, after a check of each answer."""
+def post_many(url: str, sources: Iterable[TaskSource | ReplanSource]) -> Counter[int]:
+    """Post bodies and return how often each status came, after a check of each answer.
+
+    What a request to replan is about is planned first.
+    """
     statuses: Counter[int] = Counter()
     with httpx.Client(base_url=url, timeout=60) as client:
         for source in sources:
-            answer = client.post(f"/{source.kind}", **message_of(source))
+            answer = _post(client, source)
             assert answer.status_code < 500 or answer.status_code == 503, answer.text
             strict_json(answer.content)
             statuses[answer.status_code] += 1
     return statuses
+
+
+def _post(client: httpx.Client, source: TaskSource | ReplanSource) -> httpx.Response:
+    if isinstance(source, TaskSource):
+        return client.post(f"/{source.kind}", **message_of(source))
+    front = _post(client, source.front.source).raise_for_status().json()["id"]
+    message = message_of(TaskSource("replan", source.body))
+    return client.post(f"/front/{front}/replan", **message)
 
 
 def strict_json(content: bytes) -> Any:

@@ -16,7 +16,10 @@ from PIL import Image
 
 from service.errors import Refusal
 from service.requests.multipart import split_parts
+from service.requests.replan.parser import ReplanSource
 from service.requests.task import TaskSource
+from tests.fuzz.mutations import EXTREMES, TOKENS, mutated
+from tests.fuzz.replans import replan
 
 Generator = Callable[[random.Random], TaskSource]
 
@@ -52,38 +55,6 @@ _HEADERS = [
     *(b"'<f8'", b"'|O'", b"'f'", b"'<f16'", b"'shape'", b"**", b"\x00", b"\xff", b"  " * 2000),
 ]
 _CHUNKS = (b"IHDR", b"PLTE", b"IDAT", b"IEND", b"tRNS", b"iCCP", b"zTXt", b"acTL", b"fdAT", b"eXIf")
-_TOKENS = [
-    *(b"null", b"true", b'""', b'"\\ud800"', b"[]", b"[[]]", b"{}", b"-0.0", b"-1", b"1e308"),
-    *(b"1e309", b"5e-324", b"NaN", b"-Infinity", b"9" * 400, b"9" * 5000, b"[" * 300, b"{" * 300),
-    *(
-        b"[0," * 3,
-        b'"x":',
-        b",",
-        b":",
-        b"]",
-        b"}",
-        b"\x00",
-        b"\xff",
-        b'"' * 3,
-        b"1.5",
-        b"2147483648",
-    ),
-]
-_EXTREMES = (
-    0.0,
-    5e-324,
-    1e-310,
-    1e-300,
-    1e-160,
-    1e-150,
-    1e-8,
-    1.0,
-    1e8,
-    1e149,
-    1e150,
-    1e151,
-    1e308,
-)
 
 
 def npy(rng: random.Random) -> TaskSource:
@@ -92,7 +63,7 @@ def npy(rng: random.Random) -> TaskSource:
     stream = io.BytesIO()
     kind = rng.choice(["<f8", ">f8", "<f4", "<f2", "<i4", "<u2", "|b1", "<c16"])
     np.save(stream, np.full((2, n, n), rng.randint(0, 3)).astype(kind))
-    content = _mutated(rng, stream.getvalue(), _HEADERS, 120)
+    content = mutated(rng, stream.getvalue(), _HEADERS, 120)
     return TaskSource("front", json.dumps(_OPTIONS).encode(), content)
 
 
@@ -110,7 +81,7 @@ def png(rng: random.Random) -> TaskSource:
         at = rng.choice([8, 33, len(content) - 12])
         content = content[:at] + _chunk(rng.choice(_CHUNKS), inside) + content[at:]
     if rng.random() < 0.6:
-        content = _mutated(rng, content, [b"", b"\0", b"\xff", b"IHDR", b"\0\0\0\r"], len(content))
+        content = mutated(rng, content, [b"", b"\0", b"\xff", b"IHDR", b"\0\0\0\r"], len(content))
     return TaskSource("coverage", json.dumps(_SPACING).encode(), content)
 
 
@@ -129,12 +100,12 @@ def pgm(rng: random.Random) -> TaskSource:
         "occupied_thresh": rng.choice([0, 0.65, 1]),
         "free_thresh": rng.choice([0, 0.196, 1]),
         "unknown": rng.choice(["blocked", "free"]),
-        "origin": [rng.choice(_EXTREMES), -rng.choice(_EXTREMES), rng.choice(_EXTREMES)],
-        "start_pose": [rng.choice(_EXTREMES), 0],
+        "origin": [rng.choice(EXTREMES), -rng.choice(EXTREMES), rng.choice(EXTREMES)],
+        "start_pose": [rng.choice(EXTREMES), 0],
     }
     request = {**_SPACING, **dict(rng.sample(sorted(members.items()), rng.randint(0, 5)))}
     return TaskSource(
-        "coverage", json.dumps(request).encode(), _mutated(rng, content, tokens, len(content))
+        "coverage", json.dumps(request).encode(), mutated(rng, content, tokens, len(content))
     )
 
 
@@ -152,7 +123,7 @@ def json_body(rng: random.Random) -> TaskSource:
     options = {"seed": 1, "start": 0, "reference_point": [9, 9], "initial_tours": [[0, 1]]}
     request = {**_OPTIONS, **request, **dict(rng.sample(sorted(options.items()), 2))}
     body = json.dumps(request).encode()
-    return TaskSource(kind, _mutated(rng, body, _TOKENS, len(body)))
+    return TaskSource(kind, mutated(rng, body, TOKENS, len(body)))
 
 
 def multipart(rng: random.Random) -> TaskSource | Refusal:
@@ -163,7 +134,7 @@ def multipart(rng: random.Random) -> TaskSource | Refusal:
     part = b'--x\r\nContent-Disposition: form-data; name="%s"\r\n\r\n%s\r\n'
     body = part % (b"request", source.body) + part % (upload.encode(), source.upload or b"")
     tokens = [b"--x", b"\r\n", b"--", b"\r\n--x\r\n", b"--x--", b'name="', b" " * 5000, b";" * 99]
-    body = _mutated(rng, body + b"--x--\r\n", tokens, 200)
+    body = mutated(rng, body + b"--x--\r\n", tokens, 200)
     types = ("x", "x", "x", '"x"', "", "x" * 80, "é", '"x')
     try:
         parts = split_parts(
@@ -177,7 +148,7 @@ def multipart(rng: random.Random) -> TaskSource | Refusal:
 def extreme(rng: random.Random) -> TaskSource:
     """Return a request of numbers from 5e-324 to 1e308, of all scales or of one."""
     n = rng.randint(1, 9)
-    scales = rng.choice([_EXTREMES, (0.0,), (rng.choice(_EXTREMES),)])
+    scales = rng.choice([EXTREMES, (0.0,), (rng.choice(EXTREMES),)])
 
     def numbers(count: int) -> list[float]:
         return [rng.choice(scales) * rng.choice((1, rng.random())) for _ in range(count)]
@@ -192,23 +163,14 @@ def extreme(rng: random.Random) -> TaskSource:
     return TaskSource("front", json.dumps(request).encode())
 
 
-GENERATORS: Mapping[str, Callable[[random.Random], TaskSource | Refusal]] = {
+GENERATORS: Mapping[str, Callable[[random.Random], TaskSource | ReplanSource | Refusal]] = {
     "npy": npy,
     "png": png,
     "pgm": pgm,
     "json": json_body,
     "multipart": multipart,
+    "replan": replan,
 }
-
-
-def _mutated(rng: random.Random, content: bytes, tokens: list[bytes], within: int) -> bytes:
-    """Return the content with up to four changes in its first bytes, and sometimes cut short."""
-    for _ in range(rng.randint(0, 4)):
-        at = rng.randrange(min(within, len(content)) + 1)
-        removed = rng.choice((0, 0, 1, 1, 2, 10))
-        put = rng.choice([rng.choice(tokens), rng.choice(tokens), rng.randbytes(1)])
-        content = content[:at] + put + content[at + removed :]
-    return content[: rng.randrange(len(content) + 1)] if rng.random() < 0.15 else content
 
 
 def _chunk(kind: bytes, content: bytes) -> bytes:
