@@ -1,41 +1,76 @@
-"""The benchmark of replanning: both ways plan the same rest, and are measured by the same box."""
+"""The benchmark of replanning: all ways plan the same rest, and are measured by the same box."""
 
 import json
+from typing import Any
 
 import numpy as np
 import pytest
 
-from service.instance import Instance
+from service.instance import Instance, tour_lengths
 from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.task import TaskSource
-from tests.benchmarks.replan import _changes, share_of
+from tests.benchmarks.replan import longer_than, share_of, unmet
+from tests.benchmarks.rests import (
+    ROADS,
+    ROADS_COSTS,
+    Rest,
+    Stops,
+    draw_stops,
+    with_costs_changed,
+    with_stops_changed,
+)
 from tests.helpers.actors import info_of
 
-LIMITS = Limits(body_bytes=2**20, cities=50, cells=100, preferences=99, size=99, seconds=9)
+LIMITS = Limits(body_bytes=2**20, cities=60, cells=100, preferences=99, size=99, seconds=9)
+N = 30
 
 
-def test_the_rest_from_nothing_has_the_cities_and_ends_of_the_rest_that_is_replanned() -> None:
+def drawn(shape: str) -> tuple[Stops, dict[str, Any], Rest]:
     generator = np.random.default_rng(1)
-    cities = generator.random((30, 4))
-    tours = [[0, *generator.permutation(np.arange(1, 30)).tolist()] for _ in range(3)]
+    stops = draw_stops(shape, N, 0 if shape == ROADS_COSTS else 2, generator)
+    tours = [[0, *generator.permutation(np.arange(1, N)).tolist()] for _ in range(3)]
     front = {"front": [{"balance": each / 2, "tour": tours[each]} for each in range(3)]}
-    changes, rest = _changes(front, cities, 2, generator)
-    items = [{"tour": tour, "lengths": [1.0, 2.0]} for tour in tours]
-    source = TaskSource("front", json.dumps({"coordinates": cities.tolist()}).encode())
+    change = with_costs_changed if shape == ROADS_COSTS else with_stops_changed
+    return stops, front, change(stops, front, 2, generator)
+
+
+@pytest.mark.parametrize("shape", ["uniform", "clustered", ROADS, ROADS_COSTS])
+def test_the_rest_from_nothing_is_that_which_is_replanned(shape: str) -> None:
+    stops, front, rest = drawn(shape)
+    items = [{"tour": each["tour"], "lengths": [1.0, 2.0]} for each in front["front"]]
+    source = TaskSource("front", json.dumps(stops.request(range(N))).encode())
     stored = StoredFront("a", source, json.dumps(items)[1:-1].encode())
-    body = json.dumps(changes).encode()
+    body = json.dumps(rest.changes).encode()
     task = parse_replan(ReplanSource(body, stored), LIMITS, {"a": info_of("a", "matrices")}).task
     assert task is not None
     instance = task.subject
     assert isinstance(instance, Instance)
-    assert instance.coordinates is not None
-    other = np.array(rest["coordinates"])
-    assert sorted(instance.coordinates.tolist()) == sorted(other.tolist())
-    for end in ("start", "end"):
-        city = instance.coordinates[getattr(instance, end)]
-        assert city.tolist() == other[rest[end]].tolist()
+    one, other = (_costs_by_kind(each) for each in (instance, rest.instance))
+    for costs, others in zip(one, other, strict=True):
+        np.testing.assert_allclose(costs, others)
+    assert (np.sort(rest.hints) == np.arange(instance.n)).all()
+    assert set(rest.hints[:, 0]) == {rest.instance.start}
+
+
+def _costs_by_kind(instance: Instance) -> tuple[np.ndarray, ...]:
+    """All costs of an instance, those from its start and those to its end, each sorted."""
+    costs = instance.scaled_matrices
+    kinds = (costs, costs[:, instance.start], costs[:, :, instance.end])
+    return tuple(np.sort(each.reshape(2, -1)) for each in kinds)
+
+
+def test_or_tools_makes_no_hint_longer() -> None:
+    rival = pytest.importorskip("tests.benchmarks.rivals.ortools_routing")
+    _, _, rest = drawn(ROADS)
+    routes = rival.improved_routes(rest.instance.scaled_matrices, rest.hints, 0.3)
+    assert (np.sort(routes) == np.arange(rest.instance.n)).all()
+    assert {(route[0], route[-1]) for route in routes} == {(0, rest.instance.n - 1)}
+    hints, improved = (
+        tour_lengths(rest.instance, each)[:, 0].min() for each in (rest.hints, routes)
+    )
+    assert improved <= hints
 
 
 def test_the_share_of_a_front_is_that_of_its_hypervolume_in_its_own_box() -> None:
@@ -44,3 +79,26 @@ def test_the_share_of_a_front_is_that_of_its_hypervolume_in_its_own_box() -> Non
     assert share_of(best[:1], best) == pytest.approx(0.0, abs=1e-6)
     assert share_of(best + np.array([0.0, 1.0]), best) == pytest.approx(0.5)
     assert share_of(best - 1.0, best) > 1.0
+
+
+def test_a_tour_is_longer_by_the_share_that_it_exceeds_the_nearest_tour() -> None:
+    best = np.array([[1.0, 4.0], [2.0, 2.0]])
+    assert longer_than(np.array([2.2, 2.2]), best) == pytest.approx(0.1)
+    assert longer_than(np.array([1.1, 4.0]), best) == pytest.approx(0.1)
+    assert longer_than(np.array([0.9, 4.0]), best) == 0
+
+
+def test_what_does_not_hold_is_said() -> None:
+    def entry(share: float, other: float, kept: float, longer: float) -> dict[str, Any]:
+        alike = {"kept": kept, "longer": longer}
+        cells = {
+            f"{name}, {limit} s": {"share": value, **alike}
+            for limit in (0.1, 0.5)
+            for name, value in (("replanned", share), ("from nothing", other))
+        }
+        return {"instances": [cells]}
+
+    assert not list(unmet({"200 stops, uniform, 10 %": entry(0.995, 0.99, 0.2, 0.2)}))
+    assert len(list(unmet({"200 stops, uniform, 10 %": entry(0.98, 0.99, 1, 0)}))) == 2
+    assert not list(unmet({"1000 stops, uniform, 1 %": entry(0.995, 0.99, 0.9, 0)}))
+    assert len(list(unmet({"1000 stops, uniform, 1 %": entry(0.98, 0.99, 0.8, 0.1)}))) == 4
