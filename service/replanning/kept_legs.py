@@ -47,7 +47,8 @@ def most_like_driven(
     """
     kept, kept_of_others = (kept_shares(instance, each, driven) for each in (tours, others))
     points, points_of_others = (tour_lengths(instance, each) for each in (tours, others))
-    equal = np.isclose(points_of_others, points[:, np.newaxis], rtol=_EQUAL, atol=0).all(axis=2)
+    differences = np.abs(points_of_others - points[:, np.newaxis])
+    equal = (differences <= _EQUAL * points[:, np.newaxis]).all(axis=2)
     kept_of_equal = np.where(equal, kept_of_others, -1.0)
     better = kept_of_equal.max(axis=1) > kept
     chosen = tours.copy()

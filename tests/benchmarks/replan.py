@@ -12,7 +12,7 @@ counted, and improves them under weighted sums.
 
 Hypervolume is that in the box of the front that 5 s from nothing reach, from its least lengths to
 its greatest, as a share of that front's own. `kept` is that of the tour nearest to the driven one's
-balance, and `longer` by what share its lengths exceed those of a tour of that front. `busy` beside
+balance, and `longer` by what share its lengths exceed those of that front in its direction. `busy` beside
 the results is how many programs wanted each processor when they began. What is stored is not
 measured again: `--count 5` takes half an hour. Stores `results/replan.json`, and says what does not
 hold.
@@ -130,8 +130,14 @@ def share_of(points: Array, best: Array) -> float:
 
 
 def longer_than(point: Array, best: Array) -> float:
-    """By what share of its lengths a point exceeds the nearest of the best ones, at least 0."""
-    return max(0.0, float((point / best).max(axis=1).min()) - 1)
+    """By what share of its lengths a point exceeds the best ones in its direction, at least 0.
+
+    Between two of these, by ascending first length, their distance from the origin is interpolated.
+    """
+    scaled, own = best / best.max(axis=0), point / best.max(axis=0)
+    directions = np.arctan2(scaled[:, 0], scaled[:, 1])
+    distance = np.interp(np.arctan2(*own), directions, np.linalg.norm(scaled, axis=1))
+    return max(0.0, float(np.linalg.norm(own) / distance) - 1)
 
 
 def _not_fast(key: str, limit: float, instances: list[dict[str, Any]]) -> Iterator[str]:
@@ -173,13 +179,13 @@ def _answer(client: httpx.Client, path: str, body: dict[str, Any], seconds: floa
 
 
 def _spent(client: httpx.Client, path: str, body: dict[str, Any]) -> float:
-    """The seconds of an answer that are not of planning, the most of three."""
+    """The seconds of an answer that are not of planning, in the median of five."""
     spent = []
-    for _ in range(3):
+    for _ in range(5):
         began = time.perf_counter()
         _answer(client, path, body, 2 * _LEAST)
         spent.append(time.perf_counter() - began - 2 * _LEAST)
-    return max(spent)
+    return median(spent)
 
 
 def _points(answer: dict[str, Any]) -> Array:

@@ -81,11 +81,13 @@ def test_the_share_of_a_front_is_that_of_its_hypervolume_in_its_own_box() -> Non
     assert share_of(best - 1.0, best) > 1.0
 
 
-def test_a_tour_is_longer_by_the_share_that_it_exceeds_the_nearest_tour() -> None:
-    best = np.array([[1.0, 4.0], [2.0, 2.0]])
+def test_a_tour_is_longer_by_its_excess_over_the_front_in_its_direction() -> None:
+    best = np.array([[1.0, 4.0], [2.0, 2.0], [3.0, 1.8]])
     assert longer_than(np.array([2.2, 2.2]), best) == pytest.approx(0.1)
-    assert longer_than(np.array([1.1, 4.0]), best) == pytest.approx(0.1)
-    assert longer_than(np.array([0.9, 4.0]), best) == 0
+    assert longer_than(np.array([1.1, 4.4]), best) == pytest.approx(0.1)
+    assert longer_than(np.array([0.9, 3.6]), best) == 0
+    # Between two points of the front: neither is it longer there than both, nor shorter.
+    assert 0 < longer_than(np.array([2.6, 2.1]), best) < 0.1
 
 
 def test_what_does_not_hold_is_said() -> None:
