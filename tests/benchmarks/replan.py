@@ -12,8 +12,8 @@ counted, and improves them under weighted sums.
 
 Hypervolume is that in the box of the front that 5 s from nothing reach, from its least lengths to
 its greatest, as a share of that front's own. `kept` is that of the tour nearest to the driven one's
-balance, and `longer` by what share its lengths exceed those of that front in its direction. `busy` beside
-the results is how many programs wanted each processor when they began. What is stored is not
+balance, and `longer` by what share its lengths exceed those of that front in its direction. `busy`
+beside the results is how many programs wanted each processor when they began. What is stored is not
 measured again: `--count 5` takes half an hour. Stores `results/replan.json`, and says what does not
 hold.
 """
