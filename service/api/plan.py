@@ -165,11 +165,10 @@ class PlanRoutes:
     async def replan_front(self, request: Request, id: str) -> Response:  # noqa: A002
         """Plan the rest of the way of a front, from what has changed.
 
-        Stops are done, added or removed, the vehicle is somewhere else, costs or the map of a front
-        of `POST /coverage` have changed. The answer is a front of open routes from the position
-        through what is left to the old end, or of a closed tour back to its start. Each tour has
-        `kept`, the share of the remaining legs of the tour being driven that it keeps. The front
-        that is replanned stays as it is.
+        Stops are done, added or removed, the vehicle is elsewhere, costs or a map have changed.
+        The answer is a front of open routes from the position through what is left to the old end,
+        or of a closed tour back to its start. Each tour has `kept`, the share of the driven tour's
+        remaining legs that it keeps. The front that is replanned stays as it is.
 
         Headers are as of `POST /front`. The answer is a front of its own, to be replanned again.
         """

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,14 @@ class Labels:
 
     stops: tuple[Stop, ...]
     objectives: tuple[Objective, ...]
+
+    @property
+    def members(self) -> dict[str, list[dict[str, Any]]]:
+        """All names, ready for JSON: `asdict` takes ten times as long."""
+        return {
+            "stops": [dict(vars(stop)) for stop in self.stops],
+            "objectives": [dict(vars(objective)) for objective in self.objectives],
+        }
 
 
 @dataclass(frozen=True, eq=False)

@@ -174,6 +174,7 @@ def test_places_of_poses_and_of_a_spacing_are_those_of_the_front() -> None:
         ("cost_layer", {"costs": []}, "/costs", "must be left out"),
         ("cost_layer", {"geometry": "straight"}, "/geometry", "must be left out"),
         ("cost_layer", {"done": ["a"]}, "/done/0", "must be"),
+        ("cost_layer", {"pose": FRAME.points(np.array([[1, 1]]))[0].tolist()}, "/pose", "obstacle"),
         ("second_matrix", {"add": [[0, 0]]}, "/add/0", "only a cost_layer"),
     ],
 )
@@ -192,3 +193,13 @@ def test_a_place_that_became_an_obstacle_is_to_be_removed() -> None:
         scene.rest(blocked=[scene.places[2]])
     assert refused.value.errors[0].pointer == "/remove"
     assert planned(scene.rest(blocked=[scene.places[2]], remove=[2])).cities == 5
+
+
+def test_a_place_that_no_path_leads_to_any_more_is_to_be_removed() -> None:
+    scene = Scene(9)
+    row, column = scene.places[3]
+    around = [[row + r, column + c] for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c]
+    walls = [cell for cell in around if cell not in scene.places]
+    walled = grid([cell for cell in walls if 0 <= cell[0] < ROWS and 0 <= cell[1] < COLUMNS])
+    with pytest.raises(Refusal, match="place 3, as it must be reachable from where the way goes"):
+        scene.rest(grid=walled)

@@ -141,8 +141,8 @@ class CoverageRequest(PlanRequest, total=False):
 class ReplanRequest(PlanOptions, total=False):
     """The members of a request to POST /front/{id}/replan: what has changed since.
 
-    Stops are named by their ids, or by their indexes in the front. Of a front of a map, a place
-    that is added or where the robot is is given as row and column.
+    Stops are named by their ids, or by their indexes in the front. On a map, a new place and the
+    position of the robot are given as row and column.
     """
 
     done: Sequence[int | str] | ArrayLike

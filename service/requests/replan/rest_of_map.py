@@ -1,5 +1,6 @@
 """The rest of a way over a map: from an earlier front and what has changed to a source."""
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
@@ -51,7 +52,7 @@ def rest_of_map(request: ReplanRequest, stored: StoredFront, limits: Limits) -> 
     place[rest.stops] = np.arange(len(rest.stops))
     left, moved = left_of_tours(earlier.front, request, rest)
     task = _task_of_rest(coverage, places.cells, rest, place)
-    _check_places(task, rest, earlier.front.n, limits)
+    _check_places(task, rest, earlier.front.n, request, limits)
     members = {
         **_members(task),
         **rest.end_members(place),
@@ -120,17 +121,20 @@ def _task_of_rest(
     )
 
 
-def _check_places(task: Coverage, rest: RestOfWay, n: int, limits: Limits) -> None:
+def _check_places(
+    task: Coverage, rest: RestOfWay, n: int, request: ReplanRequest, limits: Limits
+) -> None:
     """Raise a refusal, about the parts of the request, where a place cannot be visited."""
     free = free_cells(task.blocked, task.cell_size, task.robot_radius)
     try:
         find_places(task, free, limits.cities)
     except InvalidCoverage as refusal:
-        raise InvalidCoverage(*_about_request(refusal.faults, rest, n)) from None
+        position = "pose" if request.pose else "position"
+        raise InvalidCoverage(*_about_request(refusal.faults, rest, n, position)) from None
 
 
 def _about_request(
-    faults: tuple[tuple[str, str], ...], rest: RestOfWay, n: int
+    faults: tuple[tuple[str, str], ...], rest: RestOfWay, n: int, position: str
 ) -> Iterator[tuple[str, str]]:
     """Yield the faults of places of the rest as faults of parts of the request."""
     for part, demand in faults:
@@ -139,10 +143,12 @@ def _about_request(
             yield part, demand
             continue
         stop = int(rest.stops[int(index)])
+        # The request knows no places of the rest.
+        demand = re.sub(r"from places/\d+", "from where the way goes on", demand)
         if stop == rest.start:
-            yield "position", demand
+            yield position, demand
         elif stop < n:
-            yield "remove", f"must have place {stop}, unless it is visitable: it {demand}"
+            yield "remove", f"must have place {stop}, as it {demand}"
         else:
             yield f"add/{stop - n}", demand
 
