@@ -19,13 +19,14 @@ from service.requests.task import Task, TaskSource
 from tests.helpers.serving import ACTORS, LIMITS
 
 LARGE = replace(LIMITS, cities=1000, cells=2**20, size=1000)
+BOUNDS = ParserBounds(seconds=60, memory=2**30)
 INFO = {actor.info.name: actor.info for actor in ACTORS}
 NUMBERS = TaskSource("front", b'{"matrices":[[[' + 7_000_000 * b"0," + b"0]],[[0]]]}")
 COSTS = np.random.default_rng(0).random((2, 100, 100)).tolist()
 HONEST = TaskSource("front", json.dumps({"matrices": COSTS}).encode())
 
 
-def parser(seconds: float = 60, memory: int = 2**30) -> TaskParser:
+def parser(seconds: float = BOUNDS.seconds, memory: int = BOUNDS.memory) -> TaskParser:
     return TaskParser(LARGE, INFO, ParserBounds(seconds=seconds, memory=memory))
 
 
@@ -90,7 +91,7 @@ def test_warnings_of_the_process_are_logged(
     asked = {"matrices": COSTS, "actor": "y"} if refused else {"matrices": COSTS}
     source = TaskSource("front", json.dumps(asked).encode())
     with suppress(Refusal):
-        asyncio.run(TaskParser(LARGE, actors).parse(source))
+        asyncio.run(TaskParser(LARGE, actors, BOUNDS).parse(source))
         assert not refused
     lines = [record for record in caplog.records if record.name == "py.warnings"]
     assert len(lines) == 10
