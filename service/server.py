@@ -23,6 +23,7 @@ from service.api.app import Edge, create_app
 from service.api.auth import Access, Rates
 from service.api.metrics import Metrics
 from service.api.plan import BodyBounds
+from service.api.site.tiles import Tiles
 from service.api.task_parser import ParserBounds
 from service.api.transport.connections import ConnectionLimits, Connections
 from service.api.transport.listener import ACCEPTED_AT_ONCE, bound_sockets, most_connections
@@ -75,6 +76,7 @@ def build(settings: Settings) -> FastAPI:
                 parser=ParserBounds(seconds=settings.parse_seconds, memory=settings.parse_bytes),
             ),
             streets=roads,
+            tiles=Tiles(settings.tiles, settings.tiles_credit),
         ),
     )
     if settings.traces:

@@ -16,6 +16,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from service.api.auth import KeyHash
+from service.api.site.tiles import checked_template
 from service.jobs.store import STORE_BYTES
 from service.requests.limits import Limits
 from service.roads.router import DEFAULT_PROFILES, RouterName, RouterSettings
@@ -107,6 +108,12 @@ class Settings(BaseSettings):
         validation_alias="FORWARDED_ALLOW_IPS",
         description="proxies whose X-Forwarded-For is believed, with commas between; or *",
     )
+
+    # Map tiles under the stops on the page, which browsers load from there.
+    tiles: Annotated[str, AfterValidator(checked_template)] | None = Field(
+        None, description="address of map tiles with {z}, {x}, {y}; none draws no streets"
+    )
+    tiles_credit: str = Field("© OpenStreetMap contributors", description="whom the tiles are by")
 
     # Limits of a request.
     max_body_bytes: int = Field(2**24, ge=1, description="the longest request body")

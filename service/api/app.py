@@ -29,6 +29,7 @@ from service.api.request_bodies import request_schemas
 from service.api.responses import ActorsAnswer, HealthAnswer, json_response, problem_responses
 from service.api.site.guide import guide_routes
 from service.api.site.static import static_routes
+from service.api.site.tiles import Tiles
 from service.api.stored_fronts import StoredFrontRoutes
 from service.jobs.engine import Engine
 from service.jobs.store import Store
@@ -47,6 +48,7 @@ class Edge:
         request_seconds: The time after which a request is answered with the best front so far.
         bodies: What the bodies of all requests may take together.
         streets: The streets that lines of GeoJSON may follow; by default there are none.
+        tiles: The map tiles that the page draws under stops; by default there are none.
     """
 
     access: Access = field(default_factory=Access)
@@ -56,6 +58,7 @@ class Edge:
     request_seconds: float = 90.0
     bodies: BodyBounds = field(default_factory=BodyBounds)
     streets: Streets | None = None
+    tiles: Tiles = field(default_factory=Tiles)
 
     @property
     def guard(self) -> dict[str, Any]:
@@ -68,7 +71,7 @@ class Edge:
         observers = (self.metrics.answered, log_request)
         cors = [Middleware(CORSMiddleware, **self._cors)] if self.origins else []
         return [
-            Middleware(SecurityHeadersMiddleware),
+            Middleware(SecurityHeadersMiddleware, self.tiles.source),
             Middleware(RequestIdMiddleware),
             Middleware(RequestLogMiddleware, observers),
             Middleware(ProblemMiddleware),
@@ -113,7 +116,7 @@ def create_app(
         version=version,
         lifespan=lifespan,
         middleware=edge.middleware,
-        routes=[*static_routes(), *guide_routes()],
+        routes=[edge.tiles.route, *static_routes(), *guide_routes()],
         exception_handlers=dict.fromkeys(HANDLED, answer_refusal),
         redirect_slashes=False,
         generate_unique_id_function=lambda route: route.name,

@@ -18,11 +18,11 @@ from service.errors import Refusal, ShuttingDown
 
 # Everything comes from the service itself; maps of robots are drawn into images (data:).
 _CONTENT_POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src {images}; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
+_IMAGES = "'self' data:"
 _SECURITY_HEADERS = {
-    "Content-Security-Policy": _CONTENT_POLICY,
     "Cross-Origin-Opener-Policy": "same-origin",
     "Referrer-Policy": "no-referrer",
     "X-Content-Type-Options": "nosniff",
@@ -31,17 +31,24 @@ _SECURITY_HEADERS = {
 
 
 class SecurityHeadersMiddleware:
-    """Tells browsers to load only files of the service, and to embed the page nowhere."""
+    """Tells browsers to load only files of the service, and to embed the page nowhere.
 
-    def __init__(self, app: ASGIApp) -> None:
+    Args:
+        app: The application.
+        images: Another source of images, by default none.
+    """
+
+    def __init__(self, app: ASGIApp, images: str = "") -> None:
         self._app = app
+        policy = _CONTENT_POLICY.format(images=f"{_IMAGES} {images}".strip())
+        self._headers = {"Content-Security-Policy": policy, **_SECURITY_HEADERS}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on one request."""
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                MutableHeaders(scope=message).update(_SECURITY_HEADERS)
+                MutableHeaders(scope=message).update(self._headers)
             await send(message)
 
         await self._app(scope, receive, send_with_headers)

@@ -5,17 +5,18 @@ import { clearFaults, showFault, showFaults } from "./planning/faults.js";
 import { isRequest, read, readPasted } from "./inputs/files.js";
 import { kindOf } from "./inputs/instance.js";
 import { linked } from "./result/link.js";
-import { counted } from "./common/numbers.js";
 import { UNNAMED, namesIn } from "./common/objectives.js";
 import { Placing } from "./inputs/placing.js";
 import { ReplanForm } from "./planning/replan_form.js";
 import { Way } from "./planning/replanning.js";
 import { RequestForm } from "./inputs/request_form.js";
+import { say, sentence } from "./planning/status.js";
 import { Planning } from "./planning/planning.js";
-import { Result } from "./result/result.js";
 import { Service } from "./planning/service.js";
 
 const element = (id) => document.getElementById(id);
+// Charts and maps are most of the page's bytes: what is seen first does not wait for them.
+const { Result } = await import("./result/result.js");
 const form = element("request");
 const service = new Service(() => element("key").value.trim());
 const narrow = matchMedia("(max-width: 860px)"); // the form stands above what it gives, not beside
@@ -55,6 +56,7 @@ function edited(instance, fit) {
 function answered(found) {
   answer = found;
   exporting.show(found);
+  arrange();
   if (!found) replanForm.show(null);
 }
 
@@ -69,17 +71,12 @@ function screen() {
   };
 }
 
-/** Said once, however often it comes: screen readers read each change. */
-function say(text) {
-  if (element("status").textContent !== text) element("status").textContent = text;
+/** Where the form and the result stand above each other, the result comes first once there is one. */
+function arrange() {
+  const main = element("result").parentElement;
+  if (narrow.matches && answer) main.prepend(element("result"));
+  else if (!narrow.matches) main.append(element("result"));
 }
-
-const SAID = {
-  "warming-up":
-    "The search is being compiled, once, for about half a minute. The network’s front is shown as soon as there is one, and improves by itself.",
-  queued: "This is the network’s front; the search waits for its turn.",
-  running: "The search is improving the network’s front.",
-};
 
 /** Shows what comes of a plan; `states` asks a planning for it. */
 async function run(states) {
@@ -112,7 +109,7 @@ function show(state) {
       replanForm.show(way);
     }
   }
-  say(SAID[state.stage] ?? ended(state));
+  say(sentence(state));
 }
 
 function plan() {
@@ -160,13 +157,7 @@ async function stop() {
   const mine = planning;
   await mine?.stop().catch(fail);
   // It had no job yet that would say so.
-  if (mine?.left && mine === planning) say(answer ? ended({ stage: "cancelled", answer }) : "Stopped.");
-}
-
-function ended({ stage, answer: { front, points } }) {
-  const found = `${counted(points, "tour", "tours")} found`;
-  const shown = front.length < points ? `, the best ${front.length} of them shown` : "";
-  return `${stage === "cancelled" ? "Stopped" : "Done"}: ${found}${shown}.`;
+  if (mine?.left && mine === planning) say(answer ? sentence({ stage: "cancelled", answer }) : "Stopped.");
 }
 
 function fail(error) {
@@ -251,6 +242,7 @@ form.addEventListener("submit", (event) => {
   if (narrow.matches) element("result").scrollIntoView();
   plan();
 });
+narrow.addEventListener("change", arrange);
 element("stop").addEventListener("click", stop);
 element("clear").addEventListener("click", () => {
   forgetExample();
@@ -271,6 +263,7 @@ addEventListener("drop", (event) => {
 addEventListener("paste", pasted);
 addEventListener("hashchange", openLinked);
 
+service.get("page/tiles.json").then((tiles) => result.tile(tiles), () => {});
 const examples = await service.get("examples/index.json");
 element("example").append(...examples.map(({ file, title }) => new Option(title, file)));
 if (!(await openLinked()) && !opened) {

@@ -227,6 +227,15 @@ def test_the_reference_needs_nothing_from_elsewhere(browser: Browser, released: 
     page.close()
 
 
+@at_both_widths
+def test_on_a_phone_the_result_stands_above_the_form(page: Page, width: int) -> None:
+    result, form = page.locator("#result").bounding_box(), page.locator("#request").bounding_box()
+    assert result is not None
+    assert form is not None
+    assert (result["y"] + result["height"] <= form["y"]) == (width == PHONE)
+    expect(page.locator("#waiting")).to_be_visible(visible=width == PHONE)
+
+
 def figure(page: Page, name: str) -> float:
     wait_for_next_frame(page)
     return number(page.get_by_role("row", name=name).get_by_role("cell").first)

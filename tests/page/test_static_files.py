@@ -1,5 +1,7 @@
 """The files that the page is made of: their weight, their licences, and what they may load."""
 
+import os
+import re
 from pathlib import Path
 
 import httpx
@@ -10,6 +12,28 @@ SERVICE = Path(__file__).parents[2] / "service"
 def test_what_the_page_loads_weighs_less_than_half_a_megabyte() -> None:
     files = [path for path in (SERVICE / "page").rglob("*") if path.is_file()]
     assert sum(path.stat().st_size for path in files) < 500_000
+
+
+def test_a_first_view_sends_less_than_150_kilobytes(released: str) -> None:
+    """The page, and the scripts and style sheets that it loads before charts and maps."""
+    loaded = ["", *_linked((SERVICE / "page/index.html").read_text())]
+    for path in loaded:
+        if path.endswith(".js"):
+            folder = Path(path).parent
+            imported = IMPORT.findall((SERVICE / path).read_text())
+            found = [os.path.normpath(folder / each) for each in imported]
+            loaded += [each for each in found if each not in loaded]
+    assert {"page/inputs/table.js", "page/vendor/eventsource-parser/stream.js"} <= set(loaded)
+    sent = [httpx.get(f"{released}/{path}") for path in loaded]
+    assert all(response.is_success for response in sent)
+    assert sum(response.num_bytes_downloaded for response in sent) < 150_000
+
+
+IMPORT = re.compile(r'import (?:[^"]* from )?"(\.[^"]+)"')
+
+
+def _linked(html: str) -> list[str]:
+    return re.findall(r'(?:src|href)="(page/[^"]+)"', html)
 
 
 def test_every_vendored_library_comes_with_its_licence() -> None:

@@ -3,6 +3,8 @@
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
+from starlette.middleware import Middleware
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 from starlette.routing import BaseRoute, Route
@@ -12,6 +14,7 @@ _SERVICE = Path(__file__).parents[2]
 _PAGE = _SERVICE / "page"
 _REFERENCE = _SERVICE / "reference"
 _EXAMPLES = _SERVICE / "examples"
+_COMPRESSED = [Middleware(GZipMiddleware)]  # text alone, which anybody may read
 REVALIDATE = {"Cache-Control": "no-cache"}  # a browser asks each time, and gets 304 if unchanged
 
 _Endpoint = Callable[[Request], Awaitable[Response]]
@@ -20,11 +23,11 @@ _Endpoint = Callable[[Request], Awaitable[Response]]
 def static_routes() -> list[BaseRoute]:
     """Return the routes of the page, the HTTP reference, and the files that they load."""
     return [
-        Route("/", _index(_PAGE)),
-        Route("/docs", _index(_REFERENCE)),
-        Route("/page/{path:path}", files(_PAGE)),
-        Route("/docs/{path:path}", files(_REFERENCE)),
-        Route("/examples/{path}.json", files(_EXAMPLES, ".json")),
+        Route("/", _index(_PAGE), middleware=_COMPRESSED),
+        Route("/docs", _index(_REFERENCE), middleware=_COMPRESSED),
+        Route("/page/{path:path}", files(_PAGE), middleware=_COMPRESSED),
+        Route("/docs/{path:path}", files(_REFERENCE), middleware=_COMPRESSED),
+        Route("/examples/{path}.json", files(_EXAMPLES, ".json"), middleware=_COMPRESSED),
     ]
 
 

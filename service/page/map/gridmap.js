@@ -15,6 +15,7 @@ export class GridMap {
   #image = null;
   #places = L.featureGroup();
   #renderer = L.canvas({ padding: 0.2 });
+  #start = L.circleMarker([0, 0], { radius: 8, weight: 2, fill: false, interactive: false });
   #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
 
   constructor(element) {
@@ -47,7 +48,11 @@ export class GridMap {
 
   /** Draws the path of a tour as "selected" or "pinned"; null takes it away. */
   draw(name, item) {
-    this.#lines[name].show(turns(item?.path?.cells ?? []).map(middle));
+    const path = turns(item?.path?.cells ?? []).map(middle);
+    this.#lines[name].show(path);
+    if (name !== "selected") return;
+    if (path.length) this.#start.setStyle({ color: colour("selected") }).setLatLng(path[0]).addTo(this.#map);
+    else this.#start.remove();
   }
 
   #colour() {

@@ -4,6 +4,7 @@ import "../vendor/leaflet/leaflet.js";
 import { colour, onSchemeChange } from "../common/colours.js";
 import { fitting, flatMap } from "./flatmap.js";
 import { Frame } from "./frame.js";
+import { Mercator } from "./mercator.js";
 import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
@@ -15,13 +16,16 @@ export class Plane {
   #cities;
   #renderer = L.canvas({ padding: 0.2 });
   #start = ring("start", 18);
+  #end = ring("end", 18);
   #highlight = ring("highlight", 16);
   #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
   #places = [];
+  #onEarth = false;
+  #tiles = null;
 
   /** @param {{ onHover: (city: number | null) => void, onClick: (place: number[]) => void }} told */
   constructor(element, { onHover, onClick }) {
-    this.#map = flatMap(element, { zoomDelta: 0.5, minZoom: -3, maxZoom: 12, doubleClickZoom: false });
+    this.#map = flatMap(element, { zoomDelta: 0.5, minZoom: -3, maxZoom: 20, doubleClickZoom: false });
     for (const line of Object.values(this.#lines)) line.addTo(this.#map);
     this.#cities = L.featureGroup().addTo(this.#map);
     this.#cities.on("mouseover", (event) => onHover(event.sourceTarget.city));
@@ -34,9 +38,11 @@ export class Plane {
   }
 
   /** Draws cities at these places; `fit` says whether the view moves to hold them all. */
-  show(places, fit = true) {
+  show(places, fit = true, onEarth = false) {
     this.#places = places;
-    if (fit) this.#frame = Frame.around(places);
+    if (fit || onEarth !== this.#onEarth) this.#frame = (onEarth ? Mercator : Frame).around(places);
+    this.#onEarth = onEarth;
+    this.#showTiles();
     this.#cities.clearLayers();
     const crowded = places.length > 300 || this.#map.getContainer().clientWidth < NARROW;
     const radius = crowded ? 2 : 3.5;
@@ -52,11 +58,25 @@ export class Plane {
     return this.#places;
   }
 
+  /** Draws map tiles, while places on the earth are shown. */
+  tile(url) {
+    this.#tiles = L.tileLayer(url, { maxNativeZoom: 19, maxZoom: 22, className: "tile", zIndex: 0 });
+    this.#showTiles();
+  }
+
+  #showTiles() {
+    if (!this.#tiles) return;
+    if (this.#onEarth && this.#places.length) this.#tiles.addTo(this.#map);
+    else this.#tiles.remove();
+  }
+
   /** Draws a tour as "selected" or "pinned", closed or open; null takes it away. */
   draw(name, tour, closed = true) {
     const stops = tour && closed ? [...tour, tour[0]] : (tour ?? []);
     this.#lines[name].show(stops.map((city) => this.#frame.latlng(this.#places[city])));
-    if (name === "selected") this.#mark(this.#start, tour?.[0]);
+    if (name !== "selected") return;
+    this.#mark(this.#start, tour?.[0]);
+    this.#mark(this.#end, closed ? null : tour?.at(-1));
   }
 
   /** Rings a city, and says what it is; null takes the ring away. */

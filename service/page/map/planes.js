@@ -20,11 +20,16 @@ export class Planes {
     this.#ids = ids;
   }
 
-  /** Draws cities, rows of four numbers; tours are taken away. */
-  show(rows, fit = true) {
+  /** Draws map tiles under the first map, while places on the earth are shown. */
+  tile(url) {
+    this.#maps[0].tile(url);
+  }
+
+  /** Draws cities, rows of four numbers, or two of places on the earth; tours are taken away. */
+  show(rows, fit = true, onEarth = false) {
     this.#tour = null;
-    this.#maps[0].show(rows.map((row) => row.slice(0, 2)), fit);
-    this.#maps[1].show(rows.map((row) => row.slice(2, 4)), fit);
+    this.#maps[0].show(rows.map((row) => row.slice(0, 2)), fit, onEarth);
+    this.#maps[1].show(onEarth ? [] : rows.map((row) => row.slice(2, 4)), fit);
   }
 
   /** The places of the cities on both maps. */
@@ -35,7 +40,7 @@ export class Planes {
   /** Draws a tour as "selected" or "pinned"; null takes it away. */
   draw(name, tour, closed = true) {
     if (name === "selected") this.#tour = tour;
-    this.#maps.forEach((map) => map.draw(name, tour, closed));
+    for (const map of this.#maps) if (map.places.length) map.draw(name, tour, closed);
   }
 
   #highlight(city) {

@@ -9,6 +9,8 @@ const { L } = globalThis;
 // cities narrow ones are clearer anyway.
 const MANY = 150;
 const [WIDE, NARROW] = [2, 1]; // pixels
+const MOST_ARROWS = 60;
+const [ARROW, ROOM] = [5, 22]; // pixels: an arrowhead's length, and the least of a leg that has one
 
 export class TourLine extends L.Layer {
   #name;
@@ -18,7 +20,10 @@ export class TourLine extends L.Layer {
   #size = null;
   #ratio = 1; // of the screen's pixels to the map's
 
-  /** @param {string} name of its colour, and of its class */
+  /**
+   * @param {string} name of its colour, and of its class
+   * @param {number[]} dash as a canvas takes it; lines without one have arrowheads
+   */
   constructor(name, dash = []) {
     super();
     L.setOptions(this, { pane: "tours" });
@@ -49,11 +54,17 @@ export class TourLine extends L.Layer {
     context.lineJoin = "round";
     context.setLineDash(this.#dash);
     context.beginPath();
-    for (const latlng of this.#latlngs) {
-      const { x, y } = this._map.latLngToContainerPoint(latlng);
-      context.lineTo(x, y);
-    }
+    const places = this.#latlngs.map((latlng) => this._map.latLngToContainerPoint(latlng));
+    for (const { x, y } of places) context.lineTo(x, y);
     context.stroke();
+    if (!this.#dash.length) this.#point(context, places);
+  }
+
+  /** Draws arrowheads on legs that have room for one, on some of them where they are many. */
+  #point(context, places) {
+    context.fillStyle = context.strokeStyle;
+    const apart = Math.ceil(places.length / MOST_ARROWS);
+    for (let at = apart; at < places.length; at += apart) arrow(context, places[at - 1], places[at]);
   }
 
   /** The canvas's context, empty and in the map's pixels. */
@@ -75,4 +86,18 @@ export class TourLine extends L.Layer {
     this.#canvas.style.width = `${size.x}px`;
     this.#canvas.style.height = `${size.y}px`;
   }
+}
+
+/** An arrowhead in the middle of a leg. */
+function arrow(context, from, to) {
+  const [x, y] = [to.x - from.x, to.y - from.y];
+  const long = Math.hypot(x, y);
+  if (long < ROOM) return;
+  const [east, south] = [(ARROW * x) / long, (ARROW * y) / long];
+  const [middleX, middleY] = [(from.x + to.x) / 2, (from.y + to.y) / 2];
+  context.beginPath();
+  context.moveTo(middleX + east, middleY + south);
+  context.lineTo(middleX - east - 0.7 * south, middleY - south + 0.7 * east);
+  context.lineTo(middleX - east + 0.7 * south, middleY - south - 0.7 * east);
+  context.fill();
 }

@@ -8,7 +8,7 @@ import { Growth } from "../chart/growth.js";
 import { nameOf } from "../inputs/names.js";
 import { Maps } from "../map/maps.js";
 import { length } from "../common/numbers.js";
-import { UNNAMED, titled } from "../common/objectives.js";
+import { UNNAMED } from "../common/objectives.js";
 import { BalanceSlider } from "../chart/slider.js";
 import { nearest } from "./tours.js";
 
@@ -50,11 +50,10 @@ export class Result {
   name(objectives, ids = null) {
     this.#objectives = objectives;
     this.#ids = ids;
-    this.#maps.name(ids);
+    this.#maps.name(objectives, ids);
     this.#chart.name(objectives);
     this.#slider.name(objectives);
     objectives.forEach((objective, plane) => {
-      element(`plane-${plane + 1}-title`).textContent = titled(objective);
       element(`less-${plane + 1}`).textContent = `less ${objective.name}`;
     });
   }
@@ -99,6 +98,11 @@ export class Result {
     return this.#selected;
   }
 
+  /** Draws map tiles under stops, where the service names any. */
+  tile(tiles) {
+    this.#maps.tile(tiles);
+  }
+
   /** The balance that the viewer wants of the next front. */
   want(balance) {
     this.#balance = balance ?? MIDDLE;
@@ -122,7 +126,7 @@ export class Result {
     const before = this.#selected && { tour: this.#selected.tour, closed: this.#closed };
     this.clear(instance, false);
     this.#ids = names;
-    this.#maps.name(names);
+    this.#maps.name(this.#objectives, names);
     this.#before = before;
     this.#drawPin();
   }

@@ -1,0 +1,57 @@
+"""Map tiles under the stops on the page: where they come from, and the policy for browsers."""
+
+import re
+from dataclasses import dataclass
+from urllib.parse import urlsplit
+
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
+
+# No spaces, commas or semicolons: the server's name becomes part of a header.
+_TEMPLATE = re.compile(r"https?://[A-Za-z0-9.{}:-]+/[A-Za-z0-9_.~/{}?&=%@+-]*")
+_PARTS = ("{z}", "{x}", "{y}")
+
+
+@dataclass(frozen=True)
+class Tiles:
+    """A server of map tiles, or none.
+
+    Args:
+        url: The template of a tile's address, with {z}, {x}, {y}, and maybe {s} in the server's
+            name for one of a, b and c; None where there are no tiles.
+        credit: Whom the map is by, as its licence demands it to be shown.
+    """
+
+    url: str | None = None
+    credit: str = ""
+
+    @property
+    def source(self) -> str:
+        """The tiles' server as a source of a content security policy; empty where there is none."""
+        if self.url is None:
+            return ""
+        scheme, server, *_ = urlsplit(self.url)
+        return f"{scheme}://{server.replace('{s}', '*')}"
+
+    @property
+    def route(self) -> Route:
+        """The route by which the page learns of the tiles."""
+        answer = {"url": self.url, "credit": self.credit}
+
+        async def tiles(_: Request) -> Response:
+            return JSONResponse(answer, headers={"Cache-Control": "no-cache"})
+
+        return Route("/page/tiles.json", tiles)
+
+
+def checked_template(url: str) -> str:
+    """Return the template of a tile's address.
+
+    Raises:
+        ValueError: It is no such template.
+    """
+    server = urlsplit(url).netloc.removeprefix("{s}.") if _TEMPLATE.fullmatch(url) else "{"
+    if "{" in server or not all(url.count(part) == 1 for part in _PARTS):
+        raise ValueError("must be like https://tiles.example.org/{z}/{x}/{y}.png")
+    return url

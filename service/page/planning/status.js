@@ -1,0 +1,27 @@
+/** Say what the page is doing, and what came of it. */
+
+import { counted } from "../common/numbers.js";
+
+const element = (id) => document.getElementById(id);
+
+const SAID = {
+  "warming-up":
+    "The search is being compiled, once, for about half a minute. The network’s front is shown as soon as there is one, and improves by itself.",
+  queued: "This is the network’s front; the search waits for its turn.",
+  running: "The search is improving the network’s front.",
+};
+
+/** Said once, however often it comes: screen readers read each change. */
+export function say(text) {
+  if (element("status").textContent === text) return;
+  element("status").textContent = element("waiting").textContent = text;
+}
+
+/** What is to be said of a state of a planning. */
+export const sentence = (state) => SAID[state.stage] ?? ended(state);
+
+function ended({ stage, answer: { front, points } }) {
+  const found = `${counted(points, "tour", "tours")} found`;
+  const shown = front.length < points ? `, the best ${front.length} of them shown` : "";
+  return `${stage === "cancelled" ? "Stopped" : "Done"}: ${found}${shown}.`;
+}

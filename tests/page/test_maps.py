@@ -1,0 +1,63 @@
+"""The maps of the page: streets under stops, and which way a tour goes."""
+
+import json
+import math
+import re
+
+from playwright.sync_api import Browser, FloatRect, Page, expect
+
+from tests.helpers.browsing import needs_chromium, open_files, open_page, wait_until_planned
+
+pytestmark = needs_chromium
+
+TILE = re.compile(r"z=(\d+)&x=(-?\d+)&y=(-?\d+)")
+
+
+def test_stops_lie_on_the_tiles_of_their_place(browser: Browser, released: str) -> None:
+    tiles = {"url": f"{released}/page/icon.svg?z={{z}}&x={{x}}&y={{y}}", "credit": "© somebody"}
+    with open_page(browser, "about:blank") as page:
+        page.route("**/page/tiles.json", lambda route: route.fulfill(body=json.dumps(tiles)))
+        page.goto(released)
+        wait_until_planned(page)
+        expect(page.locator("#credit")).to_have_text("© somebody")
+        centre = page.locator("#plane-1").bounding_box()
+        assert centre is not None
+        middle = (centre["x"] + centre["width"] / 2, centre["y"] + centre["height"] / 2)
+        shown = []
+        for tile in page.locator("#plane-1 img.leaflet-tile").all():
+            box = tile.bounding_box()
+            if (
+                box
+                and 0 <= middle[0] - box["x"] < box["width"]
+                and 0 <= middle[1] - box["y"] < box["height"]
+            ):
+                shown.append(tile.get_attribute("src") or "")
+        zoom, x, y = max([int(part) for part in TILE.search(source).groups()] for source in shown)  # type: ignore[union-attr]
+        assert zoom > 10
+        assert (x, y) == tile_of(24.944, 60.1705, zoom)
+        open_files(page, {"planes.csv": "0,0,5,5\n3,1,9,1\n5,2,2,8"})
+        expect(page.locator("#plane-1 img.leaflet-tile")).to_have_count(0)
+        expect(page.locator("#credit")).to_be_empty()
+
+
+def test_an_open_route_has_a_start_and_an_end_on_each_map(page: Page) -> None:
+    expect(page.locator("#plane-2 .ring.start")).to_be_visible()
+    expect(page.locator("#plane-2 .ring.end")).to_have_count(0)
+    page.get_by_label("End elsewhere").fill("5")
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+    for plane in ("#plane-1", "#plane-2"):
+        expect(page.locator(f"{plane} .ring.end")).to_be_visible()
+
+
+def holds(box: FloatRect, place: tuple[float, float]) -> bool:
+    across, down = place[0] - box["x"], place[1] - box["y"]
+    return 0 <= across < box["width"] and 0 <= down < box["height"]
+
+
+def tile_of(longitude: float, latitude: float, zoom: int) -> tuple[int, int]:
+    """Return the tile that a place lies on: OpenStreetMap's wiki, "Slippy map tilenames"."""
+    north = math.radians(latitude)
+    across = (longitude + 180) / 360
+    down = (1 - math.asinh(math.tan(north)) / math.pi) / 2
+    return int(across * 2**zoom), int(down * 2**zoom)
