@@ -74,10 +74,12 @@ def slug(heading: str) -> str:
 
 
 def _with_scrolling_tables(html: str) -> str:
-    """Return the HTML with each table in a block of its own, which scrolls on narrow screens."""
-    return html.replace("<table>", '<div class="wide"><table>').replace(
-        "</table>", "</table></div>"
-    )
+    """Return the HTML with each table in a block of its own, which scrolls on narrow screens.
+
+    It can be focused, as blocks of code can, so that keys scroll them too.
+    """
+    html = html.replace("<table>", '<div class="wide" tabindex="0"><table>')
+    return html.replace("</table>", "</table></div>").replace("<pre>", '<pre tabindex="0">')
 
 
 class _Anchors:

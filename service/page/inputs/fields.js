@@ -13,6 +13,7 @@ const FIELDS = [
   { name: "open", label: "Open route: no way back to the start", box: true },
   { name: "preferences", label: "Directions of the network", where: "more" },
   { name: "seed", label: "Seed", value: "0", where: "more" },
+  { name: "bound", label: "Say how far from optimal the front may be", where: "more", box: true },
 ];
 
 const OFFERED = 1000; // names in a list that a browser opens without delay
@@ -36,7 +37,8 @@ export class Fields {
     const asked = FIELDS.filter(({ where }) => where !== "coverage" || !this.#coverage.hidden);
     const texts = asked.filter(({ box }) => !box).map(({ name }) => [name, this.#form[name].value.trim()]);
     const given = texts.filter(([, text]) => text).map(([name, text]) => [name, this.#value(name, text)]);
-    return { ...Object.fromEntries(given), ...this.#ends(given.map(([name]) => name)) };
+    const bound = this.#form.bound.checked ? { bound: true } : {};
+    return { ...Object.fromEntries(given), ...bound, ...this.#ends(given.map(([name]) => name)) };
   }
 
   /** Lets stops be named, and offers their names. */
@@ -62,7 +64,9 @@ export class Fields {
     const rest = { ...request };
     this.#coverage.hidden = kind !== "grid";
     this.#form.open.checked = request.closed === false;
+    this.#form.bound.checked = request.bound === true;
     delete rest.closed;
+    delete rest.bound;
     this.#ids = request.stops?.map(({ id }) => id) ?? request.ids ?? null;
     this.#takeEnds(rest);
     for (const { name, where, box, stop } of FIELDS) {

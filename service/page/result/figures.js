@@ -15,7 +15,13 @@ const kept = (tour) => (tour.kept == null ? [] : [["Legs kept of the tour before
 const worth = (alone, answer) => [
   ["Hypervolume", share(answer.hypervolume)],
   ...(alone ? [["Network alone", share(alone.hypervolume)]] : []),
-  ...(answer.hypervolume_bound == null ? [] : [["No front has more than", share(answer.hypervolume_bound)]]),
+  ...(answer.hypervolume_bound == null ? [] : shortOf(answer)),
+];
+
+/** How much hypervolume the best front can have at most, and how much of that is missing here. */
+const shortOf = ({ hypervolume, hypervolume_bound: bound }) => [
+  ["No front has more than", share(bound)],
+  ["Short of optimal by at most", share(bound > 0 ? 1 - hypervolume / bound : 0)],
 ];
 
 const known = (answer) => [

@@ -1,0 +1,51 @@
+"""Accessibility by axe: the page, the guide and the reference, on phone, tablet and desk."""
+
+from typing import Any, Literal
+
+import pytest
+from axe_playwright_python.base import AXE_SCRIPT
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import DESK, PHONE, needs_chromium, open_page, wait_until_planned
+
+TABLET = 768
+WIDTHS = (PHONE, TABLET, DESK)
+SCHEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
+
+pytestmark = needs_chromium
+
+
+def test_axe_finds_nothing_on_the_page(browser: Browser, released: str) -> None:
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        page.get_by_role("button", name="Pin to compare").click()
+        page.evaluate("for (const each of document.querySelectorAll('details')) each.open = true")
+        assert findings(page) == []
+
+
+@pytest.mark.parametrize("name", ["errors", "plan-a-front"])
+def test_axe_finds_nothing_in_the_guide(browser: Browser, released: str, name: str) -> None:
+    with open_page(browser, f"{released}/guide/{name}") as page:
+        assert findings(page) == []
+
+
+def test_axe_finds_nothing_serious_in_the_reference(browser: Browser, released: str) -> None:
+    with open_page(browser, f"{released}/docs") as page:
+        expect(page.locator(".opblock").first).to_be_visible()
+        assert [found for found in findings(page) if found[0] in ("serious", "critical")] == []
+        page.emulate_media(color_scheme="dark")
+        expect(page.locator("html.dark-mode")).to_be_visible()
+
+
+def findings(page: Page) -> list[Any]:
+    """Return what axe finds at each width, light and dark: impact, rule, and where first."""
+    page.evaluate(AXE_SCRIPT)
+    found = []
+    for width in WIDTHS:
+        page.set_viewport_size({"width": width, "height": 900})
+        for scheme in SCHEMES:
+            page.emulate_media(color_scheme=scheme)
+            for rule in page.evaluate("axe.run().then(({ violations }) => violations)"):
+                where = rule["nodes"][0]["target"]
+                found.append((rule["impact"], rule["id"], where, width, scheme))
+    return found

@@ -1,0 +1,41 @@
+"""Tasks that people have: the ones for which no other module has a test.
+
+Plan own CSV, name objectives: test_inputs. End elsewhere, compare two tours: test_page. Drop a stop
+and replan: test_replanning. Save GeoJSON, share the tour: test_exports. Cover a map: test_files.
+"""
+
+import re
+
+from playwright.sync_api import Page, expect
+
+from tests.helpers.browsing import needs_chromium, shown_front, wait_until_planned
+
+pytestmark = needs_chromium
+
+
+def test_find_the_least_risk_within_five_per_cent_more_distance(page: Page) -> None:
+    front = [item["lengths"] for item in shown_front(page)["front"]]
+    line = page.get_by_role("slider", name="At most this much distance")
+    line.press("Home")
+    choice = page.locator("#choice")
+    expect(choice).to_contain_text("The least distance.")
+    within = [lengths for lengths in front if lengths[0] <= 1.05 * front[0][0]]
+    for _ in within[1:]:
+        line.press("ArrowRight")
+    expect(choice).to_contain_text("more distance")
+    expect(page.get_by_role("row", name="Risk")).to_contain_text(f"{within[-1][1]:,.6g}")
+    share = re.match(r"([0-9.]+) %", choice.inner_text())
+    assert share is not None
+    assert float(share[1]) <= 5.05
+
+
+def test_see_how_far_from_optimal_the_front_may_be(page: Page) -> None:
+    page.get_by_text("More settings").click()
+    page.get_by_label("Say how far from optimal").check()
+    page.get_by_label("Seconds of planning").fill("0.3")
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+    page.get_by_text("Details", exact=True).click()
+    front = shown_front(page)
+    short = 100 * (1 - front["hypervolume"] / front["hypervolume_bound"])
+    expect(page.locator("#figures")).to_contain_text(f"Short of optimal by at most{short:.2f} %")
