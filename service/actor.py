@@ -4,7 +4,7 @@ import hashlib
 import json
 from pathlib import Path
 from threading import Lock
-from typing import Any, get_args
+from typing import Any, Protocol, get_args
 
 import numpy as np
 import onnxruntime
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from service.actor_info import ActorInfo
 from service.construction.call_estimate import CallEstimate
+from service.construction.first_tours import Constructor
 from service.errors import Cancelled
 from service.instance import PLANE, Instance, Kind
 
@@ -24,6 +25,14 @@ _FEW = 100  # cities or preferences, up to which a session keeps less than 20 MB
 _MIN_PLACES = 3  # of fewer there is one tour, and no network was trained on them
 _RESOLUTION = 2.0**20  # of a plane: cities whose coordinates round to the same are at one place
 _LEAST_PREFERENCE = 1e-3  # for an objective: else all cities that coincide in the other are alike
+
+
+class NamedActor(Constructor, Protocol):
+    """A constructor of tours with a name and a digest."""
+
+    @property
+    def info(self) -> ActorInfo:
+        """The information in its file."""
 
 
 class OnnxActor:

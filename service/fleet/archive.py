@@ -2,6 +2,7 @@
 
 from bisect import bisect_left, bisect_right
 from math import inf
+from operator import neg
 
 import pyvrp
 
@@ -38,6 +39,25 @@ class SolutionArchive:
     def points(self) -> list[Point]:
         """The lengths of the solutions, as PyVRP rounds them."""
         return list(zip(self._firsts, self._seconds, strict=True))
+
+    def length(self, index: int, objective: int) -> float:
+        """Return a length of a solution, as PyVRP rounds it."""
+        return (self._firsts, self._seconds)[objective][index]
+
+    def least(self, objective: int) -> float:
+        """Return the least length in an objective."""
+        return self._firsts[0] if objective == 0 else self._seconds[-1]
+
+    def most(self, objective: int) -> float:
+        """Return the greatest length in an objective."""
+        return self._firsts[-1] if objective == 0 else self._seconds[0]
+
+    def best_within(self, objective: int, length: float) -> int | None:
+        """Return the solution that is best in the other objective, of those not longer in one."""
+        if objective == 0:
+            return bisect_right(self._firsts, length) - 1 if length >= self._firsts[0] else None
+        index = bisect_left(self._seconds, -length, key=neg)
+        return index if index < len(self) else None
 
     def offer(self, solution: pyvrp.Solution, weights: tuple[int, int]) -> None:
         """Add a solution unless it breaks a rule, or another is as good.
@@ -82,9 +102,8 @@ class SolutionArchive:
         scale = self._scale(objective)
         if self._roles.limited != objective:
             return (solution.duration() if is_duration else solution.distance()) / scale
-        routes = solution.routes()
-        lengths = (route.duration() if is_duration else route.distance() for route in routes)
-        return max(lengths, default=0) / scale
+        length = pyvrp.Route.duration if is_duration else pyvrp.Route.distance
+        return max(map(length, solution.routes()), default=0) / scale
 
     def _scale(self, objective: int) -> float:
         translation = self._translation

@@ -2,12 +2,13 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from math import inf
 
 import numpy as np
 
+from service.construction.first_tours import SHARE, Constructor
 from service.errors import Cancelled, Refusal
 from service.fleet.archive import SolutionArchive
 from service.fleet.enumeration import exact_plans, is_enumerable
@@ -16,14 +17,18 @@ from service.fleet.fleet import Array, Fleet
 from service.fleet.necessary import check_necessary
 from service.fleet.plans import FleetFront, Plan
 from service.fleet.solver import Solver
+from service.fleet.splitting.cutter import Cutter
+from service.fleet.splitting.first_plans import first_plans
+from service.fleet.splitting.network_sequences import network_sequences
 from service.fleet.sweep import Sweep
-from service.fleet.translation import Translation
+from service.fleet.translation import FREE, Translation
 from service.pareto import best_subset, hypervolume, nondominated, selection_seconds
 from service.search.improve import Progress, Termination
 
 _REPORT_EVERY = 0.1  # seconds
 _NO_LIMIT = 2**62
-_CHECKING = 5e-6  # seconds for each stop of each plan, more than a 2.5 GHz Xeon takes
+_FORGOTTEN = 0.9  # of the longest pause between two checks of the time, with each check
+_CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -31,7 +36,8 @@ class FleetOptions:
     """The options of plan_fleet(...).
 
     Args:
-        time_limit: Seconds for everything, at most.
+        time_limit: Seconds for everything, at most. At 0 there is no search: the plans are those
+            that the tours of the network are cut into.
         size: The greatest number of plans of the front.
         seed: Of all random choices.
         reference_point: Of the hypervolume, shape (2,); by default lengths that no plan should
@@ -53,6 +59,7 @@ Report = Callable[[Progress, Callable[[int], FleetFront]], None]
 def plan_fleet(
     fleet: Fleet,
     options: FleetOptions,
+    constructor: Constructor | None = None,
     stop: Callable[[], bool] = lambda: False,
     report: Report = lambda *_: None,
 ) -> FleetFront:
@@ -61,6 +68,8 @@ def plan_fleet(
     Args:
         fleet: The fleet.
         options: What front is wanted, and how much may be spent on it.
+        constructor: The network whose tours are cut into the first plans; it must read matrices.
+            Without one, the search begins at plans of its own.
         stop: Called after each iteration of PyVRP, a few milliseconds; True ends the planning with
             what was found so far.
         report: Called about ten times a second with the progress, and with a function that gives
@@ -77,9 +86,31 @@ def plan_fleet(
         if not plans:
             raise Refusal("no-plan", reason="no plan keeps every rule: all were tried")
         return _front(fleet, options, plans, terminated="converged", began=began)
+    if options.time_limit == 0:
+        plans = _constructed(fleet, constructor, stop)
+        constructed = _front(fleet, options, plans, terminated="converged", began=began)
+        return replace(constructed, constructed=len(plans))
     search = _Search(fleet, options, stop, report, began)
+    if constructor is not None and not fleet.rules.shipments:
+        search.begin_at(constructor)
     terminated = search.run()
     return search.front(options.size, terminated)
+
+
+def _constructed(
+    fleet: Fleet, constructor: Constructor | None, stop: Callable[[], bool]
+) -> list[Plan]:
+    """Return the plans that the tours of a network are cut into."""
+    if constructor is None:
+        raise Refusal("no-actor", kind="fleets with time_limit 0")
+    cutter = Cutter(fleet, network_sequences(fleet, constructor), stop)
+    plans = [plan for plan in first_plans(fleet, cutter) if not violations(fleet, plan)]
+    if plans:
+        return plans
+    if stop():
+        raise Cancelled
+    reason = "no cut of the network's tours keeps every rule: a time_limit over 0 may find a plan"
+    raise Refusal("no-plan", reason=reason)
 
 
 class _Search:
@@ -102,8 +133,28 @@ class _Search:
         self._reference_point = reference_point_of(fleet, options)
         self._translation = Translation(fleet)
         self._archive = SolutionArchive(self._translation)
+        self._constructed = 0
         self._iterations = 0
+        self._checked = self._began
+        self._pause = 0.0  # seconds between two checks of the time, the longest of late
         self._cancelled = False
+
+    def begin_at(self, constructor: Constructor) -> None:
+        """Put the plans that the tours of a network are cut into into the archive.
+
+        That gets the network's share of the time limit, and as much again for cutting.
+        """
+        share = SHARE * self._options.time_limit
+        within = None if share == inf else share
+        sequences = network_sequences(self._fleet, constructor, within)
+        until = time.monotonic() + share
+        if not sequences:
+            return
+        cutter = Cutter(self._fleet, sequences, lambda: self._stop() or time.monotonic() > until)
+        data = self._translation.data(FREE)
+        for plan in first_plans(self._fleet, cutter):
+            self._constructed += 1
+            self._archive.offer(self._translation.solution(data, plan), FREE.weights)
 
     def run(self) -> Termination:
         """Search until nothing is left to do, or the time is over, or it is told to stop."""
@@ -114,7 +165,7 @@ class _Search:
             if self._left() < 1 or self._ended():
                 return "cancelled" if self._cancelled else "time_limit"
             iterations = min(step.iterations, options.iterations - self._iterations)
-            self._iterations += solver.search(step.goal, step.start, iterations)
+            self._iterations += solver.search(replace(step, iterations=iterations))
         return "converged"
 
     def front(self, size: int, terminated: Termination | None) -> FleetFront:
@@ -133,14 +184,9 @@ class _Search:
         if not plans:
             sentence = f"no plan was found in {self._options.time_limit:g} s that keeps every rule"
             raise Refusal("no-plan", reason=sentence)
-        return _front(
-            self._fleet,
-            self._options,
-            plans,
-            found=len(self._archive),
-            terminated=terminated,
-            began=self._began,
-        )
+        front = _front(self._fleet, self._options, plans, terminated=terminated, began=self._began)
+        most = max(front.found, len(self._archive))
+        return replace(front, found=most, constructed=self._constructed)
 
     def _left(self) -> float:
         """Return how many iterations are left, estimated from the time that those before took."""
@@ -153,6 +199,8 @@ class _Search:
     def _ended(self) -> bool:
         """Return whether to stop, after a report if one is due."""
         now = time.monotonic()
+        self._pause = max(now - self._checked, _FORGOTTEN * self._pause)
+        self._checked = now
         if self._stop():
             self._cancelled = True
             return True
@@ -166,11 +214,14 @@ class _Search:
         return left <= self._reserve()
 
     def _reserve(self) -> float:
-        """Return the seconds before the deadline that checking and selecting plans takes."""
+        """Return the seconds before the deadline that checking and selecting plans takes.
+
+        And another iteration, as long as the longest of late.
+        """
         found = len(self._archive)
         checked = min(found, self._options.size) * self._fleet.rules.n
         selected = selection_seconds(self._options.size, found)
-        return _CHECKING * checked + selected
+        return self._pause + _CHECKING * checked + selected
 
 
 def _front(
@@ -178,7 +229,6 @@ def _front(
     options: FleetOptions,
     plans: Sequence[Plan],
     *,
-    found: int = 0,
     terminated: Termination | None,
     began: float,
 ) -> FleetFront:
@@ -191,7 +241,7 @@ def _front(
         fleet=fleet,
         plans=[plans[index] for index in kept],
         points=points[kept],
-        found=max(found, len(front)),
+        found=len(front),
         scale=scale_of(fleet),
         reference_point=reference_point,
         hypervolume=hypervolume(points[kept], reference_point),

@@ -42,6 +42,7 @@ class FleetFront:
         plans: The m plans.
         points: Their lengths, shape (m, 2).
         found: The number of nondominated plans found, of which m were kept.
+        constructed: The number of plans that the tours of a network were cut into.
         scale: The unit of each objective, shape (2,).
         reference_point: Of the hypervolume, shape (2,).
         hypervolume: Of the plans kept.
@@ -58,3 +59,4 @@ class FleetFront:
     hypervolume: float
     terminated: Literal["converged", "time_limit", "cancelled"] | None
     timings: dict[str, float] = field(default_factory=dict)
+    constructed: int = 0

@@ -3,6 +3,7 @@
 import time
 import warnings
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import pyvrp
 import pyvrp.search
@@ -16,10 +17,25 @@ from pyvrp.PenaltyManager import PenaltyManager, PenaltyParams
 
 from service.fleet.translation import Goal, Translation, Weights
 
-_FEW = 200  # stops, of which a search of the whole neighbourhood takes milliseconds
+_FEW = 100  # stops, of which a search of the whole neighbourhood takes some 50 ms at most
 _EXHAUSTIVE = 5e-6  # seconds for each pair of stops, more than a 2.5 GHz Xeon takes
 Neighbours = dict[pyvrp.Activity, list[pyvrp.Activity]]
 Offer = Callable[[pyvrp.Solution, Weights], None]
+
+
+@dataclass(frozen=True)
+class Step:
+    """A search to run.
+
+    Args:
+        goal: Its goal.
+        start: The solution to start from, found under any goal; None begins at a random one.
+        iterations: The most iterations.
+    """
+
+    goal: Goal
+    start: pyvrp.Solution | None
+    iterations: int
 
 
 class Solver:
@@ -49,22 +65,17 @@ class Solver:
         self._deadline = deadline
         self._neighbours: tuple[Weights, Neighbours] | None = None
 
-    def search(self, goal: Goal, start: pyvrp.Solution | None, iterations: int) -> int:
-        """Search towards a goal, and return the number of iterations.
-
-        Args:
-            goal: The goal.
-            start: The solution to start from, found under any goal; None begins at a random one.
-            iterations: The most iterations.
-        """
+    def search(self, step: Step) -> int:
+        """Run a search, and return the number of its iterations."""
+        goal = step.goal
         data = self._translation.data(goal)
         local_search = self._local_search(data, goal)
         parameters = PenaltyParams(max_penalty=self._translation.max_penalty)
         penalties = parameters.midpoint_penalties(data)
         manager = PenaltyManager(penalties, parameters)
-        initial = self._initial(data, start, local_search, manager)
+        initial = self._initial(data, step.start, local_search, manager)
         self._offer(initial, goal.weights)
-        watcher = _Watcher(self._offer, self._stop, goal.weights, iterations)
+        watcher = _Watcher(self._offer, self._stop, goal.weights, step.iterations)
         small = len(self._translation.fleet.rules.clients) <= _FEW
         settings = IteratedLocalSearchParams(callbacks=watcher, exhaustive_on_best=small)
         with warnings.catch_warnings():

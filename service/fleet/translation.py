@@ -31,6 +31,9 @@ class Goal:
     limit: int = UNBOUNDED
 
 
+FREE = Goal(weights=(1, 1))  # of solutions that were found under none
+
+
 @dataclass(frozen=True)
 class _Roles:
     """The objective that is PyVRP's distance, that which is its duration, and which is limited."""
@@ -68,6 +71,7 @@ class Translation:
         duration = self.roles.duration
         self.distance_scale = scales[self.roles.distance]
         self.duration_scale = 1.0 if duration is None else scales[duration]
+        self._unlimited: tuple[Weights, pyvrp.ProblemData] | None = None  # of the latest weights
 
     @cached_property
     def _matrices(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -106,6 +110,12 @@ class Translation:
 
     def data(self, goal: Goal) -> pyvrp.ProblemData:
         """Return PyVRP's data for a goal."""
+        if self._unlimited is None or self._unlimited[0] != goal.weights:
+            self._unlimited = goal.weights, self._unlimited_data(Goal(weights=goal.weights))
+        vehicles = [self._vehicle(vehicle, goal) for vehicle in self.fleet.rules.vehicles]
+        return self._unlimited[1].replace(vehicle_types=vehicles)
+
+    def _unlimited_data(self, goal: Goal) -> pyvrp.ProblemData:
         distances, durations = self._matrices
         return pyvrp.ProblemData(
             self._locations,

@@ -9,9 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from service.actor import load_actors
-from service.actor_info import ActorInfo
-from service.construction.first_tours import Constructor
+from service.actor import NamedActor, load_actors
 from service.coverage import shortest_paths
 from service.coverage.coverage import Coverage
 from service.coverage.survey import CoveragePath, Survey, survey
@@ -65,14 +63,6 @@ class Runner(Protocol):
 MakeRunner = Callable[[], Runner]
 
 
-class NamedActor(Constructor, Protocol):
-    """A constructor of tours with a name and a digest."""
-
-    @property
-    def info(self) -> ActorInfo:
-        """The information in its file."""
-
-
 @dataclass(frozen=True)
 class TaskRunner:
     """Plans fronts within limits, with the actors that are loaded.
@@ -102,7 +92,7 @@ class TaskRunner:
         if self.measurer is not None and needs_roads(task):
             task = self.measurer.measured(task, stop)
         if isinstance(task.subject, UnmeasuredFleet):
-            return run_fleet(task, task.subject, stop, report)
+            return run_fleet(task, task.subject, self.actors.get(task.actor), stop, report)
         if isinstance(task.subject, Coverage):
             return self._cover(task, task.subject, stop, report)
         if isinstance(task.subject, UnmeasuredStops):

@@ -36,7 +36,8 @@ class Task:
         subject: The cities; or what becomes cities in the job: a map and its places, or stops
             or a fleet whose costs are to be measured.
         options: The options for the planner.
-        actor: The name of the actor that builds the first tours; empty for fleets, which have none.
+        actor: The name of the actor that builds the first tours; empty for a fleet where none is
+            loaded that reads matrices.
         paths: Whether each tour comes with its path over the map.
         arrivals: Whether each tour comes with both lengths up to each stop.
         geometry: What the lines of the answer follow, where that is GeoJSON.
@@ -58,7 +59,8 @@ class Task:
     @property
     def needs_compiled_code(self) -> bool:
         """Whether planning needs more than the network."""
-        return isinstance(self.subject, Coverage) or self.options.needs_compiled_code
+        compiled = isinstance(self.subject, Coverage | UnmeasuredFleet)
+        return compiled or self.options.needs_compiled_code
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,7 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
     if source.kind in ("coverage", "replan-coverage"):
         return _coverage_task(source, limits, actors)
     if source.kind == "fleet":
-        return _fleet_task(source.body, limits)
+        return _fleet_task(source.body, limits, actors)
     model = RestRequest if source.kind == "replan" else FrontRequest
     request = parse_front_request(source.body, limits, source.upload, model)
     name = choose_actor(actors, request.kind, request.requested_actor)
@@ -132,11 +134,13 @@ def _options(request: PlanRequest, actor: ActorInfo) -> PlanOptions:
     return replace(options, repairs=0)
 
 
-def _fleet_task(body: bytes, limits: Limits) -> Task:
+def _fleet_task(body: bytes, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
     request = parse_fleet_request(body, limits)
     fleet = request.subject()
     check_router(fleet.stops, limits)
-    return Task(subject=fleet, options=request.options(), actor="", labels=request.labels)
+    able = any(info.serves("matrices") for info in actors.values())
+    actor = choose_actor(actors, "matrices", None) if able else ""
+    return Task(subject=fleet, options=request.options(), actor=actor, labels=request.labels)
 
 
 DEFAULT_ACTORS: Mapping[Kind, str] = {"coordinates": "pa-one", "matrices": "pa-one-matrix"}

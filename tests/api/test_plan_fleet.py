@@ -136,3 +136,14 @@ def test_plans_are_drawn_with_a_line_for_each_route(
 def test_a_file_beside_a_fleet_is_refused(client: httpx.Client) -> None:
     refused = client.post("/fleet", files={"request": b"{}", "matrices": b""})
     problem(refused, 415, "not-json")
+
+
+def test_without_time_the_tours_of_the_network_are_cut(client: httpx.Client) -> None:
+    request = fleet_request()
+    request["time_limit"] = 0
+    assert "shipments" in problem(client.post("/fleet", json=request), 422, "no-plan")["detail"]
+    del request["shipments"]
+    front = client.post("/fleet", json=request).json()
+    assert front["terminated"] == "converged"
+    assert front["actor"]["name"] == "pa-one-matrix"
+    assert front["front"]

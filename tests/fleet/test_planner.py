@@ -1,6 +1,7 @@
 """Fronts of plans against brute force, and what every front promises."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import islice
 from math import inf
 from typing import Any
@@ -8,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled, Refusal
 from service.fleet.archive import SolutionArchive
 from service.fleet.evaluation import plan_lengths, violations
@@ -19,6 +21,7 @@ from service.fleet.sweep import Sweep
 from service.fleet.translation import Translation
 from service.pareto import nondominated
 from service.search.improve import Progress
+from tests.helpers.actors import Shuffler, info_of
 from tests.helpers.fleets import Point, exact_front, hull_corners, random_fleet
 
 ENOUGH = FleetOptions(time_limit=inf, iterations=20_000)
@@ -64,7 +67,7 @@ def searched(fleet: Fleet) -> list[Point]:
     solver = Solver(translation, 0, archive.offer, lambda: False)
     random = np.random.default_rng(0)
     for step in islice(Sweep(translation, archive, random, lambda: inf).steps(), 8):
-        solver.search(step.goal, step.start, step.iterations)
+        solver.search(step)
     plans = [translation.plan(solution) for solution in archive.solutions]
     assert [violations(fleet, plan) for plan in plans] == [[]] * len(plans)
     return sorted({plan_lengths(fleet, plan) for plan in plans})
@@ -168,3 +171,48 @@ def test_costs_of_any_size_are_planned(unit: float) -> None:
 
 
 OPEN = VehicleType(start=0, count=3)
+
+
+def plain_deliveries(n: int) -> Fleet:
+    """Return deliveries without windows."""
+    fleet = deliveries(n)
+    visits = (Visit(), *(Visit(demand=(1,)),) * n)
+    return Fleet(rules=replace(fleet.rules, visits=visits), costs=fleet.costs)
+
+
+def shuffler() -> Shuffler:
+    return Shuffler(info=info_of("shuffler", "matrices"), estimate=CallEstimate("matrices"))
+
+
+def test_without_time_the_tours_of_the_network_are_cut() -> None:
+    fleet = plain_deliveries(20)
+    front = plan_fleet(fleet, FleetOptions(time_limit=0, size=4), shuffler())
+    assert (front.terminated, len(front.plans)) == ("converged", 4)
+    assert front.constructed >= front.found >= 4
+    assert [violations(fleet, plan) for plan in front.plans] == [[]] * 4
+
+
+def test_with_time_the_search_begins_at_the_cuts() -> None:
+    fleet = plain_deliveries(20)
+    cut = plan_fleet(fleet, FleetOptions(time_limit=0), shuffler())
+    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=60), shuffler())
+    assert front.constructed == cut.constructed
+    slack = 1 + 1e-6  # PyVRP's lengths are rounded
+    better = (front.points[:, np.newaxis] <= slack * cut.points).all(axis=2)
+    assert better.any(axis=0).all()
+
+
+def test_what_no_cut_of_a_tour_keeps_is_refused_without_time() -> None:
+    options = FleetOptions(time_limit=0)
+    fleet = deliveries(20)
+    narrow = [replace(visit, window=(1.0, 1.2)) for visit in fleet.rules.visits[1:]]
+    rules = replace(fleet.rules, visits=(Visit(), *narrow))
+    fleet = Fleet(
+        rules=replace(rules, vehicles=(replace(rules.vehicles[0], count=3),)), costs=fleet.costs
+    )
+    with pytest.raises(Refusal, match="no cut of the network's tours"):
+        plan_fleet(fleet, options, shuffler())
+    with pytest.raises(Refusal, match="need an actor"):
+        plan_fleet(fleet, options)
+    with pytest.raises(Cancelled):
+        plan_fleet(fleet, options, shuffler(), stop=lambda: True)

@@ -19,8 +19,17 @@ from service.requests.stops import Labels
 from service.requests.task import Task
 
 
-def encode_fleet(front: FleetFront, vehicles: Sequence[str], labels: Labels) -> FrontDocument:
-    """Write a front of plans as JSON, with the names of types of vehicles, stops and objectives."""
+def encode_fleet(
+    front: FleetFront, actor: dict[str, str] | None, vehicles: Sequence[str], labels: Labels
+) -> FrontDocument:
+    """Write a front of plans as JSON.
+
+    Args:
+        front: The front.
+        actor: The name and digest of the network whose tours were cut into the first plans, if so.
+        vehicles: The names of the types of vehicles.
+        labels: The names of stops and objectives.
+    """
     ids = [stop.id for stop in labels.stops]
     members = zip(balances(front.points).tolist(), front.points.tolist(), front.plans, strict=True)
     plans, ends = joined(
@@ -36,7 +45,7 @@ def encode_fleet(front: FleetFront, vehicles: Sequence[str], labels: Labels) -> 
         scale=front.scale.tolist(),
         timings_ms=Timings(front.timings),
         terminated=front.terminated,
-        actor=None,
+        actor=actor,
         **_named(labels, front.fleet.rules.over),
         tours=plans,
         ends=ends,

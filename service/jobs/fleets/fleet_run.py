@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
+from service.actor import NamedActor
 from service.fleet.plans import FleetFront
 from service.jobs.fleets.fleet_document import encode_fleet
 from service.jobs.front_document import FrontDocument
@@ -15,9 +16,21 @@ Report = Callable[[Progress, Callable[[int], FrontDocument]], None]
 
 
 def run_fleet(
-    task: Task, subject: UnmeasuredFleet, stop: Callable[[], bool], report: Report
+    task: Task,
+    subject: UnmeasuredFleet,
+    actor: NamedActor | None,
+    stop: Callable[[], bool],
+    report: Report,
 ) -> FrontDocument:
     """Return the front of plans of a task, whose stops are measured.
+
+    Args:
+        task: The task.
+        subject: The fleet.
+        actor: The network whose tours are cut into the first plans.
+        stop: Called often; planning ends soon after it returns True.
+        report: Called now and then with the progress, and with a function that writes the best so
+            many plans found so far.
 
     Raises:
         Refusal: No plan keeps every rule, or none was found.
@@ -30,7 +43,8 @@ def run_fleet(
     labels = task.labels
 
     def encoded(front: FleetFront) -> FrontDocument:
-        return encode_fleet(front, subject.vehicles, labels)
+        identity = actor.info.identity if actor is not None and front.constructed else None
+        return encode_fleet(front, identity, subject.vehicles, labels)
 
     def report_encoded(progress: Progress, best: Callable[[int], FleetFront]) -> None:
         report(progress, lambda size: encoded(best(size)))
@@ -44,10 +58,13 @@ def run_fleet(
         seed=task.options.seed,
         reference_point=task.options.reference_point,
     )
-    front = plan_fleet(fleet, options, stop, report_encoded)
+    front = plan_fleet(fleet, options, actor, stop, report_encoded)
     return encoded(replace(front, timings={**timings, **front.timings}))
 
 
 def warm_up() -> None:
-    """Import PyVRP, which takes some tenths of a second."""
+    """Import PyVRP, which takes some tenths of a second, and compile the optimal split."""
     import service.fleet.planner  # noqa: F401
+    from service.fleet.splitting import cutter
+
+    cutter.warm_up()

@@ -49,7 +49,10 @@ class FleetRequest(BaseModel):
         " service and longest, and a route's length in it is its time with service and waiting",
     )
     time_limit: float = Field(
-        default=1.0, gt=0, allow_inf_nan=False, description="seconds of all planning, at most"
+        default=1.0,
+        ge=0,
+        allow_inf_nan=False,
+        description="seconds of all planning, at most; at 0 the plans are the network's alone",
     )
     size: PositiveInteger = Field(default=100, description="the most plans to return")
     reference_point: list[PositiveNumber] = Field(

@@ -1,0 +1,113 @@
+"""The steps towards a sum against a maximum: limits on the longest route (epsilon-constraint)."""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from service.fleet.archive import SolutionArchive
+from service.fleet.fleet import Array
+from service.fleet.solver import Step
+from service.fleet.translation import UNBOUNDED, Goal, Translation
+
+_ROUNDED = 3  # units by which the route to one stop and back is rounded up: two legs and a service
+_UNKNOWN = 0.1  # of the greatest sum: by how much more sums may be where none is known, at least
+
+
+class LimitSteps:
+    """Searches under limits, each from the best solution within its limit that there is by then.
+
+    Args:
+        translation: Of the fleet, one of whose objectives is a maximum.
+        archive: Where the solutions of all searches are; it must not be empty.
+        iterations: Of each search.
+    """
+
+    def __init__(self, translation: Translation, archive: SolutionArchive, iterations: int) -> None:
+        self._translation = translation
+        self._archive = archive
+        self._iterations = iterations
+        maximum = translation.roles.limited
+        assert maximum is not None
+        self._maximum = maximum
+
+    def every_limit(self) -> Iterator[Step]:
+        """Yield a search just below the longest route of each solution."""
+        done: set[int] = set()
+        while True:
+            limits = {self._limit(point[self._maximum]) - 1 for point in self._archive.points}
+            left = limits - done
+            if not left:
+                return
+            limit = max(left)
+            done.add(limit)
+            yield self._step(limit)
+
+    def wide_limits(self, most: int, share: Callable[[], float]) -> Iterator[Step]:
+        """Yield searches at so many limits: the least that there can be, and then others.
+
+        Each is at a share of the interval between two others, or the ends, in which the front may
+        gain the most hypervolume.
+        """
+        least, greatest = self._least_limit(), self._limit(self._archive.most(self._maximum))
+        intervals = [(least, max(least, greatest))]
+        yield self._step(least)
+        for _ in range(most - 1):
+            low, high = max(intervals, key=self._area)
+            intervals.remove((low, high))
+            limit = low + int(share() * (high - low))
+            yield self._step(limit)
+            intervals += [(low, limit), (limit, high)]
+
+    def _area(self, interval: tuple[int, int]) -> float:
+        """Return the hypervolume that solutions within an interval can gain, at most."""
+        low, high = interval
+        return (high - low) * (self._sum_within(low) - self._sum_within(high))
+
+    def _sum_within(self, limit: int) -> float:
+        """Return the least sum within a limit; a high one where no solution is."""
+        archive, summed = self._archive, 1 - self._maximum
+        index = archive.best_within(self._maximum, self._length(limit))
+        if index is not None:
+            return archive.length(index, summed)
+        most = archive.most(summed)
+        return most + max(most - archive.least(summed), _UNKNOWN * most)
+
+    def _step(self, limit: int) -> Step:
+        goal = Goal(weights=self._translation.sum_weights, limit=max(0, limit))
+        archive = self._archive
+        index = archive.best_within(self._maximum, self._length(limit))
+        if index is None:  # the one of the least maximum
+            index = 0 if self._maximum == 0 else len(archive) - 1
+        return Step(goal, archive.solutions[index], self._iterations)
+
+    def _limit(self, length: float) -> int:
+        return round(length * self._translation.limit_scale)
+
+    def _length(self, limit: int) -> float:
+        """Return what all lengths are less than that are within a limit once they are rounded."""
+        return (limit + 0.5) / self._translation.limit_scale
+
+    def _least_limit(self) -> int:
+        """Return about the least limit that lets each stop be visited at all."""
+        fleet = self._translation.fleet
+        rules, costs = fleet.rules, fleet.costs[self._maximum]
+        alone = np.full(rules.n, np.inf)
+        for vehicle in rules.vehicles:
+            there = 0.0 if vehicle.start is None else _shortest(costs, vehicle.start)
+            back = 0.0 if vehicle.end is None else _shortest(costs.T, vehicle.end)
+            alone = np.minimum(alone, there + back)
+        if rules.clock == self._maximum:
+            alone += [visit.service for visit in rules.visits]
+        required = [s for s in rules.clients if rules.visits[s].prize is None]
+        return min(UNBOUNDED, self._limit(float(alone[required].max(initial=0.0))) + _ROUNDED)
+
+
+def _shortest(costs: Array, begin: int) -> Array:
+    """Return the lengths of the shortest paths from a stop to all, as Bellman and Ford do."""
+    lengths = costs[begin]
+    for _ in range(len(costs)):
+        shorter = np.minimum(lengths, (lengths[:, np.newaxis] + costs).min(axis=0))
+        if (shorter == lengths).all():
+            break
+        lengths = shorter
+    return lengths

@@ -1,0 +1,1 @@
+"""First plans of a fleet without a search: the tours of a network, cut into routes."""
