@@ -8,6 +8,7 @@ from typing import Any
 
 from service.examples.deliveries import deliveries
 from service.examples.helsinki import helsinki
+from service.examples.vans import vans
 from service.examples.warehouse import cleaning
 
 _NO_ROUTER = (
@@ -27,8 +28,10 @@ def write(directory: Path, router_url: str | None) -> None:
     requests = {"city-deliveries": deliveries(), "warehouse-cleaning": cleaning()}
     if router_url is None:
         sys.stderr.write(_NO_ROUTER)
+        one_van = json.loads((Path(__file__).parent / "helsinki-deliveries.json").read_text())
     else:
-        requests["helsinki-deliveries"] = helsinki(router_url)
+        requests["helsinki-deliveries"] = one_van = helsinki(router_url)
+    requests["helsinki-vans"] = vans(one_van)
     for name, request in requests.items():
         (directory / f"{name}.json").write_text(_formatted(request))
 

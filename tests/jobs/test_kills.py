@@ -17,6 +17,15 @@ from tests.helpers.serving import problem
 # Long enough for a report on the fastest machine.
 REQUEST = {"coordinates": CITIES[:100], "time_limit": 0.8}
 CHANGES = {"done": [1, 2], "time_limit": 0.8}
+FLEET = {
+    "stops": [{"id": str(stop)} for stop in range(40)],
+    "vehicles": [{"id": "van", "count": 9, "start": "0", "end": "0"}],
+    "objectives": [
+        {"name": name, "coordinates": [city[:2] for city in CITIES[:40]], "over": over}
+        for name, over in (("total", "sum"), ("longest", "max"))
+    ],
+    "time_limit": 0.8,
+}
 CALLERS = 3
 
 
@@ -33,6 +42,7 @@ def test_ten_kills_under_load_lose_nothing(kind: str, request: pytest.FixtureReq
         rest = f"/front/{front['id']}/replan"
         asking = [callers.submit(ask, served.client, over) for _ in range(CALLERS)]
         paths = [later(served.client, REQUEST) for _ in range(3)]
+        fleets = [later(served.client, FLEET, "/fleet") for _ in range(3)]
         rests = [later(served.client, CHANGES, rest) for _ in range(3)]
         try:
             kill_ten(served)
@@ -40,6 +50,8 @@ def test_ten_kills_under_load_lose_nothing(kind: str, request: pytest.FixtureReq
             over.set()
         for path in paths:
             check_ended(ended(served.client, path))
+        for path in fleets:
+            check_fleet(ended(served.client, path))
         for path in rests:
             check_rest(ended(served.client, path))
         assert served.client.get(f"/front/{front['id']}").json() == front
@@ -56,6 +68,17 @@ def check_rest(found: dict[str, Any]) -> None:
     for tour in found["front"]:
         assert (tour["stops"][0], tour["stops"][-1]) == ("2", "0")
         assert set(tour["stops"]) == left
+
+
+def check_fleet(found: dict[str, Any]) -> None:
+    """With plans that visit every stop, or lost with its worker; what was found is kept."""
+    if found["status"] != "done":
+        assert (found["status"], found["problem"]["code"]) == ("failed", "worker-lost")
+    else:
+        assert found["front"]
+    for plan in found["front"]:
+        visits = [stop for route in plan["routes"] for stop in route["stops"][1:-1]]
+        assert sorted(visits, key=int) == [str(stop) for stop in range(1, 40)]
 
 
 def ask(client: httpx.Client, over: Event) -> list[httpx.Response]:
