@@ -1,0 +1,23 @@
+"""The benchmark of fleets runs from end to end, and every method finds plans."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.benchmarks import fleet, provenance
+
+
+def test_every_method_finds_plans_which_are_stored_and_printed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(provenance, "RESULTS", tmp_path)
+    monkeypatch.setattr(provenance, "changed_files", list)
+    monkeypatch.setitem(fleet.SECONDS, 20, 0.5)
+    fleet.main(["--sizes", "20", "--count", "1"])
+    stored = provenance.load("fleet")
+    assert len(stored) == 4
+    for entry in stored.values():
+        (measured,) = entry["instances"]
+        assert 0.3 < measured["hypervolume"] < 0.6
+        assert measured["points"]
+    assert "ahead on" in capsys.readouterr().out
