@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from paretour import Refused
 
 from tests.helpers.answers import Connect
 from tests.helpers.fleet_requests import fleet_request
@@ -22,3 +23,19 @@ def test_a_fleet_is_planned_and_its_plans_are_values(connect: Connect, url: str)
             assert route.arrivals.tolist() == each["arrivals"]
     with pytest.raises(ValueError, match="read-only"):
         front.lengths[0, 0] = 1
+
+
+def test_a_job_of_a_fleet_gives_its_plans_and_is_found_by_its_id(
+    connect: Connect, url: str
+) -> None:
+    client = connect(url)
+    job = client.submit_fleet(**fleet_request())
+    front = job.result()
+    assert (front.id, front.status) == (job.id, "done")
+    assert front.plans
+    again = client.fleet_job(job.id)
+    assert again.front().document == front.document
+    assert again.cancel().document == front.document  # it has ended, so nothing is cancelled
+    again.forget()
+    with pytest.raises(Refused, match="there is no front"):
+        again.front()

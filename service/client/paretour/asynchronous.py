@@ -2,16 +2,16 @@
 
 import asyncio
 from collections.abc import AsyncIterator
-from typing import Any, Self, TypeVar, Unpack
+from typing import Any, Generic, Self, TypeVar, Unpack
 
 import httpx
-from paretour.calls import Call, Calls, Geometry, auth_headers
+from paretour.calls import AnyFront, Call, Calls, Geometry, Parse, auth_headers
 from paretour.choice import Choice
 from paretour.events import JobEvents
-from paretour.fleets import FleetFront
+from paretour.fleets import FleetFront, parse_fleet
 from paretour.members import CoverageRequest, FleetRequest, FrontRequest, ReplanRequest
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
-from paretour.values import Actor, Front, Progress, Tour
+from paretour.values import Actor, Front, Progress, Tour, parse_front
 
 T = TypeVar("T")
 
@@ -64,7 +64,7 @@ class AsyncClient:
 
     async def submit_replan(
         self, front: Front | str, **request: Unpack[ReplanRequest]
-    ) -> "AsyncJob":
+    ) -> "AsyncJob[Front]":
         """Submit a job that plans the rest of a front's way; arguments as of `replan`."""
         return await self.post(replan_plan(front, request))
 
@@ -72,13 +72,17 @@ class AsyncClient:
         """Plan a front of plans for a fleet and wait for it."""
         return await self.plan_fleet(fleet_plan(request))
 
-    async def submit(self, **request: Unpack[FrontRequest]) -> "AsyncJob":
+    async def submit_fleet(self, **request: Unpack[FleetRequest]) -> "AsyncJob[FleetFront]":
+        """Submit a job that plans a front of plans for a fleet."""
+        return self.fleet_job(await self._connection.run(self._calls.submit(fleet_plan(request))))
+
+    async def submit(self, **request: Unpack[FrontRequest]) -> "AsyncJob[Front]":
         """Submit a job that plans a front."""
         return await self.post(front_plan(request))
 
     async def submit_coverage(
         self, png: bytes | None = None, **request: Unpack[CoverageRequest]
-    ) -> "AsyncJob":
+    ) -> "AsyncJob[Front]":
         """Submit a job that plans a front over a map; arguments as of `coverage`."""
         return await self.post(coverage_plan(request, png))
 
@@ -90,13 +94,17 @@ class AsyncClient:
         """Send a plan for a fleet that was built before, and wait for the front of its plans."""
         return await self._connection.run(self._calls.plan_fleet(plan))
 
-    async def post(self, plan: Plan) -> "AsyncJob":
+    async def post(self, plan: Plan) -> "AsyncJob[Front]":
         """Send a plan that was built before, as a job."""
         return self.job(await self._connection.run(self._calls.submit(plan)))
 
-    def job(self, front: str) -> "AsyncJob":
+    def job(self, front: str) -> "AsyncJob[Front]":
         """Return the job of a front by its id, without asking whether the service knows it."""
-        return AsyncJob(front, self._connection, self._calls)
+        return AsyncJob(front, parse_front, self._connection, self._calls)
+
+    def fleet_job(self, front: str) -> "AsyncJob[FleetFront]":
+        """Return the job of a front of plans, in the same way."""
+        return AsyncJob(front, parse_fleet, self._connection, self._calls)
 
     async def tour(
         self, angle: float | None = None, front: str | None = None, **choice: Unpack[Choice]
@@ -129,15 +137,18 @@ class AsyncClient:
         await self.close()
 
 
-class AsyncJob:
-    """A front that is planned while the program does something else.
+class AsyncJob(Generic[AnyFront]):
+    """A front, of tours or of plans, that is planned while the program does something else.
 
     Attributes:
         id: The id of the front.
     """
 
-    def __init__(self, front_id: str, connection: "_Connection", calls: Calls) -> None:
+    def __init__(
+        self, front_id: str, parse: Parse[AnyFront], connection: "_Connection", calls: Calls
+    ) -> None:
         self.id = front_id
+        self._parse: Parse[AnyFront] = parse
         self._connection = connection
         self._calls = calls
 
@@ -145,11 +156,11 @@ class AsyncJob:
         """Yield the progress of the search until the job ends."""
         return self._connection.follow(self._calls.events(self.id))
 
-    async def front(self) -> Front:
+    async def front(self) -> AnyFront:
         """Return the best front so far."""
-        return await self._connection.run(self._calls.stored(self.id))
+        return await self._connection.run(self._calls.stored(self.id, self._parse))
 
-    async def result(self) -> Front:
+    async def result(self) -> AnyFront:
         """Wait for the job to end and return its front.
 
         Raises:
@@ -157,11 +168,11 @@ class AsyncJob:
         """
         async for _ in self.progress():
             pass
-        return await self._connection.run(self._calls.result(self.id))
+        return await self._connection.run(self._calls.result(self.id, self._parse))
 
-    async def cancel(self) -> Front:
+    async def cancel(self) -> AnyFront:
         """End the job now and return the best front so far."""
-        return await self._connection.run(self._calls.cancel(self.id))
+        return await self._connection.run(self._calls.cancel(self.id, self._parse))
 
     async def forget(self) -> None:
         """Delete the front of a job that has ended from the service."""

@@ -4,7 +4,7 @@ A call is a generator: it yields a request, is sent the response, and returns th
 Both clients run the same calls, one waiting for responses and one awaiting them.
 """
 
-from collections.abc import Generator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeVar
 
@@ -17,6 +17,8 @@ from paretour.requests import Plan
 from paretour.values import FINAL_STATUSES, Actor, Front, Tour, parse_actor, parse_front, parse_tour
 
 T = TypeVar("T")
+AnyFront = TypeVar("AnyFront", Front, FleetFront)
+Parse = Callable[[Mapping[str, Any]], AnyFront]
 Geometry = Literal["straight", "roads"]
 
 
@@ -68,12 +70,12 @@ class Calls:
         response = yield from self._post(plan, self.timeout, Prefer="respond-async")
         return response.json()["id"]
 
-    def stored(self, front_id: str) -> Call[Front]:
-        """Return a front as it is now."""
-        return parse_front((yield from self._get(_path(front_id))).json())
+    def stored(self, front_id: str, parse: Parse[AnyFront]) -> Call[AnyFront]:
+        """Return a front as it is now, parsed so."""
+        return parse((yield from self._get(_path(front_id))).json())
 
-    def result(self, front_id: str) -> Call[Front]:
-        """Return the front of a job that has ended.
+    def result(self, front_id: str, parse: Parse[AnyFront]) -> Call[AnyFront]:
+        """Return the front of a job that has ended, parsed so.
 
         Raises:
             Refused: The job failed.
@@ -81,17 +83,17 @@ class Calls:
         response = yield from self._get(_path(front_id))
         if response.json()["status"] == "failed":
             raise Refused(response.json()["problem"])
-        return parse_front(response.json())
+        return parse(response.json())
 
-    def cancel(self, front_id: str) -> Call[Front]:
-        """Cancel a job; return its front, as the job ended."""
-        front = yield from self.stored(front_id)
+    def cancel(self, front_id: str, parse: Parse[AnyFront]) -> Call[AnyFront]:
+        """Cancel a job; return its front, as the job ended, parsed so."""
+        front = yield from self.stored(front_id, parse)
         if front.status in FINAL_STATUSES:  # to delete it would forget it
             return front
         response = yield from self._send(self._delete(front_id))
         if response.status_code == httpx.codes.NO_CONTENT:  # it ended meanwhile
             return front
-        return parse_front(response.json())
+        return parse(response.json())
 
     def forget(self, front_id: str) -> Call[None]:
         """Delete the front of a job that has ended."""

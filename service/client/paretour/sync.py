@@ -2,16 +2,16 @@
 
 import time
 from collections.abc import Iterator
-from typing import Any, Self, TypeVar, Unpack
+from typing import Any, Generic, Self, TypeVar, Unpack
 
 import httpx
-from paretour.calls import Call, Calls, Geometry, auth_headers
+from paretour.calls import AnyFront, Call, Calls, Geometry, Parse, auth_headers
 from paretour.choice import Choice
 from paretour.events import JobEvents
-from paretour.fleets import FleetFront
+from paretour.fleets import FleetFront, parse_fleet
 from paretour.members import CoverageRequest, FleetRequest, FrontRequest, ReplanRequest
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
-from paretour.values import Actor, Front, Progress, Tour
+from paretour.values import Actor, Front, Progress, Tour, parse_front
 
 T = TypeVar("T")
 
@@ -68,7 +68,7 @@ class Client:
         """
         return self.plan(replan_plan(front, request))
 
-    def submit_replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> "Job":
+    def submit_replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> "Job[Front]":
         """Submit a job that plans the rest of a front's way; arguments as of `replan`."""
         return self.post(replan_plan(front, request))
 
@@ -76,13 +76,17 @@ class Client:
         """Plan a front of plans for a fleet and wait for it."""
         return self.plan_fleet(fleet_plan(request))
 
-    def submit(self, **request: Unpack[FrontRequest]) -> "Job":
+    def submit_fleet(self, **request: Unpack[FleetRequest]) -> "Job[FleetFront]":
+        """Submit a job that plans a front of plans for a fleet."""
+        return self.fleet_job(self._connection.run(self._calls.submit(fleet_plan(request))))
+
+    def submit(self, **request: Unpack[FrontRequest]) -> "Job[Front]":
         """Submit a job that plans a front."""
         return self.post(front_plan(request))
 
     def submit_coverage(
         self, png: bytes | None = None, **request: Unpack[CoverageRequest]
-    ) -> "Job":
+    ) -> "Job[Front]":
         """Submit a job that plans a front over a map; arguments as of `coverage`."""
         return self.post(coverage_plan(request, png))
 
@@ -94,13 +98,17 @@ class Client:
         """Send a plan for a fleet that was built before, and wait for the front of its plans."""
         return self._connection.run(self._calls.plan_fleet(plan))
 
-    def post(self, plan: Plan) -> "Job":
+    def post(self, plan: Plan) -> "Job[Front]":
         """Send a plan that was built before, as a job."""
         return self.job(self._connection.run(self._calls.submit(plan)))
 
-    def job(self, front: str) -> "Job":
+    def job(self, front: str) -> "Job[Front]":
         """Return the job of a front by its id, without asking whether the service knows it."""
-        return Job(front, self._connection, self._calls)
+        return Job(front, parse_front, self._connection, self._calls)
+
+    def fleet_job(self, front: str) -> "Job[FleetFront]":
+        """Return the job of a front of plans, in the same way."""
+        return Job(front, parse_fleet, self._connection, self._calls)
 
     def tour(
         self, angle: float | None = None, front: str | None = None, **choice: Unpack[Choice]
@@ -133,15 +141,18 @@ class Client:
         self.close()
 
 
-class Job:
-    """A front that is planned while the program does something else.
+class Job(Generic[AnyFront]):
+    """A front, of tours or of plans, that is planned while the program does something else.
 
     Attributes:
         id: The id of the front.
     """
 
-    def __init__(self, front_id: str, connection: "_Connection", calls: Calls) -> None:
+    def __init__(
+        self, front_id: str, parse: Parse[AnyFront], connection: "_Connection", calls: Calls
+    ) -> None:
         self.id = front_id
+        self._parse: Parse[AnyFront] = parse
         self._connection = connection
         self._calls = calls
 
@@ -149,11 +160,11 @@ class Job:
         """Yield the progress of the search until the job ends."""
         return self._connection.follow(self._calls.events(self.id))
 
-    def front(self) -> Front:
+    def front(self) -> AnyFront:
         """Return the best front so far."""
-        return self._connection.run(self._calls.stored(self.id))
+        return self._connection.run(self._calls.stored(self.id, self._parse))
 
-    def result(self) -> Front:
+    def result(self) -> AnyFront:
         """Wait for the job to end and return its front.
 
         Raises:
@@ -161,11 +172,11 @@ class Job:
         """
         for _ in self.progress():
             pass
-        return self._connection.run(self._calls.result(self.id))
+        return self._connection.run(self._calls.result(self.id, self._parse))
 
-    def cancel(self) -> Front:
+    def cancel(self) -> AnyFront:
         """End the job now and return the best front so far."""
-        return self._connection.run(self._calls.cancel(self.id))
+        return self._connection.run(self._calls.cancel(self.id, self._parse))
 
     def forget(self) -> None:
         """Delete the front of a job that has ended from the service."""
