@@ -140,7 +140,13 @@ def _fleet_task(body: bytes, limits: Limits, actors: Mapping[str, ActorInfo]) ->
     check_router(fleet.stops, limits)
     able = any(info.serves("matrices") for info in actors.values())
     actor = choose_actor(actors, "matrices", None) if able else ""
-    return Task(subject=fleet, options=request.options(), actor=actor, labels=request.labels)
+    return Task(
+        subject=fleet,
+        options=request.options(),
+        actor=actor,
+        labels=request.labels,
+        geometry=request.geometry,
+    )
 
 
 DEFAULT_ACTORS: Mapping[Kind, str] = {"coordinates": "pa-one", "matrices": "pa-one-matrix"}

@@ -78,14 +78,19 @@ class RoadClient:
         return RoadCosts(*costs)
 
     async def lines(
-        self, locations: Array, ids: Sequence[str], ways: Indices, seconds: float = math.inf
+        self,
+        locations: Array,
+        ids: Sequence[str],
+        ways: Sequence[Indices],
+        seconds: float = math.inf,
     ) -> list[Line]:
         """Return the line along the streets of each way. Legs of several are asked for once.
 
         Args:
             locations: As of `costs`.
             ids: As of `costs`.
-            ways: Indices of stops in the order of their visits, shape (k, m), m at least 2.
+            ways: One at least: indices of stops in the order of their visits, shape (m,) each, m at
+                least 2.
             seconds: The time that is left, where that is less than the settings allow.
 
         Raises:

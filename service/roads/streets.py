@@ -1,6 +1,6 @@
 """Lines of tours along the streets, joined of the lines of their legs."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -13,15 +13,15 @@ from service.roads.trails import Leg
 Indices = NDArray[np.int64]
 
 
-def count_legs(ways: Indices) -> dict[Leg, int]:
-    """Return how often each leg occurs in ways through stops, shape (k, m), m at least 2.
+def count_legs(ways: Sequence[Indices]) -> dict[Leg, int]:
+    """Return how often each leg occurs in ways through stops, shape (m,) each, m at least 2.
 
     They are in the order of the ways, of which `trails` then makes few.
 
-    >>> count_legs(np.array([[0, 1, 2, 0], [0, 2, 0, 1]]))
-    {(0, 1): 2, (1, 2): 1, (2, 0): 2, (0, 2): 1}
+    >>> count_legs([np.array([0, 1, 2, 0]), np.array([0, 1])])
+    {(0, 1): 2, (1, 2): 1, (2, 0): 1}
     """
-    legs = np.stack((ways[:, :-1], ways[:, 1:]), axis=-1).reshape(-1, 2)
+    legs = np.concatenate([np.stack((way[:-1], way[1:]), axis=-1) for way in ways])
     distinct, first, counts = np.unique(legs, axis=0, return_index=True, return_counts=True)
     order = np.argsort(first)
     pairs = zip(distinct[order].tolist(), counts[order].tolist(), strict=True)
@@ -59,16 +59,16 @@ class LegLines:
         return [leg for leg in self._counts if leg not in self.lines]
 
 
-def join_legs(ways: Indices, lines: Mapping[Leg, Line]) -> list[Line]:
-    """Return the whole line of each way, shape (k, m), of the lines of its legs, none empty.
+def join_legs(ways: Sequence[Indices], lines: Mapping[Leg, Line]) -> list[Line]:
+    """Return the whole line of each way, shape (m,), of the lines of its legs, none empty.
 
     It has two places at least, and none twice in a row where it is longer.
     """
-    return [_join(way, lines) for way in ways.tolist()]
+    return [_join(way, lines) for way in ways]
 
 
-def _join(way: list[int], lines: Mapping[Leg, Line]) -> Line:
-    line = np.concatenate([lines[leg] for leg in pairwise(way)])
+def _join(way: Indices, lines: Mapping[Leg, Line]) -> Line:
+    line = np.concatenate([lines[leg] for leg in pairwise(way.tolist())])
     moves = (line[1:] != line[:-1]).any(axis=1)
     line = line[np.concatenate(([True], moves))]
     return line if len(line) > 1 else line.repeat(2, axis=0)

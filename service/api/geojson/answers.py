@@ -20,7 +20,6 @@ from service.api.geojson.features import Drawing
 from service.api.geojson.lines import Line
 from service.api.responses import json_bytes
 from service.errors import Fault, Refusal
-from service.jobs.fleets.fleet_document import holds_plans
 from service.jobs.record import Record
 from service.requests.schemas import Geometry
 
@@ -52,7 +51,7 @@ class Streets(Protocol):
         self,
         locations: NDArray[np.float64],
         ids: Sequence[str],
-        ways: NDArray[np.int64],
+        ways: Sequence[NDArray[np.int64]],
         seconds: float,
     ) -> list[Line]:
         """Return the line along the streets of each way through stops."""
@@ -100,9 +99,6 @@ class FrontAnswers:
         self.check(request, record.front.stops, geometry)
         if not accepts_geojson(request):
             return json_bytes(record.json())
-        if geometry == "roads" and holds_plans(record.front):
-            sentence = "geometry must be straight for plans of a fleet, got roads"
-            raise Refusal("invalid-request", detail=sentence, errors=[_fault(request, sentence)])
         tours = b"[" + record.front.tours + b"]"
         return await self._drawn(request, record, tours, geometry, seconds)
 
@@ -136,7 +132,7 @@ class FrontAnswers:
         drawing = await asyncio.to_thread(Drawing.of, record, tours)
         if geometry == "roads" and drawing.tours:
             assert self._streets is not None
-            ways = np.array(drawing.ways, dtype=np.int64)
+            ways = [np.array(way, dtype=np.int64) for way in drawing.ways]
             asked = self._streets.lines(drawing.locations, drawing.ids, ways, seconds)
             lines = await unless_disconnected(request, asked)
         else:

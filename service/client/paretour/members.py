@@ -109,6 +109,7 @@ class FleetRequest(TypedDict, total=False):
     time_limit: float
     size: int
     reference_point: ArrayLike
+    geometry: Literal["straight", "roads"]
     seed: int
 
 

@@ -17,7 +17,14 @@ from service.requests.fleets.fields import (
 )
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import Limits, check_limit, defaults
-from service.requests.schemas import NonNegativeInteger, PositiveInteger, PositiveNumber, Text
+from service.requests.schemas import (
+    GEOMETRY,
+    Geometry,
+    NonNegativeInteger,
+    PositiveInteger,
+    PositiveNumber,
+    Text,
+)
 from service.requests.stop_fields import find_index, read_objectives, read_stops
 from service.requests.stops import Labels, UnmeasuredStops, locations_of
 from service.requests.validation import invalid, parse_json, show, too_many_cities
@@ -61,6 +68,7 @@ class FleetRequest(BaseModel):
         max_length=OBJECTIVES,
         description="of the hypervolume; by default lengths above those of all sensible plans",
     )
+    geometry: Geometry = Field(default="straight", description=GEOMETRY)
     seed: NonNegativeInteger = Field(default=0, description="of everything random in the search")
 
     @property

@@ -26,6 +26,8 @@ def fleet_schemas(limits: Limits) -> dict[str, Schema]:
     fields["size"]["maximum"], fields["time_limit"]["maximum"] = limits.size, limits.seconds
     for name in ("size", "time_limit"):
         fields[name]["default"] = defaults(limits)[name]
+    if not limits.roads:
+        fields["geometry"]["enum"].remove("roads")
     fields["objectives"]["items"] = one_of(list(_KINDS))
     items = [without_null(parts[name]) for name in ("FleetStopItem", "ShipmentItem", "VehicleItem")]
     objective = without_null(parts["FleetObjectiveItem"])

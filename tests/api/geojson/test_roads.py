@@ -88,6 +88,22 @@ def test_the_lines_of_a_front_and_of_its_tours_follow_the_streets(
     assert tour["features"][0] == lines[0]
 
 
+def test_the_lines_of_routes_follow_the_streets_to_and_from_their_depots(
+    client: httpx.Client,
+) -> None:
+    request = _request(**ROADS)
+    request["objectives"][1]["over"] = "max"
+    request["vehicles"] = [{"id": "van", "count": 2, "start": "order-0", "end": "order-1"}]
+    answer = client.post("/fleet", json=request, headers=ACCEPT)
+    assert answer.status_code == 200, answer.text
+    routes = [each for each in answer.json()["features"] if "vehicle" in each["properties"]]
+    # A plan of two vehicles has routes of different numbers of stops.
+    assert len({len(line["properties"]["stops"]) for line in routes}) > 1
+    for line in routes:
+        stops = [int(stop.removeprefix("order-")) for stop in line["properties"]["stops"]]
+        _check(line, stops, request)
+
+
 def test_a_job_says_where_its_front_along_the_streets_will_be(client: httpx.Client) -> None:
     headers = {**ACCEPT, "Prefer": "respond-async"}
     accepted = client.post("/front", json=_request(**ROADS), headers=headers)
