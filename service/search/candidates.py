@@ -164,10 +164,9 @@ def pool_chosen(pool: CandidatePool, costs: Costs, i: int, chosen: Cities, seen:
 
 
 @allocating
-def rank_candidates(
-    pool: CandidatePool, candidates: Cities, candidate_costs: Array, w0: float, w1: float
-) -> None:
-    """Fill the candidate lists of one weight, shape (n, candidates), from the pool."""
+def rank_candidates(pool: CandidatePool, scalarization: Scalarization) -> None:
+    """Fill the candidate lists of a weighted sum from the pool."""
+    candidates, w0, w1 = scalarization.candidates, scalarization.w0, scalarization.w1
     keys = np.empty(pool.cities.shape[1])
     chosen = np.empty(candidates.shape[1], np.int32)
     chosen_keys = np.empty(candidates.shape[1])
@@ -178,4 +177,4 @@ def rank_candidates(
         select_smallest(keys[:size], -1, chosen, chosen_keys)
         for k in range(len(chosen)):
             candidates[i, k] = pool.cities[i, chosen[k]]
-            candidate_costs[i, k] = chosen_keys[k]
+            scalarization.candidate_costs[i, k] = chosen_keys[k]

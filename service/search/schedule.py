@@ -22,7 +22,6 @@ from service.search.archive import (
     make_archive,
 )
 from service.search.candidates import (
-    CANDIDATES_PER_CITY,
     POOL_WEIGHTS,
     Scalarization,
     fill_in_blocks,
@@ -39,16 +38,23 @@ from service.search.local_search import (
     offer,
 )
 from service.search.open_routes import moved_ends
-from service.search.pareto_local_search import STEPS, SearchState, WeightedCandidates, fill_gaps
+from service.search.pareto_local_search import (
+    LARGE,
+    STEPS,
+    WEIGHTS,
+    SearchState,
+    fill_gaps,
+    make_weighted_candidates,
+)
 from service.search.working_tour import enqueue_cities, load, make_working_tour
 
 Array = NDArray[np.float64]
 
-WEIGHTS = 50  # at 500 cities and 0.3 s better than 100, which get too little time each, and than 35
 CONSTRUCTIONS = 17  # weights for which a tour is constructed as well
-LEAST_SHARE = 1e-3  # of a weight: the other length still counts at the ends, to break ties
 FIRST_DIVISOR = 4  # in the first round a weight gets a quarter of the iterations of later ones
-BLOCK = 300  # iterations between two checks of the deadline, about a millisecond
+OFFERS = 50  # of a large tour on the way of a descent, in each sweep along it
+BLOCK = 300  # iterations between two checks of the deadline, some milliseconds
+FULL_BLOCK = 1_000  # cities beyond which iterations take longer, and fewer are a block
 DESCENT_BLOCK = 2_000  # cities from the queue between two checks of the deadline
 EXPLORE_EVERY = 10  # turns, of which one goes to what has lately gained less
 PATIENCE = 1_000  # iterations per city without a new tour, after which the search has converged
@@ -97,16 +103,14 @@ class Search:
         self.shifts = instance.shifts
         self.reference_point = reference_point
         self.corner = scaled_reference(instance, reference_point)
-        share = np.linspace(0.0, 1.0, WEIGHTS).clip(LEAST_SHARE, 1 - LEAST_SHARE)
-        weights = np.stack([share, 1 - share], axis=1) / np.ldexp(instance.scale, self.shifts)
-        weights /= weights.sum(axis=1, keepdims=True)
-        self.weights = weights
         costs = make_costs(instance)
         self.n = len(costs.cities)
-        candidates = np.zeros((WEIGHTS, self.n, min(CANDIDATES_PER_CITY, self.n - 1)), np.int32)
+        self.block = max(STEPS, BLOCK * FULL_BLOCK // max(FULL_BLOCK, self.n))
+        weighted_candidates = make_weighted_candidates(instance, self.n)
+        self.weights = weighted_candidates.weights
         self.state = SearchState(
             costs,
-            WeightedCandidates(weights, candidates, np.zeros(candidates.shape)),
+            weighted_candidates,
             make_archive(self.n, capacity),
             make_working_tour(self.n),
             np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
@@ -213,20 +217,22 @@ class Search:
         return close_routes(moved_ends(self.instance, tour[np.newaxis, 1:] - 1))[0]
 
     def _descend(self, k: int, construct: bool) -> Iterator[int]:
-        """Rank the candidates of weight k, and descend to a local optimum under it."""
+        """Rank the candidates of weight k, and descend to a local optimum under it.
+
+        On the way from the optimum under a neighbouring weight are points of the front between the
+        two; with many cities these are offered as well.
+        """
         working = self.state.working
         scalarization = self._scalarization(k)
-        rank_candidates(
-            self.pool,
-            scalarization.candidates,
-            scalarization.candidate_costs,
-            scalarization.w0,
-            scalarization.w1,
-        )
+        rank_candidates(self.pool, scalarization)
         self._load_start(scalarization, construct)
         enqueue_cities(working, working.tour if self.touched is None else self.touched)
         threshold = LEAST_GAIN * float(self.weights[k] @ working.length)
-        while descend(working, scalarization, threshold, DESCENT_BLOCK) == 0:
+        offering = self.instance.n >= LARGE and not construct
+        block = self.n // OFFERS if offering else DESCENT_BLOCK
+        while descend(working, scalarization, threshold, block) == 0:
+            if offering:
+                offer(working, scalarization, self.state.archive)
             yield 0
         offer(working, scalarization, self.state.archive)
         yield 1
@@ -238,7 +244,7 @@ class Search:
         self._load_start(scalarization, construct=False)
         left = iterations
         while left > 0:
-            steps = min(left, BLOCK)
+            steps = min(left, self.block)
             iterated_local_search(
                 state.working, scalarization, state.archive, state.random, steps, False
             )
@@ -247,9 +253,9 @@ class Search:
 
     def _fill_gaps(self) -> Iterator[int]:
         """Run about n iterations of Pareto local search."""
-        for _ in range(max(1, self.n // BLOCK)):
-            fill_gaps(self.state, BLOCK // STEPS)
-            yield BLOCK
+        for _ in range(max(1, self.n // self.block)):
+            fill_gaps(self.state, self.block // STEPS)
+            yield self.block
 
     def _compete(self) -> Iterator[int]:
         """Iterate under weights or fill gaps, whichever lately gained more, until convergence.
@@ -269,9 +275,5 @@ class Search:
                 spent += done
                 yield done
             rate = (self._area - area) / spent
-            rates[kind] = _moving_average(rates[kind], rate)
+            rates[kind] = rate if rates[kind] == np.inf else 0.9 * rates[kind] + 0.1 * rate
             quiet = quiet + spent if self.state.archive.counts[2] == inserted else 0
-
-
-def _moving_average(average: float, value: float) -> float:
-    return value if average == np.inf else average * 0.9 + value * 0.1

@@ -13,7 +13,8 @@ from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
 from service.search.improve import Progress, SearchResult, improve
-from service.search.schedule import WEIGHTS, Search
+from service.search.pareto_local_search import WEIGHTS
+from service.search.schedule import Search
 from tests.helpers.instances import (
     ENDS,
     KINDS,
@@ -214,6 +215,7 @@ def test_a_stopped_search_keeps_what_it_found() -> None:
     assert found.terminated == "cancelled"
     assert next(calls) == 251
     assert len(found.tours) > 20
+    assert np.array_equal(found.tours_at(np.array([3, 20])), found.tours[[3, 20]])
 
 
 def test_progress_is_reported_and_only_ever_upwards() -> None:

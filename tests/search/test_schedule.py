@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from service.instance import tour_lengths
+from service.search.pareto_local_search import LARGE, LEAST_SHARE
 from service.search.schedule import Search
 from tests.helpers.instances import ENDS, opened, random_tours, small_integers, uniform
 
@@ -34,3 +35,22 @@ def test_a_given_tour_that_the_archive_had_to_let_go_is_still_returned() -> None
 def test_no_cost_beyond_the_coordinates_is_stored_for_many_cities() -> None:
     search = Search(uniform(700), 0, np.full(2, 700.0))
     assert search.state.costs.matrix.size == 0
+
+
+def test_weights_reach_as_far_for_many_cities_as_for_few_and_crowd_at_the_ends() -> None:
+    few, many = (Search(uniform(n), 0, np.full(2, float(n))) for n in (40, LARGE))
+    assert np.abs(many.weights - few.weights)[[0, -1]].max() < LEAST_SHARE
+    logits = np.diff(np.log(many.weights[:, 0] / many.weights[:, 1]))
+    np.testing.assert_allclose(logits, logits[0])
+    assert (np.diff(many.weights[:, 0]) > 0).all()
+
+
+def test_of_many_cities_the_tours_on_the_way_of_a_descent_are_kept() -> None:
+    cities = np.arange(LARGE)
+    search = Search(uniform(LARGE), 0, np.full(2, float(LARGE)), touched=cities)
+    for iterations in search.run():
+        if iterations:  # the first weight has a local optimum
+            break
+    points = search.points()
+    assert len(points) > 2
+    np.testing.assert_allclose(points, tour_lengths(search.instance, search.tours()))
