@@ -14,6 +14,7 @@ from service.cli.options import (
     Plot,
     Position,
     Remove,
+    Repairs,
     Seed,
     ServiceUrl,
     Size,
@@ -33,6 +34,7 @@ def replan(  # noqa: PLR0913  an option each
     time_limit: TimeLimit = None,
     size: Size = None,
     seed: Seed = None,
+    repairs: Repairs = None,
     as_json: AsJson = False,
     as_csv: AsCsv = False,
     as_table: AsTable = False,
@@ -50,6 +52,7 @@ def replan(  # noqa: PLR0913  an option each
         "time_limit": time_limit,
         "size": size,
         "seed": seed,
+        "repairs": repairs,
     }
     run_front(
         partial(plan_rest, front_id, changes, {"done": done, "remove": remove}, options),

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 MIN_CONSTRUCTED = 3  # cities: of fewer there is one tour, and no network was trained on them
 SHARE = 0.1  # of the time limit, after which a call that nobody asked for is ended
-_AIMED = 0.6  # of that share: what a call may take by the estimate, which may be too low
+_AIMED = 0.6  # of its time: what a call may take by the estimate, which may be too low
 _BUILDING = 0.5  # of that, where the tours shall be repaired as well
 
 
@@ -50,7 +50,7 @@ def construct(
     within: float | None = None,
     limit: float | None = None,
 ) -> Tours:
-    """Return tours for each angle, shape (m, n), of one call of the constructor.
+    """Return tours for each angle, shape (m, n), as a call of the constructor builds them.
 
     Args:
         constructor: Builds the tours.
@@ -60,8 +60,9 @@ def construct(
         within: Seconds of the call: then it is for at most k evenly spread preferences, as many as
             are estimated to fit, maybe none, and is ended if it takes longer. None honours all
             angles.
-        limit: Where all angles are honoured, seconds beyond which no repairs are estimated to
-            last; None makes all repairs.
+        limit: Where all angles are honoured, seconds for repairs: as many are made as are
+            estimated to fit, and a call that still takes longer is ended, and made without. None
+            makes all repairs.
 
     Raises:
         Cancelled: The constructor was told to stop.
@@ -70,15 +71,32 @@ def construct(
     if n < MIN_CONSTRUCTED or not len(angles):
         return np.empty((0, n), np.int64)
     if within is None:
-        if limit is not None:
-            repairs = min(repairs, estimate.fitting_repairs(n, len(angles), limit))
-        return _timed_tours(constructor, instance, from_angles(angles), repairs)
+        return _honoured(constructor, instance, from_angles(angles), repairs, limit)
     aimed = _AIMED * within
     k = min(len(angles), estimate.fitting(n, aimed * _BUILDING if repairs else aimed))
     if k == 0:
         return np.empty((0, n), np.int64)
     repairs = min(repairs, estimate.fitting_repairs(n, k, aimed))
     return _tours_within(constructor, instance, from_angles(fan(k)), repairs, within)
+
+
+def _honoured(
+    constructor: Constructor,
+    instance: Instance,
+    preferences: Array,
+    repairs: int,
+    limit: float | None,
+) -> Tours:
+    """Return tours for all preferences, with as many repairs as fit into a limit, if any."""
+    if limit is not None:
+        fitting = constructor.estimate.fitting_repairs(instance.n, len(preferences), _AIMED * limit)
+        repairs = min(repairs, fitting)
+        if repairs > 0:
+            tours = _tours_within(constructor, instance, preferences, repairs, limit)
+            if len(tours):
+                return tours
+            repairs = 0
+    return _timed_tours(constructor, instance, preferences, repairs)
 
 
 def _tours_within(

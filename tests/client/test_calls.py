@@ -76,6 +76,17 @@ def test_pauses_are_those_that_the_service_asks_for() -> None:
         call.send(problem(503, "busy", **{"Retry-After": "4"}))
 
 
+def test_what_a_later_service_says_of_an_actor_is_left_out() -> None:
+    facts = dict.fromkeys(("name", "digest", "inputs", "commit", "sizes", "angles"), "")
+    facts |= {"config": "", "figures": ""}
+    earlier, later = facts, {**facts, "repairs": True, "colour": "red"}
+    call = Calls(timeout=30, patience=60).actors()
+    next(call)
+    with pytest.raises(StopIteration) as ended:
+        call.send(httpx.Response(200, json={"actors": [earlier, later]}))
+    assert [actor.repairs for actor in ended.value.value] == [False, True]
+
+
 def test_a_job_is_submitted_followed_and_fetched(connect: Connect) -> None:
     accepted = httpx.Response(202, json={"id": "f", "status": "queued"})
     service = Answers(

@@ -81,7 +81,22 @@ def test_repairs_never_exceed_a_limit_though_all_angles_are_honoured(
     made = constructor.repairs
     assert made <= repairs
     assert made == 0 or estimate.seconds(n, 50, made) <= limit
-    assert made == repairs or estimate.seconds(n, 50, made + 1) > limit * (1 - 1e-9)
+    assert made == repairs or estimate.seconds(n, 50, made + 1) > 0.5 * limit
+
+
+def test_a_call_with_repairs_that_takes_too_long_is_ended_and_made_without() -> None:
+    class SlowRepairs(Counted):
+        def tours(
+            self, instance: Instance, preferences: np.ndarray, repairs: int = 0
+        ) -> np.ndarray:
+            self._seconds = 60.0 if repairs else 0.0
+            return super().tours(instance, preferences, repairs)
+
+    constructor = SlowRepairs()
+    began = time.monotonic()
+    assert len(construct(constructor, cities(20), fan(5), 3, limit=0.2)) == 5
+    assert time.monotonic() - began < 0.2 + OTHERS
+    assert (len(constructor.calls), constructor.repairs) == (2, 0)
 
 
 def test_a_call_that_takes_longer_than_its_time_is_ended_and_brings_nothing() -> None:

@@ -25,7 +25,9 @@ export class Planning {
 
   async *plan(request) {
     const { initial_tours, bound, ...body } = request.body;
-    const first = { path: request.path, body: { ...body, time_limit: 0 } };
+    // Where the search follows, the network's tours come soonest without repairs.
+    const soonest = body.time_limit === 0 ? {} : { repairs: 0 };
+    const first = { path: request.path, body: { ...body, time_limit: 0, ...soonest } };
     for await (const alone of this.#patiently(first)) {
       if (!alone) yield { stage: "warming-up", alone: null, answer: null };
       else if (request.body.time_limit === 0) yield { stage: "done", alone, answer: alone, growth: [] };
