@@ -78,14 +78,14 @@ function arrange() {
   else if (!narrow.matches) main.append(element("result"));
 }
 
-/** Shows what comes of a plan; `states` asks a planning for it. */
-async function run(states) {
+/** Shows what comes of a plan; `states` asks a planning for it, and until then `waiting` is said. */
+async function run(states, waiting = "The network is building its front.") {
   input.settle();
   leave();
   const mine = (planning = new Planning(service));
   clearFaults();
   busy(true);
-  say("The network is building its front.");
+  say(waiting);
   try {
     for await (const state of states(mine)) {
       if (mine.left) return;
@@ -125,7 +125,7 @@ async function replan() {
     const body = way.body(replanForm.changes, result.selected.tour);
     const longer = way.with(replanForm.places);
     const { id } = answer;
-    await run((mine) => replanned(mine.replan(id, body), longer));
+    await run((mine) => replanned(mine.replan(id, body), longer), "What is left is being planned.");
   } catch (error) {
     showFault("replan", error.message);
   }

@@ -224,6 +224,8 @@ def test_the_reference_needs_nothing_from_elsewhere(browser: Browser, released: 
             "button", name="POST /front Plan the front of tours through the cities given"
         )
     ).to_be_visible()
+    expect(page.get_by_role("button", name="Authorize")).to_be_hidden()
+    expect(page.locator(".authorization__btn").first).to_be_hidden()
     page.close()
 
 
