@@ -166,6 +166,11 @@ function fail(error) {
   showFaults(error);
 }
 
+function openChosen() {
+  openFiles([...element("file").files]);
+  element("file").value = "";
+}
+
 const openFiles = (files) => files.length && openBrought(() => read(files));
 
 /** Opens what `reading` gives, or says why it gives nothing. */
@@ -249,10 +254,7 @@ element("clear").addEventListener("click", () => {
   open({ coordinates: [] });
 });
 element("example").addEventListener("change", openExample);
-element("file").addEventListener("change", (event) => {
-  openFiles([...event.target.files]);
-  event.target.value = "";
-});
+element("file").addEventListener("change", openChosen);
 for (const kind of ["dragover", "drop"]) addEventListener(kind, (event) => event.preventDefault());
 addEventListener("dragover", () => element("drop").classList.add("over"));
 addEventListener("dragleave", () => element("drop").classList.remove("over"));
@@ -262,6 +264,7 @@ addEventListener("drop", (event) => {
 });
 addEventListener("paste", pasted);
 addEventListener("hashchange", openLinked);
+openChosen(); // while the page was being loaded
 
 service.get("page/tiles.json").then((tiles) => result.tile(tiles), () => {});
 const examples = await service.get("examples/index.json");

@@ -93,7 +93,7 @@ def _page_row(browser: Browser, address: str, n: int, rounds: int) -> dict[str, 
     with open_page(browser, address) as page:
         wait_until_planned(page)
         stops_as_text(page).fill(cities)
-        page.get_by_role("button", name="Plan").click()
+        page.get_by_role("button", name="Plan", exact=True).click()
         wait_until_planned(page)
         page.get_by_label("A front of 100 tours").wait_for()
         return _measured(page, SLIDER, None, rounds)

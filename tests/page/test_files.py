@@ -44,7 +44,7 @@ def test_a_picture_of_a_map_is_covered(browser: Browser) -> None:
         expect(page.get_by_text("A grid of 20 by 30 cells")).to_be_visible()
         expect(page.get_by_label("Metres a cell")).to_have_value("0.05")
         page.get_by_label("Seconds of planning").fill("0.1")
-        page.get_by_role("button", name="Plan").click()
+        page.get_by_role("button", name="Plan", exact=True).click()
         wait_until_planned(page)
         expect(page.locator("#grid")).to_be_visible()
         expect(page.locator("#plane-1")).to_be_hidden()
@@ -65,7 +65,7 @@ def test_stops_are_planned_under_their_names_and_ids(page: Page) -> None:
     }
     open_files(page, {"stops.json": json.dumps(request)})
     expect(page.locator("#count")).to_have_text("4 stops")
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
     expect(page.locator("#order p")).to_contain_text('order "1" →')
     expect(page.locator("#comparison")).to_contain_text("Way, m")
@@ -110,7 +110,7 @@ def test_points_of_geojson_are_stops_as_on_the_command_line(
     body = curl_body(page)
     assert ids == ("depot", "order-17", "18")
     assert {name: body[name] for name in request} == request
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
     expect(page.locator("#order p")).to_contain_text("depot →")
 
@@ -173,7 +173,7 @@ def tsplib(places: str) -> str:
 def test_a_file_of_cities_is_planned(page: Page, files: dict[str, str]) -> None:
     open_files(page, files)
     expect(stops_as_text(page)).to_have_value("0, 0, 5, 5\n3, 1, 9, 1\n5, 2, 2, 8")
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     expect(page.locator("#status")).to_have_text("Done: 1 tour found.")
 
 
@@ -199,7 +199,7 @@ def test_two_files_of_tsplib_give_the_front_of_the_command_line(
     page.get_by_text("More settings").click()
     page.get_by_label("Seed").fill("3")
     page.get_by_label("Seconds of planning").fill("50")
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
     with page.expect_download() as saved:
         page.get_by_role("button", name="Save JSON").click()
@@ -213,7 +213,7 @@ def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
 ) -> None:
     page.get_by_label("Open files").set_input_files(tsplib_files)
     expect(page.get_by_label("Distances rounded")).to_be_checked()
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
     assert curl_body(page)["matrices"] == [
         parse_matrix(file.read_text()).tolist() for file in tsplib_files

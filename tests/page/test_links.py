@@ -28,7 +28,7 @@ def test_a_link_opens_the_same_front_with_its_cities(page: Page, browser: Browse
 
 def test_a_link_to_the_networks_front_calls_it_that(page: Page, browser: Browser) -> None:
     page.get_by_label("Seconds of planning").fill("0")
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy link").click()
@@ -45,7 +45,7 @@ def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
 ) -> None:
     matrices = np.random.default_rng(0).random((2, 60, 60)).tolist()
     open_files(page, {"costs.json": json.dumps({"matrices": matrices, "time_limit": 0})})
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy link").click()

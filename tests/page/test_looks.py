@@ -69,7 +69,7 @@ def test_nothing_sticks_out_at_either_width(
         unfold(page)
         assert page.evaluate("document.documentElement.scrollWidth") == width
         page.get_by_label("Seconds of planning").fill("as long as it takes, if that is not forever")
-        page.get_by_role("button", name="Plan").click()
+        page.get_by_role("button", name="Plan", exact=True).click()
         expect(page.locator("#time_limit-fault")).not_to_be_empty()
         assert page.evaluate("document.documentElement.scrollWidth") == width
 
@@ -82,7 +82,7 @@ def test_every_text_is_legible_against_what_lies_behind_it(
         wait_until_planned(page)
         page.get_by_role("button", name="Pin to compare").click()
         page.get_by_label("Seconds of planning").fill("soon")
-        page.get_by_role("button", name="Plan").click()
+        page.get_by_role("button", name="Plan", exact=True).click()
         expect(page.locator("#time_limit-fault")).not_to_be_empty()
         unfold(page)
         texts = page.evaluate(TEXTS)
@@ -134,7 +134,7 @@ def test_a_thousand_cities_and_their_front_are_shown(browser: Browser, released:
         stops_as_text(page).fill("\n".join(",".join(map(str, r)) for r in cities))
         expect(page.locator("#count")).to_have_text("1,000 stops")
         page.get_by_label("Seconds of planning").fill("2")
-        page.get_by_role("button", name="Plan").click()
+        page.get_by_role("button", name="Plan", exact=True).click()
         wait_until_planned(page)
         count = tours_of_front(page)
         slider = page.get_by_role("slider", name="Balance")

@@ -125,12 +125,12 @@ def test_a_pinned_tour_stays_beside_the_selected_one(page: Page) -> None:
 
 def test_what_was_found_stays_when_the_search_is_stopped(page: Page) -> None:
     page.get_by_label("Seconds of planning").fill("50")
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     expect(page.locator("#status")).to_contain_text("improving")
     page.get_by_role("button", name="Stop").click()
     expect(page.locator("#status")).to_contain_text("Stopped: ")
     expect(page.get_by_label(re.compile("A front of [0-9]+ tours"))).to_be_visible()
-    expect(page.get_by_role("button", name="Plan")).to_be_enabled()
+    expect(page.get_by_role("button", name="Plan", exact=True)).to_be_enabled()
 
 
 def test_the_search_is_stopped_before_the_service_has_taken_it(page: Page) -> None:
@@ -139,17 +139,17 @@ def test_the_search_is_stopped_before_the_service_has_taken_it(page: Page) -> No
             route.continue_()
 
     page.route("**/front", hold)
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     expect(page.locator("#status")).to_contain_text("improving")
     page.get_by_role("button", name="Stop").click()
     expect(page.locator("#status")).to_contain_text("Stopped: ")
-    expect(page.get_by_role("button", name="Plan")).to_be_enabled()
+    expect(page.get_by_role("button", name="Plan", exact=True)).to_be_enabled()
 
 
 def test_open_routes_lead_from_the_start_to_the_end(page: Page) -> None:
     page.get_by_label("End elsewhere").fill("8")
     page.get_by_label("Seconds of planning").fill("0.2")
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     expect(page.locator("#status")).to_contain_text("Done")
     body = curl_body(page)
     assert (body["closed"], body["start"], body["end"]) == (False, 0, 7)
@@ -164,12 +164,12 @@ def test_open_routes_lead_from_the_start_to_the_end(page: Page) -> None:
 
 def test_what_the_service_refuses_is_said_at_the_field(page: Page) -> None:
     page.get_by_label("Seconds of planning").fill("soon")
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     fault = page.locator("#time_limit-fault")
     expect(fault).to_have_text('Seconds of planning must be a valid number, got "soon".')
     expect(page.get_by_label("Seconds of planning")).to_be_focused()
     stops_as_text(page).fill("1, 2, 3, 4\n1, 2, 3\n")
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     expect(page.locator("#cities-fault")).to_contain_text("Stop 2 must have 4 items")
 
 
@@ -180,7 +180,7 @@ def test_cities_are_clicked_into_place_plane_by_plane(page: Page) -> None:
         page.locator("#plane-1").click(position={"x": x, "y": y})
         page.locator("#plane-2").click(position={"x": y, "y": x})
     expect(page.locator("#count")).to_have_text("3 stops")
-    page.get_by_role("button", name="Plan").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
     expect(page.locator("#status")).to_have_text("Done: 1 tour found.")
 
 

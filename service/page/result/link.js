@@ -7,7 +7,7 @@ const MOST = 16000; // characters, beyond which chats, mail and some servers cut
  * `whole` says whether that was short enough to be in it.
  */
 export async function fragment(id, asked, balance) {
-  const front = `#front=${encodeURIComponent(id)}${balance === undefined ? "" : `&balance=${balance}`}`;
+  const front = `#front=${encodeURIComponent(id)}${balance === undefined ? "" : `&balance=${Number(balance.toFixed(6))}`}`;
   if (!asked) return { hash: front, whole: false };
   const text = await packed(asked);
   const whole = text.length <= MOST;
