@@ -140,9 +140,9 @@ class _Search:
         self._cancelled = False
 
     def begin_at(self, constructor: Constructor) -> None:
-        """Put the plans that the tours of a network are cut into into the archive.
+        """Put the plans into the archive that the tours of a network are cut into, if any.
 
-        That gets the network's share of the time limit, and as much again for cutting.
+        The network gets its share of the time limit, and cutting as much again.
         """
         share = SHARE * self._options.time_limit
         within = None if share == inf else share
@@ -150,7 +150,12 @@ class _Search:
         until = time.monotonic() + share
         if not sequences:
             return
-        cutter = Cutter(self._fleet, sequences, lambda: self._stop() or time.monotonic() > until)
+        try:
+            cutter = Cutter(
+                self._fleet, sequences, lambda: self._stop() or time.monotonic() > until
+            )
+        except Refusal:  # too large to be cut: the search begins at plans of its own
+            return
         data = self._translation.data(FREE)
         for plan in first_plans(self._fleet, cutter):
             self._constructed += 1
@@ -214,9 +219,9 @@ class _Search:
         return left <= self._reserve()
 
     def _reserve(self) -> float:
-        """Return the seconds before the deadline that checking and selecting plans takes.
+        """Return the seconds that another iteration, and then checking and selecting plans, take.
 
-        And another iteration, as long as the longest of late.
+        The iteration is taken to be as long as the longest of late.
         """
         found = len(self._archive)
         checked = min(found, self._options.size) * self._fleet.rules.n

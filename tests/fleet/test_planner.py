@@ -202,6 +202,17 @@ def test_with_time_the_search_begins_at_the_cuts() -> None:
     assert better.any(axis=0).all()
 
 
+def test_what_is_too_large_to_be_cut_is_searched_all_the_same() -> None:
+    fleet = plain_deliveries(12)
+    types = tuple(replace(fleet.rules.vehicles[0], count=9) for _ in range(10))
+    fleet = Fleet(rules=replace(fleet.rules, vehicles=types), costs=fleet.costs)
+    with pytest.raises(Refusal, match="so many types"):
+        plan_fleet(fleet, FleetOptions(time_limit=0), shuffler())
+    front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=60), shuffler())
+    assert front.plans
+    assert front.constructed == 0
+
+
 def test_what_no_cut_of_a_tour_keeps_is_refused_without_time() -> None:
     options = FleetOptions(time_limit=0)
     fleet = deliveries(20)
