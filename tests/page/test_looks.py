@@ -139,14 +139,15 @@ def test_a_thousand_cities_and_their_front_are_shown(browser: Browser, released:
         count = tours_of_front(page)
         slider = page.get_by_role("slider", name="Balance")
         shown = set()
-        for key, place in [("Home", 1), ("PageUp", 11), ("End", count)]:
+        places = {"Home": 1, "PageUp": min(11, count), "End": count}  # a slow machine finds few
+        for key, place in places.items():
             slider.press(key)
             expect(slider).to_have_attribute(
                 "aria-valuetext", re.compile(f"tour {place} of {count}")
             )
             wait_for_next_frame(page)
             shown.add(page.locator("#plane-1 canvas.selected").evaluate("c => c.toDataURL()"))
-        assert len(shown) == 3
+        assert len(shown) == len(set(places.values()))
 
 
 def unfold(page: Page) -> None:
