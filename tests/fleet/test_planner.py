@@ -204,7 +204,7 @@ def test_with_time_the_search_begins_at_the_cuts() -> None:
 
 def test_what_is_too_large_to_be_cut_is_searched_all_the_same() -> None:
     fleet = plain_deliveries(12)
-    types = tuple(replace(fleet.rules.vehicles[0], count=9) for _ in range(10))
+    types = tuple(replace(fleet.rules.vehicles[0], count=9) for _ in range(100))
     fleet = Fleet(rules=replace(fleet.rules, vehicles=types), costs=fleet.costs)
     with pytest.raises(Refusal, match="so many types"):
         plan_fleet(fleet, FleetOptions(time_limit=0), shuffler())

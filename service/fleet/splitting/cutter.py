@@ -9,7 +9,13 @@ import numpy as np
 from service.errors import Refusal
 from service.fleet.fleet import Array, Fleet, Rules, VehicleType, Visit
 from service.fleet.plans import Plan
-from service.fleet.splitting.optimal_split import RouteCosts, best_split, plan_of, stock_of
+from service.fleet.splitting.optimal_split import (
+    RouteCosts,
+    best_split,
+    plan_of,
+    states_of,
+    stock_of,
+)
 from service.fleet.splitting.route_table import Indices, arrays_of, most_stops, route_table
 from service.instance import OBJECTIVES
 
@@ -43,11 +49,11 @@ class Cutter:
     ) -> None:
         self._fleet = fleet
         self._stop = stop
-        self._stock = stock_of(fleet.rules)
         arrays = arrays_of(fleet)
         most = max(most_stops(arrays, sequence) for sequence in sequences)
         routes = len(fleet.rules.vehicles) * len(sequences[0]) * most
-        _check_cuttable(fleet, routes, routes * self._stock.states)
+        _check_cuttable(fleet, routes, routes * states_of(fleet.rules))
+        self._stock = stock_of(fleet.rules)
         self._sequences = sequences[: _MOST_ROUTES // routes]
         self._tables = [route_table(arrays, sequence, most) for sequence in self._sequences]
         steps = len(self._sequences) * routes * self._stock.states

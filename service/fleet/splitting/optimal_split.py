@@ -4,6 +4,7 @@ Dynamic programming over the stops of a sequence and the vehicles used: no other
 follow the sequence costs less.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -26,8 +27,15 @@ class Stock(NamedTuple):
     states: int
 
 
+def states_of(rules: Rules) -> int:
+    """Return how many states the stock of a fleet has, which may be more than an array can."""
+    clients = len(rules.clients)
+    counted = (vehicle.count for vehicle in rules.vehicles if vehicle.count < clients)
+    return math.prod(count + 1 for count in counted)
+
+
 def stock_of(rules: Rules) -> Stock:
-    """Return the vehicles of a fleet."""
+    """Return the vehicles of a fleet that has few states."""
     counts, steps, states = [], [], 1
     for vehicle in rules.vehicles:
         enough = vehicle.count >= len(rules.clients)
