@@ -4,12 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.benchmarks import fleet, provenance
+from tests.benchmarks import provenance
 
 
 def test_plans_are_found_which_are_stored_and_printed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    fleet = pytest.importorskip("tests.benchmarks.fleet", reason="needs the extra bench")
     monkeypatch.setattr(provenance, "RESULTS", tmp_path)
     monkeypatch.setattr(provenance, "changed_files", list)
     monkeypatch.setitem(fleet.SECONDS, 20, 0.5)

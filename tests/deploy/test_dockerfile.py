@@ -156,9 +156,8 @@ def first_front(url: str) -> httpx.Response:
     deadline = time.monotonic() + 60
     while time.monotonic() < deadline:
         try:
-            return httpx.post(
-                f"{url}/front", json={"coordinates": cities, "time_limit": 0}, timeout=20
-            )
+            request = {"coordinates": cities, "time_limit": 0, "repairs": 0}
+            return httpx.post(f"{url}/front", json=request, timeout=20)
         except httpx.ConnectError:
             time.sleep(0.02)
     raise TimeoutError("the server must start within 60 s")

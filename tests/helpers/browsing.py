@@ -53,7 +53,8 @@ def open_page(
     yield page
     page.close()
     # Chromium writes a line for each refusal of the service, which the page has shown.
-    assert [error for error in errors if "server responded with a status of" not in error] == []
+    unexpected = [error for error in errors if "server responded with a status of" not in error]
+    assert not unexpected, unexpected
 
 
 def _shorten_search(route: Route) -> None:

@@ -19,6 +19,7 @@ from service.instance import OBJECTIVES
 
 _FEWEST = 20  # limits or weights, however long a cut takes
 _STEEPEST = 1e3  # weight of one scaled objective, with 1 of the other
+_LEAST_SCALE = 1e-290  # of an objective, relative to the other: its weight must be finite
 _ROUNDING = 1e-9  # relative, of a gain
 
 
@@ -49,7 +50,8 @@ def _under_limits(cutter: Cutter, maximum: int) -> Iterator[Plan]:
 
 def _under_weights(fleet: Fleet, cutter: Cutter) -> Iterator[Plan]:
     """Yield the plans at both ends, and those on the hull between them, widest edges first."""
-    scale = np.maximum(fleet.costs.max(axis=(1, 2)), np.finfo(np.float64).tiny)
+    scale = fleet.costs.max(axis=(1, 2))
+    scale = np.maximum(scale / (scale.max() or 1.0), _LEAST_SCALE)
     steepest = np.array([[_STEEPEST, 1.0], [1.0, _STEEPEST]]) / scale
     ends = [cut.plan for weights in steepest if (cut := cutter.best(cutter.costs(weights)))]
     yield from ends

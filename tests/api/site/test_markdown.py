@@ -58,7 +58,7 @@ def test_a_table_needs_no_style_inside_the_document() -> None:
     html = rendered().html
     assert '<td class="right">2</td>' in html
     assert "style=" not in html
-    assert '<div class="wide"><table>' in html
+    assert '<div class="wide" tabindex="0"><table>' in html
 
 
 def test_code_is_text() -> None:

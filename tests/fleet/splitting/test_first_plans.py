@@ -95,6 +95,15 @@ def test_few_vehicles_are_not_exceeded_and_their_sequence_has_one_begin() -> Non
     assert all(violations(fleet, plan) == [] for plan in plans)
 
 
+@pytest.mark.parametrize("costs", [(0.0, 0.0), (1.0, 0.0), (1e-310, 1.0), (1e-310, 1e-310)])
+def test_fleets_of_costs_of_any_magnitude_are_cut(costs: tuple[float, float]) -> None:
+    fleet = uniform(6)
+    rules = dataclasses.replace(fleet.rules, over=("sum", "sum"))
+    scaled = Fleet(rules=rules, costs=fleet.costs * np.array(costs)[:, np.newaxis, np.newaxis])
+    with np.errstate(all="raise", under="ignore"):
+        assert cut(scaled, np.arange(6))
+
+
 def test_what_cannot_be_cut_is_refused() -> None:
     fleet = uniform(3)
     shipped = dataclasses.replace(fleet.rules, shipments=(Shipment(1, 2),), visits=(Visit(),) * 4)
