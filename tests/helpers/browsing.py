@@ -67,7 +67,7 @@ def _shorten_search(route: Route) -> None:
 
 def wait_until_planned(page: Page) -> None:
     """Wait until the page shows the end of what it is planning."""
-    expect(page.locator("#status")).to_contain_text("Done", timeout=60 * SECOND)
+    expect(page.locator("#status")).to_contain_text("Done", timeout=300 * SECOND)
 
 
 def tours_of_front(page: Page) -> int:

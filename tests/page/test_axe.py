@@ -9,6 +9,7 @@ from playwright.sync_api import Browser, Page, expect
 from tests.helpers.browsing import DESK, PHONE, needs_chromium, open_page, wait_until_planned
 
 TABLET = 768
+SETTLED = 500  # ms after a change of the scheme
 WIDTHS = (PHONE, TABLET, DESK)
 SCHEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 
@@ -45,6 +46,7 @@ def findings(page: Page) -> list[Any]:
         page.set_viewport_size({"width": width, "height": 900})
         for scheme in SCHEMES:
             page.emulate_media(color_scheme=scheme)
+            page.wait_for_timeout(SETTLED)  # colours fade into one another
             for rule in page.evaluate("axe.run().then(({ violations }) => violations)"):
                 where = rule["nodes"][0]["target"]
                 found.append((rule["impact"], rule["id"], where, width, scheme))
