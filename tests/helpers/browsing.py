@@ -98,9 +98,7 @@ def stops_as_text(page: Page) -> Locator:
 
 def shown_front(page: Page) -> Any:
     """Return the front that is shown, as the page saves it in JSON."""
-    with page.expect_download() as saved:
-        page.get_by_role("button", name="Save JSON").click()
-    return json.loads(saved.value.path().read_text())
+    return json.loads(saved(page, "JSON"))
 
 
 def curl_body(page: Page) -> Any:
@@ -112,3 +110,10 @@ def curl_body(page: Page) -> Any:
     command = page.evaluate("navigator.clipboard.readText()")
     assert command.startswith(f"curl {page.url.partition('#')[0]}front ")
     return json.loads(command.splitlines()[1])
+
+
+def saved(page: Page, name: str) -> bytes:
+    """Return the file that the page's button "Save", of a format's name, saves."""
+    with page.expect_download() as download:
+        page.get_by_role("button", name=f"Save {name}").click()
+    return download.value.path().read_bytes()

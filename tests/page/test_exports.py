@@ -14,6 +14,7 @@ from tests.helpers.browsing import (
     needs_chromium,
     open_files,
     open_page,
+    saved,
     shown_front,
     wait_for_next_frame,
     wait_until_planned,
@@ -84,10 +85,3 @@ def test_a_link_opens_the_selected_tour_and_plans_what_has_expired(
             expect(other.get_by_role("slider", name="Balance")).to_have_attribute(
                 "aria-valuetext", said
             )
-
-
-def saved(page: Page, name: str) -> bytes:
-    """Return the file that the button of this name saves."""
-    with page.expect_download() as download:
-        page.get_by_role("button", name=f"Save {name}").click()
-    return download.value.path().read_bytes()

@@ -13,6 +13,7 @@ from tests.helpers.browsing import (
     needs_chromium,
     open_files,
     open_page,
+    saved,
     stops_as_text,
     wait_until_planned,
 )
@@ -136,9 +137,7 @@ def test_both_objectives_have_names_and_units_of_the_user(opened: Page) -> None:
     wait_until_planned(opened)
     expect(opened.locator("#comparison")).to_contain_text("Way, km")
     expect(opened.locator("#less-2")).to_have_text("less noise")
-    with opened.expect_download() as saved:
-        opened.get_by_role("button", name="Save CSV").click()
-    head = next(csv.reader(saved.value.path().read_text().splitlines()))
+    head = next(csv.reader(saved(opened, "CSV").decode().splitlines()))
     assert head == ["angle", "way (km)", "noise", "tour"]
 
 

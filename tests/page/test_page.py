@@ -1,6 +1,5 @@
 """The page, used as people use it: in Debian's Chromium, against the service as it is shipped."""
 
-import json
 import re
 
 import httpx
@@ -13,6 +12,7 @@ from tests.helpers.browsing import (
     curl_body,
     needs_chromium,
     open_page,
+    saved,
     shown_front,
     stops_as_text,
     tours_of_front,
@@ -67,9 +67,7 @@ def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> N
 
 
 def test_the_page_says_what_a_tour_gives_up_and_what_it_gains(page: Page) -> None:
-    with page.expect_download() as saved:
-        page.get_by_role("button", name="Save JSON").click()
-    front = [item["lengths"] for item in json.loads(saved.value.path().read_text())["front"]]
+    front = [item["lengths"] for item in shown_front(page)["front"]]
     slider, choice = page.get_by_role("slider", name="Balance"), page.locator("#choice")
     slider.press("Home")
     expect(choice).to_contain_text("The least distance.")
@@ -202,13 +200,9 @@ def test_the_keyboard_is_enough(page: Page) -> None:
 
 
 def test_the_front_can_be_taken_along(page: Page, released: str) -> None:
-    with page.expect_download() as saved:
-        page.get_by_role("button", name="Save JSON").click()
-    answer = json.loads(saved.value.path().read_text())
+    answer = shown_front(page)
     assert answer == httpx.get(f"{released}/front/{answer['id']}").json()
-    with page.expect_download() as saved:
-        page.get_by_role("button", name="Save CSV").click()
-    head, *lines = saved.value.path().read_text().splitlines()
+    head, *lines = saved(page, "CSV").decode().splitlines()
     assert head == "angle,length_1,length_2,tour"
     assert len(lines) == len(answer["front"])
     asked = curl_body(page)
