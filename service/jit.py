@@ -7,16 +7,26 @@ numba counts references to every array that a call passes on, atomically, and in
 of small functions that takes four fifths of the time. A function that creates no array needs
 no counts: its caller holds all that it sees. So most are compiled without numba's run time
 (`_nrt`), under which creating an array is a compilation error.
+
+numba numbers what it compiles, from 1 in each process, to tell functions of one name apart: those
+inside np.sort from those inside np.argsort. Of two cached by different processes with the same
+number, whichever is loaded first is called in the other's place, and the process dies
+(numba#10486). So each process begins at a random number, far from those of all others.
 """
 
+import secrets
 from collections.abc import Callable
 from functools import partial
+from itertools import count
 from typing import ParamSpec, TypeVar
 
 import numba
+from numba.core.bytecode import FunctionIdentity
 
 P = ParamSpec("P")
 R = TypeVar("R")
+
+FunctionIdentity._unique_ids = count(secrets.randbits(64))  # noqa: SLF001  # it has no setter
 
 
 def _can_be_cached() -> bool:
