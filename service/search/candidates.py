@@ -11,9 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from service.instance import Instance
 from service.jit import allocating, inlined
 from service.search.closing import FORBIDDEN, is_closing
-from service.search.costs import Costs, step_costs
+from service.search.costs import Costs, make_costs, step_costs
 from service.search.kd_tree import (
     KdTrees,
     fill_kd_tree,
@@ -79,6 +80,13 @@ def fill_in_blocks(pool: CandidatePool, costs: Costs, weights: Array) -> Iterato
     for begin in range(0, compared, rows):
         fill_pool(pool, costs, weights, begin, min(begin + rows, compared))
         yield
+
+
+def warm_up(instance: Instance) -> None:
+    """Compile what finds the candidates of more cities than are tabulated, or load it."""
+    costs = make_costs(instance)._replace(matrix=np.zeros((0, 0, 2)))
+    for _ in fill_in_blocks(make_candidate_pool(len(costs.cities)), costs, np.full((1, 2), 0.5)):
+        pass
 
 
 @inlined

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance, tour_lengths
 from service.pareto import best_subset, nondominated
+from service.search import candidates
 from service.search.archive import MAX_POINTS
 from service.search.bound import hypervolume_bound
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
@@ -162,6 +163,7 @@ def warm_up() -> None:
     for instance in _instances(12):
         improve(instance, none, iterations=5_000)
         hypervolume_bound(instance, 12 * instance.scale)
+        candidates.warm_up(instance)
 
 
 def _instances(n: int) -> Iterator[Instance]:
