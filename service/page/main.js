@@ -33,7 +33,7 @@ let way = null; // on which the front that is shown may be replanned
 let objectives = UNNAMED; // as the front that is shown calls them
 let planning = null; // what is under way
 let answer = null; // the best front so far
-let opened = 0; // how many requests were, so that none takes the place of a later one
+let opened = 0; // how many requests were, or are being fetched, so that none takes the place of a later one
 
 /** Takes what is asked for into the form, and shows its stops under their objectives. */
 function open(wanted, names) {
@@ -198,10 +198,10 @@ async function openExample() {
   if (!example) return;
   leave();
   say("The example is being opened.");
-  const before = opened;
+  const mine = (opened += 1);
   try {
     const wanted = await service.get(`examples/${example.file}`);
-    if (opened > before) return;
+    if (opened > mine) return;
     open(wanted, example.objectives);
   } catch (error) {
     return fail(error);

@@ -25,7 +25,7 @@ def width() -> int:
 def page(width: int, browser: Browser, released: str) -> Iterator[Page]:
     """The page with its example of two planes planned."""
     with open_page(browser, released, width) as page:
-        wait_until_planned(page)
+        # The example that the page opens with is left before it is planned, which takes seconds.
         page.get_by_label("Example").select_option("City deliveries")
         expect(page.locator("#count")).to_have_text("61 stops")
         wait_until_planned(page)
