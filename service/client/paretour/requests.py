@@ -62,7 +62,7 @@ def front_plan(request: FrontRequest) -> Plan:
     objectives: Sequence[Mapping[str, Any]] = members.get("objectives", ())
     if isinstance(members.get("matrices"), np.ndarray):
         return Plan("/front", members, _matrices_file(members.pop("matrices")))
-    matrices = [objective.get("matrix") for objective in objectives]
+    matrices: list[Any] = [objective.get("matrix") for objective in objectives]
     if not _fit_a_file(matrices):
         return Plan("/front", members)
     named = [{k: v for k, v in each.items() if k != "matrix"} for each in objectives]
