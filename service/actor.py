@@ -1,25 +1,24 @@
 """Actors: the networks as released, one ONNX file each, which build a tour for each preference."""
 
-import hashlib
-import json
+from functools import partial
 from pathlib import Path
 from threading import Lock
-from typing import Any, Protocol, get_args
+from typing import Any, Protocol
 
 import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
-from service.actor_info import ActorInfo
+from service.actor_info import ActorInfo, read_actor_info
 from service.construction.call_estimate import CallEstimate
 from service.construction.first_tours import Constructor
 from service.errors import Cancelled
-from service.instance import PLANE, Instance, Kind
+from service.instance import PLANE, Instance
 
+RELEASED = Path(__file__).parent / "actors"
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 Indices = NDArray[np.intp]
-_METADATA = ("name", "config", "commit", "sizes", "angles", "figures", "inputs")
 _FATAL = 4  # the severity from which on ONNX Runtime writes to stderr
 _FEW = 100  # cities or preferences, up to which a session keeps less than 20 MB
 _MIN_PLACES = 3  # of fewer there is one tour, and no network was trained on them
@@ -34,9 +33,15 @@ class NamedActor(Constructor, Protocol):
     def info(self) -> ActorInfo:
         """The information in its file."""
 
+    def load(self) -> None:
+        """Do what only the first call would have to, unless it is done."""
+
 
 class OnnxActor:
-    """An ONNX file in an inference session of so many threads.
+    """An ONNX file, whose network runs in so many threads.
+
+    The file's metadata are read at once. Its inference session is opened by `load`, or by the first
+    call, since that takes up to two seconds, and many need few of the actors that there are.
 
     Raises:
         ValueError: The file is not ONNX, lacks metadata, or reads neither coordinates nor matrices.
@@ -44,20 +49,23 @@ class OnnxActor:
 
     def __init__(self, path: Path, threads: int) -> None:
         content = path.read_bytes()
-        self._session = _open_session(content, path, threads)
+        self.info = read_actor_info(content, path)
+        self.estimate = CallEstimate(self.info.inputs)
+        self._open = partial(_open_session, content, path, threads)
+        self._session: onnxruntime.InferenceSession | None = None
+        self._loading = Lock()
         self._lock = Lock()
         self._running = onnxruntime.RunOptions()
-        metadata = self._session.get_modelmeta().custom_metadata_map
-        if missing := [name for name in _METADATA if name not in metadata]:
-            raise ValueError(f"the metadata of {path} must have {', '.join(missing)}")
-        self.info = ActorInfo(
-            digest=hashlib.sha256(content).hexdigest(),
-            inputs=_kind(metadata["inputs"], path),
-            repairs=any(value.name == "repairs" for value in self._session.get_inputs()),
-            **{name: metadata[name] for name in ("name", "commit")},
-            **{name: _decoded(metadata[name]) for name in ("sizes", "angles", "config", "figures")},
-        )
-        self.estimate = CallEstimate(self.info.inputs)
+
+    def load(self) -> None:
+        """Open the inference session, unless it is open.
+
+        Raises:
+            ValueError: The file is no network that ONNX Runtime can run.
+        """
+        with self._loading:
+            if self._session is None:
+                self._session = self._open()
 
     def tours(self, instance: Instance, preferences: Array, repairs: int = 0) -> Tours:
         """Return tours, shape (k, n), one for each preference, shape (k, 2), by one inference.
@@ -121,6 +129,8 @@ class OnnxActor:
         outputs: list[str],
         options: onnxruntime.RunOptions,
     ) -> Tours:
+        self.load()
+        assert self._session is not None
         try:
             tours: Tours = np.concatenate(self._session.run(outputs, inputs, options))
         except Exception:
@@ -135,7 +145,8 @@ def load_actors(
 ) -> dict[str, OnnxActor]:
     """Return the actors of the ONNX files in a directory, and in one of the user's, by name.
 
-    Each has an inference session of so many threads.
+    Each runs in so many threads. Those that are not released are opened at once: a file that ONNX
+    Runtime cannot run is to be seen at the start.
 
     Raises:
         ValueError: There is no file in a directory, one is no actor, or two have the same name.
@@ -144,6 +155,8 @@ def load_actors(
     files: dict[str, Path] = {}
     for path in [*_onnx_files(directory), *(_onnx_files(own_directory) if own_directory else ())]:
         actor = OnnxActor(path, threads)
+        if path.parent != RELEASED:
+            actor.load()
         name = actor.info.name
         if name in actors:
             both = f"{files[name]} and {path}"
@@ -210,13 +223,6 @@ def _open_session(content: bytes, path: Path, threads: int) -> onnxruntime.Infer
         raise ValueError(f"{path} must be an ONNX file that can be read: {reason}") from error
 
 
-def _kind(inputs: str, path: Path) -> Kind:
-    for kind in get_args(Kind):
-        if inputs == kind:
-            return kind
-    raise ValueError(f"inputs of {path} must be coordinates or matrices, got {inputs!r}")
-
-
 def _options(threads: int) -> onnxruntime.SessionOptions:
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = threads
@@ -224,10 +230,3 @@ def _options(threads: int) -> onnxruntime.SessionOptions:
     # Threads that spin while they wait take the cores from the plans beside them.
     options.add_session_config_entry("session.intra_op.allow_spinning", "0")
     return options
-
-
-def _decoded(text: str) -> Any:
-    try:
-        return json.loads(text)
-    except json.JSONDecodeError:
-        return text

@@ -1,12 +1,27 @@
 """The metadata of an actor's ONNX file, for those that need no network.
 
-Apart from the actor: who imports ONNX Runtime has threads, and can no longer be forked.
+Apart from the actor: who imports ONNX Runtime has threads, and can no longer be forked; and to open
+a network for inference takes up to two seconds, in which its nodes are checked and simplified.
 """
 
+import hashlib
+import json
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, get_args
+
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+from google.protobuf.message import DecodeError, Message
 
 from service.instance import Kind
+
+_METADATA = ("name", "config", "commit", "sizes", "angles", "figures", "inputs")
+_FIELDS: dict[str, dict[str, tuple[int, str | None]]] = {  # by message: the few of onnx.proto that are read here, with number and type
+    "Model": {"graph": (7, "Graph"), "metadata_props": (14, "Entry")},
+    "Graph": {"input": (11, "Value")},
+    "Value": {"name": (1, None)},
+    "Entry": {"key": (1, None), "value": (2, None)},
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,3 +60,71 @@ class ActorInfo:
     def serves(self, kind: Kind) -> bool:
         """Return whether it builds tours for instances of a kind: matrices serve both kinds."""
         return self.inputs in ("matrices", kind)
+
+
+def read_actor_info(content: bytes, path: Path) -> ActorInfo:
+    """Return the metadata in the content of an actor's ONNX file, whose path errors name.
+
+    Raises:
+        ValueError: It is not ONNX, lacks metadata, or reads neither coordinates nor matrices.
+    """
+    model = _parsed(content, path)
+    metadata = {entry.key: entry.value for entry in model.metadata_props}
+    if missing := [name for name in _METADATA if name not in metadata]:
+        raise ValueError(f"the metadata of {path} must have {', '.join(missing)}")
+    return ActorInfo(
+        digest=hashlib.sha256(content).hexdigest(),
+        inputs=_kind(metadata["inputs"], path),
+        repairs=any(value.name == "repairs" for value in model.graph.input),
+        **{name: metadata[name] for name in ("name", "commit")},
+        **{name: _decoded(metadata[name]) for name in ("sizes", "angles", "config", "figures")},
+    )
+
+
+def _parsed(content: bytes, path: Path) -> Any:
+    """Return a model of onnx.proto, with the members that are named in `_FIELDS`."""
+    model = _MODEL()
+    reason = "it has no graph"
+    try:
+        model.ParseFromString(content)
+    except DecodeError as error:
+        reason = str(error)
+    if not model.HasField("graph"):
+        raise ValueError(f"{path} must be an ONNX file that can be read: {reason}")
+    return model
+
+
+def _model_class() -> type[Message]:
+    file = descriptor_pb2.FileDescriptorProto(name="paretour/onnx.proto", package="paretour")
+    field = descriptor_pb2.FieldDescriptorProto
+    for name, members in _FIELDS.items():
+        message = file.message_type.add(name=name)
+        for member, (number, of) in members.items():
+            repeated = member in ("metadata_props", "input")
+            message.field.add(
+                name=member,
+                number=number,
+                label=field.LABEL_REPEATED if repeated else field.LABEL_OPTIONAL,
+                type=field.TYPE_MESSAGE if of else field.TYPE_STRING,
+                type_name=f".paretour.{of}" if of else None,
+            )
+    pool = descriptor_pool.DescriptorPool()
+    pool.Add(file)
+    return message_factory.GetMessageClass(pool.FindMessageTypeByName("paretour.Model"))
+
+
+_MODEL = _model_class()
+
+
+def _kind(inputs: str, path: Path) -> Kind:
+    for kind in get_args(Kind):
+        if inputs == kind:
+            return kind
+    raise ValueError(f"inputs of {path} must be coordinates or matrices, got {inputs!r}")
+
+
+def _decoded(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError:
+        return text

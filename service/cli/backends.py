@@ -14,7 +14,7 @@ from rich.console import Console
 from service.cli.errors import UsageError
 from service.cli.progress import interrupt_flag, progress_bar
 
-LOADING = "loading the search; the first time it is compiled, for half a minute"
+LOADING = "loading the search; the first time it is compiled, for a minute or two"
 
 
 class Backend(Protocol):
@@ -106,7 +106,7 @@ class LocalBackend:
         """Return the answer to a request, as the service gives it."""
         from service.cli.configuration import load_settings, load_with
         from service.errors import Refusal
-        from service.jobs.runner import load_runner
+        from service.jobs.runner import load_runner, warm_up
         from service.requests.task import TaskKind, TaskSource
 
         runner = load_with(
@@ -119,9 +119,11 @@ class LocalBackend:
         kinds: Mapping[str, TaskKind] = {"/coverage": "coverage", "/fleet": "fleet"}
         try:
             task = runner.parse(TaskSource(kinds.get(plan.path, "front"), plan.json, upload))
+            if task.actor in runner.actors:
+                runner.actors[task.actor].load()  # before the clock of its time limit starts
             if task.needs_compiled_code:
                 with console.status(LOADING):
-                    runner.warm_up()
+                    warm_up()
             with interrupt_flag() as interrupted, progress_bar(console, plan.seconds) as show:
                 document = runner.run(task, interrupted, lambda progress, _: show(progress))
         except Refusal as error:

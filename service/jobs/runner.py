@@ -75,7 +75,9 @@ class TaskRunner:
     measurer: BlockingMeasurer | None = None
 
     def warm_up(self) -> None:
-        """Compile the search, or load it from the cache."""
+        """Open the networks, and compile the search or load it from the cache."""
+        for actor in self.actors.values():
+            actor.load()
         warm_up()
 
     def parse(self, source: TaskSource) -> Task:

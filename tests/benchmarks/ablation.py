@@ -49,6 +49,7 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--only", nargs="+", metavar="COLUMN", help="columns; default: all")
     options = parser.parse_args(arguments)
     actor = OnnxActor(ACTORS / f"{options.actor}.onnx", threads=1)
+    actor.load()
     builders = _builders(actor)
     warm_up()
     stored = load("ablation")

@@ -44,6 +44,7 @@ def main(arguments: list[str]) -> str | None:
 def measured(n: int) -> dict[str, float]:
     """Seconds of the processor, and the most memory that the process has had."""
     actor = OnnxActor(ACTOR, threads=1)
+    actor.load()
     instance = Instance(coordinates=np.random.default_rng(n).random((n, 4)))
     began = time.process_time()
     tours = actor.tours(instance, from_angles(fan(TOURS)))

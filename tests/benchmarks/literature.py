@@ -54,6 +54,7 @@ def main(arguments: list[str]) -> None:
     options = parser.parse_args(arguments)
     warm_up()
     actor = OnnxActor(ACTOR, threads=1)
+    actor.load()
     for n in options.cities:
         instances = [uniform(n, seed) for seed in range(options.count)]
         for row in (row for row in options.rows if n in SIZES.get(row, [n])):

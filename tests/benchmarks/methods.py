@@ -64,6 +64,7 @@ def _networks() -> dict[str, Method]:
     for row, name in NETWORKS.items():
         if (ACTORS / f"{name}.onnx").exists():
             actor = OnnxActor(ACTORS / f"{name}.onnx", threads=1)
+            actor.load()
             build = partial(actor.tours, preferences=from_angles(fan(TOURS)))
             rows[row] = Method(partial(_built, build), True, actor.info.digest)
     return rows

@@ -120,6 +120,7 @@ def test_a_call_that_somebody_else_ends_is_cancelled() -> None:
 
 def test_the_released_network_is_ended_in_time() -> None:
     actor = OnnxActor(Settings().actors / "pa-one.onnx", threads=1)
+    actor.load()
     for _ in range(30):  # it is taken for much faster than it is
         actor.estimate.correct(1000, 100, 1e-6)
     began = time.monotonic()
@@ -156,6 +157,7 @@ def test_without_a_limit_all_repairs_are_made() -> None:
 
 def test_repairs_of_the_released_network_end_when_it_is_told_to_stop() -> None:
     actor = OnnxActor(Settings().actors / "pa-one.onnx", threads=1)
+    actor.load()
     timer = Timer(0.2, actor.terminate)
     timer.start()
     with pytest.raises(Cancelled):

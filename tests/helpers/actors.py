@@ -55,6 +55,9 @@ class Shuffler:
         for mark in (self.gate, self.gate.with_suffix(".started")):
             mark.unlink(missing_ok=True)
 
+    def load(self) -> None:
+        """Do nothing: there is no network."""
+
     def tours(self, instance: Instance, preferences: np.ndarray, _repairs: int = 0) -> np.ndarray:
         """Return one random tour for each preference, once the gate is open."""
         if self.gate is not None:
