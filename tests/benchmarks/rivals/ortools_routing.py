@@ -1,10 +1,11 @@
-"""OR-Tools' routing solver under weighted sums: as the paper's rival "OR-Tools", and with hints."""
+"""OR-Tools' routing solver under weighted sums: as the paper's rival, guided, and with hints."""
 
 import time
 
 import numpy as np
 from numpy.typing import NDArray
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
+from ortools.util import optional_boolean_pb2
 
 Array = NDArray[np.float64]
 
@@ -18,22 +19,28 @@ def solve(cost: Array, solution_limit: int | None) -> NDArray[np.int64]:
 
     Without a solution limit the local search runs until no move of its neighbourhoods improves.
     """
-    n = len(cost)
-    whole = np.rint(cost * (FINENESS / cost.max())).astype(np.int64)
-    manager = pywrapcp.RoutingIndexManager(n, 1, 0)
-    routing = pywrapcp.RoutingModel(manager)
-    callback = routing.RegisterTransitMatrix(whole.tolist())
-    routing.SetArcCostEvaluatorOfAllVehicles(callback)
     parameters = pywrapcp.DefaultRoutingSearchParameters()
     parameters.first_solution_strategy = routing_enums_pb2.FirstSolutionStrategy.PATH_CHEAPEST_ARC
     if solution_limit is not None:
         parameters.solution_limit = solution_limit
-    solution = routing.SolveWithParameters(parameters)
-    tour, index = [], routing.Start(0)
-    while not routing.IsEnd(index):
-        tour.append(manager.IndexToNode(index))
-        index = solution.Value(routing.NextVar(index))
-    return np.array(tour)
+    return _tour(cost, parameters)
+
+
+def guided(cost: Array, seconds: float) -> NDArray[np.int64]:
+    """A tour under costs of shape (n, n), by guided local search for so many seconds.
+
+    The settings are the best of a short trial on 60 stops by road: six first solutions, with and
+    without the operators that are off by default. Those of tours alone gain most.
+    """
+    parameters = pywrapcp.DefaultRoutingSearchParameters()
+    strategies = routing_enums_pb2.FirstSolutionStrategy
+    parameters.first_solution_strategy = strategies.PARALLEL_CHEAPEST_INSERTION
+    heuristics = routing_enums_pb2.LocalSearchMetaheuristic
+    parameters.local_search_metaheuristic = heuristics.GUIDED_LOCAL_SEARCH
+    parameters.local_search_operators.use_tsp_opt = optional_boolean_pb2.BOOL_TRUE
+    parameters.local_search_operators.use_tsp_lns = optional_boolean_pb2.BOOL_TRUE
+    parameters.time_limit.FromMicroseconds(int(1e6 * seconds))
+    return _tour(cost, parameters)
 
 
 def improved_routes(costs: Array, hints: NDArray[np.int64], seconds: float) -> NDArray[np.int64]:
@@ -57,6 +64,21 @@ def improved_routes(costs: Array, hints: NDArray[np.int64], seconds: float) -> N
         lengths = cost[hints[:, :-1], hints[:, 1:]].sum(axis=1)
         routes.append(_improved(cost, hints[lengths.argmin()], turn_ends))
     return np.array(routes)
+
+
+def _tour(cost: Array, parameters: pywrapcp.DefaultRoutingSearchParameters) -> NDArray[np.int64]:
+    """The closed tour that the solver finds from city 0."""
+    whole = np.rint(cost * (FINENESS / cost.max())).astype(np.int64)
+    manager = pywrapcp.RoutingIndexManager(len(cost), 1, 0)
+    routing = pywrapcp.RoutingModel(manager)
+    callback = routing.RegisterTransitMatrix(whole.tolist())
+    routing.SetArcCostEvaluatorOfAllVehicles(callback)
+    solution = routing.SolveWithParameters(parameters)
+    tour, index = [], routing.Start(0)
+    while not routing.IsEnd(index):
+        tour.append(manager.IndexToNode(index))
+        index = solution.Value(routing.NextVar(index))
+    return np.array(tour)
 
 
 def _improved(cost: Array, hint: NDArray[np.int64], ends: float) -> NDArray[np.int64]:
