@@ -15,11 +15,13 @@ from pathlib import Path
 import httpx
 import pytest
 
+from tests.guide.pages import GUIDE, blocks, commands
 from tests.helpers.serving import app_of, serving
 
 PYTHON_GENERATOR = ("openapi-python-client>=0.29,<0.30", "mypy>=2", "ruff>=0.15")
 # Errors in the generated code itself are not ours.
 CHECK_PYTHON = ("venv/bin/mypy", "--strict", "--follow-imports=silent")
+FROM_TYPESCRIPT = GUIDE / "call-it-from-typescript.md"
 TYPESCRIPT_GENERATOR = ("openapi-typescript@7", "typescript@5")
 # Without it, a member that has a default is one that must be given.
 FLAG = "--default-non-nullable=false"
@@ -130,6 +132,17 @@ def test_generated_types_in_typescript_are_those_of_stops(typescript_folder: Pat
     with pytest.raises(subprocess.CalledProcessError) as failed:
         run([*check, "wrong.ts"], typescript_folder)
     assert "Type 'number' is not assignable to type 'string'" in failed.value.stdout
+
+
+def test_the_program_of_the_guide_has_the_types_of_the_service(typescript_folder: Path) -> None:
+    make_types = commands(FROM_TYPESCRIPT)[:2]
+    assert set(make_types[0].split()[3:]) == set(TYPESCRIPT_GENERATOR)
+    assert make_types[1].endswith(f" -o paretour.ts {FLAG}")
+    [program] = [each.text for each in blocks(FROM_TYPESCRIPT) if each.title == "plan.ts"]
+    (typescript_folder / "plan.ts").write_text(program)
+    (typescript_folder / "paretour.ts").write_text('export type * from "./generated";\n')
+    modern = ["--target", "es2022", "--module", "esnext", "--moduleResolution", "bundler"]
+    run(["node_modules/.bin/tsc", "--noEmit", "--strict", *modern, "plan.ts"], typescript_folder)
 
 
 def test_every_operation_and_every_form_has_a_name_of_its_own(document: Path) -> None:

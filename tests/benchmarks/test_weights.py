@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from service.instance import Instance, tour_lengths
+from service.pareto import nondominated
 from tests.benchmarks import provenance, weights_table
 from tests.helpers.instances import all_tours
 
@@ -45,4 +46,21 @@ def test_the_table_has_medians_and_the_least_within_each_budget(
     assert "| 1 s | ours | 0.3 | 3 | 100.0 % | 40 | 20 | 10 |" in text
     # Scaled, (0.4, 1/3) of (0, 1), (0.4, 1/3), (1, 0), with the corner (1.1, 1.1).
     assert "| 1 s | theirs | 1.0 | 1 | 88.0 % | none | 20 | 20 |" in text
+    assert "has 3 tours. 3 of them are best under some weight." in text
     assert "the median of 3 rounds. Measured on abacus, today, `none`, one thread." in text
+
+
+def test_points_in_a_dent_are_best_under_no_weight() -> None:
+    rng = np.random.default_rng(5)
+    points = rng.random((40, 2))
+    front = points[nondominated(points)]
+    shares = np.linspace(0, 1, 20001)
+    best = {int((share * front[:, 0] + (1 - share) * front[:, 1]).argmin()) for share in shares}
+    assert 2 < weights_table._supported(front) == len(best) < len(front)
+
+
+def test_three_weights_find_both_ends_of_the_stored_front_in_ten_seconds() -> None:
+    stored = provenance.load("weights")
+    best = weights_table._together(stored)
+    for round_ in stored["10 s: OR-Tools, 3 weights"]["instances"]:
+        assert np.array_equal(np.min(round_["points"], axis=0), best.min(axis=0))

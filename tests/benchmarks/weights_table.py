@@ -24,7 +24,11 @@ def weights_table() -> str:
     rows = [_row(key, entry, best) for key, entry in stored.items()]
     within = [f"people met, at most {budget} % longer" for budget in BUDGETS]
     head = ["limit", "method", "seconds taken", "tours", "hypervolume", *within]
-    return f"{table(head, rows)}\n{_measured_on(stored)}"
+    under_weights = (
+        f"The best front, of all tours that any method found, has {len(best)} tours. "
+        f"{_supported(best)} of them are best under some weight.\n"
+    )
+    return f"{table(head, rows)}\n{under_weights}\n{_measured_on(stored)}"
 
 
 def _row(key: str, entry: dict[str, Any], best: Array) -> list[str]:
@@ -61,6 +65,25 @@ def _together(stored: dict[str, Any]) -> Array:
     results = [result for entry in stored.values() for result in entry["instances"]]
     points = np.concatenate([result["points"] for result in results])
     return points[nondominated(points)]
+
+
+def _supported(front: Array) -> int:
+    """How many points of a front, by ascending first length, are best under some weights.
+
+    Those are the corners of its lower convex hull, by Andrew's monotone chain.
+    """
+    corners: list[Array] = []
+    for point in front[front[:, 0].argsort()]:
+        while len(corners) > 1 and _dented(*corners[-2:], point):
+            corners.pop()
+        corners.append(point)
+    return len(corners)
+
+
+def _dented(before: Array, point: Array, after: Array) -> bool:
+    """Whether a point lies on or above the line from the one before it to the one after it."""
+    (x, y), (across, down) = point - before, after - before
+    return bool(x * down <= across * y)
 
 
 def _in_box(points: Array, best: Array) -> float:

@@ -41,8 +41,8 @@ def anchors(page: Path) -> set[str]:
 
 
 def commands(page: Path) -> list[str]:
-    """Return the commands of a page's sh blocks."""
-    shell = [block.text for block in blocks(page) if block.language == "sh"]
+    """Return the commands of a page's sh blocks, without those that are files."""
+    shell = [each.text for each in blocks(page) if each.language == "sh" and not each.title]
     return [command for text in shell for command in split_commands(text)]
 
 

@@ -9,16 +9,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import playwright
 import pytest
 
 from tests.guide.pages import README, ROOT, Block, blocks, split_commands
 
 REACHED = "localhost:8000"
-RUN = ("curl ", "paretour ", "cat ")
+RUN = ("curl ", "paretour ", "cat ", "sh ", "node ")
+# Node.js comes with playwright.
+NODE = Path(playwright.__file__).parent / "driver/node"
 
 
 def write_inputs(folder: Path) -> None:
-    """Write the files that commands of the pages read, and the command `paretour` in `bin`."""
+    """Write the files that commands of the pages read, and the commands `paretour` and `node`."""
     [request] = [block.text for block in blocks(README) if block.title == "cities.json"]
     (folder / "cities.json").write_text(request)
     rng = np.random.default_rng(0)
@@ -28,18 +31,20 @@ def write_inputs(folder: Path) -> None:
     command.parent.mkdir()
     command.write_text(f'#!/bin/sh\nexec {sys.executable} -m service "$@"\n')
     command.chmod(0o755)
+    command.with_name("node").symlink_to(NODE)
 
 
 def run_page(page: Path, folder: Path, address: str) -> list[str]:
     """Run all of a page's blocks that can be run here, and return what each command printed."""
     printed: list[str] = []
+    reached = address.removeprefix("http://")
     for block in blocks(page):
         if block.title == "answer":
             assert lasting(json.loads(printed[-1])) == lasting(json.loads(block.text))
         elif block.title:
-            (folder / block.title).write_text(block.text)
+            (folder / block.title).write_text(block.text.replace(REACHED, reached))
         else:
-            printed += _run(block, folder, address)
+            printed += _run(block, folder, reached)
     return printed
 
 
@@ -58,8 +63,7 @@ def lasting(answer: dict[str, Any]) -> dict[str, Any]:
     return kept | changed
 
 
-def _run(block: Block, folder: Path, address: str) -> list[str]:
-    reached = address.removeprefix("http://")
+def _run(block: Block, folder: Path, reached: str) -> list[str]:
     if block.language == "python":
         with chdir(folder):
             exec(block.text.replace(REACHED, reached), {})

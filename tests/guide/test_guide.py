@@ -1,11 +1,11 @@
 """The README and the guide: their blocks run, their links lead somewhere, their tables are true."""
 
+import json
 import re
 import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -13,6 +13,7 @@ import pytest
 from service.errors import PROBLEMS
 from service.settings import Settings
 from tests.guide.codes import codes
+from tests.guide.figures import figures
 from tests.guide.pages import (
     GUIDE,
     PAGES,
@@ -27,7 +28,7 @@ from tests.guide.pages import (
 from tests.guide.sessions import RUN, run_page, write_inputs
 from tests.guide.tree import PAGE as TREE_PAGE
 from tests.guide.tree import modules, named, tree
-from tests.helpers.serving import app_of, serving_released
+from tests.helpers.serving import app_of
 
 # Commands that a test of their own runs or checks: deployment, the image, set-up and linters.
 NOT_RUN = (
@@ -36,6 +37,8 @@ NOT_RUN = (
     "kubectl ",
     "python3 -m venv ",
     ".venv/bin/",
+    "npm install ",
+    "npx openapi-typescript ",
     "PARETOUR_OWN_ACTORS=",
 )
 # One process for all, because each would import torch.
@@ -54,45 +57,85 @@ RUNNABLE = [
     if any(block.language == "python" for block in blocks(page))
     or any(command.startswith(RUN) for command in commands(page))
 ]
-OTHERS = [page for page in RUNNABLE if page not in (COMMAND_LINE, FROM_PYTHON)]
+FROM_TYPESCRIPT = GUIDE / "call-it-from-typescript.md"
+FROM_A_SHELL = GUIDE / "call-it-from-a-shell.md"
+FIRST_TOUR = GUIDE / "first-tour-in-ten-minutes.md"
+WITH_A_TEST = (COMMAND_LINE, FROM_PYTHON, FROM_TYPESCRIPT, FROM_A_SHELL, FIRST_TOUR)
+OTHERS = [page for page in RUNNABLE if page not in WITH_A_TEST]
 
 
-@pytest.fixture(scope="module")
-def address() -> Iterator[str]:
-    with serving_released() as url:
-        yield url
+needs_curl = pytest.mark.skipif(not shutil.which("curl"), reason="curl is not installed")
 
 
 @pytest.mark.parametrize("page", OTHERS, ids=lambda page: page.stem)
 def test_the_blocks_of_every_other_page_run_from_top_to_bottom(
-    page: Path, address: str, tmp_path: Path
+    page: Path, released: str, tmp_path: Path
 ) -> None:
     if any(command.startswith("curl ") for command in commands(page)) and not shutil.which("curl"):
         pytest.skip("curl is not installed")
     write_inputs(tmp_path)
-    run_page(page, tmp_path, address)
+    run_page(page, tmp_path, released)
 
 
 def test_the_python_code_prints_a_hypervolume(
-    address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    released: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    run_page(FROM_PYTHON, tmp_path, address)
+    run_page(FROM_PYTHON, tmp_path, released)
     hypervolume, *_ = capsys.readouterr().out.split()
     assert 0 < float(hypervolume) < 1
 
 
-def test_the_command_line_writes_a_table_and_a_picture(address: str, tmp_path: Path) -> None:
+def test_the_command_line_writes_a_table_and_a_picture(released: str, tmp_path: Path) -> None:
     write_inputs(tmp_path)
-    printed = run_page(COMMAND_LINE, tmp_path, address)
+    printed = run_page(COMMAND_LINE, tmp_path, released)
     assert len(printed) >= 9
     assert any(line.startswith("depot order-") for line in printed)
     assert (tmp_path / "front.csv").read_text().startswith("angle,")
     assert (tmp_path / "front.png").exists()
 
 
+@needs_curl
+def test_the_first_tour_is_written_as_its_page_says(
+    released: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_inputs(tmp_path)
+    ready, tour = run_page(FIRST_TOUR, tmp_path, released)
+    assert f"`{ready}`" in FIRST_TOUR.read_text()
+    [shown] = [each.text for each in blocks(FIRST_TOUR) if each.text.startswith("17 tours")]
+    assert capsys.readouterr().out == shown
+    heading, *rows = (line.split(",") for line in tour.splitlines())
+    assert heading == ["id", "metres", "euros"]
+    assert [rows[0], rows[-1]] == [["depot", "0", "0"], ["depot", "10990", "41"]]
+    assert len({row[0] for row in rows}) == len(rows) - 1 == 8
+
+
+def test_the_typescript_program_plans_follows_and_chooses(released: str, tmp_path: Path) -> None:
+    write_inputs(tmp_path)
+    [printed] = run_page(FROM_TYPESCRIPT, tmp_path, released)
+    first, *_, status, tour = printed.splitlines()
+    assert first.startswith("3 tours, from 4681.3")
+    assert status == "done"
+    assert f"`{status}`, and a tour: `{tour}`" in FROM_TYPESCRIPT.read_text()
+
+
+@needs_curl
+def test_the_shell_script_prints_events_and_then_a_tour(released: str, tmp_path: Path) -> None:
+    write_inputs(tmp_path)
+    *_, printed = run_page(FROM_A_SHELL, tmp_path, released)
+    *_, status, tour = (line for line in printed.splitlines() if line)
+    assert json.loads(status.removeprefix("data: "))["status"] == "done"
+    assert json.loads(tour)["tour"]
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_every_block_is_of_a_kind_that_a_test_knows(page: Path) -> None:
-    assert {block.language for block in blocks(page)} <= {"json", "python", "sh", "text"}
+    assert {block.language for block in blocks(page)} <= {
+        "json",
+        "python",
+        "sh",
+        "text",
+        "typescript",
+    }
     assert all(block.title for block in blocks(page) if block.language == "json")
     assert all(command.startswith((*RUN, *NOT_RUN)) for command in commands(page))
     assert page.read_text().count("\n```") == 2 * len(blocks(page))
@@ -169,6 +212,13 @@ def test_the_tree_names_every_module_and_no_other() -> None:
 
 def test_the_tree_says_what_the_modules_say_of_themselves() -> None:
     assert made_part(TREE_PAGE, "tree") == tree(), "run python -m tests.guide"
+
+
+@pytest.mark.parametrize("name", ["weights", "times", "road-times"])
+def test_tables_of_figures_are_those_of_the_stored_results(name: str) -> None:
+    page, made = figures()[name]
+    assert made.startswith("| ")
+    assert made_part(page, name) == made, "run python -m tests.guide"
 
 
 def test_the_table_of_codes_is_that_of_the_service() -> None:

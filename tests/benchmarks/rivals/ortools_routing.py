@@ -29,8 +29,8 @@ def solve(cost: Array, solution_limit: int | None) -> NDArray[np.int64]:
 def guided(cost: Array, seconds: float) -> NDArray[np.int64]:
     """A tour under costs of shape (n, n), by guided local search for so many seconds.
 
-    The settings are the best of a short trial on 60 stops by road: six first solutions, with and
-    without the operators that are off by default. Those of tours alone gain most.
+    The settings are the best of a short trial on 60 stops by road: five first solutions, with and
+    without operators that are off by default. The two for single tours gain most.
     """
     parameters = pywrapcp.DefaultRoutingSearchParameters()
     strategies = routing_enums_pb2.FirstSolutionStrategy
