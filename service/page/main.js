@@ -104,7 +104,7 @@ function show(state) {
     result.name(objectives, way?.names ?? input.ids);
     result.show(way ? { ...state, answer: way.answer(state.answer) } : state);
     answered(state.answer);
-    if (state.stage === "done" && !["grid", "unknown"].includes(kindOf(input.instance))) {
+    if (state.stage === "done" && !["fleet", "grid", "unknown"].includes(kindOf(input.instance))) {
       way ??= new Way(input.instance, input.ids, state.answer.cities);
       replanForm.show(way);
     }

@@ -48,7 +48,7 @@ def open_page(
     errors: list[str] = []
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.on("console", lambda line: errors.append(line.text) if line.type == "error" else None)
-    page.route(re.compile(r"/(front|coverage)$"), _shorten_search)
+    page.route(re.compile(r"/(front|coverage|fleet)$"), _shorten_search)
     page.goto(address)
     yield page
     page.close()

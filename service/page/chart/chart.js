@@ -2,6 +2,7 @@
 
 import uPlot from "../vendor/uplot/uPlot.esm.js";
 import { colour, onSchemeChange } from "../common/colours.js";
+import { nounOf } from "../common/nouns.js";
 import { counted, length } from "../common/numbers.js";
 import { UNNAMED, withUnit } from "../common/objectives.js";
 import { Budget } from "./budget.js";
@@ -171,6 +172,7 @@ function described(front, objectives) {
   if (!front.length) return "No front yet";
   const from = (axis) => length(Math.min(front[0].lengths[axis], front.at(-1).lengths[axis]));
   const to = (axis) => length(Math.max(front[0].lengths[axis], front.at(-1).lengths[axis]));
+  const { one, many } = nounOf(front);
   const ranges = objectives.map(({ name }, axis) => `${name} from ${from(axis)} to ${to(axis)}`);
-  return `A front of ${counted(front.length, "tour", "tours")}: ${ranges.join(", ")}`;
+  return `A front of ${counted(front.length, one, many)}: ${ranges.join(", ")}`;
 }

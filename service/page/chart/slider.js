@@ -1,5 +1,6 @@
 /** A slider from the least first length of a front to the least second; arrow keys go tour by tour. */
 
+import { nounOf } from "../common/nouns.js";
 import { length } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
 import { nearest } from "../result/tours.js";
@@ -36,7 +37,7 @@ export class BalanceSlider {
     if (nearest(this.#front, Number(this.#input.value)) !== index) this.#input.value = balance;
     const at = balance.toFixed(2);
     this.#shown.textContent = at;
-    const place = `tour ${index + 1} of ${this.#front.length}`;
+    const place = `${nounOf(this.#front).one} ${index + 1} of ${this.#front.length}`;
     const said = this.#objectives.map(({ name }, axis) => `${name} ${length(lengths[axis])}`);
     this.#input.setAttribute("aria-valuetext", `${at}, ${place}: ${said.join(", ")}`);
   }

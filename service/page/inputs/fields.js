@@ -2,17 +2,18 @@
 
 import { nameOf, stopNamed } from "./names.js";
 
+// Those of fleets say so; all others have those that do not name one kind.
 const FIELDS = [
   { name: "cell_size", label: "Metres a cell", where: "coverage" },
   { name: "robot_radius", label: "Robot’s radius, m", where: "coverage" },
   { name: "spacing", label: "Places apart, m", where: "coverage" },
-  { name: "time_limit", label: "Seconds of planning", value: "3" },
-  { name: "size", label: "Tours", value: "100" },
+  { name: "time_limit", label: "Seconds of planning", value: "3", fleet: true },
+  { name: "size", label: "Tours", value: "100", fleet: true },
   { name: "start", label: "Start", value: "1", stop: true },
   { name: "end", label: "End elsewhere", stop: true },
   { name: "open", label: "Open route: no way back to the start", box: true },
   { name: "preferences", label: "Directions of the network", where: "more" },
-  { name: "seed", label: "Seed", value: "0", where: "more" },
+  { name: "seed", label: "Seed", value: "0", where: "more", fleet: true },
   { name: "bound", label: "Say how far from optimal the front may be", where: "more", box: true },
 ];
 
@@ -21,6 +22,7 @@ const OFFERED = 1000; // names in a list that a browser opens without delay
 export class Fields {
   #form;
   #coverage;
+  #fleet = false; // whether the request is of a fleet
   #ids = null; // of the stops, where they have them
 
   constructor(form) {
@@ -34,9 +36,12 @@ export class Fields {
 
   /** What is filled in. What is no number stays as it is, for the service to name. */
   get members() {
-    const asked = FIELDS.filter(({ where }) => where !== "coverage" || !this.#coverage.hidden);
+    const asked = FIELDS.filter(({ where, fleet }) =>
+      this.#fleet ? fleet : where !== "coverage" || !this.#coverage.hidden,
+    );
     const texts = asked.filter(({ box }) => !box).map(({ name }) => [name, this.#form[name].value.trim()]);
     const given = texts.filter(([, text]) => text).map(([name, text]) => [name, this.#value(name, text)]);
+    if (this.#fleet) return Object.fromEntries(given);
     const bound = this.#form.bound.checked ? { bound: true } : {};
     return { ...Object.fromEntries(given), ...bound, ...this.#ends(given.map(([name]) => name)) };
   }
@@ -63,6 +68,7 @@ export class Fields {
   take(request, kind) {
     const rest = { ...request };
     this.#coverage.hidden = kind !== "grid";
+    this.#show(kind === "fleet");
     this.#form.open.checked = request.closed === false;
     this.#form.bound.checked = request.bound === true;
     delete rest.closed;
@@ -79,6 +85,13 @@ export class Fields {
       delete rest[name];
     }
     return rest;
+  }
+
+  /** Shows the fields that a fleet has, or all; the size is of its plans. */
+  #show(fleet) {
+    this.#fleet = fleet;
+    for (const field of FIELDS) this.#form[field.name].parentElement.hidden = fleet && !field.fleet;
+    this.#form.querySelector('label[for="size"]').textContent = fleet ? "Plans" : "Tours";
   }
 
   /** Takes start and end, each an index, an id, or missing; a start that is null may be anywhere. */

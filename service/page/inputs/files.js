@@ -56,9 +56,11 @@ function parsed(name, text) {
 
 /** The members, of which those that are drawn are rows; all else is for the service to check. */
 function drawable(name, members) {
-  const { coordinates, grid, cost_layer, stops } = members ?? {};
+  const { coordinates, grid, cost_layer, stops, vehicles } = members ?? {};
   if (!members || typeof members !== "object") throw new Error(`${name} must be a request, got ${members}`);
-  if (stops != null && !Array.isArray(stops)) throw new Error(`stops of ${name} must be a list`);
+  for (const [member, items] of Object.entries({ stops, vehicles })) {
+    if (items != null && !isObjects(items)) throw new Error(`${member} of ${name} must be a list of objects`);
+  }
   for (const [member, rows] of Object.entries({ coordinates, grid, cost_layer })) {
     if (rows != null && !isRows(rows)) throw new Error(`${member} of ${name} must be rows of numbers`);
   }
@@ -70,4 +72,5 @@ function drawable(name, members) {
   return members;
 }
 
+const isObjects = (value) => Array.isArray(value) && value.every((each) => each && typeof each === "object");
 const isRows = (value) => Array.isArray(value) && value.every(Array.isArray);

@@ -1,7 +1,8 @@
-/** The kinds of instance (planes, matrices, grid, stops, or not known) and the requests for them. */
+/** The kinds of instance (fleet, planes, matrices, grid, stops, or not known) and the requests for them. */
 
 import { isCity, rowsOf } from "./cities.js";
 import { rounded } from "./distances.js";
+import { describedFleet } from "../fleet/fleet_request.js";
 import { counted } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
 import { nameOf } from "./names.js";
@@ -10,13 +11,14 @@ import { Problem } from "../planning/service.js";
 // Two matrices of more fill the longest body that a service takes, and the browser's memory.
 const MOST_ROUNDED = 1500;
 
-export const kindOf = ({ grid, matrices, coordinates, stops }) =>
-  grid ? "grid" : matrices ? "matrices" : coordinates ? "coordinates" : stops ? "stops" : "unknown";
+export const kindOf = ({ vehicles, grid, matrices, coordinates, stops }) =>
+  vehicles ? "fleet" : grid ? "grid" : matrices ? "matrices" : coordinates ? "coordinates" : stops ? "stops" : "unknown";
 
 /** In a few words, what was brought that cannot be typed. */
 export function described(asked) {
   const { grid, matrices, places, stops, coordinates } = asked;
   if (kindOf(asked) === "unknown") return "The link names a front alone: where its stops lie is not known here.";
+  if (kindOf(asked) === "fleet") return describedFleet(asked);
   if (stops || coordinates) return "";
   if (matrices) return `Two matrices of ${counted(matrices[0]?.length ?? 0, "stop", "stops")}.`;
   const where = places ? `${places.length} places` : "places laid out by the spacing";
@@ -35,6 +37,7 @@ export function askedFor(opened, settings, { text, whole }) {
 /** The request by which the service is asked for it. */
 export function requestFor({ rounded: whole, ids, names, ...body }) {
   const kind = kindOf(body);
+  if (kind === "fleet") return { path: "fleet", body };
   if (kind === "grid") return { path: "coverage", body: { ...body, paths: true } };
   // A row that is no city is named by the service, which wants to see it for that.
   const planes = kind === "coordinates" && whole && body.coordinates.length && body.coordinates.every(isCity);

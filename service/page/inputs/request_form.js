@@ -3,6 +3,7 @@
 import { isCity, rowsOf, textOf } from "./cities.js";
 import { Fields } from "./fields.js";
 import { askedFor, described, kindOf, requestFor } from "./instance.js";
+import { RequestText } from "../fleet/request_text.js";
 import { nameOf } from "./names.js";
 import { ObjectiveFields } from "./objective_fields.js";
 import { isMeasured, moved, renamed, withAnother, without } from "./stops.js";
@@ -17,6 +18,7 @@ export class RequestForm {
   #fields;
   #table;
   #objectiveFields;
+  #text = new RequestText(element("fleet-request"));
   #onEdited;
   #brought = { coordinates: [] }; // of what was opened, the members that are not settings
   #objectives = UNNAMED; // as they are shown
@@ -43,7 +45,8 @@ export class RequestForm {
     this.#brought = this.#fields.take(wanted, kind);
     this.#objectives = wanted.names ?? names;
     element("typed").hidden = kind !== "coordinates";
-    element("named").hidden = kind === "unknown";
+    element("named").hidden = ["unknown", "fleet"].includes(kind);
+    this.#text.show(kind === "fleet" ? wanted : null);
     element("brought").textContent = described(wanted);
     element("brought").hidden = !element("brought").textContent;
     element("cities").value = textOf(wanted.coordinates ?? []);
@@ -116,6 +119,7 @@ export class RequestForm {
 
   #tableRows(kind) {
     if (kind === "coordinates") return this.#rows.map((numbers, city) => ({ name: nameOf(this.ids, city), numbers }));
+    if (kind === "fleet") return []; // its stops are not edited
     return (this.#brought.stops ?? []).map(({ id, location }) => ({ name: id, numbers: location ?? [] }));
   }
 

@@ -2,14 +2,20 @@
 
 import { GridMap } from "./gridmap.js";
 import { UNNAMED, titled } from "../common/objectives.js";
+import { placesOf } from "../fleet/fleet_request.js";
 import { kindOf } from "../inputs/instance.js";
+import { routeStyle } from "../fleet/route_styles.js";
+import { vehicleNames } from "../fleet/routes_of_plan.js";
+import { isPlan } from "../common/nouns.js";
 import { Planes } from "./planes.js";
 
 const element = (id) => document.getElementById(id);
 
-/** Longitude and latitude of stops, as rows; none where any has no location. */
-const rowsOfStops = (stops) =>
-  stops.every(({ location }) => location?.every(Number.isFinite)) ? stops.map(({ location }) => location) : [];
+const SINGLE = ["stops", "fleet"]; // of which one map is drawn, of both objectives
+
+/** The places that are drawn, as rows, and whether they are longitude and latitude. */
+const placed = (instance, kind) =>
+  kind === "fleet" ? placesOf(instance) : kind === "stops" ? placesOf({ stops: instance.stops }) : { places: instance.coordinates ?? [], onEarth: false };
 
 export class Maps {
   #planes;
@@ -18,6 +24,7 @@ export class Maps {
   #drawn = 2; // of the planes
   #credit = "";
   #objectives = UNNAMED;
+  #ids = null; // of the stops
 
   /**
    * @param {(plane: number, place: number[], only: boolean) => void} onClick told where a plane was
@@ -39,24 +46,24 @@ export class Maps {
   /** Calls the maps by these objectives, and the stops by ids, or by numbers where there are none. */
   name(objectives, ids) {
     this.#objectives = objectives;
+    this.#ids = ids;
     this.#planes.name(ids);
     this.#title();
   }
 
   #title() {
-    const onEarth = this.#kind === "stops"; // where one map is drawn, of both objectives
+    const single = SINGLE.includes(this.#kind);
     this.#objectives.forEach((objective, plane) => {
-      element(`plane-${plane + 1}-title`).textContent = onEarth ? "Map" : titled(objective);
+      element(`plane-${plane + 1}-title`).textContent = single ? "Map" : titled(objective);
     });
-    element("length-1").hidden = onEarth;
+    element("length-1").hidden = single;
   }
 
   /** Shows an instance without tours; `fit` says whether the view moves to hold all of it. */
   show(instance, fit) {
     this.#kind = kindOf(instance);
-    const onEarth = this.#kind === "stops";
     this.#title();
-    const rows = onEarth ? rowsOfStops(instance.stops) : (instance.coordinates ?? []);
+    const { places: rows, onEarth } = placed(instance, this.#kind);
     // Stops lie in one plane, whatever their objectives.
     this.#drawn = this.#kind === "coordinates" ? 2 : Math.sign(rows.length);
     document.querySelectorAll(".plane").forEach((figure, plane) => (figure.hidden = plane >= this.#drawn));
@@ -76,9 +83,21 @@ export class Maps {
     return this.#kind === "grid" ? [] : this.#planes.places.slice(0, this.#drawn);
   }
 
-  /** Draws a tour as "selected" or "pinned", closed or open; null takes it away. */
+  /** Draws a tour as "selected" or "pinned", closed or open; null takes it away. Of plans the selected one alone is drawn. */
   draw(name, item, closed = true) {
-    if (this.#kind === "grid") this.#grid.draw(name, item);
+    if (this.#kind === "fleet") {
+      if (name === "selected") this.#planes.drawRoutes(isPlan(item) ? this.#routes(item) : []);
+    } else if (this.#kind === "grid") this.#grid.draw(name, item);
     else if (this.#drawn) this.#planes.draw(name, item?.tour ?? null, closed);
+  }
+  /** The routes of a plan, each `{ name, stops, style }`, whose stops are indexes. */
+  #routes({ routes }) {
+    const index = new Map(this.#ids?.map((id, at) => [id, at]));
+    const names = vehicleNames(routes);
+    return routes.map(({ stops }, at) => ({
+      name: names[at],
+      stops: stops.map((id) => index.get(id)),
+      style: routeStyle(at),
+    }));
   }
 }

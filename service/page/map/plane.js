@@ -5,6 +5,7 @@ import { colour, onSchemeChange } from "../common/colours.js";
 import { fitting, flatMap } from "./flatmap.js";
 import { Frame } from "./frame.js";
 import { Mercator } from "./mercator.js";
+import { Routes } from "./routes.js";
 import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
@@ -19,6 +20,7 @@ export class Plane {
   #end = ring("end", 18);
   #highlight = ring("highlight", 16);
   #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
+  #routes = new Routes();
   #places = [];
   #onEarth = false;
   #tiles = null;
@@ -26,7 +28,7 @@ export class Plane {
   /** @param {{ onHover: (city: number | null) => void, onClick: (place: number[]) => void }} told */
   constructor(element, { onHover, onClick }) {
     this.#map = flatMap(element, { zoomDelta: 0.5, minZoom: -3, maxZoom: 20, doubleClickZoom: false });
-    for (const line of Object.values(this.#lines)) line.addTo(this.#map);
+    for (const line of [...Object.values(this.#lines), this.#routes]) line.addTo(this.#map);
     this.#cities = L.featureGroup().addTo(this.#map);
     this.#cities.on("mouseover", (event) => onHover(event.sourceTarget.city));
     this.#cities.on("mouseout", () => onHover(null));
@@ -49,6 +51,7 @@ export class Plane {
     places.forEach((place, city) => this.#cities.addLayer(this.#dot(place, city, radius)));
     this.draw("selected", null);
     this.draw("pinned", null);
+    this.drawRoutes([]);
     this.highlight(null);
     if (fit) this.#fit();
     this.#colour();
@@ -77,6 +80,14 @@ export class Plane {
     if (name !== "selected") return;
     this.#mark(this.#start, tour?.[0]);
     this.#mark(this.#end, closed ? null : tour?.at(-1));
+  }
+
+  /** Draws the routes of a plan, `{ stops, style }` each, with a ring where all of them start; none takes them away. */
+  drawRoutes(routes) {
+    const latlngs = ({ stops }) => stops.map((city) => this.#frame.latlng(this.#places[city]));
+    this.#routes.show(routes.map((route) => ({ latlngs: latlngs(route), style: route.style })));
+    const starts = new Set(routes.map(({ stops }) => stops[0]));
+    this.#mark(this.#start, starts.size === 1 ? [...starts][0] : null);
   }
 
   /** Rings a city, and says what it is; null takes the ring away. */

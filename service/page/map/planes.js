@@ -5,6 +5,7 @@ import { Plane } from "./plane.js";
 export class Planes {
   #maps;
   #tour = null;
+  #routes = []; // of the plan that is drawn
   #ids = null;
 
   /** @param {(plane: number, place: number[]) => void} onClick told where a map was clicked */
@@ -25,11 +26,12 @@ export class Planes {
     this.#maps[0].tile(url);
   }
 
-  /** Draws cities, rows of four numbers, or two of places on the earth; tours are taken away. */
+  /** Draws cities, rows of four numbers, or of two where there is one map; tours are taken away. */
   show(rows, fit = true, onEarth = false) {
     this.#tour = null;
+    this.#routes = [];
     this.#maps[0].show(rows.map((row) => row.slice(0, 2)), fit, onEarth);
-    this.#maps[1].show(onEarth ? [] : rows.map((row) => row.slice(2, 4)), fit);
+    this.#maps[1].show(rows.map((row) => row.slice(2, 4)).filter((place) => place.length), fit);
   }
 
   /** The places of the cities on both maps. */
@@ -43,10 +45,23 @@ export class Planes {
     for (const map of this.#maps) if (map.places.length) map.draw(name, tour, closed);
   }
 
+  /** Draws the routes of a plan, each `{ name, stops, style }`; none takes them away. */
+  drawRoutes(routes) {
+    this.#routes = routes;
+    for (const map of this.#maps) if (map.places.length) map.drawRoutes(routes);
+  }
+
+  /** Where a stop stands on the tour, or on the route that visits it; of a depot nothing. */
+  #turn(city) {
+    if (this.#tour?.includes(city)) return `: ${ordinal(this.#tour.indexOf(city) + 1)} on the tour`;
+    const visiting = this.#routes.filter(({ stops }) => stops.includes(city));
+    if (visiting.length !== 1) return "";
+    return `: ${ordinal(visiting[0].stops.indexOf(city) + 1)} of ${visiting[0].name}`;
+  }
+
   #highlight(city) {
-    const turn = this.#tour ? this.#tour.indexOf(city) + 1 : 0;
     const name = this.#ids?.[city] ?? `stop ${city + 1}`;
-    const said = turn ? `${name}: ${ordinal(turn)} on the tour` : name;
+    const said = name + this.#turn(city);
     this.#maps.forEach((map) => map.highlight(city, said));
   }
 }

@@ -4,6 +4,7 @@ import { Problem } from "./service.js";
 
 const GLANCE = 300; // milliseconds from one look at a growing front to the next
 const MOST_WAIT = 5; // seconds between two attempts
+const REFUSED = Symbol("the network has no plan");
 const FINAL = ["done", "cancelled", "failed"];
 
 /**
@@ -24,14 +25,24 @@ export class Planning {
   }
 
   async *plan(request) {
-    const { initial_tours, bound, ...body } = request.body;
-    // Where the search follows, the network's tours come soonest without repairs.
-    const soonest = body.time_limit === 0 ? {} : { repairs: 0 };
-    const first = { path: request.path, body: { ...body, time_limit: 0, ...soonest } };
-    for await (const alone of this.#patiently(first)) {
-      if (!alone) yield { stage: "warming-up", alone: null, answer: null };
+    for await (const alone of this.#alone(request)) {
+      if (alone === null) yield { stage: "warming-up", alone: null, answer: null };
       else if (request.body.time_limit === 0) yield { stage: "done", alone, answer: alone, growth: [] };
-      else yield* this.#improved(request, alone);
+      else yield* this.#improved(request, alone === REFUSED ? null : alone);
+    }
+  }
+
+  /** The network's front, after a null for each time that the service is not warm yet. */
+  async *#alone(request) {
+    const { initial_tours, bound, ...body } = request.body;
+    // Where the search follows, the network's tours come soonest without repairs, which fleets have not.
+    const soonest = body.time_limit === 0 || request.path === "fleet" ? {} : { repairs: 0 };
+    try {
+      yield* this.#patiently({ path: request.path, body: { ...body, time_limit: 0, ...soonest } });
+    } catch (error) {
+      // Of shipments, and of windows that are hard to keep, only the search finds plans.
+      if (error.code !== "no-plan" || body.time_limit === 0) throw error;
+      yield REFUSED;
     }
   }
 
@@ -132,9 +143,11 @@ export class Planning {
   }
 }
 
-/** Until the search has found something, the network's front is the best there is. */
-const grown = (alone, answer) =>
-  answer.front.length || !alone ? answer : { ...alone, id: answer.id, terminated: answer.terminated };
+/** Until the search has found something, the network's front is the best there is; null without either. */
+const grown = (alone, answer) => {
+  if (answer.front.length) return answer;
+  return alone && { ...alone, id: answer.id, terminated: answer.terminated };
+};
 
 function pause(seconds, signal) {
   return new Promise((resolve, reject) => {

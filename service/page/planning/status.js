@@ -1,5 +1,6 @@
 /** Say what the page is doing, and what came of it. */
 
+import { nounOf } from "../common/nouns.js";
 import { counted } from "../common/numbers.js";
 
 const element = (id) => document.getElementById(id);
@@ -17,11 +18,18 @@ export function say(text) {
   element("status").textContent = element("waiting").textContent = text;
 }
 
-/** What is to be said of a state of a planning. */
-export const sentence = (state) => SAID[state.stage] ?? ended(state);
+// Where the network has no front of its own to show.
+const SEARCH_ALONE = { queued: "The search waits for its turn.", running: "The search is running." };
 
-function ended({ stage, answer: { front, points } }) {
-  const found = `${counted(points, "tour", "tours")} found`;
+/** What is to be said of a state of a planning. */
+export const sentence = (state) =>
+  (!state.alone && SEARCH_ALONE[state.stage]) || SAID[state.stage] || ended(state);
+
+function ended({ stage, answer }) {
+  if (!answer) return "Stopped before anything was found.";
+  const { front, points } = answer;
+  const { one, many } = nounOf(front);
+  const found = `${counted(points, one, many)} found`;
   const shown = front.length < points ? `, the best ${front.length} of them shown` : "";
   return `${stage === "cancelled" ? "Stopped" : "Done"}: ${found}${shown}.`;
 }

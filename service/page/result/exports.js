@@ -1,21 +1,37 @@
 /** Write a request as a curl command, and a front as CSV. */
 
+import { isPlan } from "../common/nouns.js";
+
 /** The same request as a shell command. */
 export function curl({ path, body }) {
   const address = new URL(path, document.baseURI).href;
   return `curl ${address} -H 'Content-Type: application/json' -d @- <<'END'\n${JSON.stringify(body)}\nEND\n`;
 }
 
-/** A front as CSV: a tour on each line, with the answer's names and ids where it has them. */
+/** A front as CSV: a tour on each line, or a route of a plan, with the answer's names and ids where it has them. */
 export function csv({ front, objectives }) {
   const titles = objectives?.map(({ name, unit }) => (unit ? `${name} (${unit})` : name)) ?? ["length_1", "length_2"];
+  if (isPlan(front[0])) return csvOfPlans(front, titles);
   const rows = front.map(({ angle, lengths, tour, stops }) => {
     const places = stops?.map((id) => quoted(id, /[ "]/)) ?? tour;
     return [angle, ...lengths, places.join(" ")];
   });
-  const line = (row) => `${row.map((field) => quoted(`${field}`, /[,"]/)).join(",")}\n`;
   return [["angle", ...titles, "tour"], ...rows].map(line).join("");
 }
+
+/** A route on each line, beside its plan, as `paretour fleet --csv` has them. */
+function csvOfPlans(plans, titles) {
+  const rows = plans.flatMap(({ balance, lengths, routes }, plan) =>
+    routes.map(({ vehicle, stops, lengths: own }) => {
+      const places = stops.map((id) => quoted(id, /[ "]/)).join(" ");
+      return [plan, balance, ...lengths, vehicle, ...own, places];
+    }),
+  );
+  const head = ["plan", "balance", ...titles, "vehicle", ...titles.map((title) => `route ${title}`), "stops"];
+  return [head, ...rows].map(line).join("");
+}
+
+const line = (row) => `${row.map((field) => quoted(`${field}`, /[,"]/)).join(",")}\n`;
 
 /** The text between quotation marks, where it has a character that would end it. */
 const quoted = (text, ending) => (ending.test(text) ? `"${text.replaceAll('"', '""')}"` : text);

@@ -1,5 +1,7 @@
 /** Show a front's hypervolume, the angle of a tour, and the times that the front took. */
 
+import { nounOf } from "../common/nouns.js";
+import { titled } from "../common/objectives.js";
 import { degrees, length, share } from "../common/numbers.js";
 
 /** Fills a list with what is known of a front, if there is one. */
@@ -8,8 +10,9 @@ export const showFigures = (list, alone, answer) =>
 
 /** Fills a list with what else is known of a tour, if there is one. */
 export const showTourFigures = (list, tour) =>
-  list.replaceChildren(...(tour ? [["Angle of the tour", degrees(tour.angle)], ...kept(tour)] : []).flatMap(pair));
+  list.replaceChildren(...(tour ? [...angle(tour), ...kept(tour)] : []).flatMap(pair));
 
+const angle = (tour) => (tour.angle == null ? [] : [["Angle of the tour", degrees(tour.angle)]]);
 const kept = (tour) => (tour.kept == null ? [] : [["Legs kept of the tour before", `${Math.round(100 * tour.kept)} %`]]);
 
 const worth = (alone, answer) => [
@@ -26,7 +29,7 @@ const shortOf = ({ hypervolume, hypervolume_bound: bound }) => [
 
 const known = (answer) => [
   ["Reference point", answer.reference_point.map(length).join(", ")],
-  ["Tours", `${answer.front.length} of ${answer.points.toLocaleString("en")} found`],
+  [titled({ name: nounOf(answer.front).many }), `${answer.front.length} of ${answer.points.toLocaleString("en")} found`],
   ["Time", answer.terminated ? took(answer) : "still searching"],
   ["Network", answer.actor?.name ?? "none"],
 ];

@@ -1,21 +1,27 @@
 /** Write a request as a Python program with the client. */
 
-const CALLS = { front: "front", coverage: "coverage" };
+const CALLS = { front: "front", coverage: "coverage", fleet: "fleet" };
+const MIDDLE = 0.5; // of balances
 
-/** The program that plans the same, and prints the tour of the same balance. */
+/** The program that plans the same, and prints the tour, or the plan of a fleet, of the same balance. */
 export function python({ path, body }, balance) {
   const service = new URL(".", document.baseURI).href.replace(/\/$/, "");
-  const choice = balance === undefined ? "knee=True" : `balance=${balance}`;
   return `from paretour import Client
 
 request = ${literal(body)}
 
 with Client(${literal(service)}) as client:
     front = client.${CALLS[path]}(**request)
-    tour = front.choose(${choice})
+${path === "fleet" ? chosenPlan(balance ?? MIDDLE) : chosenTour(balance)}`;
+}
+
+const chosenTour = (balance) => `    tour = front.choose(${balance === undefined ? "knee=True" : `balance=${balance}`})
 print(tour.lengths, tour.stops or tour.tour)
 `;
-}
+
+const chosenPlan = (balance) => `    plan = min(front.plans, key=lambda plan: abs(plan.balance - ${balance}))
+print(plan.lengths, [route.stops for route in plan.routes])
+`;
 
 const NAMES = new Map([[null, "None"], [undefined, "None"], [true, "True"], [false, "False"]]);
 

@@ -7,6 +7,8 @@ import { showFigures, showTourFigures } from "./figures.js";
 import { Growth } from "../chart/growth.js";
 import { nameOf } from "../inputs/names.js";
 import { Maps } from "../map/maps.js";
+import { isPlan } from "../common/nouns.js";
+import { PlanView } from "../fleet/plan_view.js";
 import { length } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
 import { BalanceSlider } from "../chart/slider.js";
@@ -21,6 +23,7 @@ export class Result {
   #chart;
   #growth;
   #slider;
+  #planView = new PlanView();
   #front = [];
   #closed = true;
   #before = null; // the tour that was replanned, and whether it was closed
@@ -53,6 +56,7 @@ export class Result {
     this.#maps.name(objectives, ids);
     this.#chart.name(objectives);
     this.#slider.name(objectives);
+    this.#planView.name(objectives);
     objectives.forEach((objective, plane) => {
       element(`less-${plane + 1}`).textContent = `less ${objective.name}`;
     });
@@ -62,6 +66,7 @@ export class Result {
   clear(instance, fit = true) {
     cancelAnimationFrame(this.#frame);
     this.#maps.show(instance, fit);
+    this.#planView.open(instance);
     element("shade").textContent = instance.cost_layer ? `shaded: ${this.#objectives[1].name}` : "";
     this.#front = [];
     this.#balance = MIDDLE;
@@ -89,6 +94,7 @@ export class Result {
     this.#growth.show(growth);
     this.#slider.show(answer.front);
     this.#maps.place(answer.places);
+    element("tour-title").textContent = isPlan(answer.front[0]) ? "Selected plan" : "Tour";
     if (this.#front.length) this.#select(this.#chart.budget.index ?? nearest(this.#front, this.#balance));
     showFigures(element("figures"), alone, answer);
   }
@@ -108,8 +114,9 @@ export class Result {
     this.#balance = balance ?? MIDDLE;
   }
 
-  /** What is to be seen on a picture of it. */
+  /** What is to be seen on a picture of it; null of a plan, of which there is none. */
   get picture() {
+    if (isPlan(this.#selected)) return null;
     const lines = [this.#pinned ?? this.#before, this.#selected].filter(Boolean);
     const tours = lines.map((line) => ({ cities: this.#round(line), dashed: line !== this.#selected }));
     const maps = this.#maps.places.map((places, plane) => ({ title: element(`plane-${plane + 1}-title`).textContent, places, tours }));
@@ -180,6 +187,7 @@ export class Result {
     element("budget").textContent = this.#chart.budget.said;
     this.#chart.mark("previewed", this.#previewed?.lengths ?? null);
     this.#maps.draw("selected", shown, this.#closed);
+    this.#planView.show(shown);
     compare(element("comparison"), this.#objectives, shown, this.#pinned);
     showTourFigures(element("tour-figures"), shown);
     element("choice").textContent = shown ? choiceOf(this.#front, shown, this.#objectives) : "";
@@ -195,8 +203,10 @@ export class Result {
     element("legend").querySelector(`.${name}`).hidden = !there;
   }
 
+  /** The order of a tour's stops; of a plan each vehicle has its own. */
   #order() {
-    if (!element("order").open) return;
+    element("order").hidden = isPlan(this.#selected);
+    if (!element("order").open || isPlan(this.#selected)) return;
     element("order").querySelector("p").textContent = named(this.#selected, this.#ids).join(" → ");
   }
 }

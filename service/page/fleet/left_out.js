@@ -1,0 +1,24 @@
+/** Say which stops a plan leaves out, and why. */
+
+import { counted, length } from "../common/numbers.js";
+import { shortUnit } from "../common/objectives.js";
+
+/** Why stops are left out, where any are. The service says no more than which. */
+export function reason({ unassigned }, { name }) {
+  if (!unassigned.length) return "No stop is left out.";
+  const stops = counted(unassigned.length, "stop is", "stops are");
+  return `${stops} left out, as those with a prize may be. The prizes are added to ${name}:`;
+}
+
+/**
+ * Each stop that is left out, with its prize where it is known.
+ *
+ * @param {Map<string, object>} asked the stops of the request by id
+ */
+export function leftOut({ unassigned }, asked, objective) {
+  const unit = shortUnit(objective);
+  return unassigned.map((stop) => {
+    const prize = asked.get(stop)?.prize;
+    return prize == null ? stop : `${stop}: prize ${length(prize)}${unit && ` ${unit}`}`;
+  });
+}

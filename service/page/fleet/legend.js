@@ -1,0 +1,33 @@
+/** A table of a plan's routes: the colour of each, its vehicle, how many stops, and its lengths. */
+
+import { length } from "../common/numbers.js";
+import { withUnit } from "../common/objectives.js";
+import { routeStyle, swatch } from "./route_styles.js";
+import { vehicleNames, visits } from "./routes_of_plan.js";
+
+/** Fills a table with the routes of a plan, and the plan itself in the last row. */
+export function showLegend(table, plan, vehicles, objectives) {
+  const names = vehicleNames(plan.routes);
+  const counts = plan.routes.map((route) => visits(route, vehicles));
+  const rows = plan.routes.map((route, at) => {
+    const head = made("th", names[at], "row");
+    head.prepend(swatch(routeStyle(at)));
+    return [head, ...cells([counts[at], ...route.lengths.map(length)])];
+  });
+  const all = counts.reduce((sum, count) => sum + count, 0);
+  table.tHead.replaceChildren(line(["Vehicle", "Stops", ...objectives.map(withUnit)].map((title) => made("th", title, "col"))));
+  table.tBodies[0].replaceChildren(...rows.map(line));
+  table.tFoot.replaceChildren(line([made("th", "Plan", "row"), ...cells([all, ...plan.lengths.map(length)])]));
+}
+
+const cells = (values) => values.map((value) => made("td", value));
+
+function made(tag, textContent, scope) {
+  return Object.assign(document.createElement(tag), { textContent, ...(scope && { scope }) });
+}
+
+function line(parts) {
+  const row = document.createElement("tr");
+  row.append(...parts);
+  return row;
+}

@@ -1,0 +1,67 @@
+/** The selected plan of a fleet by vehicle: legend, lanes over time, stops, and what is left out. */
+
+import { UNNAMED } from "../common/objectives.js";
+import { isPlan } from "../common/nouns.js";
+import { Lanes } from "./lanes.js";
+import { leftOut, reason } from "./left_out.js";
+import { showLegend } from "./legend.js";
+import { vehicleNames } from "./routes_of_plan.js";
+import { clockOf } from "./times.js";
+import { visitTimes } from "./visit_times.js";
+
+const element = (id) => document.getElementById(id);
+
+export class PlanView {
+  #lanes = new Lanes(element("fleet-lanes"));
+  #asked = {}; // the request, as far as it is known
+  #objectives = UNNAMED;
+  #plan = null;
+
+  /** Takes the request of which plans will be shown. */
+  open(asked) {
+    this.#asked = asked;
+    this.show(null);
+  }
+
+  name(objectives) {
+    this.#objectives = objectives;
+    const plan = this.#plan;
+    this.show(null);
+    this.show(plan);
+  }
+
+  /** Shows a plan; hides everything where there is none, or a tour. */
+  show(item) {
+    const plan = isPlan(item) ? item : null;
+    if (plan && plan === this.#plan) return;
+    this.#plan = plan;
+    element("fleet").hidden = !plan;
+    if (!plan) return;
+    const stops = new Map(this.#asked.stops?.map((stop) => [stop.id, stop]));
+    showLegend(element("fleet-legend"), plan, this.#asked.vehicles, this.#objectives);
+    this.#showTimes(plan, stops);
+    element("fleet-left-out-title").textContent = reason(plan, this.#objectives[0]);
+    list("fleet-left-out", leftOut(plan, stops, this.#objectives[0]));
+  }
+
+  /** Shows a lane for each vehicle where the plan has times, and the stops of each in order. */
+  #showTimes({ routes }, stops) {
+    const names = vehicleNames(routes);
+    const timed = routes.length > 0 && routes.every(({ arrivals }) => arrivals);
+    const lanes = timed ? routes.map((route, at) => ({ name: names[at], visits: visitTimes(route, stops) })) : [];
+    const clock = timed ? clockOf(lanes.flatMap(({ visits }) => visits.flatMap(({ arrival, end }) => [arrival, end])), this.#unit) : null;
+    this.#lanes.show(lanes, clock);
+    element("fleet-lanes-help").hidden = !timed;
+    const said = ({ stops: ids, arrivals }) => ids.map((id, at) => (clock ? `${id} ${clock.said(arrivals[at])}` : id)).join(" → ");
+    list("fleet-stops", routes.map((route, at) => `${names[at]}: ${said(route)}`));
+  }
+
+  /** The unit of the objective that is time. */
+  get #unit() {
+    return this.#objectives.find(({ name }) => name === this.#asked.clock)?.unit ?? "";
+  }
+}
+
+function list(id, texts) {
+  element(id).replaceChildren(...texts.map((textContent) => Object.assign(document.createElement("li"), { textContent })));
+}

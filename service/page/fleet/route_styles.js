@@ -1,0 +1,20 @@
+/** Colours and dashes by which the routes of a plan are told apart. */
+
+const COLOURS = 8; // of Okabe and Ito (2008), in palette.css, which colour-blind people can tell apart
+const DASHES = [[], [9, 5], [3, 4]];
+
+/** The style of the route at this place among those of a plan: the name of its colour, and its dash. */
+export function routeStyle(at) {
+  const dash = DASHES[Math.floor(at / COLOURS) % DASHES.length];
+  return { colour: `route-${(at % COLOURS) + 1}`, dash };
+}
+
+/** A piece of its line as SVG, for a legend. */
+export function swatch({ colour, dash }) {
+  const line = (stroke, width) =>
+    `<path d="M1 6h26" stroke="var(--${stroke})" stroke-width="${width}" stroke-dasharray="${dash.join(" ")}"/>`;
+  const made = document.createElement("span");
+  made.className = "swatch";
+  made.innerHTML = `<svg viewBox="0 0 28 12" width="28" height="12" aria-hidden="true">${line("ink", 6)}${line(colour, 4)}</svg>`;
+  return made;
+}

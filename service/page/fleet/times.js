@@ -1,0 +1,40 @@
+/** The clock of a plan: its times in words, and the marks of an axis. */
+
+const SECONDS = { s: 1, second: 1, seconds: 1, min: 60, minute: 60, minutes: 60, h: 3600, hour: 3600, hours: 3600 };
+const STEPS = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 21600, 43200, 86400]; // seconds
+const SHORT = 1800; // seconds in all, of which every second is said
+
+/**
+ * The clock of these times, from the first to the last; `said` puts a time into words, and `marks`
+ * are round times, at most so many. Where the unit is one of time they are hours and minutes.
+ */
+export function clockOf(times, unit) {
+  const from = times.reduce((least, time) => Math.min(least, time));
+  const to = times.reduce((most, time) => Math.max(most, time));
+  const second = SECONDS[unit];
+  const short = (to - from) * second < SHORT;
+  const said = second ? (time) => hours(time * second, short) : (time) => `${Number(time.toPrecision(6))}${unit && ` ${unit}`}`;
+  return { from, to, said, marks: (most) => multiples(from, to, stepOf((to - from) / most, second)) };
+}
+
+/** Hours and minutes, and seconds too where the whole is short. */
+function hours(seconds, short) {
+  const two = (value) => String(value).padStart(2, "0");
+  const all = short ? Math.round(seconds) : 60 * Math.round(seconds / 60);
+  const minutes = `${Math.floor(all / 3600)}:${two(Math.floor(all / 60) % 60)}`;
+  return short ? `${minutes}:${two(all % 60)}` : minutes;
+}
+
+/** A round step that is not under this one. */
+function stepOf(least, second) {
+  const known = second && STEPS.find((each) => each >= least * second);
+  if (known) return known / second;
+  const tens = 10 ** Math.floor(Math.log10(least));
+  return tens * [1, 2, 5, 10].find((each) => each * tens >= least);
+}
+
+function multiples(from, to, step) {
+  if (!(to > from)) return [from];
+  const first = Math.ceil(from / step);
+  return Array.from({ length: Math.floor(to / step) - first + 1 }, (_, at) => (first + at) * step);
+}

@@ -1,0 +1,55 @@
+/** A layer of a map with a canvas of its own, so that to redraw it redraws nothing else. */
+
+import "../vendor/leaflet/leaflet.js";
+import { onSchemeChange } from "../common/colours.js";
+
+const { L } = globalThis;
+
+/** Classes that extend it have `lines`, rows of positions on the map, and `paint` them. */
+export class CanvasLayer extends L.Layer {
+  #canvas = document.createElement("canvas");
+  #size = null;
+  #ratio = 1; // of the screen's pixels to the map's
+
+  /** @param {string} name of the canvas's class */
+  constructor(name) {
+    super();
+    L.setOptions(this, { pane: "tours" });
+    this.lines = [];
+    this.#canvas.className = `tour ${name}`;
+    onSchemeChange(() => this.redraw());
+  }
+
+  onAdd(map) {
+    this.getPane().append(this.#canvas);
+    map.on("move zoom viewreset resize", this.redraw, this);
+    this.redraw();
+  }
+
+  redraw() {
+    this.#canvas.hidden = !this.lines.some((latlngs) => latlngs.length);
+    if (this.#canvas.hidden) return;
+    const places = this.lines.map((latlngs) => latlngs.map((latlng) => this._map.latLngToContainerPoint(latlng)));
+    this.paint(this.#cleared(), places);
+  }
+
+  /** The canvas's context, empty and in the map's pixels. */
+  #cleared() {
+    const size = this._map.getSize();
+    if (!this.#size?.equals(size) || this.#ratio !== devicePixelRatio) this.#resize(size);
+    L.DomUtil.setPosition(this.#canvas, this._map.containerPointToLayerPoint([0, 0]));
+    const context = this.#canvas.getContext("2d");
+    context.setTransform(this.#ratio, 0, 0, this.#ratio, 0, 0);
+    context.clearRect(0, 0, size.x, size.y);
+    return context;
+  }
+
+  #resize(size) {
+    this.#size = size;
+    this.#ratio = devicePixelRatio;
+    this.#canvas.width = size.x * this.#ratio;
+    this.#canvas.height = size.y * this.#ratio;
+    this.#canvas.style.width = `${size.x}px`;
+    this.#canvas.style.height = `${size.y}px`;
+  }
+}

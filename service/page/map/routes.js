@@ -1,0 +1,47 @@
+/** Draw the routes of a plan on one canvas, each in the colour and dash of its vehicle. */
+
+import { colour } from "../common/colours.js";
+import { drawArrows } from "./arrows.js";
+import { CanvasLayer } from "./canvas_layer.js";
+
+// Pixels: some of the colours alone are too pale for the ground.
+const CASING = 1.5;
+const [LINE, THIN] = [3, 2];
+const NARROW = 400; // of a map, as on a phone
+
+export class Routes extends CanvasLayer {
+  #styles = [];
+
+  constructor() {
+    super("routes");
+  }
+
+  /** Draws routes, each `{ latlngs, style }`; none takes them away. */
+  show(routes) {
+    this.lines = routes.map(({ latlngs }) => latlngs);
+    this.#styles = routes.map(({ style }) => style);
+    this.redraw();
+  }
+
+  paint(context, lines) {
+    context.lineJoin = "round";
+    const width = this._map.getSize().x < NARROW ? THIN : LINE;
+    lines.forEach((places, at) => draw(context, places, this.#styles[at], width));
+  }
+}
+
+function draw(context, places, style, width) {
+  context.setLineDash(style.dash);
+  context.beginPath();
+  for (const { x, y } of places) context.lineTo(x, y);
+  stroke(context, "ink", width + CASING);
+  stroke(context, style.colour, width);
+  context.fillStyle = colour("ink");
+  drawArrows(context, places);
+}
+
+function stroke(context, name, width) {
+  context.strokeStyle = colour(name);
+  context.lineWidth = width;
+  context.stroke();
+}

@@ -1,0 +1,132 @@
+"""Fleets on the page: the front of plans, and the routes of the selected one."""
+
+import json
+import re
+from typing import Any
+
+from axe_playwright_python.base import AXE_SCRIPT
+from playwright.sync_api import Browser, Page, Route, expect
+
+from tests.helpers.browsing import (
+    needs_chromium,
+    open_files,
+    open_page,
+    shown_front,
+    wait_for_next_frame,
+    wait_until_planned,
+)
+
+pytestmark = needs_chromium
+
+# Okabe and Ito (2008), as far as six vans need them.
+COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00"]
+# The colours of the canvas on which routes are drawn, as #rrggbb.
+DRAWN = """canvas => {
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  const hex = part => part.toString(16).padStart(2, "0");
+  const found = new Set();
+  for (let at = 0; at < data.length; at += 4)
+    if (data[at + 3] === 255) found.add("#" + [...data.slice(at, at + 3)].map(hex).join(""));
+  return [...found];
+}"""
+# The van must bring a parcel from "shop" to "home" and may leave "far" out, whose prize is small.
+SHIPMENT = {
+    "stops": [
+        {"id": "depot"},
+        {"id": "shop", "demand": [1], "window": [60, 90]},
+        {"id": "home", "service": 5},
+        {"id": "far", "prize": 10},
+    ],
+    "vehicles": [{"id": "van", "start": "depot", "end": "depot", "capacity": [1]}],
+    "shipments": [{"pickup": "shop", "delivery": "home"}],
+    "objectives": [
+        {"name": "distance", "unit": "km", "coordinates": [[0, 0], [1, 0], [1, 1], [90, 90]]},
+        {
+            "name": "time",
+            "unit": "min",
+            "matrix": [[0, 9, 9, 99], [9, 0, 7, 99], [9, 7, 0, 99], [99, 99, 99, 0]],
+            "over": "max",
+        },
+    ],
+    "clock": "time",
+    "time_limit": 10,
+}
+
+
+def plan_by_network_alone(page: Page) -> None:
+    """Have the service answer with the network's plans, whatever time the page gives it."""
+
+    def without_time(route: Route) -> None:
+        body = json.loads(route.request.post_data or "{}")
+        route.continue_(post_data=json.dumps({**body, "time_limit": 0}))
+
+    page.route(re.compile(r"/fleet$"), without_time)
+
+
+def select_last(page: Page) -> Any:
+    """Select the front's last plan, and return it as the page saves it."""
+    page.get_by_role("slider", name="Balance").press("End")
+    wait_for_next_frame(page)
+    return shown_front(page)["front"][-1]
+
+
+def test_six_vans_have_a_route_a_lane_and_a_row_each(browser: Browser, released: str) -> None:
+    with open_page(browser, released) as page:
+        plan_by_network_alone(page)
+        wait_until_planned(page)
+        page.get_by_label("Example").select_option("Helsinki, six vans")
+        expect(page.locator("#brought")).to_contain_text("A fleet: 6 vehicles and 60 stops.")
+        wait_until_planned(page)
+        expect(page.get_by_label(re.compile(r"A front of \d+ plans: driving from"))).to_be_visible()
+        plan = select_last(page)
+        routes = plan["routes"]
+        expect(page.locator("#choice")).to_contain_text("less longest route")
+        rows = page.locator("#fleet-legend tbody tr")
+        shown = [row.inner_text().split() for row in rows.all()]
+        assert shown == [
+            [
+                "van",
+                str(number),
+                str(len(route["stops"]) - 2),
+                *map("{:,.6g}".format, route["lengths"]),
+            ]
+            for number, route in enumerate(routes, start=1)
+        ]
+        assert set(COLOURS[: len(routes)]) <= set(
+            page.locator("#plane-1 canvas.routes").evaluate(DRAWN)
+        )
+        stops = sum(len(route["stops"]) for route in routes)
+        expect(page.locator("#fleet-lanes .visit")).to_have_count(stops)
+        expect(page.locator("#fleet-left-out-title")).to_have_text("No stop is left out.")
+        for hidden in ("Replan on the way", "Order of the stops", "End elsewhere", "Open route"):
+            expect(page.get_by_text(hidden)).to_be_hidden()
+        for hidden in ("Save SVG", "Save PNG"):
+            expect(page.get_by_role("button", name=hidden)).to_be_hidden()
+        page.evaluate("for (const each of document.querySelectorAll('details')) each.open = true")
+        page.evaluate(AXE_SCRIPT)
+        assert page.evaluate("axe.run().then(({ violations }) => violations)") == []
+
+
+def test_the_search_plans_what_the_network_cannot(browser: Browser, released: str) -> None:
+    with open_page(browser, released) as page:
+        open_files(page, {"fleet.json": json.dumps(SHIPMENT)})
+        expect(page.locator("#brought")).to_contain_text("A fleet: 1 vehicle and 4 stops.")
+        page.get_by_role("button", name="Plan", exact=True).click()
+        wait_until_planned(page)
+        plan = select_last(page)
+        assert [route["stops"] for route in plan["routes"]] == [["depot", "shop", "home", "depot"]]
+        assert plan["unassigned"] == ["far"]
+        expect(page.locator("#fleet-left-out-title")).to_have_text(
+            "1 stop is left out, as those with a prize may be. The prizes are added to distance:"
+        )
+        expect(page.locator("#fleet-left-out li")).to_have_text(["far: prize 10 km"])
+        expect(page.locator("#fleet-stops")).to_contain_text(
+            "van: depot 0:51 → shop 1:00 → home 1:07 → depot 1:21"
+        )
+        # One map, of the only objective that has a plane.
+        expect(page.locator("#plane-1 canvas.routes")).to_be_visible()
+        expect(page.locator("#plane-2")).to_be_hidden()
+        page.get_by_label("Example").select_option("City deliveries")
+        wait_until_planned(page)
+        expect(page.locator("#fleet")).to_be_hidden()
+        expect(page.get_by_label("End elsewhere")).to_be_visible()
