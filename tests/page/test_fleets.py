@@ -8,6 +8,7 @@ from axe_playwright_python.base import AXE_SCRIPT
 from playwright.sync_api import Browser, Page, Route, expect
 
 from tests.helpers.browsing import (
+    PHONE,
     needs_chromium,
     open_files,
     open_page,
@@ -103,6 +104,8 @@ def test_six_vans_have_a_route_a_lane_and_a_row_each(browser: Browser, released:
         for hidden in ("Save SVG", "Save PNG"):
             expect(page.get_by_role("button", name=hidden)).to_be_hidden()
         page.evaluate("for (const each of document.querySelectorAll('details')) each.open = true")
+        page.set_viewport_size({"width": PHONE, "height": 900})
+        assert page.evaluate("document.documentElement.scrollWidth") == PHONE
         page.evaluate(AXE_SCRIPT)
         assert page.evaluate("axe.run().then(({ violations }) => violations)") == []
 

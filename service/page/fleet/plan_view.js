@@ -23,6 +23,7 @@ export class PlanView {
     this.show(null);
   }
 
+  /** What the two lengths are called from now on. */
   name(objectives) {
     this.#objectives = objectives;
     const plan = this.#plan;
@@ -49,7 +50,8 @@ export class PlanView {
     const names = vehicleNames(routes);
     const timed = routes.length > 0 && routes.every(({ arrivals }) => arrivals);
     const lanes = timed ? routes.map((route, at) => ({ name: names[at], visits: visitTimes(route, stops) })) : [];
-    const clock = timed ? clockOf(lanes.flatMap(({ visits }) => visits.flatMap(({ arrival, end }) => [arrival, end])), this.#unit) : null;
+    const times = lanes.flatMap(({ visits }) => visits.flatMap(({ arrival, end }) => [arrival, end]));
+    const clock = timed ? clockOf(times, this.#unit) : null;
     this.#lanes.show(lanes, clock);
     element("fleet-lanes-help").hidden = !timed;
     const said = ({ stops: ids, arrivals }) => ids.map((id, at) => (clock ? `${id} ${clock.said(arrivals[at])}` : id)).join(" → ");

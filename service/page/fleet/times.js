@@ -34,7 +34,7 @@ function stepOf(least, second) {
 }
 
 function multiples(from, to, step) {
-  if (!(to > from)) return [from];
+  if (!(step > 0)) return [from]; // all at one time, or too near to each other
   const first = Math.ceil(from / step);
   return Array.from({ length: Math.floor(to / step) - first + 1 }, (_, at) => (first + at) * step);
 }

@@ -2,7 +2,7 @@
 
 import { nameOf, stopNamed } from "./names.js";
 
-// Those of fleets say so; all others have those that do not name one kind.
+// A fleet has those that say so. Other requests have all, but those of coverage only where there is a grid.
 const FIELDS = [
   { name: "cell_size", label: "Metres a cell", where: "coverage" },
   { name: "robot_radius", label: "Robot’s radius, m", where: "coverage" },
@@ -69,14 +69,10 @@ export class Fields {
     const rest = { ...request };
     this.#coverage.hidden = kind !== "grid";
     this.#show(kind === "fleet");
-    this.#form.open.checked = request.closed === false;
-    this.#form.bound.checked = request.bound === true;
-    delete rest.closed;
-    delete rest.bound;
     this.#ids = request.stops?.map(({ id }) => id) ?? request.ids ?? null;
-    this.#takeEnds(rest);
-    for (const { name, where, box, stop } of FIELDS) {
-      if (box || stop) continue;
+    if (!this.#fleet) this.#takeRoute(rest);
+    for (const { name, where, box, stop, fleet } of FIELDS) {
+      if (box || stop || (this.#fleet && !fleet)) continue;
       if (where === "coverage") this.#form[name].value = "";
       // What is there and no number, as a list of angles, is left as it is, unless one is typed.
       if (request[name] != null) this.#form[name].value = "";
@@ -94,13 +90,14 @@ export class Fields {
     this.#form.querySelector('label[for="size"]').textContent = fleet ? "Plans" : "Tours";
   }
 
-  /** Takes start and end, each an index, an id, or missing; a start that is null may be anywhere. */
-  #takeEnds(rest) {
+  /** Takes the bound, and the ends: each an index, an id, or missing; a start that is null may be anywhere. */
+  #takeRoute(rest) {
+    this.#form.open.checked = rest.closed === false;
+    this.#form.bound.checked = rest.bound === true;
     const shown = (stop) => (typeof stop === "number" ? nameOf(this.#ids, stop) : (stop ?? ""));
     this.#form.start.value = rest.start === null ? "" : shown(rest.start ?? 0);
     this.#form.end.value = shown(rest.end);
-    delete rest.start;
-    delete rest.end;
+    for (const name of ["closed", "bound", "start", "end"]) delete rest[name];
   }
 }
 

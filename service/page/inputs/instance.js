@@ -12,7 +12,7 @@ import { Problem } from "../planning/service.js";
 const MOST_ROUNDED = 1500;
 
 export const kindOf = ({ vehicles, grid, matrices, coordinates, stops }) =>
-  vehicles ? "fleet" : grid ? "grid" : matrices ? "matrices" : coordinates ? "coordinates" : stops ? "stops" : "unknown";
+  Array.isArray(vehicles) ? "fleet" : grid ? "grid" : matrices ? "matrices" : coordinates ? "coordinates" : stops ? "stops" : "unknown";
 
 /** In a few words, what was brought that cannot be typed. */
 export function described(asked) {

@@ -61,6 +61,7 @@ function inWords(detail, field) {
     .replace(/^coordinates\/(\d+)\/([0-3])\b/, (_, city, column) => `${COLUMNS[column]} of stop ${Number(city) + 1}`)
     .replace(/^objectives\/([01])\b/, (_, axis) => `the ${["first", "second"][axis]} objective`)
     .replace(/^(coordinates|stops)\/(\d+)\b/, (_, member, city) => `stop ${Number(city) + 1}`)
+    .replace(/^(vehicle|shipment)s\/(\d+)\b/, (_, item, at) => `${item} ${Number(at) + 1}`)
     .replace(new RegExp(`^${field}\\b`), label ?? field);
 }
 

@@ -19,7 +19,7 @@ export function csv({ front, objectives }) {
   return [["angle", ...titles, "tour"], ...rows].map(line).join("");
 }
 
-/** A route on each line, beside its plan, as `paretour fleet --csv` has them. */
+/** A route on each line, after the members of its plan. */
 function csvOfPlans(plans, titles) {
   const rows = plans.flatMap(({ balance, lengths, routes }, plan) =>
     routes.map(({ vehicle, stops, lengths: own }) => {
