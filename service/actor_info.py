@@ -16,7 +16,8 @@ from google.protobuf.message import DecodeError, Message
 from service.instance import Kind
 
 _METADATA = ("name", "config", "commit", "sizes", "angles", "figures", "inputs")
-_FIELDS: dict[str, dict[str, tuple[int, str | None]]] = {  # by message: the few of onnx.proto that are read here, with number and type
+# Of onnx.proto what is read here: by message the number of each field, and its type if no text.
+_FIELDS: dict[str, dict[str, tuple[int, str | None]]] = {
     "Model": {"graph": (7, "Graph"), "metadata_props": (14, "Entry")},
     "Graph": {"input": (11, "Value")},
     "Value": {"name": (1, None)},
