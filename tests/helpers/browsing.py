@@ -46,7 +46,7 @@ def open_page(
     page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)
     page.set_default_timeout(120 * SECOND)
     errors: list[str] = []
-    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on("pageerror", lambda error: errors.append(error.stack or str(error)))
     page.on("console", lambda line: errors.append(line.text) if line.type == "error" else None)
     page.route(re.compile(r"/(front|coverage|fleet)$"), _shorten_search)
     page.goto(address)
