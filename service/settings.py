@@ -125,7 +125,9 @@ class Settings(BaseSettings):
         2**29 + 2**28, ge=2**26, description="memory that parsing a body may take"
     )
     max_cities: int = Field(1000, ge=1, description="the most cities of an instance")
-    max_fleet_stops: int = Field(500, ge=1, description="the most stops of a fleet")
+    max_fleet_stops: int = Field(
+        500, ge=1, description="the most stops of a fleet, and places that robots share"
+    )
     max_cells: int = Field(2**20, ge=1, description="the most cells of a map")
     max_path_cells: int = Field(2**21, ge=1, description="the most cells of all paths of an answer")
     max_preferences: int = Field(200, ge=1, description="the most preferences of a request")

@@ -25,6 +25,7 @@ from service.api.responses import (
     CoverageAnswer,
     FleetAnswer,
     FrontAnswer,
+    RobotsAnswer,
     json_response,
     problem_bytes,
     problem_responses,
@@ -32,7 +33,7 @@ from service.api.responses import (
 from service.api.stored_fronts import find_record
 from service.api.task_parser import ParserBounds, TaskParser
 from service.jobs.engine import Engine, record_in_time
-from service.jobs.fleets.fleet_document import empty_document
+from service.jobs.fleets.empty_document import empty_document
 from service.jobs.record import Record
 from service.jobs.store import Store
 from service.requests.limits import Limits
@@ -108,7 +109,7 @@ class PlanRoutes:
         )(self.plan_front)
         router.post(
             "/coverage",
-            response_model=CoverageAnswer,
+            response_model=CoverageAnswer | RobotsAnswer,
             responses=responses,
             openapi_extra=_openapi_request(COVERAGE_BODY),
         )(self.plan_coverage)
@@ -142,7 +143,7 @@ class PlanRoutes:
         return await self._plan(request, "front")
 
     async def plan_coverage(self, request: Request) -> Response:
-        """Plan the front of tours through places on a map, and on request their paths.
+        """Plan the front of tours through places on a map, or of plans for several `robots`.
 
         The map may come as a PNG or PGM file instead, where dark is an obstacle: the part `map` of
         a multipart/form-data body, beside the part `request` with everything else.
@@ -267,9 +268,8 @@ def _digest(body: _Body) -> str:
     """Return the SHA-256 of a body, by which one idempotency key is held to one body."""
     digest = hashlib.sha256()
     source = body.source
-    parts = [source.kind.encode(), source.body, source.upload or b""]
-    if body.front is not None:
-        parts.append(body.front.encode())
+    front = [] if body.front is None else [body.front.encode()]
+    parts = [source.kind.encode(), source.body, source.upload or b"", *front]
     for part in parts:
         digest.update(b"%d:" % len(part))
         digest.update(part)

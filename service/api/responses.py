@@ -194,6 +194,31 @@ class FleetAnswer(FrontAnswer):
     stops: list[StopItem]
 
 
+class RobotRouteItem(BaseModel):
+    """The route of one robot."""
+
+    robot: str = Field(description="its id")
+    tour: list[int] = Field(description="its places in order, from its start to its end")
+    lengths: Lengths
+    path: PathItem | SkipJsonSchema[None] = Field(default=None, description="if `paths` asked")
+
+
+class RobotPlanItem(BaseModel):
+    """A plan of several robots and where it stands."""
+
+    balance: float = Field(description="0 at the front's least first length, 1 at its least second")
+    lengths: Lengths
+    routes: list[RobotRouteItem] = Field(description="of the robots that leave")
+
+
+class RobotsAnswer(FrontAnswer):
+    """A front of plans for several robots on a map, by ascending first length."""
+
+    front: list[RobotPlanItem]  # type: ignore[assignment]  # a list for reading only
+    objectives: list[FleetObjectiveName]  # type: ignore[assignment]
+    places: list[list[int]] = Field(description="row and column of each")
+
+
 class ActorItem(ActorName):
     """A network and what its file says of it."""
 

@@ -16,6 +16,7 @@ from service.api.geojson.answers import CONTENT, FrontAnswers
 from service.api.responses import (
     FleetAnswer,
     FrontAnswer,
+    RobotsAnswer,
     TourAnswer,
     json_bytes,
     problem_responses,
@@ -48,13 +49,13 @@ class StoredFrontRoutes:
         router.get(
             "/front/{id}",
             operation_id="get_front",
-            response_model=FrontAnswer | FleetAnswer,
+            response_model=FrontAnswer | FleetAnswer | RobotsAnswer,
             responses={200: CONTENT, **problem_responses(404, 406, 410, 422, 502, 503, 504)},
         )(self.front)
         router.delete(
             "/front/{id}",
             operation_id="forget_front",
-            response_model=FrontAnswer | FleetAnswer,
+            response_model=FrontAnswer | FleetAnswer | RobotsAnswer,
             responses={204: {"description": "Forgotten"}, **missing},
         )(self.forget)
         router.get(

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.coverage.frame import MapFrame
+from service.coverage.robots import Robot, poses_of
 from service.errors import InvalidCoverage
 from service.instance import CLOSED, RouteEnds
 
@@ -19,7 +20,9 @@ Cells = NDArray[np.int64]
 class Coverage:
     """A coverage task: a grid, a robot, places to visit, and a second objective.
 
-    Exactly one of `places` and `spacing` is given, and exactly one of the last three.
+    Exactly one of `places` and `spacing` is given, and exactly one source of the second objective:
+    a matrix, a layer or coordinates. Robots may do without, and have both their objectives in
+    metres.
 
     Args:
         blocked: Obstacles, shape (rows, columns).
@@ -37,6 +40,8 @@ class Coverage:
         second_matrix: Costs between places, shape (n, n).
         cost_layer: Costs on the grid, shape (rows, columns).
         second_coordinates: Coordinates of the places in a plane, shape (n, 2).
+        robots: Those that share the places, each with a start of its own instead of `start`, `ends`
+            and both poses; none where one robot visits all places.
 
     Raises:
         InvalidCoverage: A size is not positive, a cost layer does not fit the grid or has an
@@ -56,6 +61,7 @@ class Coverage:
     second_matrix: Array | None = None
     cost_layer: Array | None = None
     second_coordinates: Array | None = None
+    robots: tuple[Robot, ...] = ()
 
     def __post_init__(self) -> None:
         if not 0 < self.cell_size < np.inf:
@@ -68,7 +74,8 @@ class Coverage:
         if self.spacing is not None and not 0 < self.spacing < np.inf:
             raise InvalidCoverage(("spacing", f"must be positive, got {self.spacing:g}"))
         second = (self.second_matrix, self.cost_layer, self.second_coordinates)
-        if sum(source is not None for source in second) != 1:
+        given = sum(source is not None for source in second)
+        if given > 1 or (given == 0 and not self.robots):
             demand = "or cost_layer or second_coordinates is required, and only one of them"
             raise InvalidCoverage(("second_matrix", demand))
         for name in self.poses:
@@ -87,7 +94,18 @@ class Coverage:
     def poses(self) -> dict[str, Sequence[float]]:
         """The poses at which tours start and end, by name, as far as they are given."""
         poses = {"start_pose": self.start_pose, "end_pose": self.end_pose}
-        return {name: pose for name, pose in poses.items() if pose is not None}
+        given = {name: pose for name, pose in poses.items() if pose is not None}
+        return {**given, **poses_of(self.robots)}
+
+    @property
+    def has_costs(self) -> bool:
+        """Whether the second objective is not the metres of the first."""
+        return self.has_costs_of_places_alone or self.cost_layer is not None
+
+    @property
+    def has_costs_of_places_alone(self) -> bool:
+        """Whether the second objective has no costs of other cells than the places."""
+        return self.second_matrix is not None or self.second_coordinates is not None
 
     @property
     def size(self) -> str:

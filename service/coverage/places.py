@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from service.coverage.coverage import Coverage
 from service.coverage.grid import covering_places, largest_region, region_of, regions
+from service.coverage.robots import parts_of
 from service.errors import InvalidCoverage, TooManyPlaces
 from service.instance import RouteEnds
 
@@ -20,11 +21,15 @@ class Places:
     """The places that tours go through: rows and columns, shape (n, 2).
 
     Tours are reported from `start`, and the places at which open routes start and end are `ends`.
+    The first places, `to_visit` of them, are the caller's or cover a region; the others are those
+    of poses. `robots` are the places at which each robot starts and ends, where several share them.
     """
 
     cells: Cells
     start: int
     ends: RouteEnds
+    to_visit: int
+    robots: tuple[RouteEnds, ...] = ()
 
 
 def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
@@ -42,6 +47,7 @@ def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
     """
     poses = _pose_cells(coverage, free)
     cells = _given_or_laid_out(coverage, free, poses)
+    to_visit = len(cells)
     names = [f"places/{i}" for i in range(len(cells))]
     found: dict[str, int] = {}
     for name, cell in poses.items():
@@ -52,19 +58,22 @@ def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
             cells, names = np.vstack((cells, cell)), [*names, name]
     if coverage.spacing is not None and len(cells) > max_places:
         raise TooManyPlaces(max_places, len(cells))
-    places = _with_ends(coverage, cells, found)
+    places = _with_ends(coverage, cells, to_visit, found)
     _raise_any(_miscounted(coverage, places))
     _raise_any(_unreachable(places, names, free))
     return places
 
 
-def _with_ends(coverage: Coverage, cells: Cells, poses: Mapping[str, int]) -> Places:
+def _with_ends(coverage: Coverage, cells: Cells, to_visit: int, poses: Mapping[str, int]) -> Places:
     """Return the places with the ends of tours; `poses` are the places of the poses, by name."""
+    if coverage.robots:
+        robots = tuple(robot.ends(part, poses) for part, robot in parts_of(coverage.robots))
+        return Places(cells, robots[0].start or 0, coverage.ends, to_visit, robots)
     start, ends = poses.get("start_pose", coverage.start), coverage.ends
     if not ends.closed:
         at_start, at_end = poses.get("start_pose", ends.start), poses.get("end_pose", ends.end)
         ends = RouteEnds(closed=False, start=at_start, end=at_end)
-    return Places(cells, start, ends)
+    return Places(cells, start, ends, to_visit)
 
 
 def _given_or_laid_out(coverage: Coverage, free: Mask, poses: Mapping[str, Cells]) -> Cells:
@@ -110,13 +119,14 @@ def _misplaced(coverage: Coverage, cell: Sequence[int], free: Mask) -> str | Non
 
 def _check_costs_anywhere(coverage: Coverage, name: str) -> None:
     """Raise InvalidCoverage unless there are costs from and to any cell, not of places alone."""
-    if coverage.cost_layer is None:
+    if coverage.has_costs_of_places_alone:
         demand = "must be in the cell of a place, as only a cost_layer has costs of other cells"
         raise InvalidCoverage((name, demand))
 
 
 def _miscounted(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
     n = len(places.cells)
+    yield from _no_places_of_robots(coverage, places.to_visit)
     _, start, end = places.ends
     for name, place in (("start", places.start), ("end", end)):
         if place is not None and place >= n:
@@ -128,6 +138,13 @@ def _miscounted(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]
         rows = getattr(coverage, name)
         if rows is not None and len(rows) != n:
             yield name, f"must have a row for each of {n} places, got {len(rows)}"
+
+
+def _no_places_of_robots(coverage: Coverage, n: int) -> Iterator[tuple[str, str]]:
+    for part, robot in parts_of(coverage.robots):
+        for name, place in (("start", robot.start), ("end", robot.end)):
+            if place is not None and place >= n:
+                yield f"{part}/{name}", f"must be a place, 0 to {n - 1}, got {place}"
 
 
 def _unreachable(places: Places, names: list[str], free: Mask) -> Iterator[tuple[str, str]]:

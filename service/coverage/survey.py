@@ -7,9 +7,9 @@ metres times the mean of the layer at the step's two ends; of equally short path
 taken.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import groupby, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,11 +27,12 @@ from service.coverage.shortest_paths import (
     trace_path,
 )
 from service.errors import Cancelled, InvalidCoverage, Refusal
-from service.instance import Instance, tour_lengths, tour_steps
+from service.instance import Instance, RouteEnds
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Cells = NDArray[np.int64]
+Indices = NDArray[np.integer]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +52,8 @@ class Survey:
     """Places, rows and columns, shape (n, 2), and the instance of the costs between them.
 
     Tours are reported from the place `start`. `steps`, shape (n, n), are the numbers of steps of
-    the paths between places. The frame is that of the map, where it is known.
+    the paths between places. The frame is that of the map, where it is known. `to_visit` and
+    `robots` are as of Places.
     """
 
     places: Cells
@@ -60,17 +62,30 @@ class Survey:
     grid: Grid
     steps: NDArray[np.int32]
     frame: MapFrame | None
+    to_visit: int
+    robots: tuple[RouteEnds, ...] = ()
 
     def paths(
         self,
-        tours: NDArray[np.integer],
+        tours: Indices,
         most_cells: int | None = None,
         stop: Callable[[], bool] = lambda: False,
     ) -> Iterator[CoveragePath]:
-        """Yield the path of each of the tours, shape (k, n).
+        """Yield the path of each of the tours, shape (k, n); else as `paths_of_plans`."""
+        returns = tours[:, :1] if self.instance.closed else tours[:, :0]
+        ways = np.hstack((tours, returns))
+        return self.paths_of_plans([[way] for way in ways], most_cells, stop)
+
+    def paths_of_plans(
+        self,
+        plans: Sequence[Sequence[Indices]],
+        most_cells: int | None = None,
+        stop: Callable[[], bool] = lambda: False,
+    ) -> Iterator[CoveragePath]:
+        """Yield the path of each way of each plan.
 
         Args:
-            tours: One tour a row.
+            plans: The ways of each, which are places in order, shape (m,), one at least.
             most_cells: Of all paths together; None sets no limit. It is checked before any is made.
             stop: Called for each leg and each path; True ends the tracing.
 
@@ -78,19 +93,26 @@ class Survey:
             Refusal: The paths have more cells than that.
             Cancelled: `stop` returned True.
         """
-        origins, ends = tour_steps(self.instance, tours)
-        cells = self.steps[origins, ends].sum(axis=1, dtype=np.int64) + 1
-        if most_cells is not None and cells.sum() > most_cells:
+        cells = [sum(self._cells_of(way) for way in plan) for plan in plans]
+        if most_cells is not None and sum(cells) > most_cells:
             raise _paths_too_long(most_cells, cells)
-        steps = np.unique(np.sort(np.stack((origins.ravel(), ends.ravel()), axis=1)), axis=0)
+        ways = [way for plan in plans for way in plan]
+        legs = [np.sort(np.stack((way[:-1], way[1:]), axis=1)) for way in ways]
+        steps = np.unique(np.concatenate([np.empty((0, 2), np.int64), *legs]), axis=0)
         paths = dict(self._paths_of_steps(steps.tolist(), stop))
-        lengths = tour_lengths(self.instance, tours)[:, 0].tolist()
-        each = zip(tours, origins.tolist(), ends.tolist(), lengths, strict=True)
-        for tour, begins, stops, metres in each:
+        for way in ways:
             _check(stop)
-            legs = [paths[step][1:] for step in zip(begins, stops, strict=True)]
-            cells = np.concatenate([self.places[tour[:1]], *legs])
-            yield CoveragePath(cells, metres, self.frame)
+            parts = [paths[step][1:] for step in pairwise(way.tolist())]
+            cells_of_way = np.concatenate([self.places[way[:1]], *parts])
+            yield CoveragePath(cells_of_way, self._metres_of(way), self.frame)
+
+    def _cells_of(self, way: Indices) -> int:
+        """Return the number of cells of the path of a way."""
+        return int(self.steps[way[:-1], way[1:]].sum(dtype=np.int64)) + 1
+
+    def _metres_of(self, way: Indices) -> float:
+        assert self.instance.matrices is not None
+        return float(self.instance.matrices[0, way[:-1], way[1:]].sum())
 
     def _paths_of_steps(
         self, steps: list[tuple[int, int]], stop: Callable[[], bool]
@@ -138,19 +160,29 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
     steps = np.zeros((len(cells), len(cells)), np.int32)
     lengths, costs = pairwise_paths(grid, cell_numbers(grid, cells), stop, steps)
     _check(stop)
-    matrices = np.stack((coverage.cell_size * lengths, _second_objective(coverage, costs)))
+    metres = coverage.cell_size * lengths
+    matrices = np.stack((metres, _second_objective(coverage, metres, costs)))
     instance = Instance(matrices=matrices, **places.ends._asdict())
-    return Survey(cells, places.start, instance, grid, steps, coverage.frame)
+    return Survey(
+        cells,
+        places.start,
+        instance,
+        grid,
+        steps,
+        coverage.frame,
+        places.to_visit,
+        places.robots,
+    )
 
 
-def _second_objective(coverage: Coverage, costs: Array) -> Array:
+def _second_objective(coverage: Coverage, metres: Array, costs: Array) -> Array:
     """Return the costs of the second objective, shape (n, n); `costs` are those by the layer."""
     if coverage.second_matrix is not None:
         return coverage.second_matrix
     if coverage.second_coordinates is not None:
         steps = coverage.second_coordinates[:, np.newaxis] - coverage.second_coordinates
         return np.hypot(steps[..., 0], steps[..., 1])
-    return coverage.cell_size * costs
+    return metres if coverage.cost_layer is None else coverage.cell_size * costs
 
 
 def _check(stop: Callable[[], bool]) -> None:
@@ -158,9 +190,9 @@ def _check(stop: Callable[[], bool]) -> None:
         raise Cancelled
 
 
-def _paths_too_long(most: int, cells: Cells) -> Refusal:
-    """Return the refusal of paths of so many cells, shape (k,), with how many tours would fit."""
-    fitting = most // int(cells.max())
+def _paths_too_long(most: int, cells: Sequence[int]) -> Refusal:
+    """Return the refusal of paths of so many cells a tour or plan, with how many would fit."""
+    fitting = most // max(cells)
     advice = f"ask for a size of {fitting}" if fitting else "ask without paths"
-    actual = int(cells.sum())
+    actual = sum(cells)
     return Refusal("paths-too-long", pointer="/paths", limit=most, actual=actual, advice=advice)

@@ -203,7 +203,7 @@ def encode_front(
     encoded = [to_json(_with_stops(row, ids)) for row in rows]
     if paths is not None:
         encoded = [
-            b"".join((tour[:-1], b',"path":', _encode_path(path), b"}"))
+            b"".join((tour[:-1], b',"path":', encode_path(path), b"}"))
             for tour, path in zip(encoded, paths, strict=True)
         ]
     tours, ends = joined(encoded)
@@ -237,7 +237,7 @@ def _named(labels: Labels | None) -> dict[str, Any]:
     return {} if labels is None else labels.members
 
 
-def _encode_path(path: CoveragePath) -> bytes:
+def encode_path(path: CoveragePath) -> bytes:
     """Return a path as JSON, written in parts: a list takes ten times the memory of its text."""
     parts = [path.cells[i : i + PATH_PART] for i in range(0, len(path.cells), PATH_PART)]
     members = [b'"cells":', *_encode_rows(parts), b',"metres":', to_json(path.metres)]

@@ -17,12 +17,14 @@ from service.errors import Cancelled
 from service.instance import Instance, cumulated_lengths
 from service.jobs.fleets import fleet_run
 from service.jobs.fleets.fleet_run import run_fleet
+from service.jobs.fleets.robot_run import run_robots
 from service.jobs.front_document import FrontDocument, encode_front
 from service.planner import Front, plan
 from service.replanning import earlier_tours
 from service.replanning.replan import replan
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import Limits, check_reference_point
+from service.requests.maps.robots import SharedCoverage
 from service.requests.road_measurer import BlockingMeasurer, needs_roads
 from service.requests.stops import UnmeasuredStops, make_instance
 from service.requests.task import Task, TaskSource, parse_task
@@ -95,6 +97,9 @@ class TaskRunner:
             task = self.measurer.measured(task, stop)
         if isinstance(task.subject, UnmeasuredFleet):
             return run_fleet(task, task.subject, self.actors.get(task.actor), stop, report)
+        if isinstance(task.subject, SharedCoverage):
+            actor = self.actors.get(task.actor)
+            return run_robots(task, task.subject, actor, self.limits, stop, report)
         if isinstance(task.subject, Coverage):
             return self._cover(task, task.subject, stop, report)
         if isinstance(task.subject, UnmeasuredStops):

@@ -8,22 +8,27 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from service.coverage.coverage import Coverage
-from service.instance import Kind, RouteEnds
+from service.instance import CLOSED, Kind, RouteEnds
 from service.requests.arrays import array_field, check_costs, square_array
 from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
 from service.requests.maps.fields import ABSENT, Layer, MapRequest, describe_map, empty_array
-from service.requests.schemas import (
-    LARGEST,
-    NonNegativeInteger,
-    Number,
-    PlanePoint,
-    PositiveNumber,
+from service.requests.maps.robots import (
+    DEFAULT_OVER,
+    MOST_ROBOTS,
+    OverBoth,
+    RobotItem,
+    RobotPose,
+    SharedCoverage,
+    check_robots,
+    describe_robots,
+    rules_of_robots,
 )
+from service.requests.schemas import LARGEST, NonNegativeInteger, PlanePoint, PositiveNumber
 from service.requests.validation import invalid, parse_json, too_many_cities
 
 Matrix = Annotated[NDArray[np.float64], array_field(square_array)]
 Cell = Annotated[list[NonNegativeInteger], Field(min_length=2, max_length=2, fail_fast=True)]
-RobotPose = Annotated[list[Number], Field(min_length=2, max_length=3, fail_fast=True)]
+_SECOND = ("second_matrix", "cost_layer", "second_coordinates")
 
 
 class CoverageRequest(MapRequest):
@@ -63,7 +68,21 @@ class CoverageRequest(MapRequest):
     second_coordinates: Annotated[list[PlanePoint], Field(min_length=1, fail_fast=True)] = Field(
         default_factory=list, description="or: x and y of each place in a plane; its distances"
     )
-    paths: bool = Field(default=False, description="whether each tour comes with its path")
+    paths: bool = Field(
+        default=False, description="whether each tour, or each route of a robot, has its path"
+    )
+    robots: Annotated[
+        list[RobotItem], Field(min_length=1, max_length=MOST_ROBOTS, fail_fast=True)
+    ] = Field(
+        default_factory=list,
+        description="several robots that share the places; the answer is a front of plans. They may"
+        " do without a second objective: then both are metres",
+    )
+    over: OverBoth = Field(
+        default_factory=lambda: list(DEFAULT_OVER),
+        description="of robots, whether a plan's length in each objective is the sum over their"
+        " routes, or the longest; max for one objective at most; by default sum and max",
+    )
 
     @property
     def kind(self) -> Kind:
@@ -87,13 +106,19 @@ class CoverageRequest(MapRequest):
             places=np.array(self.places, dtype=np.int64) if self.places else None,
             spacing=self.spacing or None,
             start=self.start or 0,
-            ends=self.ends,
+            ends=CLOSED if self.robots else self.ends,
             start_pose=self.start_pose or None,
             end_pose=self.end_pose or None,
             second_matrix=self.second_matrix if self.second_matrix.size else None,
             cost_layer=self.cost_layer if self.cost_layer.size else None,
             second_coordinates=np.array(points, dtype=np.float64) if points else None,
+            robots=tuple(robot.robot(self.closed) for robot in self.robots),
         )
+
+    def shared(self) -> SharedCoverage:
+        """Return the task that the robots share."""
+        first, second = self.over
+        return SharedCoverage(self.coverage(), (first, second))
 
 
 AnyCoverageRequest = TypeVar("AnyCoverageRequest", bound=CoverageRequest)
@@ -119,11 +144,13 @@ def _coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
     """Return the JSON schema of a request under these limits, with these actors to choose from."""
     schema = limited_schema(CoverageRequest, limits, actors)
     fields = schema["properties"]
+    describe_robots(schema, limits.cities)
     forms = describe_map(schema, limits.cells)
     del fields["spacing"]["default"]
     fields["places"]["maxItems"] = limits.cities
     in_a_frame = [{"required": ["origin"]}, {"required": ["occupancy_grid"]}]
     schema["dependentSchemas"] = {
+        **rules_of_robots(),
         "start_pose": {
             "anyOf": in_a_frame,
             "properties": {"start": ABSENT, "initial_tours": ABSENT},
@@ -139,8 +166,8 @@ def _coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
         {"oneOf": [{"required": ["places"]}, {"required": ["spacing"]}]},
         {
             "oneOf": [
-                {"required": [name]}
-                for name in ("second_matrix", "cost_layer", "second_coordinates")
+                *({"required": [name]} for name in _SECOND),
+                {"required": ["robots"], "properties": dict.fromkeys(_SECOND, ABSENT)},
             ]
         },
     ]
@@ -159,9 +186,11 @@ def parse_coverage_request(
         Refusal: The body is not JSON, misses the schema, is over a limit or has no map.
     """
     request = parse_json(model, body).with_map(picture, limits.cells)
-    if len(request.places) > limits.cities:
-        raise too_many_cities("places", limits.cities, len(request.places))
+    most = limits.most_places(shared=bool(request.robots))
+    if len(request.places) > most:
+        raise too_many_cities("places", most, len(request.places))
     _check_poses(request)
+    check_robots(request.robots, request.over, request.model_fields_set, request.closed)
     check_costs(request.second_matrix, "second_matrix", LARGEST)
     # With a spacing, the number of places is not known before the survey.
     check_limits(request, len(request.places) or limits.cities, limits)

@@ -22,7 +22,7 @@ class Limits:
     Args:
         body_bytes: Bytes of a body.
         cities: Cities of an instance, or places on a map.
-        fleet_stops: Stops of a fleet.
+        fleet_stops: Stops of a fleet, and places that several robots share.
         cells: Cells of a map.
         path_cells: Cells of all paths of an answer, and stops of all its tours with arrivals.
         preferences: Preferences of a front.
@@ -42,6 +42,10 @@ class Limits:
     fleet_stops: int = 500
     repairs: int = 200
     roads: bool = False
+
+    def most_places(self, *, shared: bool) -> int:
+        """Return the most places on a map, which several robots share or one visits."""
+        return min(self.cities, self.fleet_stops) if shared else self.cities
 
 
 def check_structure(body: bytes, limits: Limits) -> None:

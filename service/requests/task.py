@@ -21,6 +21,7 @@ from service.requests.limits import (
     check_router,
     check_structure,
 )
+from service.requests.maps.robots import SharedCoverage
 from service.requests.replan.rest_request import RestOfMapRequest, RestRequest
 from service.requests.schemas import Geometry, PlanRequest
 from service.requests.stops import Labels, UnmeasuredStops
@@ -33,11 +34,11 @@ class Task:
     """A front to plan, checked and ready for the planner.
 
     Args:
-        subject: The cities; or what becomes cities in the job: a map and its places, or stops
-            or a fleet whose costs are to be measured.
+        subject: The cities; or what becomes cities in the job: a map and its places, for one
+            robot or several, or stops or a fleet whose costs are to be measured.
         options: The options for the planner.
-        actor: The name of the actor that builds the first tours; empty for a fleet where none is
-            loaded that reads matrices.
+        actor: The name of the actor that builds the first tours; empty for a fleet, or several
+            robots, where none is loaded that reads matrices.
         paths: Whether each tour comes with its path over the map.
         arrivals: Whether each tour comes with both lengths up to each stop.
         geometry: What the lines of the answer follow, where that is GeoJSON.
@@ -46,7 +47,7 @@ class Task:
         earlier: What is left of the tours of the front that is replanned, if one is.
     """
 
-    subject: Instance | Coverage | UnmeasuredStops | UnmeasuredFleet
+    subject: Instance | Coverage | SharedCoverage | UnmeasuredStops | UnmeasuredFleet
     options: PlanOptions
     actor: str
     paths: bool = False
@@ -59,7 +60,7 @@ class Task:
     @property
     def needs_compiled_code(self) -> bool:
         """Whether planning needs more than the network."""
-        compiled = isinstance(self.subject, Coverage | UnmeasuredFleet)
+        compiled = isinstance(self.subject, Coverage | SharedCoverage | UnmeasuredFleet)
         return compiled or self.options.needs_compiled_code
 
 
@@ -113,6 +114,8 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
 def _coverage_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
     model = RestOfMapRequest if source.kind == "replan-coverage" else CoverageRequest
     request = parse_coverage_request(source.body, limits, source.upload, model)
+    if request.robots:
+        return _shared_task(request, actors)
     name = choose_actor(actors, request.kind, request.requested_actor)
     return Task(
         subject=request.coverage(),
@@ -121,6 +124,15 @@ def _coverage_task(source: TaskSource, limits: Limits, actors: Mapping[str, Acto
         paths=request.paths,
         arrivals=request.arrivals,
         earlier=request.earlier if isinstance(request, RestOfMapRequest) else None,
+    )
+
+
+def _shared_task(request: CoverageRequest, actors: Mapping[str, ActorInfo]) -> Task:
+    return Task(
+        subject=request.shared(),
+        options=request.options(),
+        actor=_actor_for_plans(actors),
+        paths=request.paths,
     )
 
 
@@ -138,15 +150,19 @@ def _fleet_task(body: bytes, limits: Limits, actors: Mapping[str, ActorInfo]) ->
     request = parse_fleet_request(body, limits)
     fleet = request.subject()
     check_router(fleet.stops, limits)
-    able = any(info.serves("matrices") for info in actors.values())
-    actor = choose_actor(actors, "matrices", None) if able else ""
     return Task(
         subject=fleet,
         options=request.options(),
-        actor=actor,
+        actor=_actor_for_plans(actors),
         labels=request.labels,
         geometry=request.geometry,
     )
+
+
+def _actor_for_plans(actors: Mapping[str, ActorInfo]) -> str:
+    """Return the name of the actor whose tours are cut into first plans; empty without one."""
+    able = any(info.serves("matrices") for info in actors.values())
+    return choose_actor(actors, "matrices", None) if able else ""
 
 
 DEFAULT_ACTORS: Mapping[Kind, str] = {"coordinates": "pa-one", "matrices": "pa-one-matrix"}

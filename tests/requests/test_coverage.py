@@ -129,6 +129,6 @@ def test_the_schema_asks_for_places_and_a_second_objective_in_one_form_each() ->
     assert ways == [
         [["grid", "cell_size"], ["occupancy_grid"]],
         [["places"], ["spacing"]],
-        [["second_matrix"], ["cost_layer"], ["second_coordinates"]],
+        [["second_matrix"], ["cost_layer"], ["second_coordinates"], ["robots"]],
     ]
     assert schema["properties"]["places"]["maxItems"] == LIMITS.cities

@@ -11,7 +11,7 @@ from pydantic_core import to_json
 from service.fleet.evaluation import route_lengths, schedule, unassigned
 from service.fleet.fleet import Fleet, Over
 from service.fleet.plans import FleetFront, Plan, Route, path_of
-from service.jobs.front_document import FrontDocument, Timings, empty_front, joined
+from service.jobs.front_document import FrontDocument, Timings, joined
 from service.pareto import balances
 from service.preferences import angles
 from service.requests.fleets.subject import UnmeasuredFleet
@@ -49,11 +49,11 @@ def encode_fleet(
         **_named(labels, front.fleet.rules.over),
         tours=plans,
         ends=ends,
-        angles=_directions(front).tobytes(),
+        angles=directions(front).tobytes(),
     )
 
 
-def _empty_fleet(task: Task) -> FrontDocument:
+def empty_fleet(task: Task) -> FrontDocument:
     """Return the document of a fleet's task of which nothing has been found yet."""
     assert isinstance(task.subject, UnmeasuredFleet)
     assert task.labels is not None
@@ -72,17 +72,12 @@ def _empty_fleet(task: Task) -> FrontDocument:
     )
 
 
-def empty_document(task: Task) -> FrontDocument:
-    """Return the document of a task, of a fleet or not, of which nothing has been found yet."""
-    return _empty_fleet(task) if isinstance(task.subject, UnmeasuredFleet) else empty_front(task)
-
-
 def holds_plans(front: FrontDocument) -> bool:
     """Return whether a front is of plans of a fleet, and not of tours."""
     return bool(front.objectives) and all("over" in each for each in front.objectives or ())
 
 
-def _directions(front: FleetFront) -> NDArray[np.float64]:
+def directions(front: FleetFront) -> NDArray[np.float64]:
     """Return the direction of each plan in scaled objectives, in degrees, shape (m,)."""
     with np.errstate(over="ignore"):
         scaled = front.points / front.scale

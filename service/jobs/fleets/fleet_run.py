@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from service.actor import NamedActor
+from service.fleet.fleet import Fleet
 from service.fleet.plans import FleetFront
 from service.jobs.fleets.fleet_document import encode_fleet
 from service.jobs.front_document import FrontDocument
@@ -13,6 +14,7 @@ from service.requests.task import Task
 from service.search.improve import Progress
 
 Report = Callable[[Progress, Callable[[int], FrontDocument]], None]
+ReportPlans = Callable[[Progress, Callable[[int], FleetFront]], None]
 
 
 def run_fleet(
@@ -36,30 +38,51 @@ def run_fleet(
         Refusal: No plan keeps every rule, or none was found.
         Cancelled: It was told to stop before it had a plan.
     """
-    # Here, so that a service or a worker starts without PyVRP.
-    from service.fleet.planner import FleetOptions, plan_fleet
-
     assert task.labels is not None
     labels = task.labels
 
     def encoded(front: FleetFront) -> FrontDocument:
-        identity = actor.info.identity if actor is not None and front.constructed else None
-        return encode_fleet(front, identity, subject.vehicles, labels)
-
-    def report_encoded(progress: Progress, best: Callable[[int], FleetFront]) -> None:
-        report(progress, lambda size: encoded(best(size)))
+        return encode_fleet(front, identity_of(front, actor), subject.vehicles, labels)
 
     began = time.perf_counter()
     fleet = subject.fleet()
     timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
+    front = plan_front(task, fleet, actor, stop, reporting(report, encoded))
+    return encoded(replace(front, timings={**timings, **front.timings}))
+
+
+def plan_front(
+    task: Task,
+    fleet: Fleet,
+    actor: NamedActor | None,
+    stop: Callable[[], bool],
+    report: ReportPlans,
+) -> FleetFront:
+    """Return the front of plans of a fleet by the options of a task; else as `run_fleet`."""
+    # Here, so that a service or a worker starts without PyVRP.
+    from service.fleet.planner import FleetOptions, plan_fleet
+
     options = FleetOptions(
         time_limit=task.options.time_limit,
         size=task.options.size,
         seed=task.options.seed,
         reference_point=task.options.reference_point,
     )
-    front = plan_fleet(fleet, options, actor, stop, report_encoded)
-    return encoded(replace(front, timings={**timings, **front.timings}))
+    return plan_fleet(fleet, options, actor, stop, report)
+
+
+def reporting(report: Report, encode: Callable[[FleetFront], FrontDocument]) -> ReportPlans:
+    """Return what reports fronts of plans, written so."""
+
+    def report_encoded(progress: Progress, best: Callable[[int], FleetFront]) -> None:
+        report(progress, lambda size: encode(best(size)))
+
+    return report_encoded
+
+
+def identity_of(front: FleetFront, actor: NamedActor | None) -> dict[str, str] | None:
+    """Return the identity of the network whose tours were cut into plans of a front, if so."""
+    return actor.info.identity if actor is not None and front.constructed else None
 
 
 def warm_up() -> None:

@@ -14,6 +14,7 @@ from service.requests.limits import Limits
 from service.requests.replan.earlier_front import (
     EarlierFront,
     StoredFront,
+    not_replannable,
     refused_now,
     with_tours,
 )
@@ -52,6 +53,8 @@ def read_earlier_map(stored: StoredFront, limits: Limits) -> EarlierMap:
         coverage = parse_coverage_request(source.body, limits, source.upload, model).coverage()
     except Refusal as refusal:
         raise refused_now(stored.id, refusal) from None
+    if coverage.robots:
+        raise not_replannable(stored.id, "it is of plans for several robots")
     cells = np.array(stored.places or (), np.int64).reshape(-1, 2)
 
     def ends_of(tour: NDArray[np.int64]) -> tuple[RouteEnds, int]:

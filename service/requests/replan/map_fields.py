@@ -4,8 +4,9 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from service.requests.coverage import Cell, RobotPose
+from service.requests.coverage import Cell
 from service.requests.maps.fields import Layer, empty_array
+from service.requests.maps.robots import RobotPose
 from service.requests.schemas import PlanFields
 from service.requests.validation import invalid
 

@@ -1,0 +1,75 @@
+"""Plan the front of several robots that share a map."""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+from service.actor import NamedActor
+from service.coverage.survey import CoveragePath, Survey, survey
+from service.errors import Cancelled
+from service.fleet.plans import FleetFront
+from service.jobs.fleets.fleet_run import Report, identity_of, plan_front, reporting
+from service.jobs.fleets.robot_document import RobotEncoder
+from service.jobs.fleets.robot_fleet import RobotFleet, robot_fleet
+from service.jobs.front_document import FrontDocument
+from service.requests.limits import Limits
+from service.requests.maps.robots import SharedCoverage
+from service.requests.task import Task
+
+
+def run_robots(
+    task: Task,
+    subject: SharedCoverage,
+    actor: NamedActor | None,
+    limits: Limits,
+    stop: Callable[[], bool],
+    report: Report,
+) -> FrontDocument:
+    """Return the front of plans of a task for several robots; arguments as of `run_fleet`.
+
+    Args:
+        task: The task.
+        subject: The map that they share.
+        actor: The network.
+        limits: The limits of places, and of the cells of all paths.
+        stop: Called often.
+        report: Called now and then, with plans without paths.
+
+    Raises:
+        InvalidCoverage: The map, its places or the ends of robots cannot be covered.
+        Refusal: No plan was found, or the paths are too long.
+        Cancelled: It was told to stop before it had a plan.
+    """
+    began = time.perf_counter()
+    surveyed = survey(subject.coverage, limits.most_places(shared=True), stop)
+    fleet = robot_fleet(surveyed, subject.over)
+    encoder = RobotEncoder(subject, surveyed, fleet)
+
+    def encoded(front: FleetFront) -> FrontDocument:
+        return encoder.encode(front, identity_of(front, actor))
+
+    surveyed_at = time.perf_counter()
+    front = plan_front(task, fleet.fleet, actor, stop, reporting(report, encoded))
+    planned_at = time.perf_counter()
+    paths = _paths(surveyed, fleet, front, limits.path_cells, stop) if task.paths else None
+    timings = {
+        "survey": 1000 * (surveyed_at - began),
+        **front.timings,
+        "paths": 1000 * (time.perf_counter() - planned_at),
+    }
+    return encoder.encode(replace(front, timings=timings), identity_of(front, actor), paths)
+
+
+def _paths(
+    surveyed: Survey,
+    fleet: RobotFleet,
+    front: FleetFront,
+    most_cells: int,
+    stop: Callable[[], bool],
+) -> list[CoveragePath] | None:
+    """Return the path of each route; None where the task is stopped, which waits for none."""
+    plans = [[fleet.way(route) for route in plan.routes] for plan in front.plans]
+    try:
+        return list(surveyed.paths_of_plans(plans, most_cells, stop))
+    except Cancelled:
+        return None
