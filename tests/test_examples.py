@@ -14,9 +14,13 @@ import numpy as np
 import pytest
 
 from service.construction.call_estimate import CallEstimate
+from service.coverage.survey import survey
+from service.examples.warehouse import DOCKS
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.instance import Instance
+from service.jobs.fleets.robot_fleet import robot_fleet
 from service.planner import PlanOptions, plan
+from service.requests.coverage import parse_coverage_request
 from service.requests.fleets.request import parse_fleet_request
 from service.roads.client import RoadClient, RoadCosts
 from service.roads.router import RouterSettings
@@ -28,7 +32,8 @@ from tests.helpers.valhalla import RunningValhalla
 EXAMPLES = Path(__file__).parent.parent / "service/examples"
 INDEX: list[dict[str, Any]] = json.loads((EXAMPLES / "index.json").read_text())
 FLEET = "helsinki-vans.json"
-FILES = [example["file"] for example in INDEX]
+ROBOTS = "warehouse-robots.json"  # not in the index, which is of what the page opens
+FILES = [*(example["file"] for example in INDEX), ROBOTS]
 OF_TOURS = [example for example in INDEX if example["path"] != "/fleet"]
 
 
@@ -63,6 +68,18 @@ def test_the_vans_keep_every_window_and_there_is_a_choice() -> None:
     # Six vans at most, each within its shift, and every order in its hour: all plans are checked.
     assert len(front.plans) > 1
     assert all(5 <= len(plan.routes) <= 6 for plan in front.plans)
+
+
+def test_three_robots_share_the_warehouse_in_several_ways() -> None:
+    limits = Settings().limits
+    task = parse_coverage_request((EXAMPLES / ROBOTS).read_bytes(), limits).shared()
+    surveyed = survey(task.coverage, limits.most_places(shared=True), lambda: False)
+    fleet = robot_fleet(surveyed, task.over)
+    front = plan_fleet(fleet.fleet, FleetOptions(time_limit=inf, iterations=400), matrix_actor())
+    robots = [{robot for robot, _ in fleet.routes(plan)} for plan in front.plans]
+    assert len(robots) > 1
+    assert robots[-1] == set(range(len(DOCKS)))
+    assert front.points[-1, 1] < front.points[0, 1] / 1.5
 
 
 def matrix_actor() -> Shuffler:

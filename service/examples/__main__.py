@@ -9,7 +9,7 @@ from typing import Any
 from service.examples.deliveries import deliveries
 from service.examples.helsinki import helsinki
 from service.examples.vans import vans
-from service.examples.warehouse import cleaning
+from service.examples.warehouse import cleaning, shared
 
 _NO_ROUTER = (
     "helsinki-deliveries.json is left as it is: --router URL is to name a Valhalla whose tiles are"
@@ -25,7 +25,11 @@ def write(directory: Path, router_url: str | None) -> None:
         router_url: The address of a Valhalla that knows Helsinki; without it the example by road
             is not written.
     """
-    requests = {"city-deliveries": deliveries(), "warehouse-cleaning": cleaning()}
+    requests = {
+        "city-deliveries": deliveries(),
+        "warehouse-cleaning": cleaning(),
+        "warehouse-robots": shared(),
+    }
     if router_url is None:
         sys.stderr.write(_NO_ROUTER)
         one_van = json.loads((Path(__file__).parent / "helsinki-deliveries.json").read_text())

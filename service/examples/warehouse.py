@@ -1,4 +1,4 @@
-"""A cleaning robot's round through a warehouse: metres driven beside people met."""
+"""Cleaning a warehouse: one robot's metres driven beside people met; three robots that share it."""
 
 from typing import Any
 
@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 CELL = 0.5  # metres
 ROWS, COLUMNS = 40, 64
+# Where three robots start: x and y in metres from the lower left corner.
+DOCKS = {"north-west": (1.75, 18.25), "north-east": (30.25, 18.25), "south": (16.25, 1.75)}
 BLOCKS = ((5, 21), (25, 41), (45, 59))  # columns of the racks, from and to
 # The aisles by which people walk to packing: metres from the left, and people per minute.
 CROSS_AISLES = ((11.25, 8.0), (21.5, 2.0))
@@ -24,6 +26,21 @@ def cleaning() -> dict[str, Any]:
         "seed": 1,
         "grid": _grid().tolist(),
         "cost_layer": _people().round(2).tolist(),
+    }
+
+
+def shared() -> dict[str, Any]:
+    """Return the request for three robots that share the same places; both lengths are metres."""
+    return {
+        "cell_size": CELL,
+        "origin": [0.0, 0.0, 0.0],
+        "robot_radius": 0.6,
+        "spacing": 3.0,
+        "robots": [{"id": name, "start_pose": list(pose)} for name, pose in DOCKS.items()],
+        "paths": True,
+        "time_limit": 2.0,
+        "seed": 1,
+        "grid": _grid().tolist(),
     }
 
 

@@ -20,9 +20,12 @@ from paretour.members import (
     FrontRequest,
     ObjectiveRequest,
     ReplanRequest,
+    RobotRequest,
+    RobotsRequest,
     StopRequest,
 )
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
+from paretour.robots import RobotFront, RobotPlan, RobotRoute
 from paretour.ros_maps import read_ros_map
 from paretour.sync import Client, Job
 from paretour.values import Actor, Front, Objective, Path, Progress, Tour
@@ -48,6 +51,11 @@ __all__ = [
     "Progress",
     "Refused",
     "ReplanRequest",
+    "RobotFront",
+    "RobotPlan",
+    "RobotRequest",
+    "RobotRoute",
+    "RobotsRequest",
     "StopRequest",
     "Tour",
     "coverage_plan",

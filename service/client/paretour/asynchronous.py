@@ -9,8 +9,15 @@ from paretour.calls import AnyFront, Call, Calls, Geometry, Parse, auth_headers
 from paretour.choice import Choice
 from paretour.events import JobEvents
 from paretour.fleets import FleetFront, parse_fleet
-from paretour.members import CoverageRequest, FleetRequest, FrontRequest, ReplanRequest
+from paretour.members import (
+    CoverageRequest,
+    FleetRequest,
+    FrontRequest,
+    ReplanRequest,
+    RobotsRequest,
+)
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
+from paretour.robots import RobotFront, parse_robots
 from paretour.values import Actor, Front, Progress, Tour, parse_front
 
 T = TypeVar("T")
@@ -76,6 +83,19 @@ class AsyncClient:
         """Submit a job that plans a front of plans for a fleet."""
         return self.fleet_job(await self._connection.run(self._calls.submit(fleet_plan(request))))
 
+    async def robots(
+        self, png: bytes | None = None, **request: Unpack[RobotsRequest]
+    ) -> RobotFront:
+        """Plan a front of plans for several robots that share a map; arguments as of `coverage`."""
+        return await self._connection.run(self._calls.plan_robots(coverage_plan(request, png)))
+
+    async def submit_robots(
+        self, png: bytes | None = None, **request: Unpack[RobotsRequest]
+    ) -> "AsyncJob[RobotFront]":
+        """Submit a job that plans for several robots; arguments as of `coverage`."""
+        submitted = self._calls.submit(coverage_plan(request, png))
+        return self.robots_job(await self._connection.run(submitted))
+
     async def submit(self, **request: Unpack[FrontRequest]) -> "AsyncJob[Front]":
         """Submit a job that plans a front."""
         return await self.post(front_plan(request))
@@ -105,6 +125,10 @@ class AsyncClient:
     def fleet_job(self, front: str) -> "AsyncJob[FleetFront]":
         """Return the job of a front of plans, in the same way."""
         return AsyncJob(front, parse_fleet, self._connection, self._calls)
+
+    def robots_job(self, front: str) -> "AsyncJob[RobotFront]":
+        """Return the job of a front of plans for several robots, in the same way."""
+        return AsyncJob(front, parse_robots, self._connection, self._calls)
 
     async def tour(
         self, angle: float | None = None, front: str | None = None, **choice: Unpack[Choice]

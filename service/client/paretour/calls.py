@@ -14,10 +14,11 @@ from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
 from paretour.fleets import FleetFront, parse_fleet
 from paretour.requests import Plan
+from paretour.robots import RobotFront, parse_robots
 from paretour.values import FINAL_STATUSES, Actor, Front, Tour, parse_actor, parse_front, parse_tour
 
 T = TypeVar("T")
-AnyFront = TypeVar("AnyFront", Front, FleetFront)
+AnyFront = TypeVar("AnyFront", Front, FleetFront, RobotFront)
 Parse = Callable[[Mapping[str, Any]], AnyFront]
 Geometry = Literal["straight", "roads"]
 
@@ -64,6 +65,10 @@ class Calls:
     def plan_fleet(self, plan: Plan) -> Call[FleetFront]:
         """Plan a front of plans for a fleet and wait for it."""
         return parse_fleet((yield from self._post(plan, self.timeout + plan.seconds)).json())
+
+    def plan_robots(self, plan: Plan) -> Call[RobotFront]:
+        """Plan a front of plans for several robots and wait for it."""
+        return parse_robots((yield from self._post(plan, self.timeout + plan.seconds)).json())
 
     def submit(self, plan: Plan) -> Call[str]:
         """Submit a job that plans a front; return the front's id."""

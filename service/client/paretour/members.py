@@ -139,6 +139,23 @@ class CoverageRequest(PlanRequest, total=False):
     paths: bool
 
 
+class RobotRequest(TypedDict, total=False):
+    """A robot: where it starts, and with `closed` false maybe where it ends."""
+
+    id: Required[str]
+    start: int
+    start_pose: ArrayLike
+    end: int
+    end_pose: ArrayLike
+
+
+class RobotsRequest(CoverageRequest, total=False):
+    """The members of a request to POST /coverage for several robots that share the places."""
+
+    robots: Required[Sequence[RobotRequest]]
+    over: Sequence[Literal["sum", "max"]]
+
+
 class ReplanRequest(PlanOptions, total=False):
     """The members of a request to POST /front/{id}/replan: what has changed since.
 

@@ -8,7 +8,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.members import CoverageRequest, FleetRequest, FrontRequest, ReplanRequest
+from paretour.members import (
+    CoverageRequest,
+    FleetRequest,
+    FrontRequest,
+    ReplanRequest,
+    RobotsRequest,
+)
 from paretour.values import Front
 
 _DEFAULT_TIME_LIMIT = 1.0  # seconds, the service's own
@@ -82,7 +88,7 @@ def _matrices_file(matrices: NDArray[Any]) -> File:
     return File("matrices", content.getvalue())
 
 
-def coverage_plan(request: CoverageRequest, png: bytes | None) -> Plan:
+def coverage_plan(request: CoverageRequest | RobotsRequest, png: bytes | None) -> Plan:
     """Return the request to POST /coverage. The map is in it, or a PNG or PGM file."""
     return Plan("/coverage", request, None if png is None else File("map", png))
 

@@ -189,8 +189,8 @@ def parse_actor(document: Mapping[str, Any]) -> Actor:
 def parse_front(document: Mapping[str, Any]) -> Front:
     """Return the front in a JSON answer."""
     items: Sequence[Mapping[str, Any]] = document["front"]
-    tours = _integers([item["tour"] for item in items])
-    paths = tuple(path for item in items if (path := _parse_path(item)) is not None)
+    tours = read_only_integers([item["tour"] for item in items])
+    paths = tuple(path for item in items if (path := parse_path(item)) is not None)
     return Front(
         id=document["id"],
         status=document["status"],
@@ -205,7 +205,7 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         scale=read_only_floats(document["scale"]),
         actor=(document["actor"] or {}).get("name"),
         terminated=document["terminated"],
-        places=_integers(document["places"]) if "places" in document else None,
+        places=read_only_integers(document["places"]) if "places" in document else None,
         paths=paths or None,
         document=document,
         stops=tuple(tuple(item["stops"]) for item in items) if "stops" in document else None,
@@ -221,9 +221,9 @@ def parse_tour(document: Mapping[str, Any]) -> Tour:
         angle=document["angle"],
         balance=document["balance"],
         lengths=read_only_floats(document["lengths"]),
-        tour=_integers(document["tour"]),
+        tour=read_only_integers(document["tour"]),
         arrivals=_arrivals(document),
-        path=_parse_path(document),
+        path=parse_path(document),
         stops=tuple(document["stops"]) if "stops" in document else None,
         kept=document.get("kept"),
     )
@@ -244,15 +244,17 @@ def objectives_of(document: Mapping[str, Any]) -> tuple[Objective, ...] | None:
     return tuple(Objective(each["name"], each.get("unit")) for each in document["objectives"])
 
 
-def _parse_path(item: Mapping[str, Any]) -> Path | None:
+def parse_path(item: Mapping[str, Any]) -> Path | None:
+    """Return the path of a tour or route in a JSON answer, where the request asked for paths."""
     if "path" not in item:
         return None
     path = item["path"]
     points = read_only_floats(path["points"]) if "points" in path else None
-    return Path(_integers(path["cells"]), path["metres"], points)
+    return Path(read_only_integers(path["cells"]), path["metres"], points)
 
 
-def _integers(values: Any) -> NDArray[np.int64]:
+def read_only_integers(values: Any) -> NDArray[np.int64]:
+    """Return integers as an array that cannot be changed."""
     return _read_only(np.array(values, dtype=np.int64))
 
 
