@@ -126,6 +126,37 @@ def json_body(rng: random.Random) -> TaskSource:
     return TaskSource(kind, mutated(rng, body, TOKENS, len(body)))
 
 
+def robots(rng: random.Random) -> TaskSource:
+    """Return JSON of a request for robots with any starts and ends, some of it mutated."""
+
+    def number() -> float:
+        return rng.choice(EXTREMES) if rng.random() < 0.02 else rng.randint(0, 3)
+
+    def robot(index: int) -> dict[str, Any]:
+        members = {
+            "start": number(),
+            "end": number(),
+            "start_pose": [number() for _ in range(rng.choice([1, 2, 2, 2, 3, 4]))],
+            "end_pose": [number(), number()],
+        }
+        chosen = rng.sample(sorted(members), rng.randint(0, 2))
+        return {"id": f"robot {index % 50}", **{name: members[name] for name in chosen}}
+
+    request = {
+        "grid": [[0, 0, 0], [rng.randint(0, 1), 0, 0]],
+        "cell_size": rng.choice([1, 1, 1, 0.5, 1e150, 1e-150]),
+        "origin": [0, 0, number()],
+        "places": [[0, 0], [0, 1], [0, 2], [1, 2]][: rng.randint(1, 4)],
+        "robots": [robot(index) for index in range(rng.choice([1, 2, 3, 3, 60]))],
+        "over": [rng.choice(["sum", "max"]), rng.choice(["sum", "max"])],
+        "closed": rng.random() < 0.5,
+        "paths": True,
+        "time_limit": 0,
+    }
+    body = json.dumps(request).encode()
+    return TaskSource("coverage", mutated(rng, body, TOKENS, len(body)))
+
+
 def multipart(rng: random.Random) -> TaskSource | Refusal:
     """Return what a mutated multipart body splits into, or its refusal."""
     kind: Any = rng.choice(["front", "coverage"])
@@ -168,6 +199,7 @@ GENERATORS: Mapping[str, Callable[[random.Random], TaskSource | ReplanSource | R
     "png": png,
     "pgm": pgm,
     "json": json_body,
+    "robots": robots,
     "multipart": multipart,
     "replan": replan,
 }
