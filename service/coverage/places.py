@@ -125,8 +125,17 @@ def _check_costs_anywhere(coverage: Coverage, name: str) -> None:
 
 
 def _miscounted(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
+    yield from _ends_of_robots(coverage, places) if coverage.robots else _ends(coverage, places)
     n = len(places.cells)
-    yield from _no_places_of_robots(coverage, places.to_visit)
+    for name in ("second_matrix", "second_coordinates"):
+        rows = getattr(coverage, name)
+        if rows is not None and len(rows) != n:
+            yield name, f"must have a row for each of {n} places, got {len(rows)}"
+
+
+def _ends(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
+    """Yield the faults of the ends of one robot's tours."""
+    n = len(places.cells)
     _, start, end = places.ends
     for name, place in (("start", places.start), ("end", end)):
         if place is not None and place >= n:
@@ -134,17 +143,14 @@ def _miscounted(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]
     if n > 1 and start == end is not None:
         name = "end" if coverage.end_pose is None else "end_pose"
         yield name, f"must not be the start, or tours are closed, got place {end}"
-    for name in ("second_matrix", "second_coordinates"):
-        rows = getattr(coverage, name)
-        if rows is not None and len(rows) != n:
-            yield name, f"must have a row for each of {n} places, got {len(rows)}"
 
 
-def _no_places_of_robots(coverage: Coverage, n: int) -> Iterator[tuple[str, str]]:
+def _ends_of_robots(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
+    """Yield the starts and ends of robots that are no places of the task."""
     for part, robot in parts_of(coverage.robots):
         for name, place in (("start", robot.start), ("end", robot.end)):
-            if place is not None and place >= n:
-                yield f"{part}/{name}", f"must be a place, 0 to {n - 1}, got {place}"
+            if place is not None and place >= places.to_visit:
+                yield f"{part}/{name}", f"must be a place, 0 to {places.to_visit - 1}, got {place}"
 
 
 def _unreachable(places: Places, names: list[str], free: Mask) -> Iterator[tuple[str, str]]:

@@ -27,7 +27,7 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
     no matrices; an end is one of the cities, and of open routes; a tour visits each of them once;
     stops have ids of their own, and costs as many as they are; places are free cells of a grid; a
     reference point is beyond some tour; what has changed is about the stops of a front; a tour is
-    chosen in one way; a fleet can keep its rules; an idempotency key belongs to one body.
+    chosen in one way; a fleet can keep its rules; robots have ids of their own; an idempotency key belongs to one body.
     """
     if case.path == "/tour" and case.meta.generation.mode.is_positive:
         _choose_in_one_way(case)
@@ -72,7 +72,11 @@ def _change_nothing(body: Any) -> None:
 
 def _make_coverable(body: dict[str, Any]) -> None:
     """Replace a task of coverage by one that can be done, with the same fields."""
-    body |= {"robot_radius": 0, "start": 0, "actor": "pa-one-matrix"}
+    body["robot_radius"] = 0
+    if "robots" in body:
+        _share(body)
+    else:
+        body |= {"start": 0, "actor": "pa-one-matrix"}
     if "cell_size" in body:
         body["cell_size"] = 1
     body.pop("initial_tours", None)
@@ -93,6 +97,14 @@ def _make_coverable(body: dict[str, Any]) -> None:
         "second_coordinates": [[0.0, 1.0]] * n,
     }
     body |= {name: value for name, value in fit.items() if name in body}
+
+
+def _share(body: dict[str, Any]) -> None:
+    """Replace robots by as many that start at the first place, and have a plan in any time."""
+    body["robots"] = [{"id": f"{i}"} for i in range(len(body["robots"]))]
+    if "over" in body:
+        body["over"] = ["sum", "max"]
+    body.pop("time_limit", None)  # 1e-300 s are too short for a plan
 
 
 def _make_plannable(body: dict[str, Any]) -> None:

@@ -214,4 +214,4 @@ def test_what_robots_cannot_do_is_named(
     request = {name: value for name, value in request.items() if value is not None}
     with pytest.raises(Refusal, match=sentence) as raised:
         answer_to(request)
-    assert raised.value.errors[0].pointer == pointer
+    assert [fault.pointer for fault in raised.value.errors] == [pointer]
