@@ -27,7 +27,8 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
     no matrices; an end is one of the cities, and of open routes; a tour visits each of them once;
     stops have ids of their own, and costs as many as they are; places are free cells of a grid; a
     reference point is beyond some tour; what has changed is about the stops of a front; a tour is
-    chosen in one way; a fleet can keep its rules; robots have ids of their own; an idempotency key belongs to one body.
+    chosen in one way; a fleet can keep its rules; robots have ids of their own; an idempotency key
+    belongs to one body.
     """
     if case.path == "/tour" and case.meta.generation.mode.is_positive:
         _choose_in_one_way(case)
