@@ -85,13 +85,12 @@ def read_actor_info(content: bytes, path: Path) -> ActorInfo:
 def _parsed(content: bytes, path: Path) -> Any:
     """Return a model of onnx.proto, with the members that are named in `_FIELDS`."""
     model = _MODEL()
-    reason = "it has no graph"
     try:
         model.ParseFromString(content)
     except DecodeError as error:
-        reason = str(error)
+        raise ValueError(f"{path} must be an ONNX file that can be read: {error}") from error
     if not model.HasField("graph"):
-        raise ValueError(f"{path} must be an ONNX file that can be read: {reason}")
+        raise ValueError(f"{path} must be an ONNX file that can be read: it has no graph")
     return model
 
 

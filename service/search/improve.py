@@ -156,12 +156,12 @@ def _front(instance: Instance, tours: NDArray[np.integer], terminated: Terminati
 
 def warm_up() -> None:
     """Compile all that a request can need, or load it from the cache of an earlier process."""
-    best_subset(np.array([[1.0, 2.0], [2.0, 1.0]]), 1, np.full(2, 3.0))
+    best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
     for instance in _instances(5):
         exact_tours(instance)
-    none = np.empty((0, 12), np.int32)
+    tours = np.arange(12)[np.newaxis]
     for instance in _instances(12):
-        improve(instance, none, iterations=5_000)
+        improve(instance, tours, iterations=5_000)
         hypervolume_bound(instance, 12 * instance.scale)
         candidates.warm_up(instance)
 

@@ -100,9 +100,10 @@ class Cutter:
         feasible = np.isfinite(table[..., 0])
         lengths = np.where(feasible[..., np.newaxis], table, 0.0)
         prizes = (rules.visits[stop].prize for stop in sequence)
+        bounded = np.zeros_like(fixed + feasible) if limited is None else lengths[..., limited]
         return RouteCosts(
             cost=np.where(feasible, lengths @ weights + weights[0] * fixed, inf),
-            bounded=np.zeros_like(fixed + feasible) if limited is None else lengths[..., limited],
+            bounded=np.ascontiguousarray(bounded),  # of the layout that is compiled
             skipping=np.array([inf if prize is None else weights[0] * prize for prize in prizes]),
         )
 

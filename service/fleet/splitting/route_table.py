@@ -30,13 +30,13 @@ class FleetArrays(NamedTuple):
 
 
 def arrays_of(fleet: Fleet) -> FleetArrays:
-    """Return the arrays of a fleet."""
+    """Return the arrays of a fleet, of the one type and layout that is compiled."""
     rules = fleet.rules
     none = (0,) * rules.dimensions
     limited = rules.maximum if rules.clock is None else rules.clock
     ends = [[-1 if end is None else end for end in (v.start, v.end)] for v in rules.vehicles]
     return FleetArrays(
-        costs=np.ascontiguousarray(fleet.costs),
+        costs=np.array(fleet.costs, order="C"),
         clock=-1 if rules.clock is None else rules.clock,
         limited=-1 if limited is None else limited,
         demand=_whole([visit.demand or none for visit in rules.visits], rules.dimensions),
