@@ -102,7 +102,7 @@ function show(state) {
   if (state.answer) {
     if (state.answer.objectives) objectives = namesIn(state.answer);
     result.name(objectives, way?.names ?? input.ids);
-    result.show(way ? { ...state, answer: way.answer(state.answer) } : state);
+    result.show(way?.replanned ? { ...state, answer: way.answer(state.answer) } : state);
     answered(state.answer);
     if (state.stage === "done" && !["fleet", "grid", "unknown"].includes(kindOf(input.instance))) {
       way ??= new Way(input.instance, input.ids, state.answer.cities);

@@ -1,6 +1,8 @@
 """The page, used as people use it: in Debian's Chromium, against the service as it is shipped."""
 
+import json
 import re
+import time
 
 import httpx
 import pytest
@@ -47,6 +49,23 @@ def test_an_example_shows_its_front(page: Page) -> None:
     expect(page.get_by_label(re.compile(r"A front of \d+ tours: distance from"))).to_be_visible()
     expect(page.locator("#count")).to_have_text("61 stops")
     expect(page.locator("#figures")).to_contain_text("Network alone")
+
+
+def test_a_front_that_is_done_before_its_stream_says_so_is_shown(page: Page) -> None:
+    def answer_once_done(route: Route) -> None:
+        front = route.request.url.removesuffix("/events")
+        while httpx.get(front).json()["status"] != "done":
+            time.sleep(0.1)
+        time.sleep(0.5)  # longer than the page waits from one look at the front to the next
+        progress = {"status": "running", "hypervolume": 0.5, "seconds": 0.1}
+        body = f"event: progress\ndata: {json.dumps(progress)}\n\n"
+        route.fulfill(content_type="text/event-stream", body=body)
+
+    page.route("**/front/*/events", answer_once_done)
+    page.get_by_role("button", name="Plan", exact=True).click()
+    expect(page.locator("#status")).not_to_contain_text("Done")
+    wait_until_planned(page)
+    expect(page.locator("#figures")).to_contain_text("found")
 
 
 @at_both_widths

@@ -86,6 +86,7 @@ export class Planning {
         if (FINAL.includes(data.status)) break;
         if (performance.now() < looked + GLANCE) continue;
         answer = await this.#service.get(path, this.#signal);
+        if (FINAL.includes(answer.status)) break; // before the stream says so
         looked = performance.now();
         yield { stage: answer.status, alone, answer: grown(alone, answer), growth };
       }
