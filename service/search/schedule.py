@@ -2,6 +2,9 @@
 
 First every weight gets a tour by descent, then each gets iterated local search, twice. From then
 on weights and gaps in the front compete for the time, by the hypervolume that they lately gained.
+Of many cities the gaps are too wide to be filled tour by tour: whenever it is a weight's turn, the
+search first descends to it from the best tours under both neighbouring weights, and offers the
+archive what lies between.
 Tours of an earlier front that changed in places are descended from these, and then all compete.
 """
 
@@ -51,6 +54,7 @@ from service.search.working_tour import enqueue_cities, load, make_working_tour
 Array = NDArray[np.float64]
 
 CONSTRUCTIONS = 17  # weights for which a tour is constructed as well
+LARGE_CONSTRUCTIONS = 5  # the same, of a large instance
 FIRST_DIVISOR = 4  # in the first round a weight gets a quarter of the iterations of later ones
 OFFERS = 50  # of a large tour on the way of a descent, in each sweep along it
 BLOCK = 300  # iterations between two checks of the deadline, some milliseconds
@@ -168,8 +172,9 @@ class Search:
         Ends when the search has converged.
         """
         yield from self.pool_candidates()
+        constructions = LARGE_CONSTRUCTIONS if self._large else CONSTRUCTIONS
         for rank, k in enumerate(bisection_order(WEIGHTS)):
-            yield from self._descend(k, construct=rank < CONSTRUCTIONS and self.touched is None)
+            yield from self._descend(k, construct=rank < constructions and self.touched is None)
         for divisor in (FIRST_DIVISOR, 1) if self.touched is None else ():
             for k in bisection_order(WEIGHTS):
                 yield from self._iterate(k, self.n // divisor)
@@ -181,6 +186,10 @@ class Search:
         pooled = self.weights[np.linspace(0, WEIGHTS - 1, POOL_WEIGHTS).astype(int)]
         for _ in fill_in_blocks(self.pool, self.state.costs, pooled):
             yield 0
+
+    @property
+    def _large(self) -> bool:
+        return self.instance.n >= LARGE
 
     @property
     def _area(self) -> float:
@@ -217,30 +226,39 @@ class Search:
         return close_routes(moved_ends(self.instance, tour[np.newaxis, 1:] - 1))[0]
 
     def _descend(self, k: int, construct: bool) -> Iterator[int]:
-        """Rank the candidates of weight k, and descend to a local optimum under it.
-
-        On the way from the optimum under a neighbouring weight are points of the front between the
-        two; with many cities these are offered as well.
-        """
+        """Rank the candidates of weight k, and descend to a local optimum under it."""
         working = self.state.working
         scalarization = self._scalarization(k)
         rank_candidates(self.pool, scalarization)
         self._load_start(scalarization, construct)
-        enqueue_cities(working, working.tour if self.touched is None else self.touched)
-        threshold = LEAST_GAIN * float(self.weights[k] @ working.length)
-        offering = self.instance.n >= LARGE and not construct
-        block = self.n // OFFERS if offering else DESCENT_BLOCK
-        while descend(working, scalarization, threshold, block) == 0:
-            if offering:
-                offer(working, scalarization, self.state.archive)
-            yield 0
-        offer(working, scalarization, self.state.archive)
+        cities = working.tour if self.touched is None else self.touched
+        yield from self._sweep(scalarization, cities, offering=self._large and not construct)
         yield 1
+
+    def _sweep(
+        self, scalarization: Scalarization, cities: NDArray[np.int32], offering: bool
+    ) -> Iterator[int]:
+        """Descend from the working tour, beginning at these cities, and offer the local optimum.
+
+        On the way from the optimum under a neighbouring weight are points of the front between the
+        two, which are offered as well if `offering`.
+        """
+        working, archive = self.state.working, self.state.archive
+        enqueue_cities(working, cities)
+        value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
+        block = self.n // OFFERS if offering else DESCENT_BLOCK
+        while descend(working, scalarization, LEAST_GAIN * value, block) == 0:
+            if offering:
+                offer(working, scalarization, archive)
+            yield 0
+        offer(working, scalarization, archive)
 
     def _iterate(self, k: int, iterations: int) -> Iterator[int]:
         """Run so many iterations of iterated local search under weight k."""
         state = self.state
         scalarization = self._scalarization(k)
+        if self._large:
+            yield from self._sweep_from_neighbours(k)
         self._load_start(scalarization, construct=False)
         left = iterations
         while left > 0:
@@ -250,6 +268,12 @@ class Search:
             )
             yield steps
             left -= steps
+
+    def _sweep_from_neighbours(self, k: int) -> Iterator[int]:
+        """Descend under weight k from the best tours under the weights before and after it."""
+        for neighbour in {max(k - 1, 0), min(k + 1, WEIGHTS - 1)} - {k}:
+            self._load_start(self._scalarization(neighbour), construct=False)
+            yield from self._sweep(self._scalarization(k), self.state.working.tour, offering=True)
 
     def _fill_gaps(self) -> Iterator[int]:
         """Run about n iterations of Pareto local search."""

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from service.instance import tour_lengths
+from service.pareto import hypervolume
+from service.search.improve import improve
 from service.search.pareto_local_search import LARGE, LEAST_SHARE
 from service.search.schedule import Search
 from tests.helpers.instances import ENDS, opened, random_tours, small_integers, uniform
@@ -54,3 +56,28 @@ def test_of_many_cities_the_tours_on_the_way_of_a_descent_are_kept() -> None:
     points = search.points()
     assert len(points) > 2
     np.testing.assert_allclose(points, tour_lengths(search.instance, search.tours()))
+
+
+def test_little_hypervolume_is_missing_between_the_best_of_many_cities() -> None:
+    corner = np.full(2, float(LARGE))
+    points = improve(uniform(LARGE), np.empty((0, LARGE), int), iterations=40_000).points
+    sharpest = points[_is_on_hull(points)]
+    # Between two points of the lower hull, the area above the line between them, not the corner's.
+    triangles = np.prod(np.abs(np.diff(sharpest, axis=0)), axis=1).sum() / 2 / np.prod(corner)
+    between = hypervolume(points, corner) - hypervolume(sharpest, corner)
+    assert between > 0.6 * triangles
+
+
+def _is_on_hull(points: np.ndarray) -> list[int]:
+    """The points of the lower convex hull, of points by ascending first length."""
+    hull: list[int] = []
+    for k, point in enumerate(points):
+        while len(hull) > 1 and _turns_right(points[hull[-2]], points[hull[-1]], point):
+            hull.pop()
+        hull.append(k)
+    return hull
+
+
+def _turns_right(first: np.ndarray, second: np.ndarray, third: np.ndarray) -> bool:
+    one, other = second - first, third - first
+    return bool(one[0] * other[1] <= one[1] * other[0])
