@@ -56,6 +56,7 @@ REFERENCE_SECONDS = 5.0
 _LEAST = 0.01  # seconds of planning, where the rest takes nearly all
 _COUNT = 100
 _EDGE = 1e-9  # by which the box is wider, so that the points on its edges lie within
+_NARROWEST = 1e-3  # of a box, as a share of the least length
 _ENOUGH, _AHEAD = 0.99, 0.9  # of hypervolume, and of instances, within the limits of:
 _FAST = (("200 stops, {}, 10 %", 0.1), ("1000 stops, {}, 1 %", 0.5))
 _KEPT, _LONGER = 0.85, 0.001  # where one per cent of stops changes
@@ -122,8 +123,13 @@ def unmet(results: Mapping[str, Any]) -> Iterator[str]:
 
 
 def share_of(points: Array, best: Array) -> float:
-    """The hypervolume of points in the box of the best ones, as a share of theirs."""
-    least, extent = best.min(axis=0), np.ptp(best, axis=0)
+    """The hypervolume of points in the box of the best ones, as a share of theirs.
+
+    Where one point is the whole front, as on roads where time and distance agree, it has no box:
+    each side is at least a thousandth of the least length.
+    """
+    least = best.min(axis=0)
+    extent = np.maximum(np.ptp(best, axis=0), _NARROWEST * least)
     corner = np.full(2, 1 + _EDGE)
     inside, whole = (np.maximum((each - least) / extent, 0.0) for each in (points, best))
     return hypervolume(inside, corner) / hypervolume(whole, corner)

@@ -81,6 +81,12 @@ def test_the_share_of_a_front_is_that_of_its_hypervolume_in_its_own_box() -> Non
     assert share_of(best - 1.0, best) > 1.0
 
 
+def test_a_front_of_one_point_is_reached_or_missed() -> None:
+    best = np.array([[3.0, 4.0]])
+    assert share_of(best, best) == pytest.approx(1.0)
+    assert share_of(best * 1.01, best) == 0.0
+
+
 def test_a_tour_is_longer_by_its_excess_over_the_front_in_its_direction() -> None:
     best = np.array([[1.0, 4.0], [2.0, 2.0], [3.0, 1.8]])
     assert longer_than(np.array([2.2, 2.2]), best) == pytest.approx(0.1)
