@@ -17,7 +17,7 @@ from service.search.assignment import augment, make_assignment, price_bound
 from service.search.costs import Costs, make_costs, scaled_reference
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
 from service.search.one_tree import ascend, make_ascent
-from service.search.schedule import bisection_order
+from service.search.pareto_local_search import bisection_order
 
 Array = NDArray[np.float64]
 

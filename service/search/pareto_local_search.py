@@ -50,6 +50,21 @@ def make_weighted_candidates(instance: Instance, n: int) -> WeightedCandidates:
     return WeightedCandidates(weights, candidates, np.zeros(candidates.shape))
 
 
+def bisection_order(count: int) -> list[int]:
+    """Return 0 to count - 1: both ends first, then the middles of ever shorter intervals.
+
+    Each weight then has neighbours on either side whose tours are good starts for it.
+    """
+    order = [0, count - 1]
+    intervals = [(0, count - 1)]
+    for low, high in intervals:
+        if high - low > 1:
+            middle = (low + high) // 2
+            order.append(middle)
+            intervals += [(low, middle), (middle, high)]
+    return order
+
+
 class SearchState(NamedTuple):
     """All that the compiled part of a search reads and changes."""
 

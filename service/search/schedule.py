@@ -2,9 +2,8 @@
 
 First every weight gets a tour by descent, then each gets iterated local search, twice. From then
 on weights and gaps in the front compete for the time, by the hypervolume that they lately gained.
-Of many cities the gaps are too wide to be filled tour by tour: whenever it is a weight's turn, the
-search first descends to it from the best tours under both neighbouring weights, and offers the
-archive what lies between.
+Of many cities the gaps are too wide for that: at its turn each weight is first descended to from
+the best tours under both neighbouring weights, and what lies between is offered to the archive.
 Tours of an earlier front that changed in places are descended from these, and then all compete.
 """
 
@@ -46,6 +45,7 @@ from service.search.pareto_local_search import (
     STEPS,
     WEIGHTS,
     SearchState,
+    bisection_order,
     fill_gaps,
     make_weighted_candidates,
 )
@@ -62,21 +62,6 @@ FULL_BLOCK = 1_000  # cities beyond which iterations take longer, and fewer are 
 DESCENT_BLOCK = 2_000  # cities from the queue between two checks of the deadline
 EXPLORE_EVERY = 10  # turns, of which one goes to what has lately gained less
 PATIENCE = 1_000  # iterations per city without a new tour, after which the search has converged
-
-
-def bisection_order(count: int) -> list[int]:
-    """Return 0 to count - 1: both ends first, then the middles of ever shorter intervals.
-
-    Each weight then has neighbours on either side whose tours are good starts for it.
-    """
-    order = [0, count - 1]
-    intervals = [(0, count - 1)]
-    for low, high in intervals:
-        if high - low > 1:
-            middle = (low + high) // 2
-            order.append(middle)
-            intervals += [(low, middle), (middle, high)]
-    return order
 
 
 class Search:
@@ -103,6 +88,7 @@ class Search:
         touched: NDArray[np.integer] | None = None,
     ) -> None:
         self.instance = instance
+        self.large = instance.n >= LARGE
         self.touched = None if touched is None else self._closed(touched[np.newaxis])[0]
         self.shifts = instance.shifts
         self.reference_point = reference_point
@@ -172,7 +158,7 @@ class Search:
         Ends when the search has converged.
         """
         yield from self.pool_candidates()
-        constructions = LARGE_CONSTRUCTIONS if self._large else CONSTRUCTIONS
+        constructions = LARGE_CONSTRUCTIONS if self.large else CONSTRUCTIONS
         for rank, k in enumerate(bisection_order(WEIGHTS)):
             yield from self._descend(k, construct=rank < constructions and self.touched is None)
         for divisor in (FIRST_DIVISOR, 1) if self.touched is None else ():
@@ -186,10 +172,6 @@ class Search:
         pooled = self.weights[np.linspace(0, WEIGHTS - 1, POOL_WEIGHTS).astype(int)]
         for _ in fill_in_blocks(self.pool, self.state.costs, pooled):
             yield 0
-
-    @property
-    def _large(self) -> bool:
-        return self.instance.n >= LARGE
 
     @property
     def _area(self) -> float:
@@ -232,7 +214,7 @@ class Search:
         rank_candidates(self.pool, scalarization)
         self._load_start(scalarization, construct)
         cities = working.tour if self.touched is None else self.touched
-        yield from self._sweep(scalarization, cities, offering=self._large and not construct)
+        yield from self._sweep(scalarization, cities, offering=self.large and not construct)
         yield 1
 
     def _sweep(
@@ -240,8 +222,7 @@ class Search:
     ) -> Iterator[int]:
         """Descend from the working tour, beginning at these cities, and offer the local optimum.
 
-        On the way from the optimum under a neighbouring weight are points of the front between the
-        two, which are offered as well if `offering`.
+        With `offering` tours on the way are offered too: from another weight's they lie between.
         """
         working, archive = self.state.working, self.state.archive
         enqueue_cities(working, cities)
@@ -255,19 +236,15 @@ class Search:
 
     def _iterate(self, k: int, iterations: int) -> Iterator[int]:
         """Run so many iterations of iterated local search under weight k."""
-        state = self.state
+        _, _, archive, working, random = self.state
         scalarization = self._scalarization(k)
-        if self._large:
+        if self.large:
             yield from self._sweep_from_neighbours(k)
         self._load_start(scalarization, construct=False)
-        left = iterations
-        while left > 0:
-            steps = min(left, self.block)
-            iterated_local_search(
-                state.working, scalarization, state.archive, state.random, steps, False
-            )
+        for done in range(0, iterations, self.block):
+            steps = min(iterations - done, self.block)
+            iterated_local_search(working, scalarization, archive, random, steps, False)
             yield steps
-            left -= steps
 
     def _sweep_from_neighbours(self, k: int) -> Iterator[int]:
         """Descend under weight k from the best tours under the weights before and after it."""
