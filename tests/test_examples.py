@@ -32,9 +32,9 @@ from tests.helpers.valhalla import RunningValhalla
 EXAMPLES = Path(__file__).parent.parent / "service/examples"
 INDEX: list[dict[str, Any]] = json.loads((EXAMPLES / "index.json").read_text())
 FLEET = "helsinki-vans.json"
-ROBOTS = "warehouse-robots.json"  # not in the index, which is of what the page opens
-FILES = [*(example["file"] for example in INDEX), ROBOTS]
-OF_TOURS = [example for example in INDEX if example["path"] != "/fleet"]
+ROBOTS = "warehouse-robots.json"
+FILES = [example["file"] for example in INDEX]
+OF_TOURS = [example for example in INDEX if example["file"] not in (FLEET, ROBOTS)]
 
 
 @pytest.fixture(scope="module")

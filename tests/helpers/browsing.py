@@ -15,6 +15,16 @@ DESK, PHONE = 1440, 375  # widths of a window in pixels
 DEFAULT_SECONDS, SHORT_SECONDS = 3, 0.3  # of search: as the page asks, and as tests need
 SECOND = 1000.0  # in milliseconds, playwright's unit
 
+# The colours of the canvas on which routes are drawn, as #rrggbb.
+DRAWN = """canvas => {
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  const hex = part => part.toString(16).padStart(2, "0");
+  const found = new Set();
+  for (let at = 0; at < data.length; at += 4)
+    if (data[at + 3] === 255) found.add("#" + [...data.slice(at, at + 3)].map(hex).join(""));
+  return [...found];
+}"""
+
 expect.set_options(timeout=30 * SECOND)  # five seconds are too few on a busy machine
 
 needs_chromium = pytest.mark.skipif(
@@ -65,6 +75,16 @@ def _shorten_search(route: Route) -> None:
         route.continue_()
 
 
+def plan_by_network_alone(page: Page, path: str) -> None:
+    """Have requests for a path answered with the plans of the network, whatever their time."""
+
+    def without_time(route: Route) -> None:
+        body = json.loads(route.request.post_data or "{}")
+        route.continue_(post_data=json.dumps({**body, "time_limit": 0}))
+
+    page.route(re.compile(rf"/{path}$"), without_time)
+
+
 def wait_until_planned(page: Page) -> None:
     """Wait until the page shows the end of what it is planning."""
     expect(page.locator("#status")).to_contain_text("Done", timeout=300 * SECOND)
@@ -101,14 +121,21 @@ def shown_front(page: Page) -> Any:
     return json.loads(saved(page, "JSON"))
 
 
-def curl_body(page: Page) -> Any:
-    """Return the body of the request that the page copies as a curl command."""
+def select_last(page: Page) -> Any:
+    """Select the front's last item, and return it as the page saves it."""
+    page.get_by_role("slider", name="Balance").press("End")
+    wait_for_next_frame(page)
+    return shown_front(page)["front"][-1]
+
+
+def curl_body(page: Page, path: str = "front") -> Any:
+    """Return the body of the request to a path that the page copies as a curl command."""
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     curl = page.get_by_role("button", name="Copy as curl")
     curl.click()
     expect(curl).to_have_text("Copied")
     command = page.evaluate("navigator.clipboard.readText()")
-    assert command.startswith(f"curl {page.url.partition('#')[0]}front ")
+    assert command.startswith(f"curl {page.url.partition('#')[0]}{path} ")
     return json.loads(command.splitlines()[1])
 
 

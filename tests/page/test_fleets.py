@@ -2,18 +2,18 @@
 
 import json
 import re
-from typing import Any
 
 from axe_playwright_python.base import AXE_SCRIPT
-from playwright.sync_api import Browser, Page, Route, expect
+from playwright.sync_api import Browser, expect
 
 from tests.helpers.browsing import (
+    DRAWN,
     PHONE,
     needs_chromium,
     open_files,
     open_page,
-    shown_front,
-    wait_for_next_frame,
+    plan_by_network_alone,
+    select_last,
     wait_until_planned,
 )
 
@@ -21,15 +21,6 @@ pytestmark = needs_chromium
 
 # Okabe and Ito (2008), as far as six vans need them.
 COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00"]
-# The colours of the canvas on which routes are drawn, as #rrggbb.
-DRAWN = """canvas => {
-  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-  const hex = part => part.toString(16).padStart(2, "0");
-  const found = new Set();
-  for (let at = 0; at < data.length; at += 4)
-    if (data[at + 3] === 255) found.add("#" + [...data.slice(at, at + 3)].map(hex).join(""));
-  return [...found];
-}"""
 # The van must bring a parcel from "shop" to "home" and may leave "far" out, whose prize is small.
 SHIPMENT = {
     "stops": [
@@ -54,26 +45,9 @@ SHIPMENT = {
 }
 
 
-def plan_by_network_alone(page: Page) -> None:
-    """Have the service answer with the network's plans, whatever time the page gives it."""
-
-    def without_time(route: Route) -> None:
-        body = json.loads(route.request.post_data or "{}")
-        route.continue_(post_data=json.dumps({**body, "time_limit": 0}))
-
-    page.route(re.compile(r"/fleet$"), without_time)
-
-
-def select_last(page: Page) -> Any:
-    """Select the front's last plan, and return it as the page saves it."""
-    page.get_by_role("slider", name="Balance").press("End")
-    wait_for_next_frame(page)
-    return shown_front(page)["front"][-1]
-
-
 def test_six_vans_have_a_route_a_lane_and_a_row_each(browser: Browser, released: str) -> None:
     with open_page(browser, released) as page:
-        plan_by_network_alone(page)
+        plan_by_network_alone(page, "fleet")
         wait_until_planned(page)
         page.get_by_label("Example").select_option("Helsinki, six vans")
         expect(page.locator("#brought")).to_contain_text("A fleet: 6 vehicles and 60 stops.")

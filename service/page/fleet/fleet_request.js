@@ -1,17 +1,25 @@
-/** A fleet's request: in a few words, as JSON, and where its stops lie. */
+/** The request of a fleet, or of robots: in a few words, as JSON, and where a fleet's stops lie. */
 
 import { counted } from "../common/numbers.js";
 
 export function describedFleet({ vehicles, stops }) {
   const count = vehicles.reduce((all, each) => all + (each?.count ?? 1), 0);
   const fleet = `${counted(count, "vehicle", "vehicles")} and ${counted(stops?.length ?? 0, "stop", "stops")}`;
-  return `A fleet: ${fleet}. Fleets are shown here and not edited: change the request’s JSON, and open it again.`;
+  return `A fleet: ${fleet}. Fleets ${NOT_EDITED}`;
 }
 
-/** The request as JSON, costs and planes in a few words. */
+/** Robots that share a map, which is described. */
+export const describedRobots = ({ robots }, map) =>
+  `${counted(robots.length, "robot", "robots")} on ${map} Robots ${NOT_EDITED}`;
+
+const NOT_EDITED = "are shown here and not edited: change the request’s JSON, and open it again.";
+// Members that are long lists of rows.
+const ROWS = ["matrix", "coordinates", "grid", "cost_layer", "second_matrix", "second_coordinates"];
+
+/** The request as JSON; costs, planes and maps in a few words. */
 export function jsonOf(asked) {
   const short = (name, value) =>
-    ["matrix", "coordinates"].includes(name) && Array.isArray(value)
+    ROWS.includes(name) && Array.isArray(value)
       ? `${value.length} rows of ${value[0]?.length ?? 0} numbers`
       : value;
   return JSON.stringify(asked, short, 1);

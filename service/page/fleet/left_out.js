@@ -3,8 +3,9 @@
 import { counted, length } from "../common/numbers.js";
 import { shortUnit } from "../common/objectives.js";
 
-/** Why stops are left out, where any are. The service says no more than which. */
+/** Why stops are left out, where any are. The service says no more than which; robots leave none out. */
 export function reason({ unassigned }, { name }) {
+  if (!unassigned) return "";
   if (!unassigned.length) return "No stop is left out.";
   const stops = counted(unassigned.length, "stop is", "stops are");
   return `${stops} left out, as those with a prize may be. The prizes are added to ${name}:`;
@@ -15,7 +16,7 @@ export function reason({ unassigned }, { name }) {
  *
  * @param {Map<string, object>} asked the stops of the request by id
  */
-export function leftOut({ unassigned }, asked, objective) {
+export function leftOut({ unassigned = [] }, asked, objective) {
   const unit = shortUnit(objective);
   return unassigned.map((stop) => {
     const prize = asked.get(stop)?.prize;

@@ -1,21 +1,23 @@
-/** A table of a plan's routes: the colour of each, its vehicle, how many stops, and its lengths. */
+/** A table of a plan's routes: the colour of each, its vehicle or robot, how many stops, and its lengths. */
 
 import { length } from "../common/numbers.js";
 import { withUnit } from "../common/objectives.js";
-import { routeStyle, swatch } from "./route_styles.js";
-import { vehicleNames, visits } from "./routes_of_plan.js";
+import { stylesOf, swatch } from "./route_styles.js";
+import { namesOf, visits, wordsOf } from "./routes_of_plan.js";
 
 /** Fills a table with the routes of a plan, and the plan itself in the last row. */
-export function showLegend(table, plan, vehicles, objectives) {
-  const names = vehicleNames(plan.routes);
-  const counts = plan.routes.map((route) => visits(route, vehicles));
+export function showLegend(table, plan, asked, objectives) {
+  const names = namesOf(plan.routes);
+  const styles = stylesOf(plan.routes, asked.robots);
+  const counts = plan.routes.map((route) => visits(route, asked));
+  const { one, stops } = wordsOf(plan);
   const rows = plan.routes.map((route, at) => {
     const head = made("th", names[at], "row");
-    head.prepend(swatch(routeStyle(at)));
+    head.prepend(swatch(styles[at]));
     return [head, ...cells([counts[at], ...route.lengths.map(length)])];
   });
   const all = counts.reduce((sum, count) => sum + count, 0);
-  table.tHead.replaceChildren(line(["Vehicle", "Stops", ...objectives.map(withUnit)].map((title) => made("th", title, "col"))));
+  table.tHead.replaceChildren(line([one, stops, ...objectives.map(withUnit)].map((title) => made("th", title, "col"))));
   table.tBodies[0].replaceChildren(...rows.map(line));
   table.tFoot.replaceChildren(line([made("th", "Plan", "row"), ...cells([all, ...plan.lengths.map(length)])]));
 }

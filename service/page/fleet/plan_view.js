@@ -1,11 +1,12 @@
-/** The selected plan of a fleet by vehicle: legend, lanes over time, stops, and what is left out. */
+/** The selected plan by vehicle or robot: legend, lanes over time, stops, and what is left out. */
 
 import { UNNAMED } from "../common/objectives.js";
 import { isPlan } from "../common/nouns.js";
+import { nameOf } from "../inputs/names.js";
 import { Lanes } from "./lanes.js";
 import { leftOut, reason } from "./left_out.js";
 import { showLegend } from "./legend.js";
-import { vehicleNames } from "./routes_of_plan.js";
+import { namesOf, stopsOf, wordsOf } from "./routes_of_plan.js";
 import { clockOf } from "./times.js";
 import { visitTimes } from "./visit_times.js";
 
@@ -38,8 +39,11 @@ export class PlanView {
     this.#plan = plan;
     element("fleet").hidden = !plan;
     if (!plan) return;
+    const { many, listed } = wordsOf(plan);
+    element("fleet-title").textContent = many;
+    element("fleet-listed").textContent = listed;
     const stops = new Map(this.#asked.stops?.map((stop) => [stop.id, stop]));
-    showLegend(element("fleet-legend"), plan, this.#asked.vehicles, this.#objectives);
+    showLegend(element("fleet-legend"), plan, this.#asked, this.#objectives);
     this.#showTimes(plan, stops);
     element("fleet-left-out-title").textContent = reason(plan, this.#objectives[0]);
     list("fleet-left-out", leftOut(plan, stops, this.#objectives[0]));
@@ -47,14 +51,15 @@ export class PlanView {
 
   /** Shows a lane for each vehicle where the plan has times, and the stops of each in order. */
   #showTimes({ routes }, stops) {
-    const names = vehicleNames(routes);
+    const names = namesOf(routes);
     const timed = routes.length > 0 && routes.every(({ arrivals }) => arrivals);
     const lanes = timed ? routes.map((route, at) => ({ name: names[at], visits: visitTimes(route, stops) })) : [];
     const times = lanes.flatMap(({ visits }) => visits.flatMap(({ arrival, end }) => [arrival, end]));
     const clock = timed ? clockOf(times, this.#unit) : null;
     this.#lanes.show(lanes, clock);
     element("fleet-lanes-help").hidden = !timed;
-    const said = ({ stops: ids, arrivals }) => ids.map((id, at) => (clock ? `${id} ${clock.said(arrivals[at])}` : id)).join(" → ");
+    const visit = (stop, time) => (clock ? `${stop} ${clock.said(time)}` : stop);
+    const said = (route) => stopsOf(route).map((stop, at) => visit(nameOfStop(stop), route.arrivals?.[at])).join(" → ");
     list("fleet-stops", routes.map((route, at) => `${names[at]}: ${said(route)}`));
   }
 
@@ -63,6 +68,9 @@ export class PlanView {
     return this.#objectives.find(({ name }) => name === this.#asked.clock)?.unit ?? "";
   }
 }
+
+/** Stops of a fleet have ids; places of robots are counted as people count. */
+const nameOfStop = (stop) => (typeof stop === "number" ? nameOf(null, stop) : stop);
 
 function list(id, texts) {
   element(id).replaceChildren(...texts.map((textContent) => Object.assign(document.createElement("li"), { textContent })));

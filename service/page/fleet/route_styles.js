@@ -9,6 +9,12 @@ export function routeStyle(at) {
   return { colour: `route-${(at % COLOURS) + 1}`, dash };
 }
 
+/** The style of each route of a plan: a robot has the same one in every plan, by its place in the request. */
+export function stylesOf(routes, robots = []) {
+  const places = new Map(robots.map(({ id }, at) => [id, at]));
+  return routes.map(({ robot }, at) => routeStyle(places.get(robot) ?? at));
+}
+
 /** A piece of its line as SVG, for a legend. */
 export function swatch({ colour, dash }) {
   const line = (stroke, width) =>

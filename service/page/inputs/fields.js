@@ -1,19 +1,20 @@
 /** The fields of a request: their names, and which kinds of request have them. */
 
+import { asksForPlans } from "../common/nouns.js";
 import { nameOf, stopNamed } from "./names.js";
 
-// A fleet has those that say so. Other requests have all, but those of coverage only where there is a grid.
+// Requests for plans have those that say so, others have all; those of coverage stand where there is a grid.
 const FIELDS = [
-  { name: "cell_size", label: "Metres a cell", where: "coverage" },
-  { name: "robot_radius", label: "Robot’s radius, m", where: "coverage" },
-  { name: "spacing", label: "Places apart, m", where: "coverage" },
-  { name: "time_limit", label: "Seconds of planning", value: "3", fleet: true },
-  { name: "size", label: "Tours", value: "100", fleet: true },
+  { name: "cell_size", label: "Metres a cell", where: "coverage", plans: true },
+  { name: "robot_radius", label: "Robot’s radius, m", where: "coverage", plans: true },
+  { name: "spacing", label: "Places apart, m", where: "coverage", plans: true },
+  { name: "time_limit", label: "Seconds of planning", value: "3", plans: true },
+  { name: "size", label: "Tours", value: "100", plans: true },
   { name: "start", label: "Start", value: "1", stop: true },
   { name: "end", label: "End elsewhere", stop: true },
   { name: "open", label: "Open route: no way back to the start", box: true },
   { name: "preferences", label: "Directions of the network", where: "more" },
-  { name: "seed", label: "Seed", value: "0", where: "more", fleet: true },
+  { name: "seed", label: "Seed", value: "0", where: "more", plans: true },
   { name: "bound", label: "Say how far from optimal the front may be", where: "more", box: true },
 ];
 
@@ -22,7 +23,7 @@ const OFFERED = 1000; // names in a list that a browser opens without delay
 export class Fields {
   #form;
   #coverage;
-  #fleet = false; // whether the request is of a fleet
+  #plans = false; // whether the request is for plans
   #ids = null; // of the stops, where they have them
 
   constructor(form) {
@@ -36,12 +37,10 @@ export class Fields {
 
   /** What is filled in. What is no number stays as it is, for the service to name. */
   get members() {
-    const asked = FIELDS.filter(({ where, fleet }) =>
-      this.#fleet ? fleet : where !== "coverage" || !this.#coverage.hidden,
-    );
+    const asked = FIELDS.filter((field) => this.#has(field));
     const texts = asked.filter(({ box }) => !box).map(({ name }) => [name, this.#form[name].value.trim()]);
     const given = texts.filter(([, text]) => text).map(([name, text]) => [name, this.#value(name, text)]);
-    if (this.#fleet) return Object.fromEntries(given);
+    if (this.#plans) return Object.fromEntries(given);
     const bound = this.#form.bound.checked ? { bound: true } : {};
     return { ...Object.fromEntries(given), ...bound, ...this.#ends(given.map(([name]) => name)) };
   }
@@ -68,11 +67,12 @@ export class Fields {
   take(request, kind) {
     const rest = { ...request };
     this.#coverage.hidden = kind !== "grid";
-    this.#show(kind === "fleet");
+    this.#show(asksForPlans(request));
     this.#ids = request.stops?.map(({ id }) => id) ?? request.ids ?? null;
-    if (!this.#fleet) this.#takeRoute(rest);
-    for (const { name, where, box, stop, fleet } of FIELDS) {
-      if (box || stop || (this.#fleet && !fleet)) continue;
+    if (!this.#plans) this.#takeRoute(rest);
+    for (const field of FIELDS) {
+      const { name, where, box, stop } = field;
+      if (box || stop || !this.#has(field)) continue;
       if (where === "coverage") this.#form[name].value = "";
       // What is there and no number, as a list of angles, is left as it is, unless one is typed.
       if (request[name] != null) this.#form[name].value = "";
@@ -83,11 +83,16 @@ export class Fields {
     return rest;
   }
 
-  /** Shows the fields that a fleet has, or all; the size is of its plans. */
-  #show(fleet) {
-    this.#fleet = fleet;
-    for (const field of FIELDS) this.#form[field.name].parentElement.hidden = fleet && !field.fleet;
-    this.#form.querySelector('label[for="size"]').textContent = fleet ? "Plans" : "Tours";
+  /** Shows the fields that requests for plans have, or all; the size is of what is planned. */
+  #show(plans) {
+    this.#plans = plans;
+    for (const field of FIELDS) this.#form[field.name].parentElement.hidden = plans && !field.plans;
+    this.#form.querySelector('label[for="size"]').textContent = plans ? "Plans" : "Tours";
+  }
+
+  /** Whether the request has this field. */
+  #has({ where, plans }) {
+    return (plans || !this.#plans) && (where !== "coverage" || !this.#coverage.hidden);
   }
 
   /** Takes the bound, and the ends: each an index, an id, or missing; a start that is null may be anywhere. */

@@ -56,9 +56,9 @@ function parsed(name, text) {
 
 /** The members, of which those that are drawn are rows; all else is for the service to check. */
 function drawable(name, members) {
-  const { coordinates, grid, cost_layer, stops, vehicles } = members ?? {};
+  const { coordinates, grid, cost_layer, stops, vehicles, robots } = members ?? {};
   if (!members || typeof members !== "object") throw new Error(`${name} must be a request, got ${members}`);
-  for (const [member, items] of Object.entries({ stops, vehicles })) {
+  for (const [member, items] of Object.entries({ stops, vehicles, robots })) {
     if (items != null && !isObjects(items)) throw new Error(`${member} of ${name} must be a list of objects`);
   }
   for (const [member, rows] of Object.entries({ coordinates, grid, cost_layer })) {

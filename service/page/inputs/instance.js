@@ -2,7 +2,7 @@
 
 import { isCity, rowsOf } from "./cities.js";
 import { rounded } from "./distances.js";
-import { describedFleet } from "../fleet/fleet_request.js";
+import { describedFleet, describedRobots } from "../fleet/fleet_request.js";
 import { counted } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
 import { nameOf } from "./names.js";
@@ -16,13 +16,14 @@ export const kindOf = ({ vehicles, grid, matrices, coordinates, stops }) =>
 
 /** In a few words, what was brought that cannot be typed. */
 export function described(asked) {
-  const { grid, matrices, places, stops, coordinates } = asked;
+  const { grid, matrices, robots, places, stops, coordinates } = asked;
   if (kindOf(asked) === "unknown") return "The link names a front alone: where its stops lie is not known here.";
   if (kindOf(asked) === "fleet") return describedFleet(asked);
   if (stops || coordinates) return "";
   if (matrices) return `Two matrices of ${counted(matrices[0]?.length ?? 0, "stop", "stops")}.`;
   const where = places ? `${places.length} places` : "places laid out by the spacing";
-  return `A grid of ${grid.length} by ${grid[0]?.length ?? 0} cells; ${where}.`;
+  const map = `grid of ${grid.length} by ${grid[0]?.length ?? 0} cells; ${where}.`;
+  return Array.isArray(robots) ? describedRobots(asked, `a ${map}`) : `A ${map}`;
 }
 
 /**

@@ -9,6 +9,7 @@ import { ObjectiveFields } from "./objective_fields.js";
 import { isMeasured, moved, renamed, withAnother, without } from "./stops.js";
 import { StopsTable } from "./table.js";
 import { counted } from "../common/numbers.js";
+import { asksForPlans } from "../common/nouns.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
 
 const element = (id) => document.getElementById(id);
@@ -45,8 +46,8 @@ export class RequestForm {
     this.#brought = this.#fields.take(wanted, kind);
     this.#objectives = wanted.names ?? names;
     element("typed").hidden = kind !== "coordinates";
-    element("named").hidden = ["unknown", "fleet"].includes(kind);
-    this.#text.show(kind === "fleet" ? wanted : null);
+    element("named").hidden = kind === "unknown" || asksForPlans(wanted);
+    this.#text.show(asksForPlans(wanted) ? wanted : null);
     element("brought").textContent = described(wanted);
     element("brought").hidden = !element("brought").textContent;
     element("cities").value = textOf(wanted.coordinates ?? []);

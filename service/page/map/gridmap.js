@@ -1,8 +1,9 @@
-/** An occupancy grid with its places, and the paths of tours on it. */
+/** An occupancy grid with its places, and the paths on it: of tours, or of the robots of a plan. */
 
 import "../vendor/leaflet/leaflet.js";
 import { colour, onSchemeChange, rgb } from "../common/colours.js";
 import { fitting, flatMap } from "./flatmap.js";
+import { Routes } from "./routes.js";
 import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
@@ -17,12 +18,13 @@ export class GridMap {
   #renderer = L.canvas({ padding: 0.2 });
   #start = L.circleMarker([0, 0], { radius: 8, weight: 2, fill: false, interactive: false });
   #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
+  #routes = new Routes();
 
   constructor(element) {
     this.#element = element;
     this.#map = flatMap(element, { minZoom: -5, maxZoom: 8 });
     this.#map.setView([0, 0], 0);
-    for (const line of Object.values(this.#lines)) line.addTo(this.#map);
+    for (const line of [...Object.values(this.#lines), this.#routes]) line.addTo(this.#map);
     this.#places.addTo(this.#map);
     new ResizeObserver(() => this.#fit()).observe(element);
     onSchemeChange(() => this.#grid && this.#colour());
@@ -32,6 +34,7 @@ export class GridMap {
   show({ grid, cost_layer, places }) {
     this.#grid = { grid, costs: cost_layer };
     for (const name of Object.keys(this.#lines)) this.draw(name, null);
+    this.drawRoutes([]);
     this.#element.style.aspectRatio = `${grid[0].length} / ${grid.length}`;
     this.place(places ?? []);
     this.#colour();
@@ -48,11 +51,16 @@ export class GridMap {
 
   /** Draws the path of a tour as "selected" or "pinned"; null takes it away. */
   draw(name, item) {
-    const path = turns(item?.path?.cells ?? []).map(middle);
+    const path = lineOf(item?.path);
     this.#lines[name].show(path);
     if (name !== "selected") return;
     if (path.length) this.#start.setStyle({ color: colour("selected") }).setLatLng(path[0]).addTo(this.#map);
     else this.#start.remove();
+  }
+
+  /** Draws the paths of a plan's robots, `{ path, style }` each, and where they start; none takes them away. */
+  drawRoutes(routes) {
+    this.#routes.show(routes.map(({ path, style }) => ({ latlngs: lineOf(path), style })), true);
   }
 
   #colour() {
@@ -75,6 +83,9 @@ export class GridMap {
 
 /** Rows go down the map, columns to the right. */
 const middle = ([row, column]) => [-row - 0.5, column + 0.5];
+
+/** The line of a path on the map; of none, as while a front is found, it is empty. */
+const lineOf = (path) => turns(path?.cells ?? []).map(middle);
 
 /** Of a path's cells, its ends and those where it turns. */
 const turns = (cells) =>

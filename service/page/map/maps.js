@@ -4,8 +4,8 @@ import { GridMap } from "./gridmap.js";
 import { UNNAMED, titled } from "../common/objectives.js";
 import { placesOf } from "../fleet/fleet_request.js";
 import { kindOf } from "../inputs/instance.js";
-import { routeStyle } from "../fleet/route_styles.js";
-import { vehicleNames } from "../fleet/routes_of_plan.js";
+import { stylesOf } from "../fleet/route_styles.js";
+import { namesOf } from "../fleet/routes_of_plan.js";
 import { isPlan } from "../common/nouns.js";
 import { Planes } from "./planes.js";
 
@@ -25,6 +25,7 @@ export class Maps {
   #credit = "";
   #objectives = UNNAMED;
   #ids = null; // of the stops
+  #robots = []; // of the request
 
   /**
    * @param {(plane: number, place: number[], only: boolean) => void} onClick told where a plane was
@@ -62,6 +63,7 @@ export class Maps {
   /** Shows an instance without tours; `fit` says whether the view moves to hold all of it. */
   show(instance, fit) {
     this.#kind = kindOf(instance);
+    this.#robots = instance.robots ?? [];
     this.#title();
     const { places: rows, onEarth } = placed(instance, this.#kind);
     // Stops lie in one plane, whatever their objectives.
@@ -87,17 +89,30 @@ export class Maps {
   draw(name, item, closed = true) {
     if (this.#kind === "fleet") {
       if (name === "selected") this.#planes.drawRoutes(isPlan(item) ? this.#routes(item) : []);
-    } else if (this.#kind === "grid") this.#grid.draw(name, item);
+    } else if (this.#kind === "grid") this.#drawOnGrid(name, item);
     else if (this.#drawn) this.#planes.draw(name, item?.tour ?? null, closed);
   }
+
+  #drawOnGrid(name, item) {
+    this.#grid.draw(name, isPlan(item) ? null : item);
+    if (name === "selected") this.#grid.drawRoutes(isPlan(item) ? this.#paths(item) : []);
+  }
+
+  /** The paths of a plan's robots, each `{ path, style }`. */
+  #paths({ routes }) {
+    const styles = stylesOf(routes, this.#robots);
+    return routes.map(({ path }, at) => ({ path, style: styles[at] }));
+  }
+
   /** The routes of a plan, each `{ name, stops, style }`, whose stops are indexes. */
   #routes({ routes }) {
     const index = new Map(this.#ids?.map((id, at) => [id, at]));
-    const names = vehicleNames(routes);
+    const names = namesOf(routes);
+    const styles = stylesOf(routes);
     return routes.map(({ stops }, at) => ({
       name: names[at],
       stops: stops.map((id) => index.get(id)),
-      style: routeStyle(at),
+      style: styles[at],
     }));
   }
 }

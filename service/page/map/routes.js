@@ -8,16 +8,19 @@ import { CanvasLayer } from "./canvas_layer.js";
 const CASING = 1.5;
 const [LINE, THIN] = [3, 2];
 const NARROW = 400; // of a map, as on a phone
+const START = 6; // the radius of a disc
 
 export class Routes extends CanvasLayer {
   #styles = [];
+  #marked = false;
 
   constructor() {
     super("routes");
   }
 
-  /** Draws routes, each `{ latlngs, style }`; none takes them away. */
-  show(routes) {
+  /** Draws routes, each `{ latlngs, style }`, maybe `marked` with a disc where each starts; none takes them away. */
+  show(routes, marked = false) {
+    this.#marked = marked;
     this.lines = routes.map(({ latlngs }) => latlngs);
     this.#styles = routes.map(({ style }) => style);
     this.redraw();
@@ -27,6 +30,7 @@ export class Routes extends CanvasLayer {
     context.lineJoin = "round";
     const width = this._map.getSize().x < NARROW ? THIN : LINE;
     lines.forEach((places, at) => draw(context, places, this.#styles[at], width));
+    if (this.#marked) lines.forEach(([place], at) => place && drawStart(context, place, this.#styles[at]));
   }
 }
 
@@ -38,6 +42,15 @@ function draw(context, places, style, width) {
   stroke(context, style.colour, width);
   context.fillStyle = colour("ink");
   drawArrows(context, places);
+}
+
+function drawStart(context, { x, y }, style) {
+  context.setLineDash([]);
+  context.beginPath();
+  context.arc(x, y, START, 0, 2 * Math.PI);
+  context.fillStyle = colour(style.colour);
+  context.fill();
+  stroke(context, "ink", CASING);
 }
 
 function stroke(context, name, width) {

@@ -13,12 +13,15 @@ export function showFaults(problem) {
   for (const { pointer = "", detail } of faults) {
     const [member, row] = pointer.split("/").slice(1);
     const field = FIELD_OF_CODE[problem.code] ?? FIELD_OF[member] ?? member ?? "request";
-    const said = document.getElementById(`${field}-fault`) ?? document.getElementById("request-fault");
+    const said = seen(document.getElementById(`${field}-fault`)) ?? document.getElementById("request-fault");
     said.textContent ||= sentence(inWords(detail, field));
     first ??= mark(field, member === "matrices" ? undefined : row);
   }
   first?.focus();
 }
+
+/** Requests for plans have not all fields of the form. */
+const seen = (said) => (said?.closest("[hidden]") ? null : said);
 
 /** Of one fault the problem itself says the most. */
 function faultsOf({ message, errors = [] }) {
@@ -61,7 +64,7 @@ function inWords(detail, field) {
     .replace(/^coordinates\/(\d+)\/([0-3])\b/, (_, city, column) => `${COLUMNS[column]} of stop ${Number(city) + 1}`)
     .replace(/^objectives\/([01])\b/, (_, axis) => `the ${["first", "second"][axis]} objective`)
     .replace(/^(coordinates|stops)\/(\d+)\b/, (_, member, city) => `stop ${Number(city) + 1}`)
-    .replace(/^(vehicle|shipment)s\/(\d+)\b/, (_, item, at) => `${item} ${Number(at) + 1}`)
+    .replace(/^(vehicle|shipment|robot)s\/(\d+)\b/, (_, item, at) => `${item} ${Number(at) + 1}`)
     .replace(new RegExp(`^${field}\\b`), label ?? field);
 }
 

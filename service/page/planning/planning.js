@@ -1,5 +1,6 @@
 /** Plan a request in two steps: the network's front at once, then the improved one. */
 
+import { asksForPlans } from "../common/nouns.js";
 import { Problem } from "./service.js";
 
 const GLANCE = 300; // milliseconds from one look at a growing front to the next
@@ -35,8 +36,8 @@ export class Planning {
   /** The network's front, after a null for each time that the service is not warm yet. */
   async *#alone(request) {
     const { initial_tours, bound, ...body } = request.body;
-    // Where the search follows, the network's tours come soonest without repairs, which fleets have not.
-    const soonest = body.time_limit === 0 || request.path === "fleet" ? {} : { repairs: 0 };
+    // Where the search follows, the network's tours come soonest without repairs, which plans have not.
+    const soonest = body.time_limit === 0 || asksForPlans(body) ? {} : { repairs: 0 };
     try {
       yield* this.#patiently({ path: request.path, body: { ...body, time_limit: 0, ...soonest } });
     } catch (error) {

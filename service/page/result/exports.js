@@ -1,6 +1,7 @@
 /** Write a request as a curl command, and a front as CSV. */
 
 import { isPlan } from "../common/nouns.js";
+import { movedBy, stopsOf, wordsOf } from "../fleet/routes_of_plan.js";
 
 /** The same request as a shell command. */
 export function curl({ path, body }) {
@@ -22,12 +23,13 @@ export function csv({ front, objectives }) {
 /** A route on each line, after the members of its plan. */
 function csvOfPlans(plans, titles) {
   const rows = plans.flatMap(({ balance, lengths, routes }, plan) =>
-    routes.map(({ vehicle, stops, lengths: own }) => {
-      const places = stops.map((id) => quoted(id, /[ "]/)).join(" ");
-      return [plan, balance, ...lengths, vehicle, ...own, places];
+    routes.map((route) => {
+      const places = stopsOf(route).map((stop) => quoted(`${stop}`, /[ "]/)).join(" ");
+      return [plan, balance, ...lengths, movedBy(route), ...route.lengths, places];
     }),
   );
-  const head = ["plan", "balance", ...titles, "vehicle", ...titles.map((title) => `route ${title}`), "stops"];
+  const { one, stops } = wordsOf(plans[0]);
+  const head = ["plan", "balance", ...titles, one.toLowerCase(), ...titles.map((title) => `route ${title}`), stops.toLowerCase()];
   return [head, ...rows].map(line).join("");
 }
 

@@ -1,9 +1,10 @@
 /** Write a request as a Python program with the client. */
 
-const CALLS = { front: "front", coverage: "coverage", fleet: "fleet" };
+import { asksForPlans } from "../common/nouns.js";
+
 const MIDDLE = 0.5; // of balances
 
-/** The program that plans the same, and prints the tour, or the plan of a fleet, of the same balance. */
+/** The program that plans the same, and prints the tour, or the plan, of the same balance. */
 export function python({ path, body }, balance) {
   const service = new URL(".", document.baseURI).href.replace(/\/$/, "");
   return `from paretour import Client
@@ -11,16 +12,16 @@ export function python({ path, body }, balance) {
 request = ${literal(body)}
 
 with Client(${literal(service)}) as client:
-    front = client.${CALLS[path]}(**request)
-${path === "fleet" ? chosenPlan(balance ?? MIDDLE) : chosenTour(balance)}`;
+    front = client.${body.robots ? "robots" : path}(**request)
+${asksForPlans(body) ? chosenPlan(body, balance ?? MIDDLE) : chosenTour(balance)}`;
 }
 
 const chosenTour = (balance) => `    tour = front.choose(${balance === undefined ? "knee=True" : `balance=${balance}`})
 print(tour.lengths, tour.stops or tour.tour)
 `;
 
-const chosenPlan = (balance) => `    plan = min(front.plans, key=lambda plan: abs(plan.balance - ${balance}))
-print(plan.lengths, [route.stops for route in plan.routes])
+const chosenPlan = ({ robots }, balance) => `    plan = min(front.plans, key=lambda plan: abs(plan.balance - ${balance}))
+print(plan.lengths, [${robots ? "(route.robot, route.tour.tolist())" : "route.stops"} for route in plan.routes])
 `;
 
 const NAMES = new Map([[null, "None"], [undefined, "None"], [true, "True"], [false, "False"]]);

@@ -1,0 +1,127 @@
+"""Robots on the page: the front of plans, and the paths of the selected one on the map."""
+
+import csv
+import io
+import json
+import re
+from contextlib import redirect_stdout
+
+from axe_playwright_python.base import AXE_SCRIPT
+from playwright.sync_api import Browser, Locator, expect
+
+from tests.helpers.browsing import (
+    DRAWN,
+    PHONE,
+    curl_body,
+    needs_chromium,
+    open_files,
+    open_page,
+    plan_by_network_alone,
+    saved,
+    select_last,
+    wait_for_next_frame,
+    wait_until_planned,
+)
+
+pytestmark = needs_chromium
+
+COLOURS = {"north-west": "#0072b2", "north-east": "#e69f00", "south": "#009e73"}
+# Of two robots, that which stands beside the places visits all where the sum is least.
+CORRIDOR = {
+    "grid": [[0, 0, 0, 0, 0, 0, 0]],
+    "cell_size": 1,
+    "places": [[0, 0], [0, 1], [0, 6]],
+    "robots": [{"id": "far, left", "start": 0}, {"id": "right", "start": 2}],
+    "paths": True,
+    "time_limit": 0,
+    "closed": False,
+}
+
+
+def rows_of(table: Locator) -> list[list[str]]:
+    """Return the texts of the cells of a table's rows."""
+    return [row.locator("th, td").all_inner_texts() for row in table.locator("tbody tr").all()]
+
+
+def test_three_robots_have_a_path_and_a_row_each(browser: Browser, released: str) -> None:
+    with open_page(browser, released) as page:
+        plan_by_network_alone(page, "coverage")
+        page.get_by_label("Example").select_option("Warehouse, three robots")
+        expect(page.locator("#brought")).to_contain_text("3 robots on a grid of 40 by 64 cells")
+        wait_until_planned(page)
+        expect(
+            page.get_by_label(re.compile(r"A front of \d+ plans: total distance"))
+        ).to_be_visible()
+        plan = select_last(page)
+        assert {route["robot"] for route in plan["routes"]} == set(COLOURS)
+        expect(page.get_by_role("heading", name="Robots")).to_be_visible()
+        assert rows_of(page.locator("#fleet-legend")) == [
+            [
+                route["robot"],
+                str(len(route["tour"]) - 2),
+                *map("{:,.6g}".format, route["lengths"]),
+            ]
+            for route in plan["routes"]
+        ]
+        routes = page.locator("#grid canvas.routes")
+        assert set(COLOURS.values()) <= set(routes.evaluate(DRAWN))
+        places = [str(place + 1) for place in plan["routes"][0]["tour"]]
+        listed = f"{plan['routes'][0]['robot']}: {' → '.join(places)}"
+        assert page.locator("#fleet-stops li").first.text_content() == listed
+        for hidden in ("Replan on the way", "Order of the stops", "End elsewhere", "left out"):
+            expect(page.get_by_text(hidden)).to_be_hidden()
+        # Where fewer robots leave, each keeps its colour.
+        page.get_by_role("slider", name="Balance").press("Home")
+        wait_for_next_frame(page)
+        [[alone, *_]] = rows_of(page.locator("#fleet-legend"))
+        assert set(COLOURS.values()) & set(routes.evaluate(DRAWN)) == {COLOURS[alone]}
+        page.evaluate("for (const each of document.querySelectorAll('details')) each.open = true")
+        page.set_viewport_size({"width": PHONE, "height": 900})
+        assert page.evaluate("document.documentElement.scrollWidth") == PHONE
+        page.evaluate(AXE_SCRIPT)
+        assert page.evaluate("axe.run().then(({ violations }) => violations)") == []
+
+
+def test_a_request_for_robots_is_opened_and_taken_along(browser: Browser, released: str) -> None:
+    with open_page(browser, released) as page:
+        open_files(page, {"robots.json": json.dumps(CORRIDOR)})
+        expect(page.locator("#brought")).to_contain_text("2 robots on a grid of 1 by 7 cells")
+        page.get_by_role("button", name="Plan", exact=True).click()
+        wait_until_planned(page)
+        plan = select_last(page)
+        assert curl_body(page, "coverage") == {**CORRIDOR, "size": 100, "seed": 0}
+        [head, *rows] = csv.reader(io.StringIO(saved(page, "CSV").decode()))
+        assert head[4:] == [
+            "robot",
+            "route total distance (m)",
+            "route longest route (m)",
+            "places",
+        ]
+        last = [row[4:] for row in rows if row[0] == rows[-1][0]]
+        assert last == [
+            [
+                route["robot"],
+                *map("{:g}".format, route["lengths"]),
+                " ".join(map(str, route["tour"])),
+            ]
+            for route in plan["routes"]
+        ]
+        copy = page.get_by_role("button", name="Copy as Python")
+        copy.click()
+        expect(copy).to_have_text("Copied")
+        output = io.StringIO()
+        with redirect_stdout(output):
+            exec(page.evaluate("navigator.clipboard.readText()"), {})
+        routes = [(route["robot"], route["tour"]) for route in plan["routes"]]
+        assert output.getvalue().endswith(f"{routes}\n")
+        copy = page.get_by_role("button", name="Copy link")
+        copy.click()
+        expect(copy).to_have_text("Copied")
+        with open_page(browser, page.url) as other:
+            wait_until_planned(other)
+            expect(other.locator("#brought")).to_contain_text("2 robots")
+            assert rows_of(other.locator("#fleet-legend")) == rows_of(page.locator("#fleet-legend"))
+        # What robots cannot have is refused where it is seen.
+        open_files(page, {"wrong.json": json.dumps({**CORRIDOR, "start": 1})})
+        page.get_by_role("button", name="Plan", exact=True).click()
+        expect(page.locator("#request-fault")).to_contain_text("must be left out with robots")
