@@ -11,7 +11,7 @@ from typer import Argument, Exit, Option, Typer, echo
 
 from service import installed_version
 from service.cli.coverage import coverage
-from service.cli.fleets import fleet
+from service.cli.fleets.command import fleet
 from service.cli.options import (
     ActorName,
     Angle,

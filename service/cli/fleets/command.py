@@ -1,7 +1,5 @@
-"""The command `paretour fleet`: plan several vehicles, and print the front of their plans."""
+"""The command `paretour fleet`."""
 
-import csv
-import io
 import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, cast
@@ -11,8 +9,7 @@ from typer import Argument, Option, echo
 from service.cli.options import ApiKey, AsJson, Seed, TimeLimit, Url
 
 if TYPE_CHECKING:
-    from paretour import FleetFront, Plan
-    from rich.table import Table
+    from paretour import Plan
 
 
 def fleet(  # noqa: PLR0913  an option each
@@ -30,6 +27,7 @@ def fleet(  # noqa: PLR0913  an option each
 
     from service.cli.backends import backend_for
     from service.cli.errors import UsageError, exit_on_error
+    from service.cli.fleets.output import fleet_as_csv, fleet_as_table
 
     console = Console(stderr=True)
     with exit_on_error():
@@ -66,37 +64,3 @@ def read_fleet(file: Path, options: dict[str, Any]) -> "Plan":
         raise UnreadableFile(f"{file} must hold an object, as a request is")
     given = {name: value for name, value in options.items() if value is not None}
     return fleet_plan(cast(FleetRequest, {**request, **given}))
-
-
-def fleet_as_csv(front: "FleetFront") -> str:
-    """Return a line for each route: its plan, the plan's lengths, and its own vehicle and stops."""
-    text = io.StringIO()
-    lines = csv.writer(text, lineterminator="\n")
-    names = [each.name for each in front.objectives]
-    lines.writerow(
-        ("plan", "balance", *names, "vehicle", *(f"route {name}" for name in names), "stops")
-    )
-    for number, plan in enumerate(front.plans):
-        for route in plan.routes:
-            lengths = (*plan.lengths.tolist(), route.vehicle, *route.lengths.tolist())
-            lines.writerow((number, plan.balance, *lengths, " ".join(route.stops)))
-    return text.getvalue().rstrip()
-
-
-def fleet_as_table(front: "FleetFront") -> "Table":
-    """Return a table with a row for each plan."""
-    from rich.markup import escape
-    from rich.table import Table
-
-    headings = (
-        each.name if each.unit is None else f"{each.name} ({each.unit})"
-        for each in front.objectives
-    )
-    table = Table("plan", "balance", *map(escape, headings), "vehicles", "left out")
-    for column in table.columns:
-        column.justify = "right"
-    for number, plan in enumerate(front.plans):
-        lengths = (f"{length:.6g}" for length in plan.lengths)
-        counts = (str(len(plan.routes)), str(len(plan.unassigned)))
-        table.add_row(str(number), f"{plan.balance:.3f}", *lengths, *counts)
-    return table

@@ -1,0 +1,1 @@
+"""Fronts of plans in the command: planned for fleets, printed, and drawn."""
