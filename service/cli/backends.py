@@ -6,8 +6,9 @@ from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
 import httpx
-from paretour import Actor, Client, FleetFront, Front, Plan
+from paretour import Actor, Client, FleetFront, Front, Plan, RobotFront
 from paretour.fleets import parse_fleet
+from paretour.robots import parse_robots
 from paretour.values import parse_front
 from rich.console import Console
 
@@ -32,6 +33,9 @@ class Backend(Protocol):
 
     def fleet(self, plan: Plan, console: Console) -> FleetFront:
         """Plan a front of plans for a fleet."""
+
+    def robots(self, plan: Plan, console: Console) -> RobotFront:
+        """Plan a front of plans for several robots that share a map."""
 
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors to choose from."""
@@ -74,6 +78,11 @@ class RemoteBackend:
         with self._client() as client, console.status("planning"):
             return client.plan_fleet(plan)
 
+    def robots(self, plan: Plan, console: Console) -> RobotFront:
+        """Plan a front of plans for several robots; Ctrl-C cancels it."""
+        with self._client() as client, console.status("planning"):
+            return client.plan_robots(plan)
+
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors that the service has loaded."""
         with self._client() as client:
@@ -101,6 +110,10 @@ class LocalBackend:
     def fleet(self, plan: Plan, console: Console) -> FleetFront:
         """Plan a front of plans for a fleet, with the same exceptions."""
         return parse_fleet(self._document(plan, console))
+
+    def robots(self, plan: Plan, console: Console) -> RobotFront:
+        """Plan a front of plans for several robots, with the same exceptions."""
+        return parse_robots(self._document(plan, console))
 
     def _document(self, plan: Plan, console: Console) -> Mapping[str, Any]:
         """Return the answer to a request, as the service gives it."""

@@ -1,7 +1,5 @@
 """The command `paretour coverage`."""
 
-from functools import partial
-
 from service.cli.options import (
     ActorName,
     ApiKey,
@@ -18,6 +16,7 @@ from service.cli.options import (
     PlotMap,
     Repairs,
     RobotRadius,
+    Robots,
     Seed,
     Size,
     Spacing,
@@ -37,6 +36,7 @@ def coverage(  # noqa: PLR0913  an option each
     cost_layer: CostLayer = None,
     start_pose: StartPose = None,
     end_pose: EndPose = None,
+    robots: Robots = None,
     unknown: Unknown = None,
     paths: Paths = None,
     time_limit: TimeLimit = None,
@@ -54,10 +54,12 @@ def coverage(  # noqa: PLR0913  an option each
     url: Url = None,
     api_key: ApiKey = None,
 ) -> None:
-    """Plan the front of tours of a robot through places all over a map."""
+    """Plan the front of tours of a robot through places all over a map, or of plans for several."""
     from service.cli.backends import backend_for
+    from service.cli.errors import exit_on_error
+    from service.cli.fleets.robots import run_robots
     from service.cli.output import OutputFormat, run_front
-    from service.cli.plans import plan_map
+    from service.cli.plans import has_robots, plan_map
 
     options = {
         "cell_size": cell_size,
@@ -75,10 +77,13 @@ def coverage(  # noqa: PLR0913  an option each
         "actor": actor,
         "repairs": repairs,
     }
-    run_front(
-        partial(
-            plan_map, file, cost_layer, options, {"start_pose": start_pose, "end_pose": end_pose}
-        ),
-        backend_for(url, api_key),
-        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
-    )
+    poses = {"start_pose": start_pose, "end_pose": end_pose}
+    output = OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot)
+    backend = backend_for(url, api_key)
+    with exit_on_error():
+        output.check()
+        plan = plan_map(file, cost_layer, options, poses, robots or ())
+    if has_robots(plan):
+        run_robots(plan, backend, output)
+    else:
+        run_front(lambda: (plan, None), backend, output)

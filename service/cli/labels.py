@@ -1,12 +1,14 @@
 """The names of both lengths and of all stops in what the command prints and draws."""
 
-from paretour import Front
+from paretour import FleetFront, Front, RobotFront
 
 from service.cli.inputs.csv_tables import Ids
 from service.cli.terminal_chart import LABELS
 
+AnyFront = Front | FleetFront | RobotFront
 
-def labels_of(front: Front) -> tuple[str, ...]:
+
+def labels_of(front: AnyFront) -> tuple[str, ...]:
     """Return the label of either length: the name of its objective with the unit, if it has any."""
     if front.objectives is None:
         return LABELS
@@ -21,7 +23,7 @@ def columns_of(front: Front) -> tuple[str, ...]:
     return ("length_1", "length_2") if front.objectives is None else labels_of(front)
 
 
-def lengths_as_text(front: Front, lengths: tuple[float, float]) -> str:
+def lengths_as_text(front: AnyFront, lengths: tuple[float, float]) -> str:
     """Return both lengths of a tour as the end of a sentence, with names and units if any."""
     first, second = (f"{length:.6g}" for length in lengths)
     if front.objectives is None:

@@ -92,7 +92,8 @@ Knee = Annotated[
 ]
 Plot = Annotated[Path | None, Option(help="Draw the front into this file.")]
 PlotMap = Annotated[
-    Path | None, Option("--plot", help="Draw the map with three tours, and the front, into a file.")
+    Path | None,
+    Option("--plot", help="Draw the map with three tours or plans, and the front, into a file."),
 ]
 Url = Annotated[
     str | None,
@@ -115,6 +116,15 @@ CellSize = Annotated[
 ]
 StartPose = Annotated[
     str | None, Option(help="Where the robot is, as -2.0,-0.5: x and y in the frame of the map.")
+]
+Robots = Annotated[
+    list[str] | None,
+    Option(
+        "--robot",
+        metavar="X,Y[,YAW]",
+        help="Where one of several robots starts, in the frame of the map; once for each of them."
+        " They share the places: total distance against longest route.",
+    ),
 ]
 EndPose = Annotated[str | None, Option(help="Where the robot shall end, likewise; with --open.")]
 Unknown = Annotated[

@@ -39,6 +39,7 @@ class OutputFormat:
     """The format to print a front in, and the file to draw it into.
 
     By default it is a chart with three tours on a terminal, and a table of all tours elsewhere.
+    Of plans the table stands under the chart as well.
     """
 
     as_json: bool = False
@@ -146,7 +147,12 @@ def front_summary(front: Front) -> str:
     found = f"{len(front.tours)} of {front.points} tours found"
     bound = front.hypervolume_bound
     most = "" if bound is None else f", and no front has more than {bound:.2%}"
-    return f"{found}, hypervolume {front.hypervolume:.2%}{most}; {_TERMINATED[front.terminated]}"
+    return f"{found}, hypervolume {front.hypervolume:.2%}{most}; {end_of_search(front.terminated)}"
+
+
+def end_of_search(terminated: str | None) -> str:
+    """Return why a search ended, in words."""
+    return _TERMINATED[terminated]
 
 
 def tour_as_json(tour: Tour) -> str:
@@ -215,17 +221,23 @@ def _print(front: Front, ids: Ids | None, output: OutputFormat, console: Console
         console.print(front_as_table(front))
 
 
+def check_plot(path: Path) -> None:
+    """Raise UsageError if no picture can be drawn into a file, or matplotlib is not installed."""
+    try:
+        from service.cli.plot import check_path
+    except ModuleNotFoundError:
+        raise UsageError("--plot needs matplotlib: pip install 'paretour[plot]'") from None
+    check_path(path)
+
+
 def _drawing_into(path: Path) -> Callable[[Front, Plan], None]:
     """Return a function that draws a front, and over a map its tours, into a file.
 
     Raises:
         UsageError: No picture can be drawn into it, or matplotlib is not installed.
     """
-    try:
-        from service.cli.plot import check_path, plot_front
-    except ModuleNotFoundError:
-        raise UsageError("--plot needs matplotlib: pip install 'paretour[plot]'") from None
-    check_path(path)
+    check_plot(path)
+    from service.cli.plot import plot_front
 
     def draw(front: Front, plan: Plan) -> None:
         if front.paths is None:

@@ -72,8 +72,16 @@ def plan_map(
     cost_layer: Path | None,
     options: Options,
     poses: Mapping[str, str | None] | None = None,
-) -> tuple[Plan, None]:
-    """Return the plan for places on the map in a file, maybe with costs in another; and no ids.
+    robots: Sequence[str] = (),
+) -> Plan:
+    """Return the plan for places on the map in a file, maybe with costs in another.
+
+    Args:
+        file: The map, or a request.
+        cost_layer: A file of costs.
+        options: Members of the request.
+        poses: Members that are poses, as numbers with commas between.
+        robots: The poses where several robots start that share the places, likewise.
 
     Raises:
         UnreadableFile: A file is not of its format.
@@ -87,10 +95,25 @@ def plan_map(
     }
     request, picture = read_map(file)
     costs = None if cost_layer is None else read_layer(cost_layer)
-    given = _without_none({**options, **parsed, "cost_layer": costs})
+    members = {"cost_layer": costs, "robots": _parse_robots(robots)}
+    given = _without_none({**options, **parsed, **members})
     whole = {**request, **given}
     _check_complete(whole)
-    return coverage_plan(cast(CoverageRequest, whole), picture), None
+    return coverage_plan(cast(CoverageRequest, whole), picture)
+
+
+def has_robots(plan: Plan) -> bool:
+    """Return whether a plan for a map is for several robots, so that its front is of plans."""
+    return bool(plan.request.get("robots"))
+
+
+def _parse_robots(poses: Sequence[str]) -> list[dict[str, Any]] | None:
+    """Return a robot for each pose, robot-1 the first; None without poses."""
+    starts = [_parse_numbers(pose, "--robot") for pose in poses]
+    robots = [
+        {"id": f"robot-{number}", "start_pose": start} for number, start in enumerate(starts, 1)
+    ]
+    return robots or None
 
 
 def _check_complete(request: Mapping[str, Any]) -> None:
@@ -99,6 +122,8 @@ def _check_complete(request: Mapping[str, Any]) -> None:
         "--spacing (or places in a request)": ("spacing", "places"),
         "--cost-layer (or second_matrix or second_coordinates in a request)": _SECOND_OBJECTIVES,
     }
+    if request.get("robots"):  # whose plans are compared by the longest route
+        needs.popitem()
     missing = [need for need, members in needs.items() if not request.keys() & set(members)]
     if missing:
         raise UsageError(f"a map cannot be covered without {', '.join(missing)}")

@@ -1,6 +1,6 @@
 """Draw a map with tours of a front on it, and the front, with matplotlib."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -40,22 +40,30 @@ def plot_map(front: Front, plan: Plan, path: Path, choices: Mapping[str, int]) -
         path: The file to draw into.
         choices: The indexes of the tours to draw, by their titles.
     """
-    coverage = _coverage(plan)
-    frame = coverage.frame or _own_frame(coverage)
-    figure = Figure(figsize=(5 * len(choices) + 5, 5), layout="constrained")
-    *maps, chart = figure.subplots(1, len(choices) + 1)
+    blocked, frame = map_of(plan)
+    figure, maps, chart = panels(len(choices))
     for panel, (title, index) in zip(maps, choices.items(), strict=True):
-        _draw_map(panel, coverage.blocked, frame)
+        draw_map(panel, blocked, frame)
         _draw_tour(panel, front, index, frame)
         first, second = front.lengths[index]
         panel.set_title(f"{title}\n{first:.6g} m, second length {second:.6g}")
-    _draw_front(chart, front)
+    draw_front(chart, front.lengths, ("first length, m", "second length"))
+    chart.set_title(f"{len(front.tours)} tours, hypervolume {front.hypervolume:.2%}")
     figure.savefig(path, dpi=150)
 
 
-def _coverage(plan: Plan) -> Coverage:
+def panels(maps: int) -> tuple[Figure, Sequence[Axes], Axes]:
+    """Return a figure with panels for so many maps, and one for the front on their right."""
+    figure = Figure(figsize=(5 * maps + 5, 5), layout="constrained")
+    *for_maps, chart = figure.subplots(1, maps + 1)
+    return figure, for_maps, chart
+
+
+def map_of(plan: Plan) -> tuple[NDArray[np.bool_], MapFrame]:
+    """Return which cells of the map of a plan are blocked, and the frame that they lie in."""
     picture = None if plan.file is None else plan.file.content
-    return parse_coverage_request(plan.json, _LIMITS, picture).coverage()
+    coverage: Coverage = parse_coverage_request(plan.json, _LIMITS, picture).coverage()
+    return coverage.blocked, coverage.frame or _own_frame(coverage)
 
 
 def _own_frame(coverage: Coverage) -> MapFrame:
@@ -63,7 +71,8 @@ def _own_frame(coverage: Coverage) -> MapFrame:
     return MapFrame(origin=(0, 0, 0), cell_size=coverage.cell_size, rows=len(coverage.blocked))
 
 
-def _draw_map(panel: Axes, blocked: NDArray[np.bool_], frame: MapFrame) -> None:
+def draw_map(panel: Axes, blocked: NDArray[np.bool_], frame: MapFrame) -> None:
+    """Draw the cells of a map that are blocked, and leave out its rim, in which none is free."""
     height, width = (side * frame.cell_size for side in blocked.shape)
     x, y, yaw = frame.origin
     to_frame = Affine2D().rotate(yaw).translate(x, y)
@@ -86,10 +95,10 @@ def _draw_tour(panel: Axes, front: Front, index: int, frame: MapFrame) -> None:
     panel.plot(*places[front.tours[index, 0]], "o", color=_START, markersize=7)
 
 
-def _draw_front(chart: Axes, front: Front) -> None:
-    first, second = front.lengths.T
+def draw_front(chart: Axes, lengths: Array, labels: Sequence[str]) -> None:
+    """Draw the lengths of all items of a front, shape (m, 2), with a label for either length."""
+    first, second = lengths.T
     chart.step(first, second, where="post", color="0.8", linewidth=1)
     chart.scatter(first, second, s=14)
-    chart.set(xlabel="first length, m", ylabel="second length")
-    chart.set_title(f"{len(front.tours)} tours, hypervolume {front.hypervolume:.2%}")
+    chart.set(xlabel=labels[0], ylabel=labels[1])
     chart.spines[["top", "right"]].set_visible(False)

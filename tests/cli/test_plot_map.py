@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from paretour import coverage_plan
 from paretour.values import parse_front
 
-from service.cli.plot_map import _draw_map, plot_map
+from service.cli.plot_map import draw_map, plot_map
 from service.coverage.frame import MapFrame
 from tests.helpers.answers import FRONT
 
@@ -30,7 +30,7 @@ def test_cells_are_drawn_where_their_frame_has_them(yaw: float) -> None:
     figure = Figure(figsize=(6, 6))
     canvas = FigureCanvasAgg(figure)
     panel = figure.add_subplot()
-    _draw_map(panel, BLOCKED, frame)
+    draw_map(panel, BLOCKED, frame)
     canvas.draw()
     pixels = np.asarray(canvas.buffer_rgba())[..., 0]
     for cell in np.argwhere(np.ones_like(BLOCKED)):

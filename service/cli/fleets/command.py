@@ -27,7 +27,7 @@ def fleet(  # noqa: PLR0913  an option each
 
     from service.cli.backends import backend_for
     from service.cli.errors import UsageError, exit_on_error
-    from service.cli.fleets.output import fleet_as_csv, fleet_as_table
+    from service.cli.fleets.output import plans_as_csv, plans_as_table
 
     console = Console(stderr=True)
     with exit_on_error():
@@ -38,9 +38,9 @@ def fleet(  # noqa: PLR0913  an option each
     if as_json:
         echo(json.dumps(front.document))
     elif as_csv:
-        echo(fleet_as_csv(front))
+        echo(plans_as_csv(front))
     else:
-        Console().print(fleet_as_table(front))
+        Console().print(plans_as_table(front))
     found = f"{len(front.plans)} of {front.points} plans, hypervolume {front.hypervolume:.6g}"
     console.print(found, highlight=False)
 

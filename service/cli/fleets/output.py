@@ -2,38 +2,52 @@
 
 import csv
 import io
+from collections.abc import Sequence
 
-from paretour import FleetFront
+from paretour import FleetFront, FleetPlan, FleetRoute, RobotFront, RobotPlan, RobotRoute
 from rich.markup import escape
 from rich.table import Table
 
+from service.cli.labels import labels_of
 
-def fleet_as_csv(front: FleetFront) -> str:
-    """Return a line for each route: its plan, the plan's lengths, and its own vehicle and stops."""
+FrontOfPlans = FleetFront | RobotFront
+
+
+def plans_as_csv(front: FrontOfPlans) -> str:
+    """Return a line for each route: its plan, the plan's lengths, who goes it, and its stops."""
     text = io.StringIO()
     lines = csv.writer(text, lineterminator="\n")
     names = [each.name for each in front.objectives]
-    lines.writerow(
-        ("plan", "balance", *names, "vehicle", *(f"route {name}" for name in names), "stops")
-    )
-    for number, plan in enumerate(front.plans):
+    who, where = ("robot", "places") if isinstance(front, RobotFront) else ("vehicle", "stops")
+    lines.writerow(("plan", "balance", *names, who, *(f"route {name}" for name in names), where))
+    for number, plan in enumerate(_plans(front)):
         for route in plan.routes:
-            lengths = (*plan.lengths.tolist(), route.vehicle, *route.lengths.tolist())
-            lines.writerow((number, plan.balance, *lengths, " ".join(route.stops)))
+            mover, stops = _members(route)
+            lengths = (*plan.lengths.tolist(), mover, *route.lengths.tolist())
+            lines.writerow((number, plan.balance, *lengths, stops))
     return text.getvalue().rstrip()
 
 
-def fleet_as_table(front: FleetFront) -> Table:
+def _plans(front: FrontOfPlans) -> Sequence[FleetPlan | RobotPlan]:
+    return front.plans
+
+
+def _members(route: FleetRoute | RobotRoute) -> tuple[str, str]:
+    """Return who goes a route, and its stops with spaces between."""
+    if isinstance(route, RobotRoute):
+        return route.robot, " ".join(map(str, route.tour))
+    return route.vehicle, " ".join(route.stops)
+
+
+def plans_as_table(front: FrontOfPlans) -> Table:
     """Return a table with a row for each plan."""
-    headings = (
-        each.name if each.unit is None else f"{each.name} ({each.unit})"
-        for each in front.objectives
-    )
-    table = Table("plan", "balance", *map(escape, headings), "vehicles", "left out")
+    counts = ("robots",) if isinstance(front, RobotFront) else ("vehicles", "left out")
+    table = Table("plan", "balance", *map(escape, labels_of(front)), *counts)
     for column in table.columns:
         column.justify = "right"
-    for number, plan in enumerate(front.plans):
+    for number, plan in enumerate(_plans(front)):
         lengths = (f"{length:.6g}" for length in plan.lengths)
-        counts = (str(len(plan.routes)), str(len(plan.unassigned)))
-        table.add_row(str(number), f"{plan.balance:.3f}", *lengths, *counts)
+        left_out = () if isinstance(plan, RobotPlan) else (str(len(plan.unassigned)),)
+        routes = str(len(plan.routes))
+        table.add_row(str(number), f"{plan.balance:.3f}", *lengths, routes, *left_out)
     return table

@@ -87,7 +87,7 @@ class AsyncClient:
         self, png: bytes | None = None, **request: Unpack[RobotsRequest]
     ) -> RobotFront:
         """Plan a front of plans for several robots that share a map; arguments as of `coverage`."""
-        return await self._connection.run(self._calls.plan_robots(coverage_plan(request, png)))
+        return await self.plan_robots(coverage_plan(request, png))
 
     async def submit_robots(
         self, png: bytes | None = None, **request: Unpack[RobotsRequest]
@@ -113,6 +113,10 @@ class AsyncClient:
     async def plan_fleet(self, plan: Plan) -> FleetFront:
         """Send a plan for a fleet that was built before, and wait for the front of its plans."""
         return await self._connection.run(self._calls.plan_fleet(plan))
+
+    async def plan_robots(self, plan: Plan) -> RobotFront:
+        """Send a plan for robots that was built before, and wait for the front of its plans."""
+        return await self._connection.run(self._calls.plan_robots(plan))
 
     async def post(self, plan: Plan) -> "AsyncJob[Front]":
         """Send a plan that was built before, as a job."""

@@ -89,7 +89,7 @@ class Client:
 
     def robots(self, png: bytes | None = None, **request: Unpack[RobotsRequest]) -> RobotFront:
         """Plan a front of plans for several robots that share a map; arguments as of `coverage`."""
-        return self._connection.run(self._calls.plan_robots(coverage_plan(request, png)))
+        return self.plan_robots(coverage_plan(request, png))
 
     def submit_robots(
         self, png: bytes | None = None, **request: Unpack[RobotsRequest]
@@ -115,6 +115,10 @@ class Client:
     def plan_fleet(self, plan: Plan) -> FleetFront:
         """Send a plan for a fleet that was built before, and wait for the front of its plans."""
         return self._connection.run(self._calls.plan_fleet(plan))
+
+    def plan_robots(self, plan: Plan) -> RobotFront:
+        """Send a plan for robots that was built before, and wait for the front of its plans."""
+        return self._connection.run(self._calls.plan_robots(plan))
 
     def post(self, plan: Plan) -> "Job[Front]":
         """Send a plan that was built before, as a job."""
