@@ -15,6 +15,8 @@ DESK, PHONE = 1440, 375  # widths of a window in pixels
 DEFAULT_SECONDS, SHORT_SECONDS = 3, 0.3  # of search: as the page asks, and as tests need
 SECOND = 1000.0  # in milliseconds, playwright's unit
 
+SVG = "{http://www.w3.org/2000/svg}"  # before the names of elements
+
 # The colours of the canvas on which routes are drawn, as #rrggbb.
 DRAWN = """canvas => {
   const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);

@@ -11,6 +11,7 @@ from PIL import Image
 from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.browsing import (
+    SVG,
     needs_chromium,
     open_files,
     open_page,
@@ -21,8 +22,6 @@ from tests.helpers.browsing import (
 )
 
 pytestmark = needs_chromium
-
-SVG = "{http://www.w3.org/2000/svg}"
 
 
 def test_pictures_show_the_front_and_the_selected_tour(page: Page) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import re
+from xml.etree import ElementTree
 
 from axe_playwright_python.base import AXE_SCRIPT
 from playwright.sync_api import Browser, expect
@@ -9,10 +10,12 @@ from playwright.sync_api import Browser, expect
 from tests.helpers.browsing import (
     DRAWN,
     PHONE,
+    SVG,
     needs_chromium,
     open_files,
     open_page,
     plan_by_network_alone,
+    saved,
     select_last,
     wait_until_planned,
 )
@@ -75,8 +78,13 @@ def test_six_vans_have_a_route_a_lane_and_a_row_each(browser: Browser, released:
         expect(page.locator("#fleet-left-out-title")).to_have_text("No stop is left out.")
         for hidden in ("Replan on the way", "Order of the stops", "End elsewhere", "Open route"):
             expect(page.get_by_text(hidden)).to_be_hidden()
-        for hidden in ("Save SVG", "Save PNG"):
-            expect(page.get_by_role("button", name=hidden)).to_be_hidden()
+        drawing = ElementTree.fromstring(saved(page, "SVG"))
+        strokes = [path.get("stroke") for path in drawing.iter(f"{SVG}path")]
+        # Each route on the map, and beside its name.
+        assert [strokes.count(colour) for colour in COLOURS] == [2] * len(routes) + [0] * (
+            len(COLOURS) - len(routes)
+        )
+        assert {"van 1", f"van {len(routes)}"} <= {text.text for text in drawing.iter(f"{SVG}text")}
         page.evaluate("for (const each of document.querySelectorAll('details')) each.open = true")
         page.set_viewport_size({"width": PHONE, "height": 900})
         assert page.evaluate("document.documentElement.scrollWidth") == PHONE

@@ -5,13 +5,16 @@ import io
 import json
 import re
 from contextlib import redirect_stdout
+from xml.etree import ElementTree
 
 from axe_playwright_python.base import AXE_SCRIPT
-from playwright.sync_api import Browser, Locator, expect
+from PIL import Image
+from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.helpers.browsing import (
     DRAWN,
     PHONE,
+    SVG,
     curl_body,
     needs_chromium,
     open_files,
@@ -43,6 +46,20 @@ def rows_of(table: Locator) -> list[list[str]]:
     return [row.locator("th, td").all_inner_texts() for row in table.locator("tbody tr").all()]
 
 
+def check_pictures(page: Page) -> None:
+    """Assert that SVG and PNG have the map and the path of each of the three robots."""
+    drawing = ElementTree.fromstring(saved(page, "SVG"))
+    assert len(list(drawing.iter(f"{SVG}image"))) == 1
+    strokes = [path.get("stroke") for path in drawing.iter(f"{SVG}path")]
+    # The path of each on the map, and a piece of it beside its name.
+    assert [strokes.count(colour) for colour in COLOURS.values()] == [2, 2, 2]
+    assert set(COLOURS) <= {text.text for text in drawing.iter(f"{SVG}text")}
+    picture = Image.open(io.BytesIO(saved(page, "PNG"))).convert("RGB")
+    drawn = {f"#{r:02x}{g:02x}{b:02x}" for _, (r, g, b) in picture.getcolors(1_000_000) or []}
+    blocked = "#4a5563"
+    assert {*COLOURS.values(), blocked} <= drawn
+
+
 def test_three_robots_have_a_path_and_a_row_each(browser: Browser, released: str) -> None:
     with open_page(browser, released) as page:
         plan_by_network_alone(page, "coverage")
@@ -68,6 +85,7 @@ def test_three_robots_have_a_path_and_a_row_each(browser: Browser, released: str
         places = [str(place + 1) for place in plan["routes"][0]["tour"]]
         listed = f"{plan['routes'][0]['robot']}: {' → '.join(places)}"
         assert page.locator("#fleet-stops li").first.text_content() == listed
+        check_pictures(page)
         for hidden in ("Replan on the way", "Order of the stops", "End elsewhere", "left out"):
             expect(page.get_by_text(hidden)).to_be_hidden()
         # Where fewer robots leave, each keeps its colour.
@@ -125,3 +143,16 @@ def test_a_request_for_robots_is_opened_and_taken_along(browser: Browser, releas
         open_files(page, {"wrong.json": json.dumps({**CORRIDOR, "start": 1})})
         page.get_by_role("button", name="Plan", exact=True).click()
         expect(page.locator("#request-fault")).to_contain_text("must be left out with robots")
+
+
+def test_a_picture_of_one_robot_has_its_map_and_path(browser: Browser, released: str) -> None:
+    alone = {name: value for name, value in CORRIDOR.items() if name != "robots"}
+    with open_page(browser, released) as page:
+        open_files(page, {"robot.json": json.dumps({**alone, "cost_layer": [[1] * 7]})})
+        expect(page.locator("#brought")).to_contain_text("A grid of 1 by 7 cells; 3 places.")
+        page.get_by_role("button", name="Plan", exact=True).click()
+        wait_until_planned(page)
+        drawing = ElementTree.fromstring(saved(page, "SVG"))
+        assert len(list(drawing.iter(f"{SVG}image"))) == 1
+        front, path = drawing.iter(f"{SVG}path")
+        assert (front.get("stroke"), path.get("stroke")) == ("#1e5bb8", "#c2410c")

@@ -14,6 +14,7 @@ export class GridMap {
   #element;
   #grid = null;
   #image = null;
+  #cells = []; // of the places
   #places = L.featureGroup();
   #renderer = L.canvas({ padding: 0.2 });
   #start = L.circleMarker([0, 0], { radius: 8, weight: 2, fill: false, interactive: false });
@@ -43,6 +44,7 @@ export class GridMap {
 
   /** Shows places, a row and a column each. */
   place(places) {
+    this.#cells = places;
     this.#places.clearLayers();
     const style = { renderer: this.#renderer, radius: 3, weight: 0, fillOpacity: 1, interactive: false };
     for (const cell of places) this.#places.addLayer(L.circleMarker(middle(cell), style));
@@ -61,6 +63,14 @@ export class GridMap {
   /** Draws the paths of a plan's robots, `{ path, style }` each, and where they start; none takes them away. */
   drawRoutes(routes) {
     this.#routes.show(routes.map(({ path, style }) => ({ latlngs: lineOf(path), style })), true);
+  }
+
+  /** The map as a part of a picture, with the lines of these paths, each `{ path, ... }`. */
+  pictureOf(paths) {
+    const { grid } = this.#grid;
+    const ground = { href: drawn(this.#grid), width: grid[0].length, height: grid.length };
+    const lines = paths.map(({ path, ...style }) => ({ ...style, places: lineOf(path).map(flat) }));
+    return { ground, places: this.#cells.map(middle).map(flat), lines: lines.filter(({ places }) => places.length) };
   }
 
   #colour() {
@@ -86,6 +96,9 @@ const middle = ([row, column]) => [-row - 0.5, column + 0.5];
 
 /** The line of a path on the map; of none, as while a front is found, it is empty. */
 const lineOf = (path) => turns(path?.cells ?? []).map(middle);
+
+/** x and y of a position on the map. */
+const flat = ([lat, lng]) => [lng, lat];
 
 /** Of a path's cells, its ends and those where it turns. */
 const turns = (cells) =>

@@ -1,6 +1,7 @@
 /** The maps of an instance: two linked planes, stops, one grid, or none where there are only costs. */
 
 import { GridMap } from "./gridmap.js";
+import { pictureOfRoutes, pictureOfTours, startsOf, styleOfTour } from "./map_pictures.js";
 import { UNNAMED, titled } from "../common/objectives.js";
 import { placesOf } from "../fleet/fleet_request.js";
 import { kindOf } from "../inputs/instance.js";
@@ -80,9 +81,26 @@ export class Maps {
     if (this.#kind === "grid" && places) this.#grid.place(places);
   }
 
-  /** The places of the stops on each map that is drawn, for a picture; none of a grid. */
-  get places() {
-    return this.#kind === "grid" ? [] : this.#planes.places.slice(0, this.#drawn);
+  /**
+   * The maps that are drawn, for a picture: with tours, each `{ item, cities, dashed }`, of which the
+   * last is selected; or with the plan that is selected alone.
+   */
+  pictures(tours) {
+    const { item } = tours.at(-1);
+    if (this.#kind === "grid") return [{ title: "Map", ...this.#pictureOnGrid(tours, item) }];
+    const routes = isPlan(item) ? this.#routes(item) : null;
+    return this.#planes.places.slice(0, this.#drawn).map((places, plane) => ({
+      title: element(`plane-${plane + 1}-title`).textContent,
+      ...(routes ? pictureOfRoutes(places, routes) : pictureOfTours(places, tours)),
+    }));
+  }
+
+  #pictureOnGrid(tours, item) {
+    const paths = isPlan(item)
+      ? this.#paths(item).map(({ style, ...others }) => ({ ...others, ...style, cased: true }))
+      : tours.map((tour) => ({ path: tour.item.path, ...styleOfTour(tour.dashed) }));
+    const drawn = this.#grid.pictureOf(paths);
+    return { ...drawn, starts: startsOf(isPlan(item) ? drawn.lines : drawn.lines.slice(-1)) };
   }
 
   /** Draws a tour as "selected" or "pinned", closed or open; null takes it away. Of plans the selected one alone is drawn. */
@@ -98,10 +116,10 @@ export class Maps {
     if (name === "selected") this.#grid.drawRoutes(isPlan(item) ? this.#paths(item) : []);
   }
 
-  /** The paths of a plan's robots, each `{ path, style }`. */
+  /** The paths of a plan's robots, each `{ name, path, style }`. */
   #paths({ routes }) {
     const styles = stylesOf(routes, this.#robots);
-    return routes.map(({ path }, at) => ({ path, style: styles[at] }));
+    return routes.map(({ robot, path }, at) => ({ name: robot, path, style: styles[at] }));
   }
 
   /** The routes of a plan, each `{ name, stops, style }`, whose stops are indexes. */

@@ -1,13 +1,11 @@
 /** The buttons that copy what is on the screen, or save it as a file. */
 
-import { isPlan } from "../common/nouns.js";
 import { csv, curl, download } from "./exports.js";
 import { fragment } from "./link.js";
 import { pngOf, svgOf } from "./picture.js";
 import { python } from "./python.js";
 
 const ALONE = "This link opens the front without its maps: what was asked for is too long for an address.";
-const OF_TOURS = ["svg", "png"]; // pictures are of tours
 const OF_FRONT = ["link", "json", "csv", "geojson", "svg", "png"];
 
 const element = (id) => document.getElementById(id);
@@ -39,7 +37,6 @@ export class ExportButtons {
     this.#shown = answer;
     element("link-help").textContent = "";
     for (const id of OF_FRONT) element(id).disabled = !answer;
-    for (const id of OF_TOURS) element(id).hidden = Boolean(answer && isPlan(answer.front[0]));
     element("geojson").hidden = !answer?.stops?.every(({ location }) => location);
   }
 

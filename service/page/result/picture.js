@@ -1,20 +1,21 @@
-/** One picture of what is on the screen, as SVG or PNG: the front, and the selected tour on its maps. */
+/** One picture of what is on the screen, as SVG or PNG: the front, and the selected tour or plan on its maps. */
 
 import { colour } from "../common/colours.js";
 import { length } from "../common/numbers.js";
 import { withUnit } from "../common/objectives.js";
+import { mapPanel } from "./picture_map.js";
+import { SIDE, dot, round, text } from "./picture_parts.js";
 
-const SIDE = 420; // units of each panel's width and height
 const MARGIN = { left: 70, right: 20, top: 40, bottom: 50 };
 const TICKS = 4;
 const FONT = "system-ui, sans-serif";
 
 /**
- * The picture as the text of an SVG. `maps` are `{ title, places, tours }`: places are pairs or null,
- * and each of the tours is `{ cities, dashed }`.
+ * The picture as the text of an SVG. `maps` are `{ title, places, lines, starts, ground }`: places are
+ * pairs of x and y, each line is `{ places, colour, dash, cased, name }`, and each start `{ place, colour }`.
  */
 export function svgOf({ front, selected, choice, objectives, maps }) {
-  const panels = [chart(front, selected, objectives), ...maps.filter(({ places }) => places.length).map(mapOf)];
+  const panels = [chart(front, selected, objectives), ...maps.filter(({ places }) => places.length).map(mapPanel)];
   const width = SIDE * panels.length;
   const placed = panels.map((panel, at) => `<g transform="translate(${at * SIDE} 30)">${panel}</g>`);
   const title = text(MARGIN.left, 24, choice, { size: 15, weight: 600 });
@@ -57,30 +58,4 @@ function axisOf({ least, most, at }, axis, title) {
   }
   const ticks = values.map((value) => text(at(value), SIDE - MARGIN.bottom + 18, said(value), { size: 11, anchor: "middle" }));
   return ticks.join("") + text(SIDE / 2, SIDE - 10, title, { size: 12, anchor: "middle" });
-}
-
-/** A map whose longer side fills its panel; north, or the larger y, is up. */
-function mapOf({ title, places, tours }) {
-  const there = places.filter(Boolean);
-  const [xs, ys] = [0, 1].map((axis) => there.map((place) => place[axis]));
-  const [left, low] = [Math.min(...xs), Math.min(...ys)];
-  const unit = (SIDE - 80) / (Math.max(Math.max(...xs) - left, Math.max(...ys) - low) || 1);
-  const put = ([x, y]) => [round(40 + (x - left) * unit), round(SIDE - 40 - (y - low) * unit)];
-  const lines = tours.map(({ cities, dashed }) => {
-    const through = cities.map((city) => put(places[city]).join(" ")).join("L");
-    const style = dashed ? `stroke="${colour("pinned")}" stroke-dasharray="5 5"` : `stroke="${colour("selected")}"`;
-    return `<path d="M${through}" fill="none" stroke-width="2" ${style}/>`;
-  });
-  const dots = there.map((place) => dot(put(place), 2.5, "ink"));
-  const start = tours.at(-1)?.cities[0];
-  const ring = start === undefined ? "" : dot(put(places[start]), 6, "selected");
-  return `${text(40, 22, title, { size: 12 })}${lines.join("")}${dots.join("")}${ring}`;
-}
-
-const round = (value) => Number(value.toFixed(2));
-const dot = ([x, y], radius, name) => `<circle cx="${x}" cy="${y}" r="${radius}" fill="${colour(name)}"/>`;
-const escaped = (said) => said.replace(/[&<>]/g, (each) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[each]);
-
-function text(x, y, said, { size, weight = 400, anchor = "start" }) {
-  return `<text x="${x}" y="${y}" font-size="${size}" font-weight="${weight}" text-anchor="${anchor}" fill="${colour("ink")}">${escaped(said)}</text>`;
 }

@@ -114,18 +114,18 @@ export class Result {
     this.#balance = balance ?? MIDDLE;
   }
 
-  /** What is to be seen on a picture of it; null of a plan, of which there is none. */
+  /** What is to be seen on a picture of it. */
   get picture() {
-    if (isPlan(this.#selected)) return null;
     const lines = [this.#pinned ?? this.#before, this.#selected].filter(Boolean);
-    const tours = lines.map((line) => ({ cities: this.#round(line), dashed: line !== this.#selected }));
-    const maps = this.#maps.places.map((places, plane) => ({ title: element(`plane-${plane + 1}-title`).textContent, places, tours }));
+    const tours = lines.map((item) => ({ item, cities: this.#round(item), dashed: item !== this.#selected }));
+    const maps = this.#maps.pictures(tours);
     const choice = choiceOf(this.#front, this.#selected, this.#objectives);
     return { front: this.#front, selected: this.#selected, choice, objectives: this.#objectives, maps };
   }
 
-  #round({ tour, closed = this.#closed }) {
-    return closed ? [...tour, tour[0]] : tour;
+  /** The cities of a tour, back to its start where it is closed; none of a plan. */
+  #round({ tour = [], closed = this.#closed }) {
+    return closed && tour.length ? [...tour, tour[0]] : tour;
   }
 
   /** Keeps the selected tour on the maps of an instance of which the rest is planned. */
