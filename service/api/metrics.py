@@ -20,6 +20,7 @@ from starlette.responses import Response
 
 from service.api.middleware import AnsweredRequest
 from service.jobs.engine import EngineStats
+from service.jobs.fleets.fleet_document import holds_plans
 from service.jobs.front_document import FrontDocument
 
 _METHODS = ("GET", "HEAD", "POST", "DELETE", "OPTIONS")
@@ -55,6 +56,12 @@ class Metrics:
             ["method", "path"],
             registry=registry,
             buckets=_SECONDS,
+        )
+        self._fronts = Counter(
+            "paretour_fronts",
+            "fronts planned, by what they are of and why the search ended",
+            ["of", "terminated"],
+            registry=registry,
         )
         self._planning = Histogram(
             "paretour_planning_seconds",
@@ -117,7 +124,8 @@ class Metrics:
         self._router_seconds.observe(seconds)
 
     def planned(self, front: FrontDocument) -> None:
-        """Count a planned front: its phases, and the hypervolume that the search gained."""
+        """Count a planned front, its phases, and the hypervolume that the search gained."""
+        self._fronts.labels(_kind_of(front), front.terminated).inc()
         cities = _size_class(front.cities)
         for phase, milliseconds in front.timings_ms.phases.items():
             self._planning.labels(phase, cities).observe(milliseconds / 1000)
@@ -148,6 +156,13 @@ class _WorkerCollector(Collector):
 
 class _Exposition(Response):
     media_type = CONTENT_TYPE_PLAIN_0_0_4
+
+
+def _kind_of(front: FrontDocument) -> str:
+    """Return what a front is of: tours, or plans of a fleet or of robots on a map."""
+    if not holds_plans(front):
+        return "tours"
+    return "fleet" if front.places is None else "robots"
 
 
 def _size_class(n: int) -> str:

@@ -1,6 +1,6 @@
 """What Prometheus is told, against a live server."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import httpx
 import numpy as np
@@ -9,10 +9,22 @@ from prometheus_client.parser import text_string_to_metric_families
 from service.api.app import Edge
 from service.api.metrics import Metrics
 from service.jobs.engine import EngineStats
+from service.jobs.front_document import FrontDocument, Timings
 from tests.helpers.actors import Broken
 from tests.helpers.processes import serve_process
 from tests.helpers.serving import app_of, serving
 
+FOUND = FrontDocument(
+    cities=3,
+    points=1,
+    hypervolume=0.5,
+    hypervolume_bound=None,
+    reference_point=[1.0, 1.0],
+    scale=[1.0, 1.0],
+    timings_ms=Timings({}),
+    terminated="converged",
+    actor=None,
+)
 FRONT = {"coordinates": [[0, 0, 1, 3], [2, 5, 0, 0], [4, 1, 2, 2]], "time_limit": 0}
 
 
@@ -71,6 +83,20 @@ def test_the_workers_are_asked_whenever_prometheus_asks() -> None:
     assert counted["paretour_workers_busy",] == 2
     assert counted["paretour_worker_restarts_total",] == 1
     assert later["paretour_queue_depth",] == 0
+
+
+def test_fronts_of_tours_of_fleets_and_of_robots_are_counted_apart() -> None:
+    metrics = Metrics()
+    over = [{"name": name, "unit": None, "over": name} for name in ("sum", "max")]
+    plans = {"objectives": over, "terminated": "time_limit"}
+    unnamed = [{"name": name, "unit": None} for name in "ab"]
+    for members in ({}, {"objectives": unnamed}, plans, {**plans, "places": [[0, 0]]}):
+        metrics.planned(replace(FOUND, **members))
+    with serving(app_of(edge=Edge(metrics=metrics))) as url:
+        counted = samples(url)
+    assert counted["paretour_fronts_total", "tours", "converged"] == 2
+    assert counted["paretour_fronts_total", "fleet", "time_limit"] == 1
+    assert counted["paretour_fronts_total", "robots", "time_limit"] == 1
 
 
 def test_fronts_are_counted_by_phase_and_size_class() -> None:
