@@ -89,7 +89,7 @@ export class Maps {
     const { item } = tours.at(-1);
     if (this.#kind === "grid") return [{ title: "Map", ...this.#pictureOnGrid(tours, item) }];
     const routes = isPlan(item) ? this.#routes(item) : null;
-    return this.#planes.places.slice(0, this.#drawn).map((places, plane) => ({
+    return this.#planes.drawn.slice(0, this.#drawn).map((places, plane) => ({
       title: element(`plane-${plane + 1}-title`).textContent,
       ...(routes ? pictureOfRoutes(places, routes) : pictureOfTours(places, tours)),
     }));

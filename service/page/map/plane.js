@@ -61,6 +61,11 @@ export class Plane {
     return this.#places;
   }
 
+  /** Where the cities are drawn, in x and y. */
+  get drawn() {
+    return this.#places.map((place) => this.#frame.latlng(place).reverse());
+  }
+
   /** Draws map tiles, while places on the earth are shown. */
   tile(url) {
     this.#tiles = L.tileLayer(url, { maxNativeZoom: 19, maxZoom: 22, className: "tile", zIndex: 0 });

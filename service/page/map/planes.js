@@ -34,9 +34,9 @@ export class Planes {
     this.#maps[1].show(rows.map((row) => row.slice(2, 4)).filter((place) => place.length), fit);
   }
 
-  /** The places of the cities on both maps. */
-  get places() {
-    return this.#maps.map(({ places }) => places);
+  /** Where the cities are drawn on both maps, in x and y. */
+  get drawn() {
+    return this.#maps.map(({ drawn }) => drawn);
   }
 
   /** Draws a tour as "selected" or "pinned"; null takes it away. */

@@ -8,6 +8,7 @@ import { SIDE, dot, round, text } from "./picture_parts.js";
 
 const MARGIN = { left: 70, right: 20, top: 40, bottom: 50 };
 const TICKS = 4;
+const WIDTH = 0.62; // of a bold letter, in its size
 const FONT = "system-ui, sans-serif";
 
 /**
@@ -18,7 +19,7 @@ export function svgOf({ front, selected, choice, objectives, maps }) {
   const panels = [chart(front, selected, objectives), ...maps.filter(({ places }) => places.length).map(mapPanel)];
   const width = SIDE * panels.length;
   const placed = panels.map((panel, at) => `<g transform="translate(${at * SIDE} 30)">${panel}</g>`);
-  const title = text(MARGIN.left, 24, choice, { size: 15, weight: 600 });
+  const title = text(MARGIN.left, 24, choice, { size: Math.min(15, (width - MARGIN.left - MARGIN.right) / (WIDTH * choice.length)), weight: 600 });
   return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${SIDE + 30}" width="${width}" height="${SIDE + 30}" font-family="${FONT}"><rect width="100%" height="100%" fill="${colour("card")}"/>${title}${placed.join("")}</svg>`;
 }
 

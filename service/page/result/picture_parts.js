@@ -1,4 +1,4 @@
-/** What panels of a picture are made of: dots and texts in SVG, and the panels' size. */
+/** Parts of which the panels of a picture are made: dots and texts in SVG, and the size of a panel. */
 
 import { colour } from "../common/colours.js";
 
