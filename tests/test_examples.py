@@ -1,6 +1,7 @@
 """The examples can be posted as they are, and are what their script makes."""
 
 import asyncio
+import gzip
 import json
 import subprocess
 import sys
@@ -15,6 +16,9 @@ import pytest
 
 from service.construction.call_estimate import CallEstimate
 from service.coverage.survey import survey
+from service.examples.deliveries import BLACK_SPOTS
+from service.examples.helsinki import CROWDS
+from service.examples.streets import KINDS
 from service.examples.warehouse import DOCKS
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.instance import Instance
@@ -23,9 +27,11 @@ from service.planner import PlanOptions, plan
 from service.requests.coverage import parse_coverage_request
 from service.requests.fleets.request import parse_fleet_request
 from service.roads.client import RoadClient, RoadCosts
+from service.roads.great_circle import great_circle_distances
 from service.roads.router import RouterSettings
 from service.settings import Settings
 from tests.helpers.actors import Shuffler, info_of
+from tests.helpers.helsinki import Array
 from tests.helpers.serving import app_of, serving
 from tests.helpers.valhalla import RunningValhalla
 
@@ -33,7 +39,8 @@ EXAMPLES = Path(__file__).parent.parent / "service/examples"
 INDEX: list[dict[str, Any]] = json.loads((EXAMPLES / "index.json").read_text())
 FLEET = "helsinki-vans.json"
 ROBOTS = "warehouse-robots.json"
-FILES = [example["file"] for example in INDEX]
+STREETS = "helsinki-streets.json"
+FILES = [*(example["file"] for example in INDEX), STREETS]
 OF_TOURS = [example for example in INDEX if example["file"] not in (FLEET, ROBOTS)]
 
 
@@ -126,8 +133,33 @@ def test_without_a_routing_engine_the_script_says_what_it_leaves(tmp_path: Path)
     left = {path.name for path in EXAMPLES.glob("*.json")} - {
         path.name for path in tmp_path.iterdir()
     }
-    assert left == {"index.json", "helsinki-deliveries.json"}
-    assert "helsinki-deliveries.json is left" in said
+    assert left == {"index.json", "helsinki-deliveries.json", STREETS}
+    assert f"helsinki-deliveries.json and {STREETS} are left" in said
+
+
+@pytest.mark.parametrize(
+    ("file", "spots"),
+    [("helsinki-deliveries.json", CROWDS), ("city-deliveries.json", BLACK_SPOTS)],
+)
+def test_the_places_of_a_story_are_where_it_happens(file: str, spots: Array) -> None:
+    [named] = [example for example in INDEX if example["file"] == file]
+    np.testing.assert_array_equal([place["at"] for place in named["places"]], spots[:, :2])
+    assert all(place["name"] in named["about"] for place in named["places"])
+
+
+def test_every_stop_in_helsinki_is_near_a_street_that_is_drawn() -> None:
+    streets = json.loads((EXAMPLES / STREETS).read_text())
+    rows = [row for kind in KINDS for row in streets[kind]]
+    steps = np.concatenate([np.cumsum(np.reshape(row, (-1, 2)), axis=0) for row in rows])
+    places = np.array(streets["origin"]) + streets["step"] * steps
+    stops = json.loads((EXAMPLES / "helsinki-deliveries.json").read_text())["stops"]
+    for stop in stops:
+        there = np.broadcast_to(stop["location"], places.shape)
+        assert great_circle_distances(there, places).min() < 60
+
+
+def test_the_streets_are_a_small_file() -> None:
+    assert len(gzip.compress((EXAMPLES / STREETS).read_bytes())) < 30_000
 
 
 def _without_numbers(value: Any) -> Any:

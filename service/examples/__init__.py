@@ -1,7 +1,7 @@
-"""Example requests: each `.json` file in this folder can be posted as it is.
+"""Example requests, each of which can be posted as it is, and the streets under those in Helsinki.
 
-`index.json` names the path and the two objectives of each. `python -m service.examples` wrote
-them, and writes the same again; the one by road only with a routing engine. That one contains
-information of OpenStreetMap, (c) OpenStreetMap contributors, which is made available under the Open
-Database License (ODbL).
+`index.json` names the path and the two objectives of each, and what the page draws around its
+stops. `python -m service.examples` wrote the others, and writes the same again; those of Helsinki
+only with a routing engine. They contain information of OpenStreetMap, (c) OpenStreetMap
+contributors, which is made available under the Open Database License (ODbL).
 """

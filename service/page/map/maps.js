@@ -23,7 +23,9 @@ export class Maps {
   #grid;
   #kind = "coordinates";
   #drawn = 2; // of the planes
-  #credit = "";
+  #tilesCredit = "";
+  #streetsCredit = "";
+  #onEarth = false;
   #objectives = UNNAMED;
   #ids = null; // of the stops
   #robots = []; // of the request
@@ -41,8 +43,20 @@ export class Maps {
   /** Draws map tiles under stops, where there are any; the credit says whom they are by. */
   tile({ url, credit }) {
     if (!url) return;
-    this.#credit = credit;
+    this.#tilesCredit = credit;
     this.#planes.tile(url);
+    this.#sayCredit();
+  }
+
+  /** Draws what lies around the stops: `streets` where there are no tiles, and `places` by name. */
+  surround({ streets = null, places = [] }) {
+    this.#streetsCredit = streets?.credit ?? "";
+    this.#planes.surround({ streets, places });
+    this.#sayCredit();
+  }
+
+  #sayCredit() {
+    element("credit").textContent = this.#onEarth ? this.#tilesCredit || this.#streetsCredit : "";
   }
 
   /** Calls the maps by these objectives, and the stops by ids, or by numbers where there are none. */
@@ -73,7 +87,8 @@ export class Maps {
     document.querySelector(".wide").hidden = this.#kind !== "grid";
     if (this.#kind === "grid") this.#grid.show(instance);
     else this.#planes.show(rows, fit, onEarth);
-    element("credit").textContent = onEarth && rows.length ? this.#credit : "";
+    this.#onEarth = onEarth && rows.length > 0;
+    this.#sayCredit();
   }
 
   /** Shows the places that the service laid out on the grid. */

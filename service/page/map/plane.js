@@ -6,6 +6,7 @@ import { fitting, flatMap } from "./flatmap.js";
 import { Frame } from "./frame.js";
 import { Mercator } from "./mercator.js";
 import { Routes } from "./routes.js";
+import { Streets } from "./streets.js";
 import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
@@ -21,6 +22,9 @@ export class Plane {
   #highlight = ring("highlight", 16);
   #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
   #routes = new Routes();
+  #streets = new Streets();
+  #names = L.layerGroup();
+  #surroundings = { streets: null, places: [] };
   #places = [];
   #onEarth = false;
   #tiles = null;
@@ -28,7 +32,7 @@ export class Plane {
   /** @param {{ onHover: (city: number | null) => void, onClick: (place: number[]) => void }} told */
   constructor(element, { onHover, onClick }) {
     this.#map = flatMap(element, { zoomDelta: 0.5, minZoom: -3, maxZoom: 20, doubleClickZoom: false });
-    for (const line of [...Object.values(this.#lines), this.#routes]) line.addTo(this.#map);
+    for (const line of [this.#streets, ...Object.values(this.#lines), this.#routes, this.#names]) line.addTo(this.#map);
     this.#cities = L.featureGroup().addTo(this.#map);
     this.#cities.on("mouseover", (event) => onHover(event.sourceTarget.city));
     this.#cities.on("mouseout", () => onHover(null));
@@ -45,6 +49,7 @@ export class Plane {
     if (fit || onEarth !== this.#onEarth) this.#frame = (onEarth ? Mercator : Frame).around(places);
     this.#onEarth = onEarth;
     this.#showTiles();
+    this.#showSurroundings();
     this.#cities.clearLayers();
     const crowded = places.length > 300 || this.#map.getContainer().clientWidth < NARROW;
     const radius = crowded ? 2 : 3.5;
@@ -70,6 +75,20 @@ export class Plane {
   tile(url) {
     this.#tiles = L.tileLayer(url, { maxNativeZoom: 19, maxZoom: 22, className: "tile", zIndex: 0 });
     this.#showTiles();
+    this.#showSurroundings();
+  }
+
+  /** Draws places by name, and streets where there are no tiles, from now on. */
+  surround(surroundings) {
+    this.#surroundings = surroundings;
+    this.#showSurroundings();
+  }
+
+  #showSurroundings() {
+    const { streets, places } = this.#surroundings;
+    this.#streets.show(this.#tiles ? null : streets, (place) => this.#frame.latlng(place));
+    this.#names.clearLayers();
+    for (const { name, at } of places) this.#names.addLayer(nameAt(name, this.#frame.latlng(at)));
   }
 
   #showTiles() {
@@ -127,6 +146,12 @@ export class Plane {
   #colour() {
     this.#cities.setStyle({ fillColor: colour("ink"), fillOpacity: 1 });
   }
+}
+
+function nameAt(name, latlng) {
+  const html = Object.assign(document.createElement("span"), { textContent: name });
+  const icon = L.divIcon({ className: "place-name", iconSize: [0, 0], html });
+  return L.marker(latlng, { icon, pane: "names", interactive: false, keyboard: false });
 }
 
 function ring(name, side) {

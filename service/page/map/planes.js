@@ -26,6 +26,11 @@ export class Planes {
     this.#maps[0].tile(url);
   }
 
+  /** Draws streets and names of places on the first map, from now on. */
+  surround(surroundings) {
+    this.#maps[0].surround(surroundings);
+  }
+
   /** Draws cities, rows of four numbers, or of two where there is one map; tours are taken away. */
   show(rows, fit = true, onEarth = false) {
     this.#tour = null;

@@ -16,8 +16,8 @@ export class ExportButtons {
 
   /**
    * @param {Service} service that has the front
-   * @param {() => { request: object, asked: object, objectives: object[], picture: object,
-   *   balance: number }} screen what is on the screen
+   * @param {() => { request: object, asked: object, example: string | null, objectives: object[],
+   *   picture: object, balance: number }} screen what is on the screen; the example that it is
    */
   constructor(service, screen) {
     this.#service = service;
@@ -40,8 +40,9 @@ export class ExportButtons {
     element("geojson").hidden = !answer?.stops?.every(({ location }) => location);
   }
 
-  async #copyLink({ asked, objectives, balance }, button) {
-    const { hash, whole } = await fragment(this.#shown.id, asked && { request: asked, objectives }, balance);
+  async #copyLink({ asked, example, objectives, balance }, button) {
+    const wanted = asked && { request: asked, objectives };
+    const { hash, whole } = await fragment(this.#shown.id, balance, wanted, example);
     history.replaceState(null, "", hash);
     element("link-help").textContent = whole || !asked ? "" : ALONE;
     await copy(location.href, button);

@@ -1,27 +1,29 @@
-/** Links to a stored front that carry its request and the selected tour: `#front=ID&balance=B&asked=...`. */
+/** Links to a stored front with the selected tour and what was asked for: `#front=ID&balance=B&asked=...`. */
 
 const MOST = 16000; // characters, beyond which chats, mail and some servers cut addresses off
 
 /**
- * The link's fragment, with what was asked for deflated, and in base64 as addresses may hold it;
- * `whole` says whether that was short enough to be in it.
+ * The link's fragment, with what was asked for deflated, and in base64 as addresses may hold it, or
+ * with the file of the example that it is; `whole` says whether that was short enough to be in it.
  */
-export async function fragment(id, asked, balance) {
+export async function fragment(id, balance, asked, example = null) {
   const front = `#front=${encodeURIComponent(id)}${balance === undefined ? "" : `&balance=${Number(balance.toFixed(6))}`}`;
+  if (example) return { hash: `${front}&example=${encodeURIComponent(example)}`, whole: true };
   if (!asked) return { hash: front, whole: false };
   const text = await packed(asked);
   const whole = text.length <= MOST;
   return { hash: whole ? `${front}&asked=${text}` : front, whole };
 }
 
-/** `{ id, balance, asked }` of a fragment, null where it names no front; the others may be missing. */
+/** `{ id, balance, asked, example }` of a fragment, null where it names no front; the others may be missing. */
 export async function linked(hash) {
   const members = new URLSearchParams(hash.slice(1));
   const id = members.get("front");
   if (!id) return null;
   const text = members.get("asked");
   const balance = Number(members.get("balance") ?? NaN);
-  return { id, balance: balance >= 0 && balance <= 1 ? balance : undefined, asked: text ? await unpacked(text) : null };
+  const asked = text ? await unpacked(text) : null;
+  return { id, balance: balance >= 0 && balance <= 1 ? balance : undefined, asked, example: members.get("example") };
 }
 
 async function packed(asked) {

@@ -109,6 +109,11 @@ export class Result {
     this.#maps.tile(tiles);
   }
 
+  /** Draws what lies around the stops, from now on: `streets`, and `places` by name. */
+  surround(surroundings) {
+    this.#maps.surround(surroundings);
+  }
+
   /** The balance that the viewer wants of the next front. */
   want(balance) {
     this.#balance = balance ?? MIDDLE;
