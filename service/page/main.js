@@ -77,10 +77,10 @@ function screen() {
   };
 }
 
-/** Where the form and the result stand above each other, the result comes first once there is one. */
+/** Where form and result stand above each other, the result comes first from when one is planned. */
 function arrange() {
   const main = element("result").parentElement;
-  if (narrow.matches && answer) main.prepend(element("result"));
+  if (narrow.matches && (answer || planning)) main.prepend(element("result"));
   else if (!narrow.matches) main.append(element("result"));
 }
 
@@ -91,6 +91,7 @@ async function run(states, waiting = "The network is building its front.") {
   const mine = (planning = new Planning(service));
   clearFaults();
   busy(true);
+  arrange();
   say(waiting);
   try {
     for await (const state of states(mine)) {

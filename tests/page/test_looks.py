@@ -17,6 +17,7 @@ from tests.helpers.browsing import (
     wait_for_next_frame,
     wait_until_planned,
 )
+from tests.helpers.layout_shifts import shifts_after_the_first_front, watch_layout_shifts
 
 EXAMPLES = ["Helsinki deliveries", "City deliveries", "Warehouse cleaning"]
 LEGIBLE, SEEN = 4.5, 3.0  # contrasts that WCAG 2.2 demands of text, and of lines
@@ -72,6 +73,20 @@ def test_nothing_sticks_out_at_either_width(
         page.get_by_role("button", name="Plan", exact=True).click()
         expect(page.locator("#time_limit-fault")).not_to_be_empty()
         assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
+@pytest.mark.parametrize("width", [DESK, PHONE])
+def test_nothing_moves_by_itself_once_a_front_is_drawn(
+    browser: Browser, released: str, width: int
+) -> None:
+    with open_page(browser, "about:blank", width) as page:
+        watch_layout_shifts(page)
+        page.goto(released)
+        wait_until_planned(page)
+        expect(page.locator("#plane-1 canvas.streets")).to_be_visible()
+        wait_for_next_frame(page)
+        assert page.evaluate("firstFront") > 0
+        assert shifts_after_the_first_front(page) == []
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
