@@ -28,7 +28,7 @@ export class Examples {
 
   /** Chooses an example by its file, and tells its story; false where there is no such file. */
   choose(file) {
-    this.#choice.value = file;
+    this.#choice.value = this.#all.some((example) => example.file === file) ? file : "";
     this.#about.textContent = this.chosen?.about ?? "";
     return Boolean(this.chosen);
   }
