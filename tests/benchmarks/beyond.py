@@ -1,9 +1,9 @@
-"""What the paper has not: other shapes, networks of the literature, many cities, replanning."""
+"""What the paper has not: other shapes, networks of the literature, many cities, new tasks."""
 
 from statistics import median
 from typing import Any
 
-from tests.benchmarks import printed
+from tests.benchmarks import fleet_table, printed
 from tests.benchmarks.cells import of, share_in_seconds
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
@@ -11,7 +11,7 @@ from tests.benchmarks.provenance import load
 
 def section() -> str:
     """What is stored of all of these."""
-    return f"{_shapes()}\n{_literature()}\n{_large()}{_replan()}"
+    return f"{_shapes()}\n{_literature()}\n{_large()}{_replan()}{fleet_table.section()}"
 
 
 def _shapes() -> str:

@@ -31,22 +31,18 @@ from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import Plan
 from service.fleet.translation import UNBOUNDED, Goal, Translation
 from service.pareto import hypervolume, nondominated
+from tests.benchmarks import printed
+from tests.benchmarks.fleet_table import OURS, PLAIN, in_boxes
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rivals.ortools_fleets import route_fleet
-from tests.benchmarks.rows import Points, resume
+from tests.benchmarks.rows import resume
 
 CAPACITIES = {10: 30, 20: 30, 50: 40, 100: 50}
 CORNERS = {20: (30.0, 4.0), 50: (45.0, 4.0), 100: (80.0, 4.0)}
 SECONDS = {20: 0.7, 50: 1.5, 100: 4.0}
-# Hypervolumes printed of 200 other instances of the recipe: the best, MOEA/D and PPLS/D-C.
-PRINTED = {
-    20: (0.4305, 0.4255, 0.4287),
-    50: (0.4106, 0.4000, 0.4007),
-    100: (0.4090, 0.3953, 0.3946),
-}
 LIMITS = 12  # of the plain sweeps
 ACTORS = Path(service.__file__).parent / "actors"
-NETWORK, OURS, PLAIN = "network alone", "paretour", "plain PyVRP sweep"
+NETWORK = "network alone"
 WITH_NETWORK = (NETWORK, OURS)
 Find = Callable[[Fleet, float], list[Plan]]
 
@@ -150,28 +146,16 @@ def rows(n: int, stored: dict[str, Any], names: list[str]) -> list[str]:
     """A line for each method with its means, and one that compares ours with the plain sweep."""
     entries = {name: stored[f"{n} customers, {name}"]["instances"] for name in names}
     counted = min(map(len, entries.values()))
-    lines = [f"{n} customers, corner {CORNERS[n]}, {counted} instances; printed {PRINTED[n]}"]
+    lines = [
+        f"{n} customers, corner {CORNERS[n]}, {counted} instances; printed {printed.FLEETS[n]}"
+    ]
     for name, each in entries.items():
         volume, seconds = (
             np.mean([entry[key] for entry in each[:counted]]) for key in ("hypervolume", "seconds")
         )
         lines.append(f"  {name}: {volume:.4f} in {seconds:.3f} s")
-    pairs = zip(entries[OURS], entries[PLAIN], strict=False)
-    boxes = [in_their_box(a["points"], b["points"]) for a, b in pairs]
-    ours, plain = np.mean(boxes, axis=0)
-    ahead = np.mean([a >= b for a, b in boxes])
+    boxes = in_boxes(stored, n)
+    ours, plain = boxes.mean(axis=0)
+    ahead = np.mean(boxes[:, 0] >= boxes[:, 1])
     lines.append(f"  in their own box {ours:.4f} and plainly {plain:.4f}, ahead on {ahead:.0%}")
     return lines
-
-
-def in_their_box(ours: list[list[float]], plain: list[list[float]]) -> tuple[float, float]:
-    """The hypervolumes of two fronts in the box of both together."""
-    together = np.array([*ours, *plain])
-    least, most = together.min(axis=0), together.max(axis=0)
-    extent = np.where(most > least, most - least, 1.0)
-
-    def share(points: list[list[float]]) -> float:
-        scaled: Points = (np.array(points) - least) / extent
-        return hypervolume(scaled, np.array([1.0 + 1e-9, 1.0 + 1e-9]))
-
-    return share(ours), share(plain)

@@ -66,3 +66,11 @@ LITERATURE = {
     "the same, 64 symmetries": (62.71, 64.13, 70.66, 70.44, 73.81),
     "weighted sums by LKH": (62.70, 64.15, 70.90, 71.49, 74.90),
 }
+
+# Fleets, by customers: hypervolumes of 200 instances, Bi-CVRP.
+FLEET_METHODS = ("the best that is printed", "MOEA/D", "PPLS/D-C")
+FLEETS = {
+    20: (0.4305, 0.4255, 0.4287),
+    50: (0.4106, 0.4000, 0.4007),
+    100: (0.4090, 0.3953, 0.3946),
+}
