@@ -27,6 +27,7 @@ _NAMES = (
     "page",
     "replan",
     "roads",
+    "scale",
     "search",
     "shapes",
     "soak",

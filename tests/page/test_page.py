@@ -35,7 +35,7 @@ def test_the_page_opens_with_stops_by_road_and_their_front(
     with open_page(browser, released, width) as page:
         wait_until_planned(page)
         expect(page.locator("#count")).to_have_text("60 stops")
-        expect(page.get_by_text("OpenStreetMap contributors (ODbL)")).to_be_visible()
+        expect(page.locator("#about", has_text="OpenStreetMap contributors (ODbL)")).to_be_visible()
         expect(page.get_by_role("row", name="People met")).to_be_visible()
         first, second = page.locator(".plane").all()
         expect(first).to_be_visible()
