@@ -7,6 +7,7 @@ from tests.benchmarks import fleet_table, printed
 from tests.benchmarks.cells import of, share_in_seconds
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
+from tests.benchmarks.scale_table import scale_table
 
 
 def section() -> str:
@@ -66,20 +67,13 @@ def _large() -> str:
 
 def _scale() -> str:
     """A row for each size and shape, and way to plan; nothing before the first run."""
-    stored = load("scale")
-    if not stored:
+    if not load("scale"):
         return ""
-    columns = {"seconds": ".3g", "hypervolume": ".3f", "points": "d", "ends": ".4f", "peak_mb": "d"}
-    rows = [
-        [key, *(f"{of(entry)[0][name]:{form}}" for name, form in columns.items())]
-        for key, entry in stored.items()
-    ]
     return (
         "\nNot in the paper: `python -m tests.benchmarks scale`. One instance a row, one thread; "
         "hypervolume in per cent of\nthe box to (n, n), and the mean of both ends over the root of "
         "n, which for an optimal tour of uniform cities\nis 0.7313 at 1,000, 0.7168 at 10,000 and "
-        "0.7124 at 100,000 (Johnson and McGeoch, 1996).\n\n"
-        f"{table(['', 'seconds', 'hypervolume', 'tours', 'ends', 'memory, MB'], rows)}"
+        f"0.7124 at 100,000 (Johnson and McGeoch, 1996).\n\n{scale_table()}"
     )
 
 

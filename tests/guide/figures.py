@@ -8,6 +8,7 @@ import numpy as np
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
 from tests.benchmarks.roads import roads_table
+from tests.benchmarks.scale_table import scale_table
 from tests.benchmarks.weights_table import weights_table
 from tests.guide.pages import GUIDE
 
@@ -18,9 +19,11 @@ SIZES = (40, 200, 500, 1000, 2000, 5000)
 def figures() -> dict[str, tuple[Path, str]]:
     """Return the page and the Markdown of each table, by its name."""
     limits, weights = GUIDE / "limits.md", GUIDE / "three-weights-in-or-tools.md"
+    quality = GUIDE / "how-good-is-it.md"
     return {
         "weights": (weights, weights_table()),
         "times": (limits, times_table()),
+        "scale": (quality, scale_table()),
         "road-times": (limits, roads_table(load("roads"))),
     }
 
