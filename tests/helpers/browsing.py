@@ -8,14 +8,37 @@ from pathlib import Path
 from typing import Any, Literal
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, Route, expect, sync_playwright
+from playwright.sync_api import (
+    Browser,
+    ConsoleMessage,
+    Error,
+    Locator,
+    Page,
+    Route,
+    expect,
+    sync_playwright,
+)
 
 CHROMIUM = Path("/usr/bin/chromium")
 DESK, PHONE = 1440, 375  # widths of a window in pixels
 DEFAULT_SECONDS, SHORT_SECONDS = 3, 0.3  # of search: as the page asks, and as tests need
 SECOND = 1000.0  # in milliseconds, playwright's unit
+NOTHING = "about:blank"  # the address of a window that shows nothing
 
 SVG = "{http://www.w3.org/2000/svg}"  # before the names of elements
+
+# In the page rather than by a route, since playwright turns the cache off where there is one.
+SHORTEN_SEARCH = f"""
+const sent = globalThis.fetch;
+globalThis.fetch = (path, options) => {{
+  if (/\\/(front|coverage|fleet)$/.test(path) && options?.body) {{
+    const asked = JSON.parse(options.body);
+    if (asked.time_limit === {DEFAULT_SECONDS})
+      options = {{ ...options, body: JSON.stringify({{ ...asked, time_limit: {SHORT_SECONDS} }}) }};
+  }}
+  return sent(path, options);
+}};
+"""
 
 # The colours of the canvas on which routes are drawn, as #rrggbb.
 DRAWN = """canvas => {
@@ -51,30 +74,46 @@ def open_page(
     width: int = DESK,
     scheme: Literal["light", "dark"] = "light",
 ) -> Iterator[Page]:
-    """Open the page in a window of its own, and fail if the console has an error at the end.
+    """Open the page in a window that nobody uses, and fail if the console has an error at the end.
 
     Where the page asks for its default seconds of search, the service is asked for a tenth of them.
+    A window serves one test after another, with its cache, since a new one takes Chromium a second.
     """
-    page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)
-    page.set_default_timeout(120 * SECOND)
+    page = _free_window(browser)
+    page.set_viewport_size({"width": width, "height": 900})
+    page.emulate_media(color_scheme=scheme)
     errors: list[str] = []
-    page.on("pageerror", lambda error: errors.append(error.stack or str(error)))
-    page.on("console", lambda line: errors.append(line.text) if line.type == "error" else None)
-    page.route(re.compile(r"/(front|coverage|fleet)$"), _shorten_search)
+
+    def note_error(error: Error) -> None:
+        errors.append(error.stack or str(error))
+
+    def note_line(line: ConsoleMessage) -> None:
+        if line.type == "error":
+            errors.append(line.text)
+
+    page.on("pageerror", note_error)
+    page.on("console", note_line)
     page.goto(address)
     yield page
-    page.close()
+    if not page.is_closed():
+        page.goto(NOTHING)
+        page.unroute_all()
+        page.remove_listener("pageerror", note_error)
+        page.remove_listener("console", note_line)
     # Chromium writes a line for each refusal of the service, which the page has shown.
     unexpected = [error for error in errors if "server responded with a status of" not in error]
     assert not unexpected, unexpected
 
 
-def _shorten_search(route: Route) -> None:
-    body = json.loads(route.request.post_data or "{}")
-    if body.get("time_limit") == DEFAULT_SECONDS:
-        route.continue_(post_data=json.dumps({**body, "time_limit": SHORT_SECONDS}))
-    else:
-        route.continue_()
+def _free_window(browser: Browser) -> Page:
+    for context in browser.contexts:
+        for page in context.pages:
+            if page.url == NOTHING:
+                return page
+    page = browser.new_page(permissions=["clipboard-read", "clipboard-write"])
+    page.set_default_timeout(120 * SECOND)
+    page.add_init_script(SHORTEN_SEARCH)
+    return page
 
 
 def plan_by_network_alone(page: Page, path: str) -> None:
@@ -132,7 +171,6 @@ def select_last(page: Page) -> Any:
 
 def curl_body(page: Page, path: str = "front") -> Any:
     """Return the body of the request to a path that the page copies as a curl command."""
-    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     curl = page.get_by_role("button", name="Copy as curl")
     curl.click()
     expect(curl).to_have_text("Copied")

@@ -49,7 +49,6 @@ def test_the_python_program_plans_the_front_that_is_on_the_screen(page: Page) ->
     wait_until_planned(page)
     page.get_by_role("slider", name="Balance").press("End")
     wait_for_next_frame(page)
-    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy as Python").click()
     expect(page.get_by_text("Copied")).to_be_visible()
     output = io.StringIO()
@@ -71,7 +70,6 @@ def test_a_link_opens_the_selected_tour_and_plans_what_has_expired(
     slider.press("ArrowLeft")
     wait_for_next_frame(page)
     said = slider.get_attribute("aria-valuetext") or ""
-    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy link").click()
     expect(page.get_by_text("Copied")).to_be_visible()
     link = page.evaluate("navigator.clipboard.readText()")

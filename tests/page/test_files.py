@@ -34,9 +34,8 @@ pytestmark = needs_chromium
 
 
 def test_a_picture_of_a_map_is_covered(browser: Browser) -> None:
-    with serving(app_of(limits=Settings().limits)) as address:
-        page = browser.new_page()
-        page.goto(address)
+    app = app_of(limits=Settings().limits)
+    with serving(app) as address, open_page(browser, address) as page:
         walls = np.full((20, 30), 255, dtype=np.uint8)
         walls[5:15, 12:14] = 0
         picture = BytesIO()
@@ -50,7 +49,6 @@ def test_a_picture_of_a_map_is_covered(browser: Browser) -> None:
         wait_until_planned(page)
         expect(page.locator("#grid")).to_be_visible()
         expect(page.locator("#plane-1")).to_be_hidden()
-        page.close()
 
 
 def test_stops_are_planned_under_their_names_and_ids(page: Page) -> None:

@@ -12,21 +12,18 @@ pytestmark = needs_chromium
 
 
 def test_a_link_opens_the_same_front_with_its_cities(page: Page, browser: Browser) -> None:
-    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy link").click()
     expect(page.get_by_text("Copied")).to_be_visible()
     front = page.locator("#front-chart").get_attribute("aria-label")
-    other = browser.new_page()
-    other.goto(page.evaluate("navigator.clipboard.readText()"))
-    expect(other.locator("#count")).to_have_text("61 stops")
-    expect(other.locator("#front-chart")).to_have_attribute("aria-label", front or "")
-    other.get_by_text("Details", exact=True).click()
-    expect(other.get_by_text("is drawn here while a search runs")).to_be_visible()
-    other.goto(page.url.partition("#")[0] + "#front=none")
-    for told in ("#request-fault", "#waiting"):
-        expect(other.locator(told)).to_have_text("There is no front 'none'.")
-    assert other.get_by_label("Example").evaluate("choice => choice.selectedIndex") == 0
-    other.close()
+    with open_page(browser, page.evaluate("navigator.clipboard.readText()")) as other:
+        expect(other.locator("#count")).to_have_text("61 stops")
+        expect(other.locator("#front-chart")).to_have_attribute("aria-label", front or "")
+        other.get_by_text("Details", exact=True).click()
+        expect(other.get_by_text("is drawn here while a search runs")).to_be_visible()
+        other.goto(page.url.partition("#")[0] + "#front=none")
+        for told in ("#request-fault", "#waiting"):
+            expect(other.locator(told)).to_have_text("There is no front 'none'.")
+        assert other.get_by_label("Example").evaluate("choice => choice.selectedIndex") == 0
 
 
 def test_a_link_to_a_front_of_an_example_names_the_example(browser: Browser, released: str) -> None:
@@ -36,7 +33,6 @@ def test_a_link_to_a_front_of_an_example_names_the_example(browser: Browser, rel
         slider.press("Home")
         slider.press("ArrowRight")
         selected = slider.get_attribute("aria-valuetext") or ""
-        page.context.grant_permissions(["clipboard-read", "clipboard-write"])
         page.get_by_role("button", name="Copy link").click()
         expect(page.get_by_text("Copied")).to_be_visible()
         link = page.evaluate("navigator.clipboard.readText()")
@@ -58,7 +54,6 @@ def test_a_link_to_the_networks_front_calls_it_that(page: Page, browser: Browser
     page.get_by_label("Seconds of planning").fill("0")
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
-    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy link").click()
     expect(page.get_by_text("Copied")).to_be_visible()
     with open_page(browser, page.evaluate("navigator.clipboard.readText()")) as other:
@@ -75,7 +70,6 @@ def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
     open_files(page, {"costs.json": json.dumps({"matrices": matrices, "time_limit": 0})})
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
-    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy link").click()
     expect(page.get_by_text("This link opens the front without its maps")).to_be_visible()
     link = page.evaluate("navigator.clipboard.readText()")

@@ -87,6 +87,7 @@ def test_nothing_moves_by_itself_once_a_front_is_drawn(
         wait_for_next_frame(page)
         assert page.evaluate("firstFront") > 0
         assert shifts_after_the_first_front(page) == []
+        page.close()  # what watches would go on in the tests that follow
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -230,16 +230,14 @@ def test_the_front_can_be_taken_along(page: Page, released: str) -> None:
 
 
 def test_the_reference_needs_nothing_from_elsewhere(browser: Browser, released: str) -> None:
-    page = browser.new_page()
-    page.goto(f"{released}/docs")
-    expect(
-        page.get_by_role(
-            "button", name="POST /front Plan the front of tours through the cities given"
-        )
-    ).to_be_visible()
-    expect(page.get_by_role("button", name="Authorize")).to_be_hidden()
-    expect(page.locator(".authorization__btn").first).to_be_hidden()
-    page.close()
+    with open_page(browser, f"{released}/docs") as page:
+        expect(
+            page.get_by_role(
+                "button", name="POST /front Plan the front of tours through the cities given"
+            )
+        ).to_be_visible()
+        expect(page.get_by_role("button", name="Authorize")).to_be_hidden()
+        expect(page.locator(".authorization__btn").first).to_be_hidden()
 
 
 @at_both_widths
