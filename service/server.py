@@ -34,7 +34,7 @@ from service.jobs.local_engine import LocalEngine
 from service.jobs.runner import MakeRunner, load_runner, warm_up
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
-from service.jobs.worker_pool import WorkerPool
+from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.road_measurer import RoadMeasurer
 from service.requests.task import parse_task
 from service.roads.client import RoadClient

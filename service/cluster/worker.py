@@ -30,7 +30,7 @@ from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason, as_ended, as_failed
 from service.jobs.runner import MakeRunner, Reporter, Runner
 from service.jobs.submission import MOST_ATTEMPTS
-from service.jobs.worker_pool import GRACE, STOP_SECONDS
+from service.jobs.workers.worker_pool import GRACE, STOP_SECONDS
 from service.search.improve import Progress
 
 _CHECK_EVERY = 0.05  # seconds between two checks whether a record is still wanted

@@ -22,7 +22,7 @@ from service.jobs.retries import UnsavedRecords
 from service.jobs.running_job import RunningJob
 from service.jobs.store import Store
 from service.jobs.submission import Submission
-from service.jobs.worker_pool import WorkerPool
+from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.road_measurer import RoadMeasurer
 
 _PAUSE = 0.5  # seconds between two tries to resume the job of an earlier process

@@ -6,7 +6,7 @@ from dataclasses import replace
 from service.jobs.engine import JobState
 from service.jobs.record import Record, Status
 from service.jobs.submission import Submission
-from service.jobs.worker_pool import WorkerPool
+from service.jobs.workers.worker_pool import WorkerPool
 
 
 class RunningJob:

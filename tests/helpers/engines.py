@@ -21,7 +21,7 @@ from service.cluster.redis_engine import connect
 from service.cluster.worker import CeleryWorker, make_record_worker
 from service.jobs.runner import MakeRunner, NamedActor, warm_up
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
-from service.jobs.worker_pool import WorkerPool
+from service.jobs.workers.worker_pool import WorkerPool
 from tests.helpers.cluster_state import ClusterState
 from tests.helpers.redis_server import Redis
 from tests.helpers.serving import LIMITS, app_of, engine_app, runner_of, serving, workers_of

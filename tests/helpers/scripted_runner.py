@@ -15,7 +15,7 @@ import numpy as np
 
 from service.jobs.front_document import FrontDocument, encode_front
 from service.jobs.runner import Report
-from service.jobs.worker_pool import WorkerPool
+from service.jobs.workers.worker_pool import WorkerPool
 from service.planner import Front
 from service.requests.task import TaskSource
 from service.search.improve import Progress

@@ -21,7 +21,7 @@ from service.jobs.local_engine import LocalEngine
 from service.jobs.runner import MakeRunner, NamedActor, TaskRunner
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
-from service.jobs.worker_pool import WorkerPool
+from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.limits import Limits
 from service.server import build, uvicorn_config
 from service.settings import Settings

@@ -11,7 +11,7 @@ from service.jobs.local_engine import LocalEngine
 from service.jobs.record import Record, as_finished
 from service.jobs.retries import UnsavedRecords
 from service.jobs.submission import Submission
-from service.jobs.worker_pool import WorkerPool
+from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.task import TaskSource
 from tests.helpers.actors import Shuffler
 from tests.helpers.scripted_runner import document

@@ -24,7 +24,7 @@ from service.errors import (
     WorkerLost,
 )
 from service.jobs.front_document import FrontDocument
-from service.jobs.worker_pool import WorkerPool
+from service.jobs.workers.worker_pool import WorkerPool
 from tests.helpers.scripted_runner import ScriptedRunner, source, worker_pool
 
 

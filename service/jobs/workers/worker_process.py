@@ -16,7 +16,8 @@ from socket import socket, socketpair
 from threading import Lock, Thread
 from typing import Any
 
-from service.jobs.messages import (
+from service.jobs.runner import MakeRunner, Reporter, Runner
+from service.jobs.workers.messages import (
     Do,
     Done,
     Failed,
@@ -29,7 +30,6 @@ from service.jobs.messages import (
     receive,
     receive_blocking,
 )
-from service.jobs.runner import MakeRunner, Reporter, Runner
 from service.requests.task import Task, TaskSource
 
 NICENESS = 5  # of a worker: the event loop comes first, and needs little
@@ -40,7 +40,7 @@ _TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin
 _FORKED_WITH = [
     "scipy.linalg",  # numba imports it when it first loads compiled code
     "service.coverage.survey",
-    "service.jobs.messages",
+    "service.jobs.workers.messages",
     "service.jobs.fleets.fleet_run",
     "service.replanning.replan",
     "service.requests.road_measurer",

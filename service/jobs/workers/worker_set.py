@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from service.errors import NoWorker, WarmingUp
-from service.jobs.messages import Started, Warm, WarmUp
 from service.jobs.retries import GrowingPause
 from service.jobs.runner import MakeRunner
 from service.jobs.submission import Submission
-from service.jobs.worker_process import WorkerProcess
+from service.jobs.workers.messages import Started, Warm, WarmUp
+from service.jobs.workers.worker_process import WorkerProcess
 
 _SHORTEST_PAUSE = 0.5  # seconds until a process that could not even start is tried again
 _LONGEST_PAUSE = 15.0
