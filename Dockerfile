@@ -13,7 +13,7 @@ RUN python -m venv /opt/paretour \
 # Compile the search now, outside the source, where the installed package would be shadowed.
 WORKDIR /opt/paretour
 ENV NUMBA_CACHE_DIR=/var/cache/paretour
-RUN ["/opt/paretour/bin/python", "-c", "from service.jobs.runner import warm_up; warm_up()"]
+RUN ["/opt/paretour/bin/python", "-c", "from service.jobs.compiled_code import warm_up; warm_up()"]
 
 # The same interpreter at the same path, so that the virtual environment works as it is.
 FROM python:3.11-slim

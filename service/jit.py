@@ -14,6 +14,7 @@ number, whichever is loaded first is called in the other's place, and the proces
 (numba#10486). So each process begins at a random number, far from those of all others.
 """
 
+import os
 import secrets
 from collections.abc import Callable
 from functools import partial
@@ -26,7 +27,13 @@ from numba.core.bytecode import FunctionIdentity
 P = ParamSpec("P")
 R = TypeVar("R")
 
-FunctionIdentity._unique_ids = count(secrets.randbits(64))  # noqa: SLF001  # it has no setter
+
+def _number_from_a_random_number() -> None:
+    FunctionIdentity._unique_ids = count(secrets.randbits(64))  # noqa: SLF001  # it has no setter
+
+
+_number_from_a_random_number()
+os.register_at_fork(after_in_child=_number_from_a_random_number)
 
 
 def _can_be_cached() -> bool:

@@ -29,9 +29,10 @@ from service.api.transport.connections import ConnectionLimits, Connections
 from service.api.transport.listener import ACCEPTED_AT_ONCE, bound_sockets, most_connections
 from service.api.transport.protocol import Connection
 from service.cluster import check_cluster
+from service.jobs.compiled_code import warm_up
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
-from service.jobs.runner import MakeRunner, load_runner, warm_up
+from service.jobs.runner import MakeRunner, load_runner
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool

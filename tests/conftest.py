@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from service.jobs.runner import warm_up
+from service.jobs.compiled_code import warm_up
 from tests.helpers.redis_server import Redis, redis_server
 from tests.helpers.serving import serving_released
 from tests.helpers.valhalla import RunningValhalla, valhalla_service

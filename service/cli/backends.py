@@ -119,7 +119,8 @@ class LocalBackend:
         """Return the answer to a request, as the service gives it."""
         from service.cli.configuration import load_settings, load_with
         from service.errors import Refusal
-        from service.jobs.runner import load_runner, warm_up
+        from service.jobs.compiled_code import warm_up
+        from service.jobs.runner import load_runner
         from service.requests.task import TaskKind, TaskSource
 
         runner = load_with(

@@ -2,7 +2,6 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 Mask = NDArray[np.bool_]
 Cells = NDArray[np.int64]
@@ -24,6 +23,8 @@ def free_cells(blocked: Mask, cell_size: float, robot_radius: float) -> Mask:
     """
     if not blocked.any():
         return ~blocked
+    from scipy import ndimage  # here, as it takes a process 0.3 s, and few requests have a map
+
     distances = cell_size * ndimage.distance_transform_edt(~blocked)
     return distances > robot_radius * (1 + _SLACK)
 
@@ -34,6 +35,8 @@ def regions(free: Mask) -> NDArray[np.int32]:
     A region is a connected component of the free cells over their four sides: the cells that a
     robot can reach from one another without cutting a corner.
     """
+    from scipy import ndimage
+
     return ndimage.label(free, output=np.int32)[0]
 
 

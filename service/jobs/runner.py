@@ -10,17 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.actor import NamedActor, load_actors
-from service.coverage import shortest_paths
 from service.coverage.coverage import Coverage
 from service.coverage.survey import CoveragePath, Survey, survey
 from service.errors import Cancelled
 from service.instance import Instance, cumulated_lengths
-from service.jobs.fleets import fleet_run
+from service.jobs.compiled_code import warm_up
 from service.jobs.fleets.fleet_run import run_fleet
 from service.jobs.fleets.robot_run import run_robots
 from service.jobs.front_document import FrontDocument, encode_front
 from service.planner import Front, plan
-from service.replanning import earlier_tours
 from service.replanning.replan import replan
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import Limits, check_reference_point
@@ -30,7 +28,6 @@ from service.requests.stops import UnmeasuredStops, make_instance
 from service.requests.task import Task, TaskSource, parse_task
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
-from service.search import improve
 from service.search.improve import Progress
 
 REPORT_TOURS = 100  # at most in a reported front
@@ -209,14 +206,6 @@ class Reporter:
         self._send(progress, best(REPORT_TOURS))
         ended = time.monotonic()
         self._next = ended + max(REPORT_SECONDS, (ended - began) / REPORT_SHARE)
-
-
-def warm_up() -> None:
-    """Compile everything that is compiled, or load it from the cache, unless it is there."""
-    improve.warm_up()
-    earlier_tours.warm_up()
-    shortest_paths.warm_up()
-    fleet_run.warm_up()
 
 
 def load_runner(

@@ -35,18 +35,8 @@ from service.requests.task import Task, TaskSource
 NICENESS = 5  # of a worker: the event loop comes first, and needs little
 _TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin a call
 
-# Workers are forked from a process that has imported this, and else would do it each anew. Not the
-# service nor ONNX Runtime: a fork copies the locks of their threads but not the threads.
-_FORKED_WITH = [
-    "scipy.linalg",  # numba imports it when it first loads compiled code
-    "service.coverage.survey",
-    "service.jobs.workers.messages",
-    "service.jobs.fleets.fleet_run",
-    "service.replanning.replan",
-    "service.requests.road_measurer",
-]
 _CONTEXT = multiprocessing.get_context("forkserver")
-_CONTEXT.set_forkserver_preload(_FORKED_WITH)
+_CONTEXT.set_forkserver_preload(["service.jobs.workers.preloaded"])
 _BUFFER = 2**20  # bytes
 
 

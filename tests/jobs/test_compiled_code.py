@@ -1,6 +1,7 @@
-"""What a request needs is compiled when a worker says that it is warm."""
+"""What a request needs is compiled when a worker says that it is warm, and loaded by the next."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,8 @@ PLANS = """
 import json, sys
 from pathlib import Path
 import service
-from service.jobs.runner import load_runner, warm_up
+from service.jobs.compiled_code import load_from_cache
+from service.jobs.runner import load_runner
 from service.requests.task import TaskSource
 from service.settings import Settings
 
@@ -23,7 +25,7 @@ def compiled():
 
 settings = Settings()
 runner = load_runner(settings.actors, 1, settings.limits)
-warm_up()
+load_from_cache()
 before = compiled()
 for path in sorted((Path(service.__file__).parent / "examples").glob("*.json")):
     request = json.loads(path.read_text())
@@ -48,3 +50,10 @@ def test_the_examples_and_many_cities_need_nothing_that_is_not_compiled() -> Non
     command = [sys.executable, "-c", PLANS]
     ran = subprocess.run(command, capture_output=True, check=True, cwd=Path(__file__).parents[2])
     assert json.loads(ran.stdout) == {}
+
+
+def test_what_is_not_in_the_cache_is_not_compiled_by_loading_it(tmp_path: Path) -> None:
+    load = "from service.jobs.compiled_code import load_from_cache; load_from_cache()"
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    subprocess.run([sys.executable, "-c", load], check=True, env=environment)
+    assert not list(tmp_path.rglob("*.nbc"))
