@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 from contextlib import chdir
@@ -13,6 +14,7 @@ import playwright
 import pytest
 
 from tests.guide.pages import README, ROOT, Block, blocks, split_commands
+from tests.helpers.command import paretour
 
 REACHED = "localhost:8000"
 RUN = ("curl ", "paretour ", "cat ", "sh ", "node ")
@@ -74,6 +76,8 @@ def _run(block: Block, folder: Path, reached: str) -> list[str]:
 
 
 def _printed(command: str, folder: Path) -> str:
+    if command.startswith("paretour "):
+        return _printed_by_paretour(command, folder)
     path = f"{folder / 'bin'}:{os.environ['PATH']}"
     imported = f"{ROOT}:{ROOT / 'service/client'}"
     command = command.replace("curl ", "curl --silent --show-error --fail-with-body ", 1)
@@ -87,4 +91,16 @@ def _printed(command: str, folder: Path) -> str:
     )
     if ended.returncode:
         pytest.fail(f"{command}\n{ended.stdout}{ended.stderr}")
+    return ended.stdout
+
+
+def _printed_by_paretour(command: str, folder: Path) -> str:
+    """Run the command without a shell, which would start Python anew, and return its output."""
+    words, _, file = command.partition(" > ")
+    ended = paretour(*shlex.split(words)[1:], folder=folder)
+    if ended.returncode:
+        pytest.fail(f"{command}\n{ended.stdout}{ended.stderr}")
+    if file:
+        (folder / file).write_text(ended.stdout)
+        return ""
     return ended.stdout
