@@ -32,7 +32,7 @@ from service.fleet.plans import Plan
 from service.fleet.translation import UNBOUNDED, Goal, Translation
 from service.pareto import hypervolume, nondominated
 from tests.benchmarks import printed
-from tests.benchmarks.fleet_table import OURS, PLAIN, in_boxes
+from tests.benchmarks.fleet_table import OURS, PLAIN, compared
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rivals.ortools_fleets import route_fleet
 from tests.benchmarks.rows import resume
@@ -154,8 +154,6 @@ def rows(n: int, stored: dict[str, Any], names: list[str]) -> list[str]:
             np.mean([entry[key] for entry in each[:counted]]) for key in ("hypervolume", "seconds")
         )
         lines.append(f"  {name}: {volume:.4f} in {seconds:.3f} s")
-    boxes = in_boxes(stored, n)
-    ours, plain = boxes.mean(axis=0)
-    ahead = np.mean(boxes[:, 0] >= boxes[:, 1])
+    ours, plain, ahead = compared(stored, n)
     lines.append(f"  in their own box {ours:.4f} and plainly {plain:.4f}, ahead on {ahead:.0%}")
     return lines
