@@ -74,6 +74,7 @@ def build(settings: Settings) -> FastAPI:
             request_seconds=settings.request_seconds,
             bodies=BodyBounds(
                 under_way=settings.bodies_bytes,
+                share=settings.caller_share,
                 parser=ParserBounds(seconds=settings.parse_seconds, memory=settings.parse_bytes),
             ),
             streets=roads,

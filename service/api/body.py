@@ -53,7 +53,7 @@ async def _receive(request: Request, most_bytes: int, allowance: BodyAllowance) 
     if declared.isdecimal():
         if int(declared) > most_bytes:
             raise _too_long(most_bytes, int(declared))
-        allowance.check(int(declared))
+        allowance.reserve(int(declared))
     # Joined at the end: to let many megabytes grow copies them time and again.
     chunks, length = [], 0
     async for chunk in request.stream():

@@ -15,7 +15,7 @@ from starlette.responses import Response
 from service.actor_info import ActorInfo
 from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
-from service.api.body_budget import DEFAULT_BUDGET, BodyBudget
+from service.api.body_budget import DEFAULT_BUDGET, DEFAULT_SHARE, BodyBudget
 from service.api.disconnect import disconnected
 from service.api.geojson.answers import CONTENT, FrontAnswers
 from service.api.request_bodies import COVERAGE_BODY, FLEET_BODY, FRONT_BODY, REPLAN_BODY
@@ -52,10 +52,12 @@ class BodyBounds:
 
     Args:
         under_way: Bytes of all bodies under way.
+        share: The share of these that the long bodies of one client may take.
         parser: The bounds of a process that parses.
     """
 
     under_way: int = DEFAULT_BUDGET
+    share: float = DEFAULT_SHARE
     parser: ParserBounds = field(default_factory=ParserBounds)
 
 
@@ -90,7 +92,7 @@ class PlanRoutes:
         self._store = store
         self._limits = limits
         self._seconds = seconds
-        self._budget = BodyBudget(bodies.under_way)
+        self._budget = BodyBudget(bodies.under_way, bodies.share)
         self._answers = answers
         self._parser = TaskParser(limits, actors, bodies.parser)
 
@@ -178,7 +180,7 @@ class PlanRoutes:
     async def _plan(self, request: Request, kind: TaskKind, front: str | None = None) -> Response:
         await self._check_place(request)
         # Until there is an answer: what waits for a worker, or is planned, has its body as well.
-        with self._budget.open() as allowance:
+        with self._budget.open(client_of(request)) as allowance:
             received = await receive_source(request, kind, self._limits.body_bytes, allowance)
             body = _Body(received, front, time.monotonic())
             if front is None:

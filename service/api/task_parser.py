@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import os
 import resource
 import warnings
 from collections.abc import Callable, Mapping
@@ -13,6 +14,7 @@ from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
 
 from service.actor_info import ActorInfo
 from service.errors import QueueFull, Refusal
+from service.jobs.worker_process import NICENESS
 from service.requests.limits import Limits, check_structure
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.parser import ReplanSource, parse_replan
@@ -178,7 +180,7 @@ def _parse_bounded(
     parse: _Parse[S, T], source: S, limits: Limits, actors: Mapping[str, ActorInfo], memory: int
 ) -> _Outcome[T]:
     """Parse a body in a process that may take so many bytes more than when it was idle."""
-    _bound_memory(memory)
+    _bound_process(memory)
     with warnings.catch_warnings(record=True) as caught:
         result: T | Refusal
         try:
@@ -195,10 +197,11 @@ def _warning_text(caught: warnings.WarningMessage) -> str:
     return f"{Path(caught.filename).name}:{caught.lineno}: {text}"[:_LONGEST_WARNING]
 
 
-def _bound_memory(memory: int) -> None:
-    """Bound the memory of this process, once."""
+def _bound_process(memory: int) -> None:
+    """Bound the memory of this process, and let the event loop come first, once."""
     _, bound = resource.getrlimit(resource.RLIMIT_DATA)
     if bound == resource.RLIM_INFINITY:
+        os.nice(NICENESS)
         # Pages of data and stack, the sixth number (proc(5)).
         pages = int(Path("/proc/self/statm").read_text().split()[5])
         limit = pages * resource.getpagesize() + memory

@@ -2,7 +2,7 @@
 
 import math
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from itertools import chain
 
 from service.errors import QueueFull, ShareFull
@@ -19,7 +19,10 @@ def places_of_client(workers: int, queue: int, share: float) -> int:
 
 
 class FairQueue:
-    """Submissions that wait: the next is that of the client whose turn is longest ago."""
+    """Submissions that wait: the next is that of the client whose turn is longest ago.
+
+    A client for which one is being run waits behind those for which none is.
+    """
 
     def __init__(self) -> None:
         self._first: deque[Submission] = deque()
@@ -41,15 +44,19 @@ class FairQueue:
         """Add a submission before all others."""
         self._first.appendleft(submission)
 
-    def take(self) -> Submission:
+    def take(self, served: Container[str] = ()) -> Submission:
         """Remove the next submission and return it.
+
+        Args:
+            served: The clients for which one is being run.
 
         Raises:
             IndexError: None waits.
         """
         if self._first or not self._by_client:
             return self._first.popleft()
-        client = next(iter(self._by_client))
+        unserved = (client for client in self._by_client if client not in served)
+        client = next(unserved, next(iter(self._by_client)))
         waiting = self._by_client.pop(client)
         submission = waiting.popleft()
         if waiting:

@@ -33,13 +33,35 @@ def test_a_part_is_left_to_small_bodies() -> None:
     budget = BodyBudget(BUDGET)
     with budget.open() as long, budget.open() as small:
         long.add(bytes(600_000))
-        long.check(10_000)
         with pytest.raises(Refusal, match="all bodies under way must fit 800000 bytes"):
             long.add(bytes(150_000))
         small.add(bytes(100_000))
         with pytest.raises(Refusal):
-            small.check(150_000)
+            small.reserve(150_000)
     assert budget.used == 0
+
+
+def test_a_body_takes_its_declared_length_before_it_comes() -> None:
+    budget = BodyBudget(BUDGET)
+    with budget.open("one") as early, budget.open("another") as late:
+        early.reserve(500_000)
+        with pytest.raises(Refusal):
+            late.reserve(300_000)
+        early.add(bytes(400_000))
+        assert budget.used == 500_000
+    assert budget.used == 0
+
+
+def test_long_bodies_of_one_client_take_no_more_than_its_share() -> None:
+    budget = BodyBudget(BUDGET, share=0.5)
+    with budget.open("one") as first, budget.open("one") as second, budget.open("other") as other:
+        first.reserve(300_000)
+        with pytest.raises(Refusal, match="bodies"):
+            second.reserve(150_000)
+        second.reserve(100_000)
+        other.reserve(300_000)
+    with budget.open("one") as alone:
+        alone.reserve(600_000)
 
 
 def test_many_small_chunks_are_counted_as_what_they_take() -> None:

@@ -232,7 +232,7 @@ class WorkerPool:
             # Before the first is warm, no task that needs compiled code is admitted.
             able = worker.warm if self._workers.was_warm else worker.started
             if able and worker.submission is None and self._queue:
-                submission = self._queue.take()
+                submission = self._queue.take({each.client for each in self.running})
                 worker.submission = submission
                 submission.begin()
                 self._start_timer(submission)

@@ -161,6 +161,24 @@ def test_clients_take_turns_and_none_holds_more_than_its_share() -> None:
     run(test, queue=7, share=0.5)
 
 
+def test_a_client_that_is_served_waits_behind_those_that_are_not() -> None:
+    async def test(workers: WorkerPool) -> None:
+        begun: list[str] = []
+        served, other = (workers.submit(source(b"wait"), client=name) for name in ("many", "other"))
+        submissions = []
+        for name, client in (("m1", "many"), ("m2", "many"), ("o1", "one"), ("t1", "two")):
+            began = partial(begun.append, name)
+            submissions.append(workers.submit(source(), began, client=client))
+        await until(lambda: len(workers.running) == 2)
+        workers.stop(other)
+        for submission in submissions:
+            await submission.front()
+        assert begun == ["o1", "t1", "m1", "m2"]
+        workers.stop(served)
+
+    run(test, workers=2, queue=7)
+
+
 def test_processes_that_cannot_be_started_are_tried_again(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
