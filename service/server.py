@@ -25,8 +25,9 @@ from service.api.metrics import Metrics
 from service.api.plan import BodyBounds
 from service.api.site.tiles import Tiles
 from service.api.task_parser import ParserBounds
+from service.api.transport.acceptor import FairServer
 from service.api.transport.connections import ConnectionLimits, Connections
-from service.api.transport.listener import ACCEPTED_AT_ONCE, bound_sockets, most_connections
+from service.api.transport.listener import bound_sockets, most_connections
 from service.api.transport.protocol import Connection
 from service.cluster import check_cluster
 from service.jobs.compiled_code import warm_up
@@ -105,31 +106,31 @@ def serve(app: FastAPI, settings: Settings) -> None:
         )
     )
     configure_logging(plain=sys.stderr.isatty())
-    config = uvicorn_config(app, connections, settings.drain_seconds)
+    server = make_server(app, connections, settings.drain_seconds)
     try:
-        sockets = bound_sockets(settings.host, settings.port, connections.make_room)
+        sockets = bound_sockets(settings.host, settings.port)
     except OSError as error:
         logging.getLogger("paretour").error("cannot listen: %s", error)
         sys.exit(STARTUP_FAILURE)
     with suppress(KeyboardInterrupt):
-        uvicorn.Server(config).run(sockets)
+        server.run(sockets)
 
 
-def uvicorn_config(app: FastAPI, connections: Connections, drain_seconds: int) -> uvicorn.Config:
-    """Return the configuration of uvicorn: HTTP/1.1 alone, over these connections."""
-    return uvicorn.Config(
+def make_server(app: FastAPI, connections: Connections, drain_seconds: int) -> FairServer:
+    """Return a server of HTTP/1.1 alone, over these connections."""
+    config = uvicorn.Config(
         app,
         http=partial(Connection, connections),  # type: ignore[arg-type]  # called as a class is
         ws="none",
         # Not uvloop: 1 % more answers, but it does not shut down while Redis is connected.
         loop="asyncio",
-        backlog=ACCEPTED_AT_ONCE,
         forwarded_allow_ips=connections.limits.proxies,
         server_header=False,
         log_config=None,
         access_log=False,
         timeout_graceful_shutdown=drain_seconds,
     )
+    return FairServer(config, connections)
 
 
 def build_worker(settings: Settings) -> Callable[[], int]:

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import httpx
-import uvicorn
 from fastapi import FastAPI
 
 from service.api.app import Edge, create_app
@@ -23,7 +22,7 @@ from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.limits import Limits
-from service.server import build, uvicorn_config
+from service.server import build, make_server
 from service.settings import Settings
 from tests.helpers.actors import Shuffler, info_of
 from tests.helpers.processes import UNLIMITED
@@ -108,8 +107,7 @@ def serving(
         connections: the limits of its connections.
     """
     listening = socket.create_server(("127.0.0.1", 0))
-    config = uvicorn_config(app, Connections(connections), drain)
-    server = uvicorn.Server(config)
+    server = make_server(app, Connections(connections), drain)
     thread = threading.Thread(target=server.run, args=[[listening]])
     thread.start()
     url = f"http://127.0.0.1:{listening.getsockname()[1]}"

@@ -11,7 +11,7 @@ from service.api.transport.addresses import network_of, proxies_of
 
 _REFUSED_AT_ONCE = 32  # connections beyond the limits that are told so, at a time
 _LOG_EVERY = 1.0  # seconds between two lines about connections that make way
-_PROXY = ""  # in place of an address, for connections that count for none
+PROXY = ""  # in place of an address, for connections that count for none
 _LOG = logging.getLogger("paretour")
 
 
@@ -64,7 +64,7 @@ class Connections:
 
     def admit(self, connection: OpenConnection, peer: str) -> bool:
         """Take in a new connection of a peer, and return whether there is room for it."""
-        network = _PROXY if self._is_proxy(peer) else network_of(peer)
+        network = self.network_of_peer(peer)
         if self._has_place(network) and self._has_room():
             self._open[connection] = network
             self._held[network] += 1
@@ -73,6 +73,10 @@ class Connections:
             next(iter(self._refused)).abort()
         self._refused[connection] = None
         return False
+
+    def network_of_peer(self, peer: str) -> str:
+        """Return the network that a connection of a peer counts for, PROXY where it is one."""
+        return PROXY if self._is_proxy(peer) else network_of(peer)
 
     def make_room(self) -> bool:
         """Close the connection that has been idle longest, and return whether there was one."""
@@ -108,7 +112,7 @@ class Connections:
 
     def _has_place(self, network: str) -> bool:
         """Return the same of one network, for which one of its own makes way."""
-        if network == _PROXY or self._held[network] < self.limits.of_address:
+        if network == PROXY or self._held[network] < self.limits.of_address:
             return True
         oldest = next((each for each in self._idle if self._open[each] == network), None)
         if oldest is None:
