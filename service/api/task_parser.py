@@ -14,7 +14,6 @@ from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
 
 from service.actor_info import ActorInfo
 from service.errors import QueueFull, Refusal
-from service.jobs.worker_process import NICENESS
 from service.requests.limits import Limits, check_structure
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.parser import ReplanSource, parse_replan
@@ -26,6 +25,7 @@ _FEW_QUOTES = 2000  # those of 300 stops; as many faults take a few milliseconds
 _MEDIUM = 2**20  # bytes that take a tenth of a second or two
 _ATTEMPTS = 2
 _MOST_WAITING = 16  # bodies for each process
+_NICENESS = 5  # as of the processes that plan: the event loop comes first
 _MOST_WARNINGS = 10  # of one body, that are logged
 _LONGEST_WARNING = 500  # characters
 _LOG = logging.getLogger("py.warnings")
@@ -201,7 +201,7 @@ def _bound_process(memory: int) -> None:
     """Bound the memory of this process, and let the event loop come first, once."""
     _, bound = resource.getrlimit(resource.RLIMIT_DATA)
     if bound == resource.RLIM_INFINITY:
-        os.nice(NICENESS)
+        os.nice(_NICENESS)
         # Pages of data and stack, the sixth number (proc(5)).
         pages = int(Path("/proc/self/statm").read_text().split()[5])
         limit = pages * resource.getpagesize() + memory

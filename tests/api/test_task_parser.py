@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import os
 import time
 import warnings
 from collections.abc import Callable
@@ -9,6 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
+import psutil
 import pytest
 
 from service.actor_info import ActorInfo
@@ -118,6 +120,15 @@ def test_an_honest_body_does_not_wait_for_longer_ones() -> None:
     waited, task = asyncio.run(scenario())
     assert task.actor == "pa-one-matrix"
     assert waited < 3
+
+
+def test_a_process_that_parses_gives_way_to_the_event_loop() -> None:
+    async def niceness() -> list[int]:
+        await parser().parse(HONEST)
+        children = psutil.Process().children()
+        return [each.nice() for each in children if "anyio.to_process" in each.cmdline()]
+
+    assert asyncio.run(niceness()) == [min(os.nice(0) + 5, 19)]
 
 
 def test_a_line_that_is_too_long_is_refused() -> None:
