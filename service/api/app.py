@@ -12,6 +12,7 @@ from starlette.responses import Response
 
 from service.actor_info import ActorInfo
 from service.api.auth import Access
+from service.api.body_budget import BodyBounds
 from service.api.exception_handlers import HANDLED, answer_refusal
 from service.api.geojson.answers import FrontAnswers, Streets
 from service.api.metrics import Metrics
@@ -24,7 +25,7 @@ from service.api.middleware import (
     log_request,
 )
 from service.api.openapi import complete
-from service.api.plan import BodyBounds, PlanRoutes
+from service.api.plan import PlanRoutes
 from service.api.request_bodies import request_schemas
 from service.api.responses import ActorsAnswer, HealthAnswer, json_response, problem_responses
 from service.api.site.guide import guide_routes

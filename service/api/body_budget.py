@@ -2,13 +2,28 @@
 
 import sys
 from collections import Counter
+from dataclasses import dataclass, field
 
+from service.api.task_parser import ParserBounds
 from service.errors import Refusal
 
-DEFAULT_BUDGET = 2**27  # bytes
-DEFAULT_SHARE = 0.5
 _SMALL_SHARE = 8  # one part of so many is left to small bodies
 _SMALL = 2**17  # bytes
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyBounds:
+    """What the bodies of all requests may take together.
+
+    Args:
+        under_way: Bytes of all bodies under way.
+        share: The share of these that the long bodies of one client may take.
+        parser: The bounds of a process that parses.
+    """
+
+    under_way: int = 2**27
+    share: float = 0.5
+    parser: ParserBounds = field(default_factory=ParserBounds)
 
 
 class BodyBudget:
@@ -18,11 +33,11 @@ class BodyBudget:
 
     Args:
         limit: Bytes of all bodies.
-        share: The share of them up to which a client may have one more long body under way. One
-            alone may take more.
+        share: The share of them that the long bodies of one client may take; one alone may take
+            more.
     """
 
-    def __init__(self, limit: int = DEFAULT_BUDGET, share: float = DEFAULT_SHARE) -> None:
+    def __init__(self, limit: int, share: float) -> None:
         self._limit = limit
         self._limit_of_long = limit - limit // _SMALL_SHARE
         self._limit_of_client = int(share * limit)

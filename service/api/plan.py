@@ -5,7 +5,7 @@ import hashlib
 import time
 import uuid
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from fastapi import APIRouter
@@ -15,7 +15,7 @@ from starlette.responses import Response
 from service.actor_info import ActorInfo
 from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
-from service.api.body_budget import DEFAULT_BUDGET, DEFAULT_SHARE, BodyBudget
+from service.api.body_budget import BodyBounds, BodyBudget
 from service.api.disconnect import disconnected
 from service.api.geojson.answers import CONTENT, FrontAnswers
 from service.api.request_bodies import COVERAGE_BODY, FLEET_BODY, FRONT_BODY, REPLAN_BODY
@@ -31,7 +31,7 @@ from service.api.responses import (
     problem_responses,
 )
 from service.api.stored_fronts import find_record
-from service.api.task_parser import ParserBounds, TaskParser
+from service.api.task_parser import TaskParser
 from service.jobs.engine import Engine, record_in_time
 from service.jobs.fleets.empty_document import empty_document
 from service.jobs.record import Record
@@ -44,21 +44,6 @@ from service.requests.task import TaskKind, TaskSource
 
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
 _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
-
-
-@dataclass(frozen=True, kw_only=True)
-class BodyBounds:
-    """What the bodies of all requests may take together.
-
-    Args:
-        under_way: Bytes of all bodies under way.
-        share: The share of these that the long bodies of one client may take.
-        parser: The bounds of a process that parses.
-    """
-
-    under_way: int = DEFAULT_BUDGET
-    share: float = DEFAULT_SHARE
-    parser: ParserBounds = field(default_factory=ParserBounds)
 
 
 @dataclass(frozen=True)

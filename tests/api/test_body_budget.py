@@ -10,8 +10,7 @@ import httpx
 import pytest
 
 from service.api.app import Edge
-from service.api.body_budget import BodyBudget
-from service.api.plan import BodyBounds
+from service.api.body_budget import BodyBounds, BodyBudget
 from service.errors import Refusal
 from tests.helpers.serving import app_of, problem, serving
 
@@ -21,7 +20,7 @@ REQUEST = b'{"coordinates":[[0,0,0,0],[1,2,3,4],[5,5,2,1]],"time_limit":0}'
 
 
 def test_an_allowance_gives_its_bytes_back() -> None:
-    budget = BodyBudget(BUDGET)
+    budget = BodyBudget(BUDGET, share=0.5)
     with budget.open() as allowance:
         allowance.add(bytes(1000))
         allowance.add(bytes(1000))
@@ -30,7 +29,7 @@ def test_an_allowance_gives_its_bytes_back() -> None:
 
 
 def test_a_part_is_left_to_small_bodies() -> None:
-    budget = BodyBudget(BUDGET)
+    budget = BodyBudget(BUDGET, share=0.5)
     with budget.open() as long, budget.open() as small:
         long.add(bytes(600_000))
         with pytest.raises(Refusal, match="all bodies under way must fit 800000 bytes"):
@@ -42,7 +41,7 @@ def test_a_part_is_left_to_small_bodies() -> None:
 
 
 def test_a_body_takes_its_declared_length_before_it_comes() -> None:
-    budget = BodyBudget(BUDGET)
+    budget = BodyBudget(BUDGET, share=0.5)
     with budget.open("one") as early, budget.open("another") as late:
         early.reserve(500_000)
         with pytest.raises(Refusal):
@@ -65,7 +64,7 @@ def test_long_bodies_of_one_client_take_no_more_than_its_share() -> None:
 
 
 def test_many_small_chunks_are_counted_as_what_they_take() -> None:
-    budget = BodyBudget(BUDGET)
+    budget = BodyBudget(BUDGET, share=0.5)
     with budget.open() as allowance:
         for _ in range(1000):
             allowance.add(b"x")
