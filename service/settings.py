@@ -128,12 +128,14 @@ class Settings(BaseSettings):
     parse_bytes: int = Field(
         2**29 + 2**28, ge=2**26, description="memory that parsing a body may take"
     )
-    max_cities: int = Field(1000, ge=1, description="the most cities of an instance")
+    max_cities: int = Field(10_000, ge=1, description="the most cities of an instance")
+    max_matrix_cities: int = Field(1000, ge=1, description="the most where costs are matrices")
+    max_network_cities: int = Field(2000, ge=1, description="the most in tours of a network")
     max_fleet_stops: int = Field(
         500, ge=1, description="the most stops of a fleet, and places that robots share"
     )
     max_cells: int = Field(2**20, ge=1, description="the most cells of a map")
-    max_path_cells: int = Field(2**21, ge=1, description="the most cells of all paths of an answer")
+    max_path_cells: int = Field(2**21, ge=1, description="the most cells, or stops, of an answer")
     max_preferences: int = Field(200, ge=1, description="the most preferences of a request")
     max_repairs: int = Field(200, ge=0, description="the most repairs of the network's tours")
     max_size: int = Field(1000, ge=1, description="the most tours that a request may ask for")
@@ -240,6 +242,8 @@ class Settings(BaseSettings):
         return Limits(
             body_bytes=self.max_body_bytes,
             cities=self.max_cities,
+            matrix_cities=self.max_matrix_cities,
+            network_cities=self.max_network_cities,
             fleet_stops=self.max_fleet_stops,
             cells=self.max_cells,
             path_cells=self.max_path_cells,

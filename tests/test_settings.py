@@ -121,3 +121,9 @@ def test_the_command_needs_an_actor(
         main(["serve"])
     assert stopped.value.code == 2
     assert f"{tmp_path} must hold ONNX files" in capsys.readouterr().err
+
+
+def test_a_body_holds_matrices_of_as_many_cities_as_are_allowed() -> None:
+    settings = Settings()
+    assert settings.limits.most_cities("coordinates") == settings.max_cities
+    assert 2 * 8 * settings.limits.most_cities("matrices") ** 2 + 2**10 <= settings.max_body_bytes

@@ -69,6 +69,12 @@ PROBLEMS: Mapping[str, Problem] = {
         413, "grid must have at most {limit} cells, got {came}", ("POST /coverage",)
     ),
     "too-many-cities": Problem(413, "{detail}"),
+    "too-many-for-network": Problem(
+        413,
+        "this {name} asks for tours of a network, which builds those of at most {limit} cities, got"
+        " {actual}: ask for a time_limit above 0, without preferences",
+        _PLANNED,
+    ),
     "not-json": Problem(
         415, "Content-Type must be application/json or multipart/form-data, got {came}"
     ),

@@ -21,7 +21,7 @@ from service.jobs.front_document import FrontDocument, encode_front
 from service.planner import Front, plan
 from service.replanning.replan import replan
 from service.requests.fleets.subject import UnmeasuredFleet
-from service.requests.limits import Limits, check_reference_point
+from service.requests.limits import Limits, check_reference_point, within_network
 from service.requests.maps.robots import SharedCoverage
 from service.requests.road_measurer import BlockingMeasurer, needs_roads
 from service.requests.stops import UnmeasuredStops, make_instance
@@ -135,11 +135,12 @@ class TaskRunner:
         self, task: Task, coverage: Coverage, stop: Callable[[], bool], report: Report
     ) -> FrontDocument:
         began = time.perf_counter()
-        surveyed = survey(coverage, self.limits.cities, stop)
+        surveyed = survey(coverage, self.limits.most_places(shared=False), stop)
         check_reference_point(surveyed.instance, task.options)
         survey_seconds = time.perf_counter() - began
         places = surveyed.places.tolist()
-        task = replace(task, options=replace(task.options, start=surveyed.start))
+        options = within_network(task.options, surveyed.instance.n, self.limits)
+        task = replace(task, options=replace(options, start=surveyed.start))
         front = self._plan(task, surveyed.instance, stop, report, places)
         began = time.perf_counter()
         paths = self._paths(surveyed, front, stop) if task.paths else None

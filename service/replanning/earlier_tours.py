@@ -1,6 +1,6 @@
 """First tours made of those of an earlier front: what is left of each, with new cities in it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from service.search.costs import Costs, make_costs, step_costs
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
+MOST_TRIED = 2**25  # places of cities that are inserted, each in some ten nanoseconds
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,22 @@ class EarlierTours:
     def driven(self) -> NDArray[np.int64]:
         """What is left of the tour being driven, shape (k,)."""
         return self.tours[0]
+
+
+def few_enough(instance: Instance, earlier: EarlierTours, most: int = MOST_TRIED) -> EarlierTours:
+    """Return the earlier tours, or fewer of them, so that to complete them takes at most a second.
+
+    Those that stay are the one being driven, and others evenly spread.
+
+    Args:
+        instance: The instance.
+        earlier: The earlier tours, shape (m, k).
+        most: The most places, of all cities in all tours, that are tried to insert them.
+    """
+    m, k = earlier.tours.shape
+    fitting = max(1, most // max(1, instance.n * (instance.n - k)))
+    chosen = np.linspace(0, m - 1, min(m, fitting)).astype(np.intp)
+    return replace(earlier, tours=earlier.tours[chosen])
 
 
 def completed(instance: Instance, earlier: EarlierTours) -> Tours:

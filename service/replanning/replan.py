@@ -11,7 +11,13 @@ from service.errors import Refusal
 from service.instance import Instance, tour_lengths
 from service.pareto import best_subset, nondominated
 from service.planner import Front, PlanOptions, Report, plan
-from service.replanning.earlier_tours import EarlierTours, Tours, completed, touched_cities
+from service.replanning.earlier_tours import (
+    EarlierTours,
+    Tours,
+    completed,
+    few_enough,
+    touched_cities,
+)
 from service.replanning.kept_legs import kept_shares, most_like_driven
 from service.search.improve import Progress
 
@@ -74,7 +80,7 @@ def _first_tours(instance: Instance, earlier: EarlierTours) -> Tours:
     """Return the earlier tours, complete, those first that keep most of the driven one."""
     if earlier.tours.shape[1] == 0:
         return np.empty((0, instance.n), np.int64)
-    tours = completed(instance, earlier)
+    tours = completed(instance, few_enough(instance, earlier))
     kept = kept_shares(instance, tours, earlier.driven)
     return tours[np.argsort(-kept, kind="stable")]
 

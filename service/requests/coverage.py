@@ -144,10 +144,10 @@ def _coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
     """Return the JSON schema of a request under these limits, with these actors to choose from."""
     schema = limited_schema(CoverageRequest, limits, actors)
     fields = schema["properties"]
-    describe_robots(schema, limits.cities)
+    describe_robots(schema, limits.most_places(shared=False))
     forms = describe_map(schema, limits.cells)
     del fields["spacing"]["default"]
-    fields["places"]["maxItems"] = limits.cities
+    fields["places"]["maxItems"] = limits.most_places(shared=False)
     in_a_frame = [{"required": ["origin"]}, {"required": ["occupancy_grid"]}]
     schema["dependentSchemas"] = {
         **rules_of_robots(),
@@ -193,8 +193,9 @@ def parse_coverage_request(
     check_robots(request.robots, request.over, request.model_fields_set, request.closed)
     check_costs(request.second_matrix, "second_matrix", LARGEST)
     # With a spacing, the number of places is not known before the survey.
-    check_limits(request, len(request.places) or limits.cities, limits)
-    return lower_defaults(request, limits)
+    n = len(request.places) or most
+    check_limits(request, n, limits)
+    return lower_defaults(request, n, limits)
 
 
 def _check_poses(request: CoverageRequest) -> None:

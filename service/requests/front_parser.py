@@ -29,11 +29,13 @@ def parse_front_request(
     request = parse_json(model, body)
     _check_form(request, npy is not None)
     if npy is not None:
-        request = request.model_copy(update={"matrices": read_npy(npy, limits.cities)})
+        request = request.model_copy(
+            update={"matrices": read_npy(npy, limits.most_cities("matrices"))}
+        )
     _check_cities(request, limits)
     request = _by_index(request)
     check_limits(request, request.n, limits)
-    return lower_defaults(request, limits)
+    return lower_defaults(request, request.n, limits)
 
 
 def _check_form(request: FrontRequest, with_file: bool) -> None:
@@ -55,8 +57,13 @@ def _check_form(request: FrontRequest, with_file: bool) -> None:
 
 def _check_cities(request: FrontRequest, limits: Limits) -> None:
     form = "stops" if request.stops else request.kind
+    # By the larger limit first: only then are the costs of stops read, which tell their kind.
     if request.n > limits.cities:
         raise too_many_cities(form, limits.cities, request.n)
+    most = limits.most_cities("matrices")
+    if request.n > most and request.kind == "matrices":
+        condition = " unless both objectives have coordinates" if request.stops else ""
+        raise too_many_cities(form, most, request.n, condition)
     if request.matrices.size:
         _check_matrices(request)
     if request.stops:

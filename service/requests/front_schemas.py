@@ -28,7 +28,7 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     """Return the schemas of all forms by name, with those of the stops and objectives in them."""
     whole = limited_schema(FrontRequest, limits, actors)
     parts = whole.pop("$defs")
-    _limit_cities(whole["properties"], limits.cities)
+    _limit_cities(whole["properties"], limits)
     if not limits.roads:
         whole["properties"]["geometry"]["enum"].remove("roads")
     cities = _by_index(whole)
@@ -60,10 +60,10 @@ def without_null(schema: Schema) -> Schema:
     return {**schema, "properties": fields}
 
 
-def _limit_cities(fields: Schema, most: int) -> None:
+def _limit_cities(fields: Schema, limits: Limits) -> None:
     rows = fields["matrices"]["items"]
-    rows["minItems"], rows["maxItems"] = 1, most
-    fields["coordinates"]["maxItems"] = fields["stops"]["maxItems"] = most
+    rows["minItems"], rows["maxItems"] = 1, limits.most_cities("matrices")
+    fields["coordinates"]["maxItems"] = fields["stops"]["maxItems"] = limits.cities
 
 
 def _by_index(schema: Schema) -> Schema:

@@ -1,11 +1,11 @@
 """The limits of a service: on what a request may bring or ask for, as checks and as JSON schema."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from service.errors import Refusal
-from service.instance import Instance, least_lengths
+from service.instance import Instance, Kind, least_lengths
 from service.planner import PlanOptions
 from service.requests.schemas import PlanFields, PlanRequest
 from service.requests.stops import ROAD_MEASURES, Measured, UnmeasuredStops, base_of
@@ -21,10 +21,13 @@ class Limits:
 
     Args:
         body_bytes: Bytes of a body.
-        cities: Cities of an instance, or places on a map.
+        cities: Cities in two planes.
+        matrix_cities: Cities whose costs are matrices: as they come, as they are measured, or over
+            a map.
+        network_cities: Cities of which a network builds tours.
         fleet_stops: Stops of a fleet, and places that several robots share.
         cells: Cells of a map.
-        path_cells: Cells of all paths of an answer, and stops of all its tours with arrivals.
+        path_cells: Cells of all paths of an answer, and stops of all its tours.
         preferences: Preferences of a front.
         repairs: Repairs of the network's tours.
         size: Tours to return, or to bring as initial tours.
@@ -38,14 +41,25 @@ class Limits:
     preferences: int
     size: int
     seconds: float
+    matrix_cities: int = 1000
+    network_cities: int = 2000
     path_cells: int = 2**21
     fleet_stops: int = 500
     repairs: int = 200
     roads: bool = False
 
+    def most_cities(self, kind: Kind) -> int:
+        """Return the most cities of an instance of a kind."""
+        return self.cities if kind == "coordinates" else min(self.cities, self.matrix_cities)
+
     def most_places(self, *, shared: bool) -> int:
         """Return the most places on a map, which several robots share or one visits."""
-        return min(self.cities, self.fleet_stops) if shared else self.cities
+        places = self.most_cities("matrices")
+        return min(places, self.fleet_stops) if shared else places
+
+    def most_tours(self, n: int) -> int:
+        """Return the most tours of n cities, each with its return, that an answer may have."""
+        return max(1, min(self.size, self.path_cells // (n + 1)))
 
 
 def check_structure(body: bytes, limits: Limits) -> None:
@@ -81,8 +95,9 @@ def check_amounts(request: PlanFields, n: int, limits: Limits) -> None:
     for name, (limit, actual) in asked.items():
         if name in request.model_fields_set:
             check_limit(name, limit, actual)
-    if request.arrivals:
-        _check_arrivals(min(request.size, limits.size), n, limits.path_cells)
+    most = limits.most_tours(n)
+    if "size" in request.model_fields_set and request.size > most:
+        raise invalid("size", f"must be at most {most} with {n} cities, got {request.size}")
 
 
 def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
@@ -135,6 +150,26 @@ def check_reference_point(instance: Instance, options: PlanOptions) -> None:
             raise invalid(f"reference_point/{m}", f"{demand}, got {length:.6g}")
 
 
+def within_network(options: PlanOptions, n: int, limits: Limits) -> PlanOptions:
+    """Return the options of n cities; of more than a network serves, without its tours.
+
+    Raises:
+        Refusal: Of more, its tours are asked for: by preferences, or by no time for a search.
+    """
+    if n <= limits.network_cities:
+        return options
+    for part, asked in (
+        ("time_limit", options.time_limit == 0),
+        ("preferences", not options.fewer),
+    ):
+        if asked:
+            most = limits.network_cities
+            raise Refusal(
+                "too-many-for-network", name=part, pointer=f"/{part}", limit=most, actual=n
+            )
+    return replace(options, angles=options.angles[:0])
+
+
 def check_router(stops: UnmeasuredStops, limits: Limits) -> None:
     """Raise a refusal where costs by road are asked for, and no routing engine is configured."""
     if limits.roads:
@@ -145,22 +180,22 @@ def check_router(stops: UnmeasuredStops, limits: Limits) -> None:
             raise Refusal("no-router", name=part, measure=source.measure, pointer=f"/{part}")
 
 
-def lower_defaults(request: AnyPlanRequest, limits: Limits) -> AnyPlanRequest:
-    """Return the request with the limit in place of every default that is over it."""
+def lower_defaults(request: AnyPlanRequest, n: int, limits: Limits) -> AnyPlanRequest:
+    """Return a request about n cities, with the limit in place of every default that is over it."""
     lowered = {
         name: default
-        for name, default in defaults(limits).items()
+        for name, default in defaults(limits, n).items()
         if name not in request.model_fields_set and default < getattr(request, name)
     }
     # A field with a lower default still counts as not given.
     return type(request).model_construct(request.model_fields_set, **{**dict(request), **lowered})
 
 
-def defaults(limits: Limits) -> dict[str, float]:
-    """Return the defaults under these limits: a request that is silent is never over a limit."""
+def defaults(limits: Limits, n: int = 1) -> dict[str, float]:
+    """Return the defaults under these limits, for n cities: silence is never over a limit."""
     most = {
         "preferences": limits.preferences,
-        "size": limits.size,
+        "size": limits.most_tours(n),
         "repairs": limits.repairs,
         "time_limit": limits.seconds,
     }
@@ -200,13 +235,6 @@ def limited_schema(
 def reference_to(name: str) -> dict[str, str]:
     """Return the schema that refers to a component of an OpenAPI document."""
     return {"$ref": f"#/components/schemas/{name}"}
-
-
-def _check_arrivals(size: int, n: int, most: int) -> None:
-    """Raise a refusal where tours with arrivals would have too many stops together."""
-    if size * (n + 1) > most:
-        demand = f"must be at most {most // (n + 1)} with arrivals of {n} cities, got {size}"
-        raise invalid("size", demand)
 
 
 def check_limit(name: str, limit: float, actual: float) -> None:

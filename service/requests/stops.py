@@ -112,8 +112,7 @@ class UnmeasuredStops:
     @property
     def kind(self) -> Kind:
         """The kind of instance that they become."""
-        in_planes = all(isinstance(source, Plane) for source in self.sources)
-        return "coordinates" if in_planes else "matrices"
+        return kind_of(self.sources)
 
     @property
     def measured(self) -> bool:
@@ -139,6 +138,12 @@ class UnmeasuredStops:
             return source
 
         return replace(self, sources=[measured(source) for source in self.sources])
+
+
+def kind_of(sources: Sequence[Source]) -> Kind:
+    """Return the kind of instance that stops with these sources of costs become."""
+    in_planes = all(isinstance(source, Plane) for source in sources)
+    return "coordinates" if in_planes else "matrices"
 
 
 def base_of(source: Source) -> Source:

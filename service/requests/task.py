@@ -20,6 +20,7 @@ from service.requests.limits import (
     check_reference_point,
     check_router,
     check_structure,
+    within_network,
 )
 from service.requests.maps.robots import SharedCoverage
 from service.requests.replan.rest_request import RestOfMapRequest, RestRequest
@@ -97,7 +98,8 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
     model = RestRequest if source.kind == "replan" else FrontRequest
     request = parse_front_request(source.body, limits, source.upload, model)
     name = choose_actor(actors, request.kind, request.requested_actor)
-    subject, options = request.subject(), _options(request, actors[name])
+    options = within_network(_options(request, actors[name]), request.n, limits)
+    subject = request.subject()
     if isinstance(subject, Instance):
         check_reference_point(subject, options)
     return Task(

@@ -47,9 +47,14 @@ def invalid(part: str, demand: str) -> Refusal:
     return Refusal("invalid-request", detail=f"{part} {demand}", pointer=f"/{part}")
 
 
-def too_many_cities(part: str, limit: int, actual: int) -> Refusal:
-    """Return the refusal of more rows, each a city, than are allowed."""
-    detail = f"{part} must have at most {limit} rows, got {actual}"
+def too_many_cities(part: str, limit: int, actual: int, condition: str = "") -> Refusal:
+    """Return the refusal of more rows, each a city, than are allowed, under a condition if any."""
+    detail = f"{part} must have at most {limit} rows{condition}, got {actual}"
+    return too_many_stops(part, detail, limit, actual)
+
+
+def too_many_stops(part: str, detail: str, limit: int, actual: int) -> Refusal:
+    """Return the refusal of more cities than are allowed, in these words."""
     return Refusal("too-many-cities", detail=detail, pointer=f"/{part}", limit=limit, actual=actual)
 
 

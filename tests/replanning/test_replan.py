@@ -1,6 +1,7 @@
 """Replanned fronts against brute force on the remaining problem, over random changes."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,19 +10,20 @@ from service.errors import Refusal
 from service.instance import Instance
 from service.pareto import nondominated
 from service.planner import Front, PlanOptions
-from service.replanning.earlier_tours import EarlierTours, completed, touched_cities
+from service.replanning.earlier_tours import EarlierTours, completed, few_enough, touched_cities
 from service.replanning.kept_legs import kept_shares
 from service.replanning.replan import replan
 from service.requests.limits import Limits
+from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.stops import UnmeasuredStops, make_instance
-from service.requests.task import Task
+from service.requests.task import Task, TaskSource
 from tests.helpers.actors import Shuffler, info_of
 from tests.helpers.changes import Change, random_change
 
 CHANGES, PARTS = 300, 10
 LIMITS = Limits(body_bytes=2**20, cities=50, cells=100, preferences=99, size=9999, seconds=9)
-INFOS = {"any": info_of("any", "matrices")}
+INFOS = {kind: info_of(kind, kind) for kind in ("coordinates", "matrices")}
 
 
 def task_of(change: Change, **more: object) -> Task:
@@ -122,6 +124,29 @@ def test_earlier_tours_are_completed_where_it_costs_least() -> None:
 
         others = [[*begun[0, :k], 6, *begun[0, k:]] for k in range(1, 7)]
         assert length(tour) == pytest.approx(min(map(length, others)))
+
+
+def test_fewer_tours_are_completed_where_all_would_take_too_long() -> None:
+    instance = Instance(coordinates=np.random.default_rng(5).random((10, 4)))
+    earlier = EarlierTours(np.array([np.roll(np.arange(6), k) for k in range(5)]))
+    assert len(few_enough(instance, earlier, most=5 * 10 * 4).tours) == 5
+    assert few_enough(instance, earlier, most=3 * 10 * 4).tours[:, 0].tolist() == [0, 4, 2]
+    [driven] = few_enough(instance, earlier, most=1).tours
+    assert driven.tolist() == earlier.driven.tolist()
+
+
+def test_more_stops_than_the_kind_of_their_costs_allows_are_refused_by_what_makes_them_so() -> None:
+    few = replace(LIMITS, matrix_cities=3)
+    source = TaskSource("front", json.dumps({"coordinates": np.eye(4).tolist()}).encode())
+    front = StoredFront("front", source, b'{"lengths":[4,4],"tour":[0,1,2,3]}')
+    entry = {"objective": 0, "from": 1, "to": 2, "cost": 1.0}
+    objectives = [{"name": name, "matrix": [[1] * 4] * 4} for name in "ab"]
+    parse_replan(ReplanSource(b"{}", front), few, INFOS)
+    for change, part in (({"costs": [entry]}, "costs"), ({"objectives": objectives}, "objectives")):
+        with pytest.raises(Refusal) as refused:
+            parse_replan(ReplanSource(json.dumps(change).encode(), front), few, INFOS)
+        assert (refused.value.code, refused.value.limit) == ("too-many-cities", 3)
+        assert refused.value.errors[0].pointer == f"/{part}"
 
 
 def test_cities_that_are_not_touched_have_the_neighbours_and_costs_that_they_had() -> None:

@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -126,6 +127,26 @@ def test_what_is_not_two_matrices_of_costs_is_named(
     refused = refusal(f'{{"matrices": {matrices}}}')
     assert (refused.code, refused.errors[0].pointer) == ("invalid-request", f"/matrices{pointer}")
     assert refused.detail.startswith(f"matrices{pointer} {sentence}")
+
+
+def test_fewer_cities_are_allowed_where_costs_are_matrices() -> None:
+    limits = replace(LIMITS, matrix_cities=2)
+    stops = {"stops": [{"id": each} for each in "abc"]}
+    plane = {"name": "a", "coordinates": [[0, 0]] * 3}
+    planes = [plane, {**plane, "name": "b"}]
+    for within in ({"coordinates": [[0, 0, 0, 0]] * 3}, {**stops, "objectives": planes}):
+        assert parse_front_request(json.dumps(within).encode(), limits).n == 3
+    matrix = {"name": "b", "matrix": [[1] * 3] * 3}
+    for over, sentence in (
+        ({"matrices": [[[1] * 3] * 3] * 2}, "matrices must have at most 2 rows, got 3"),
+        (
+            {**stops, "objectives": [plane, matrix]},
+            "stops must have at most 2 rows unless both objectives have coordinates, got 3",
+        ),
+    ):
+        with pytest.raises(Refusal) as refused:
+            parse_front_request(json.dumps(over).encode(), limits)
+        assert (refused.value.code, refused.value.detail) == ("too-many-cities", sentence)
 
 
 @pytest.mark.parametrize(("member", "city"), [("coordinates", [0, 0, 0, 0]), ("matrices", None)])

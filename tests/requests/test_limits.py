@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from service.errors import Refusal
-from service.requests.limits import check_limits, limited_schema, lower_defaults
+from service.requests.limits import check_limits, limited_schema, lower_defaults, within_network
 from service.requests.schemas import PlanRequest
 from tests.helpers.serving import LIMITS
 
@@ -31,19 +31,37 @@ def test_more_than_a_limit_names_the_limit(member: str, value: Any, limit: float
     assert refused.value.errors[0].pointer == f"/{member}"
 
 
-def test_arrivals_are_bounded_by_the_stops_of_all_tours() -> None:
+def test_tours_are_bounded_by_the_stops_of_all() -> None:
     limits = replace(LIMITS, size=100, path_cells=10 * (N + 1))
-    check_limits(PlanRequest(size=10, arrivals=True), N, limits)
-    check_limits(PlanRequest(size=11), N, limits)
-    with pytest.raises(Refusal, match="size must be at most 10 with arrivals of 12 cities, got 11"):
-        check_limits(PlanRequest(size=11, arrivals=True), N, limits)
+    check_limits(PlanRequest(size=10), N, limits)
+    with pytest.raises(Refusal, match="size must be at most 10 with 12 cities, got 11"):
+        check_limits(PlanRequest(size=11), N, limits)
+    assert lower_defaults(PlanRequest(), N, limits).size == 10
+    assert lower_defaults(PlanRequest(), 10**6, limits).size == 1
+
+
+@pytest.mark.parametrize("members", [{"time_limit": 0}, {"preferences": 3}, {"preferences": [9]}])
+def test_of_more_cities_than_a_network_serves_its_tours_are_refused(members: Any) -> None:
+    limits = replace(LIMITS, network_cities=N - 1)
+    options = PlanRequest.model_validate(members).options()
+    with pytest.raises(Refusal, match="at most 11 cities, got 12: ask for a time_limit") as refused:
+        within_network(options, N, limits)
+    assert (refused.value.status, refused.value.code) == (413, "too-many-for-network")
+    assert (refused.value.limit, refused.value.actual) == (N - 1, N)
+    assert refused.value.errors[0].pointer == f"/{next(iter(members))}"
+    assert within_network(options, N - 1, limits) is options
+
+
+def test_of_more_cities_than_a_network_serves_the_search_is_alone() -> None:
+    options = within_network(PlanRequest().options(), N, replace(LIMITS, network_cities=N - 1))
+    assert (len(options.angles), options.time_limit) == (0, 1.0)
 
 
 def test_preferences_that_are_lowered_still_count_as_not_given() -> None:
     few = replace(LIMITS, preferences=7)
-    silent = lower_defaults(PlanRequest(time_limit=0.1), few).options()
+    silent = lower_defaults(PlanRequest(time_limit=0.1), N, few).options()
     assert (len(silent.angles), silent.fewer) == (7, True)
-    asked = lower_defaults(PlanRequest(preferences=5), few).options()
+    asked = lower_defaults(PlanRequest(preferences=5), N, few).options()
     assert (len(asked.angles), asked.fewer) == (5, False)
 
 
@@ -97,10 +115,10 @@ def test_of_one_city_both_ends_are_the_same_and_closed_tours_have_none() -> None
 
 
 def test_a_default_over_a_limit_is_lowered_and_what_was_asked_for_is_not() -> None:
-    silent = lower_defaults(PlanRequest(), LIMITS)
+    silent = lower_defaults(PlanRequest(), N, LIMITS)
     assert (silent.preferences, silent.size) == (LIMITS.preferences, LIMITS.size)
     assert silent.time_limit == LIMITS.seconds
-    asked = lower_defaults(PlanRequest(size=7), replace(LIMITS, preferences=1000))
+    asked = lower_defaults(PlanRequest(size=7), N, replace(LIMITS, preferences=1000))
     assert (asked.size, asked.preferences) == (7, 100)
 
 

@@ -14,6 +14,7 @@ from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
 
+from service.api.compression import compressed
 from service.api.disconnect import unless_disconnected
 from service.api.geojson.accept import GEOJSON, accepts_geojson
 from service.api.geojson.features import Drawing
@@ -98,7 +99,7 @@ class FrontAnswers:
         """
         self.check(request, record.front.stops, geometry)
         if not accepts_geojson(request):
-            return json_bytes(record.json())
+            return await compressed(request, json_bytes(record.json()))
         tours = b"[" + record.front.tours + b"]"
         return await self._drawn(request, record, tours, geometry, seconds)
 
@@ -109,7 +110,8 @@ class FrontAnswers:
         self.check(request, record.front.stops, geometry)
         tour = record.front.tour(index)
         if not accepts_geojson(request):
-            return json_bytes(b'{"front":' + to_json(record.id) + b"," + tour[1:])
+            answer = json_bytes(b'{"front":' + to_json(record.id) + b"," + tour[1:])
+            return await compressed(request, answer)
         return await self._drawn(request, record, b"[" + tour + b"]", geometry, math.inf)
 
     async def close(self) -> None:
@@ -138,7 +140,8 @@ class FrontAnswers:
         else:
             lines = drawing.straight_lines
         collection = await asyncio.to_thread(drawing.encode, lines)
-        return Response(collection, media_type=GEOJSON, headers=VARY)
+        response = Response(collection, media_type=GEOJSON, headers=VARY)
+        return await compressed(request, response)
 
 
 def _fault(request: Request, sentence: str) -> Fault:

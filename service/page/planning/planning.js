@@ -6,6 +6,8 @@ import { Problem } from "./service.js";
 const GLANCE = 300; // milliseconds from one look at a growing front to the next
 const MOST_WAIT = 5; // seconds between two attempts
 const REFUSED = Symbol("the network has no plan");
+// Of shipments, of windows that are hard to keep, and of very many stops, only the search finds any.
+const SEARCH_ALONE = ["no-plan", "too-many-for-network"];
 const FINAL = ["done", "cancelled", "failed"];
 
 /**
@@ -41,8 +43,7 @@ export class Planning {
     try {
       yield* this.#patiently({ path: request.path, body: { ...body, time_limit: 0, ...soonest } });
     } catch (error) {
-      // Of shipments, and of windows that are hard to keep, only the search finds plans.
-      if (error.code !== "no-plan" || body.time_limit === 0) throw error;
+      if (!SEARCH_ALONE.includes(error.code) || body.time_limit === 0) throw error;
       yield REFUSED;
     }
   }

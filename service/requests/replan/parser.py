@@ -1,6 +1,6 @@
 """Parse requests to replan: from an earlier front and a body to the source of a task."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from io import BytesIO
 from typing import Any
@@ -18,10 +18,10 @@ from service.requests.replan.earlier_map import MAP_MODELS
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.map_fields import check_of_stops
 from service.requests.replan.rest_of_map import rest_of_map
-from service.requests.replan.way import left_of_tours, rest_of_way
-from service.requests.stops import Changed, Matrix, Measured, Objective, Plane, Source
+from service.requests.replan.way import RestOfWay, left_of_tours, rest_of_way
+from service.requests.stops import Changed, Matrix, Measured, Objective, Plane, Source, kind_of
 from service.requests.task import TaskSource, parse_task
-from service.requests.validation import parse_json, too_many_cities
+from service.requests.validation import parse_json, too_many_stops
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +65,12 @@ def rest_source(source: ReplanSource, limits: Limits) -> TaskSource:
     front = read_earlier_front(source.front, limits)
     stops = all_stops(front, request)
     rest = rest_of_way(front, request, stops)
-    if len(rest.stops) > limits.cities:
-        raise too_many_cities("add", limits.cities, len(rest.stops))
+    if not request.objectives:
+        # Before matrices grow by the stops added.
+        _check_cities("add", rest, front.sources, limits)
     check_amounts(request, len(rest.stops), limits)
     objectives, sources = all_costs(front, request, stops)
+    _check_cities("objectives" if request.objectives else "costs", rest, sources, limits)
     sources = [between(each, rest.stops) for each in sources]
     place = np.full(len(stops.stops), -1)
     place[rest.stops] = np.arange(len(rest.stops))
@@ -87,6 +89,16 @@ def rest_source(source: ReplanSource, limits: Limits) -> TaskSource:
         **request.model_dump(include=set(request.options_given)),
     }
     return TaskSource("replan", to_json(members), file)
+
+
+def _check_cities(part: str, rest: RestOfWay, sources: Sequence[Source], limits: Limits) -> None:
+    """Raise a refusal of a part of the request where the rest is of more stops than it may be."""
+    kind = kind_of(sources)
+    most = limits.most_cities(kind)
+    if len(rest.stops) > most:
+        unless = " unless all costs are distances in planes" if kind == "matrices" else ""
+        detail = f"{part} must leave at most {most} stops{unless}, got {len(rest.stops)}"
+        raise too_many_stops(part, detail, most, len(rest.stops))
 
 
 def _touched(

@@ -45,8 +45,9 @@ def rest_of_map(request: ReplanRequest, stored: StoredFront, limits: Limits) -> 
     named = tuple(Stop(str(index)) for index in range(len(places.cells)))
     stops = AllStops(named, earlier.front.n, {})
     rest = rest_of_way(earlier.front, request, stops)
-    if len(rest.stops) > limits.cities:
-        raise too_many_cities("add", limits.cities, len(rest.stops))
+    most = limits.most_places(shared=False)
+    if len(rest.stops) > most:
+        raise too_many_cities("add", most, len(rest.stops))
     check_amounts(request, len(rest.stops), limits)
     place = np.full(len(places.cells), -1)
     place[rest.stops] = np.arange(len(rest.stops))
@@ -127,7 +128,7 @@ def _check_places(
     """Raise a refusal, about the parts of the request, where a place cannot be visited."""
     free = free_cells(task.blocked, task.cell_size, task.robot_radius)
     try:
-        find_places(task, free, limits.cities)
+        find_places(task, free, limits.most_places(shared=False))
     except InvalidCoverage as refusal:
         position = "pose" if request.pose else "position"
         raise InvalidCoverage(*_about_request(refusal.faults, rest, n, position)) from None
