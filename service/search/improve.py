@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 from typing import Literal
 
 import numpy as np
@@ -19,7 +20,10 @@ from service.search import candidates
 from service.search.archive import MAX_POINTS
 from service.search.bound import hypervolume_bound
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
+from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import Search
+from service.search.three_opt.choice import ThreeOptSearch
+from service.search.three_opt.undoable_tour import make_undoable_tour
 
 Array = NDArray[np.float64]
 Termination = Literal["converged", "time_limit", "cancelled"]
@@ -164,6 +168,16 @@ def warm_up() -> None:
         improve(instance, tours, iterations=5_000)
         hypervolume_bound(instance, 12 * instance.scale)
         candidates.warm_up(instance)
+        if instance.coordinates is not None:
+            _warm_up_three_opt(instance)
+
+
+def _warm_up_three_opt(instance: Instance) -> None:
+    """Compile, with a few steps of a search, what only large instances are searched by."""
+    search = Search(instance, 0, instance.n * instance.scale)
+    search.local_search = ThreeOptSearch(search.state, make_undoable_tour(search.n))
+    for _ in islice(search.run(), 2 * WEIGHTS):  # a descent under each weight takes one or more
+        pass
 
 
 def _instances(n: int) -> Iterator[Instance]:

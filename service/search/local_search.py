@@ -9,7 +9,15 @@ from service.search.candidates import Scalarization, weighted_cost
 from service.search.closing import is_kept
 from service.search.costs import lengths
 from service.search.moves import apply_move, block_swap, length_change, or_opt, two_opt
-from service.search.working_tour import WorkingTour, dequeue, enqueue, restore, save, wrap
+from service.search.working_tour import (
+    QueuedTour,
+    WorkingTour,
+    dequeue,
+    enqueue,
+    restore,
+    save,
+    wrap,
+)
 
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
@@ -108,7 +116,7 @@ def descend(
 
 @inlined
 def removes_kept_step(
-    working: WorkingTour, closing: Array | None, start: int, a: int, b: int
+    working: QueuedTour, closing: Array | None, start: int, a: int, b: int
 ) -> bool:
     """Return whether a swap of two blocks removes a step that has to stay in the tour."""
     if closing is None:
@@ -123,7 +131,7 @@ def removes_kept_step(
 
 @inlined
 def often_at_an_end(
-    working: WorkingTour,
+    working: QueuedTour,
     closing: Array | None,
     random: NDArray[np.int64],
     start: int,
@@ -143,8 +151,13 @@ def often_at_an_end(
 
 
 @inlined
-def perturb(working: WorkingTour, scalarization: Scalarization, random: NDArray[np.int64]) -> None:
-    """Swap two adjacent blocks of random sizes at a random place, or at an end of a route."""
+def draw_swap(
+    working: QueuedTour, scalarization: Scalarization, random: NDArray[np.int64]
+) -> tuple[int, int, int]:
+    """Draw a swap of two adjacent blocks of random sizes, at a random place or an end of a route.
+
+    Returns the position of the first block, and the sizes of both.
+    """
     n = len(working.tour)
     longest = min(LONGEST_BLOCK, n // 3)
     start = random_below(random, n)
@@ -153,11 +166,18 @@ def perturb(working: WorkingTour, scalarization: Scalarization, random: NDArray[
     start = often_at_an_end(working, closing, random, start, a + b)
     while removes_kept_step(working, closing, start, a, b):
         start = random_below(random, n)
+    return start, a, b
+
+
+@inlined
+def perturb(working: WorkingTour, scalarization: Scalarization, random: NDArray[np.int64]) -> None:
+    """Swap two adjacent blocks of random sizes at a random place, or at an end of a route."""
+    start, a, b = draw_swap(working, scalarization, random)
     make_move(working, scalarization, start, a, b, False)
 
 
 @compiled
-def offer(working: WorkingTour, scalarization: Scalarization, archive: Archive) -> bool:
+def offer(working: QueuedTour, scalarization: Scalarization, archive: Archive) -> bool:
     """Offer the tour to the archive, and return whether it was inserted.
 
     Lengths that would be accepted are summed afresh first, as updates gather rounding errors.

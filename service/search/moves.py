@@ -15,7 +15,14 @@ from service.jit import inlined
 from service.search.candidates import Scalarization, weighted_cost
 from service.search.closing import is_free_end
 from service.search.costs import step_costs
-from service.search.working_tour import WorkingTour, enqueue, reverse_block, swap_blocks, wrap
+from service.search.working_tour import (
+    QueuedTour,
+    WorkingTour,
+    enqueue,
+    reverse_block,
+    swap_blocks,
+    wrap,
+)
 
 Move = tuple[float, int, int, int, bool]
 
@@ -23,7 +30,7 @@ LONGEST_SEGMENT = 3
 
 
 @inlined
-def neighbour(working: WorkingTour, city: int, direction: int) -> int:
+def neighbour(working: QueuedTour, city: int, direction: int) -> int:
     """Return the city one position after (direction 1) or before (-1) a city."""
     return working.tour[wrap(working.position[city] + direction, len(working.tour))]
 

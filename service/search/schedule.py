@@ -3,8 +3,9 @@
 First every weight gets a tour by descent, then each gets iterated local search, twice. From then
 on weights and gaps in the front compete for the time, by the hypervolume that they lately gained.
 Of many cities the gaps are too wide for that: at its turn each weight is first descended to from
-the best tours under both neighbouring weights, and what lies between is offered to the archive.
-Tours of an earlier front that changed in places are descended from these, and then all compete.
+the best tours under both neighbouring weights, what lies between is offered to the archive, and
+the local search is by three-opt. Tours of an earlier front that changed in places are descended
+from these, and then all compete.
 """
 
 from collections.abc import Iterator
@@ -34,8 +35,6 @@ from service.search.closing import close_routes, open_tours
 from service.search.costs import lengths, make_costs, scaled_reference
 from service.search.local_search import (
     LEAST_GAIN,
-    descend,
-    iterated_local_search,
     nearest_neighbour,
     offer,
 )
@@ -49,7 +48,8 @@ from service.search.pareto_local_search import (
     fill_gaps,
     make_weighted_candidates,
 )
-from service.search.working_tour import enqueue_cities, load, make_working_tour
+from service.search.three_opt.choice import choose_local_search
+from service.search.working_tour import enqueue_cities, make_working_tour
 
 Array = NDArray[np.float64]
 
@@ -105,6 +105,7 @@ class Search:
             make_working_tour(self.n),
             np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
         )
+        self.local_search = choose_local_search(self.state)
 
     @property
     def hypervolume(self) -> float:
@@ -184,18 +185,18 @@ class Search:
 
     def _load_start(self, scalarization: Scalarization, construct: bool) -> None:
         """Load the best tour known for a weighted sum, or a constructed one if that is better."""
-        archive, working = self.state.archive, self.state.working
+        archive, load = self.state.archive, self.local_search.load
         least = np.inf
         if self.size > 0:
             k = best_point(archive, scalarization.w0, scalarization.w1)
             first, second = archive.points[k].tolist()
             least = scalarization.w0 * first + scalarization.w1 * second
-            load(working, archive.tours[archive.slots[k]], first, second)
+            load(archive.tours[archive.slots[k]], first, second)
         if construct or self.size == 0:
             tour = self._construct(scalarization)
             first, second = lengths(scalarization.costs, tour)
             if scalarization.w0 * first + scalarization.w1 * second < least:
-                load(working, tour, first, second)
+                load(tour, first, second)
 
     def _construct(self, scalarization: Scalarization) -> NDArray[np.int32]:
         """Return a tour by nearest neighbours."""
@@ -209,11 +210,10 @@ class Search:
 
     def _descend(self, k: int, construct: bool) -> Iterator[int]:
         """Rank the candidates of weight k, and descend to a local optimum under it."""
-        working = self.state.working
         scalarization = self._scalarization(k)
         rank_candidates(self.pool, scalarization)
         self._load_start(scalarization, construct)
-        cities = working.tour if self.touched is None else self.touched
+        cities = self.local_search.working.tour if self.touched is None else self.touched
         yield from self._sweep(scalarization, cities, offering=self.large and not construct)
         yield 1
 
@@ -224,11 +224,11 @@ class Search:
 
         With `offering` tours on the way are offered too: from another weight's they lie between.
         """
-        working, archive = self.state.working, self.state.archive
+        working, archive = self.local_search.working, self.state.archive
         enqueue_cities(working, cities)
         value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
         block = self.n // OFFERS if offering else DESCENT_BLOCK
-        while descend(working, scalarization, LEAST_GAIN * value, block) == 0:
+        while self.local_search.descend(scalarization, LEAST_GAIN * value, block) == 0:
             if offering:
                 offer(working, scalarization, archive)
             yield 0
@@ -236,21 +236,21 @@ class Search:
 
     def _iterate(self, k: int, iterations: int) -> Iterator[int]:
         """Run so many iterations of iterated local search under weight k."""
-        _, _, archive, working, random = self.state
         scalarization = self._scalarization(k)
         if self.large:
             yield from self._sweep_from_neighbours(k)
         self._load_start(scalarization, construct=False)
         for done in range(0, iterations, self.block):
             steps = min(iterations - done, self.block)
-            iterated_local_search(working, scalarization, archive, random, steps, False)
+            self.local_search.iterate(scalarization, steps)
             yield steps
 
     def _sweep_from_neighbours(self, k: int) -> Iterator[int]:
         """Descend under weight k from the best tours under the weights before and after it."""
         for neighbour in {max(k - 1, 0), min(k + 1, WEIGHTS - 1)} - {k}:
             self._load_start(self._scalarization(neighbour), construct=False)
-            yield from self._sweep(self._scalarization(k), self.state.working.tour, offering=True)
+            cities = self.local_search.working.tour
+            yield from self._sweep(self._scalarization(k), cities, offering=True)
 
     def _fill_gaps(self) -> Iterator[int]:
         """Run about n iterations of Pareto local search."""

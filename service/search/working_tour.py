@@ -4,7 +4,7 @@ The queue serves as don't-look bits (Bentley, 1992): only around cities that it 
 tried, and a move queues the cities at the ends of the edges that it exchanged.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,38 @@ from numpy.typing import NDArray
 from service.jit import compiled, inlined
 
 Cities = NDArray[np.int32]
+
+
+class QueuedTour(Protocol):
+    """The members that all tours that a search changes have: arrays as of WorkingTour."""
+
+    @property
+    def tour(self) -> Cities:
+        """The cities in order."""
+
+    @property
+    def position(self) -> Cities:
+        """The position of each city."""
+
+    @property
+    def length(self) -> NDArray[np.float64]:
+        """Both lengths."""
+
+    @property
+    def buffer(self) -> Cities:
+        """Scratch space of exchange_blocks()."""
+
+    @property
+    def queue(self) -> Cities:
+        """A ring buffer of cities."""
+
+    @property
+    def queued(self) -> NDArray[np.bool_]:
+        """By city: whether the queue holds it."""
+
+    @property
+    def ring(self) -> NDArray[np.int64]:
+        """The place of the queue's head, and the number of cities in the queue."""
 
 
 class WorkingTour(NamedTuple):
@@ -47,7 +79,7 @@ def make_working_tour(n: int) -> WorkingTour:
 
 
 @inlined
-def enqueue(working: WorkingTour, city: int) -> None:
+def enqueue(working: QueuedTour, city: int) -> None:
     """Append a city to the queue, unless the queue holds it."""
     if working.queued[city]:
         return
@@ -59,7 +91,7 @@ def enqueue(working: WorkingTour, city: int) -> None:
 
 
 @inlined
-def dequeue(working: WorkingTour) -> int:
+def dequeue(working: QueuedTour) -> int:
     """Remove the city at the head of the queue and return it."""
     head = working.ring[0]
     city = working.queue[head]
@@ -78,14 +110,14 @@ def wrap(place: int, n: int) -> int:
 
 
 @inlined
-def set_city(working: WorkingTour, place: int, city: int) -> None:
+def set_city(working: QueuedTour, place: int, city: int) -> None:
     """Put a city at a position."""
     working.tour[place] = city
     working.position[city] = place
 
 
 @compiled
-def enqueue_cities(working: WorkingTour, cities: Cities) -> None:
+def enqueue_cities(working: QueuedTour, cities: Cities) -> None:
     """Queue cities in this order."""
     for city in cities:
         enqueue(working, city)
@@ -131,10 +163,22 @@ def reverse_block(working: WorkingTour, start: int, size: int) -> None:
 
     Both give the same closed tour where costs are symmetric; the shorter part is reversed.
     """
-    n = len(working.tour)
+    start, size, _ = shorter_part(len(working.tour), start, size)
+    reverse(working, start, size)
+
+
+@inlined
+def shorter_part(n: int, start: int, size: int) -> tuple[int, int, bool]:
+    """Return start and size of a block, or of all other cities if fewer, and whether it is they."""
     if 2 * size > n:
-        start = wrap(start + size, n)
-        size = n - size
+        return wrap(start + size, n), n - size, True
+    return start, size, False
+
+
+@inlined
+def reverse(working: QueuedTour, start: int, size: int) -> None:
+    """Reverse the block of `size` cities from position start on."""
+    n = len(working.tour)
     left, right = start, wrap(start + size - 1, n)
     for _ in range(size // 2):
         first, last = working.tour[left], working.tour[right]
@@ -146,17 +190,30 @@ def reverse_block(working: WorkingTour, start: int, size: int) -> None:
 
 @inlined
 def swap_blocks(working: WorkingTour, start: int, a: int, b: int) -> None:
-    """Swap the block of `a` cities from position start on with the `b` cities that follow it.
+    """Swap the block of `a` cities from position start on with the `b` cities that follow it."""
+    start, a, b = longest_in_place(len(working.tour), start, a, b)
+    exchange_blocks(working, start, a, b)
+
+
+@inlined
+def longest_in_place(n: int, start: int, a: int, b: int) -> tuple[int, int, int]:
+    """Return a swap of two blocks that gives the same closed tour and moves the fewest cities.
 
     With c cities left over, A B C becomes B A C. As a closed tour this is the same as swapping
     B with C or C with A, so the longest of the three blocks stays where it is.
     """
-    n = len(working.tour)
     c = n - a - b
     if c < a and b <= a:
-        start, a, b = wrap(start + a, n), b, c
-    elif c < b:
-        start, a, b = wrap(start + a + b, n), c, a
+        return wrap(start + a, n), b, c
+    if c < b:
+        return wrap(start + a + b, n), c, a
+    return start, a, b
+
+
+@inlined
+def exchange_blocks(working: QueuedTour, start: int, a: int, b: int) -> None:
+    """Move the block of `a` cities from position start on behind the `b` cities that follow it."""
+    n = len(working.tour)
     source = wrap(start + a, n)
     place = start
     for k in range(a):

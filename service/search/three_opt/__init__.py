@@ -1,0 +1,1 @@
+"""Three-opt: exchanges of two or three steps, found one after another, for large instances."""

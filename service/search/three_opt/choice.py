@@ -1,0 +1,92 @@
+"""The local search for an instance, behind one interface: by three-opt where that finds more."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.search import local_search, working_tour
+from service.search.candidates import Scalarization
+from service.search.pareto_local_search import LARGE, SearchState
+from service.search.three_opt import local_search as three_opt
+from service.search.three_opt import undoable_tour
+from service.search.three_opt.undoable_tour import UndoableTour, make_undoable_tour
+from service.search.working_tour import QueuedTour, WorkingTour
+
+Cities = NDArray[np.int32]
+
+THREE_OPT = LARGE  # cities from which on three-opt, with sweeps, is the better
+
+
+class LocalSearch(Protocol):
+    """A local search from a working tour, which offers what it finds to an archive."""
+
+    @property
+    def working(self) -> QueuedTour:
+        """The tour that it changes."""
+
+    def load(self, tour: Cities, first: float, second: float) -> None:
+        """Replace the working tour by another of known lengths, with an empty queue."""
+
+    def descend(self, scalarization: Scalarization, threshold: float, budget: int) -> int:
+        """Make moves that gain more, for so many cities of the queue; return what is left."""
+
+    def iterate(self, scalarization: Scalarization, steps: int) -> None:
+        """Perturb and descend so many times, returning to the tour before where it was better."""
+
+
+def choose_local_search(state: SearchState) -> LocalSearch:
+    """Return the local search for the instance of a state."""
+    n = len(state.costs.cities)
+    if n >= THREE_OPT and state.costs.symmetric:
+        return ThreeOptSearch(state, make_undoable_tour(n))
+    return TwoOptSearch(state)
+
+
+@dataclass(frozen=True)
+class TwoOptSearch:
+    """A local search by 2-opt and Or-opt, or where costs are asymmetric by swaps of blocks."""
+
+    state: SearchState
+
+    @property
+    def working(self) -> WorkingTour:
+        """The tour that it changes."""
+        return self.state.working
+
+    def load(self, tour: Cities, first: float, second: float) -> None:
+        """Replace the working tour."""
+        working_tour.load(self.working, tour, first, second)
+
+    def descend(self, scalarization: Scalarization, threshold: float, budget: int) -> int:
+        """Make moves that gain more."""
+        return local_search.descend(self.working, scalarization, threshold, budget)
+
+    def iterate(self, scalarization: Scalarization, steps: int) -> None:
+        """Perturb and descend."""
+        _, _, archive, working, random = self.state
+        local_search.iterated_local_search(working, scalarization, archive, random, steps, False)
+
+
+@dataclass(frozen=True)
+class ThreeOptSearch:
+    """A local search by all sequential exchanges of two or three steps, for symmetric costs."""
+
+    state: SearchState
+    working: UndoableTour
+
+    def load(self, tour: Cities, first: float, second: float) -> None:
+        """Replace the working tour."""
+        undoable_tour.load(self.working, tour, first, second)
+
+    def descend(self, scalarization: Scalarization, threshold: float, budget: int) -> int:
+        """Make exchanges that gain more."""
+        return three_opt.descend(self.working, scalarization, threshold, budget, False)
+
+    def iterate(self, scalarization: Scalarization, steps: int) -> None:
+        """Perturb and descend."""
+        state = self.state
+        three_opt.iterated_local_search(
+            self.working, scalarization, state.archive, state.random, steps
+        )

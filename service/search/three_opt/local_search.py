@@ -1,0 +1,117 @@
+"""Local search by three-opt: descent, and iterated local search that undoes what was no gain."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.jit import compiled, inlined
+from service.search.archive import Archive
+from service.search.candidates import Scalarization
+from service.search.local_search import (
+    LEAST_GAIN,
+    LONGEST_BLOCK,
+    draw_swap,
+    offer,
+    random_below,
+    removes_kept_step,
+)
+from service.search.three_opt.exchanges import (
+    NONE,
+    SWAPPED,
+    best_exchange,
+    exchange_of,
+    make_exchange,
+    wide,
+)
+from service.search.three_opt.undoable_tour import MOST_CHANGES, UndoableTour, save, undo
+from service.search.working_tour import dequeue, enqueue, wrap
+
+MOST_CITIES = (MOST_CHANGES - 2) // 2  # after two swaps, as an exchange is two changes at most
+
+
+@inlined
+def improve_at(
+    working: UndoableTour, scalarization: Scalarization, city: int, threshold: float
+) -> None:
+    """Make the best exchange at a city if it gains more than a threshold."""
+    exchange = best_exchange(working, scalarization, city, threshold)
+    if exchange[1] != NONE:
+        make_exchange(working, scalarization, exchange)
+        enqueue(working, city)
+
+
+@compiled
+def descend(
+    working: UndoableTour,
+    scalarization: Scalarization,
+    threshold: float,
+    budget: int,
+    undoable: bool,
+) -> int:
+    """Make improving exchanges at queued cities until the queue or `budget` is used up.
+
+    Returns what is left of the budget: 0 if the descent may not have ended. Where it need not be
+    undone, the log is emptied on the way; else the budget is one that the log holds.
+    """
+    while working.ring[1] > 0 and budget > 0:
+        if not undoable:
+            save(working)
+        improve_at(working, scalarization, dequeue(working), threshold)
+        budget -= 1
+    return budget
+
+
+@inlined
+def perturb(working: UndoableTour, scalarization: Scalarization, random: NDArray[np.int64]) -> None:
+    """Put three adjacent blocks in the opposite order, each as it is: a double bridge.
+
+    Martin, Otto and Felten (1991). It exchanges four steps, and so no exchange undoes it, as one
+    would undo the swap of two blocks that perturbs the search by smaller moves. Where the third
+    block ends at a step that has to stay, two are swapped all the same.
+    """
+    n = len(working.tour)
+    start, a, b = draw_swap(working, scalarization, random)
+    begin = working.tour[wrap(start + a, n)]
+    swap_adjacent(working, scalarization, start, a, b)
+    start, a = wide(working.position[begin]), a + b
+    c = 1 + random_below(random, min(LONGEST_BLOCK, n // 3))
+    if a + c < n and not removes_kept_step(working, scalarization.costs.closing, start, a, c):
+        swap_adjacent(working, scalarization, start, a, c)
+
+
+@inlined
+def swap_adjacent(
+    working: UndoableTour, scalarization: Scalarization, start: int, a: int, b: int
+) -> None:
+    """Swap the block of `a` cities from position start on with the `b` cities that follow it."""
+    n, tour = len(working.tour), working.tour
+    one = tour[start], tour[wrap(start + a - 1, n)]
+    other = tour[wrap(start + a, n)], tour[wrap(start + a + b - 1, n)]
+    make_exchange(working, scalarization, exchange_of(0.0, SWAPPED, 1, one, other))
+
+
+@compiled
+def iterated_local_search(
+    working: UndoableTour,
+    scalarization: Scalarization,
+    archive: Archive,
+    random: NDArray[np.int64],
+    steps: int,
+) -> None:
+    """Perturb and descend `steps` times, undoing all of it wherever the tour before was better.
+
+    Every local optimum is offered to the archive.
+    """
+    w0, w1 = scalarization.w0, scalarization.w1
+    value = w0 * working.length[0] + w1 * working.length[1]
+    threshold = LEAST_GAIN * value
+    save(working)
+    for _ in range(steps):
+        perturb(working, scalarization, random)
+        descend(working, scalarization, threshold, MOST_CITIES, True)
+        offer(working, scalarization, archive)
+        reached = w0 * working.length[0] + w1 * working.length[1]
+        if reached <= value + threshold:
+            value = reached
+            save(working)
+        else:
+            undo(working)

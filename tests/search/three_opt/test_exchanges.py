@@ -1,0 +1,117 @@
+"""Exchanges of three-opt: what one gains is what it changes, and undoing it leaves no trace."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from service.search.archive import make_archive
+from service.search.candidates import Scalarization, weighted_cost
+from service.search.costs import lengths
+from service.search.three_opt.exchanges import NONE, best_exchange, make_exchange
+from service.search.three_opt.local_search import descend, iterated_local_search
+from service.search.three_opt.undoable_tour import (
+    UndoableTour,
+    load,
+    make_undoable_tour,
+    undo,
+)
+from service.search.working_tour import enqueue_cities
+from tests.helpers.instances import opened, random_matrices, scalarization_of
+
+N = 9
+LEAST = 1e-9  # of gains, above what rounding adds
+
+
+def shuffled(scalarization: Scalarization, seed: int) -> UndoableTour:
+    """A random tour, whose positions do not ascend from the invented city of a route."""
+    n = len(scalarization.costs.cities)
+    tour = np.random.default_rng(seed).permutation(n).astype(np.int32)
+    working = make_undoable_tour(n)
+    load(working, tour, *lengths(scalarization.costs, tour))
+    return working
+
+
+def weighted_length(scalarization: Scalarization, tour: np.ndarray) -> float:
+    steps = zip(tour, np.roll(tour, -1), strict=True)
+    return sum(weighted_cost(scalarization, i, j) for i, j in steps)
+
+
+def neighbours(tour: np.ndarray) -> set[frozenset[int]]:
+    steps = zip(tour.tolist(), np.roll(tour, -1).tolist(), strict=True)
+    return {frozenset(step) for step in steps}
+
+
+def best_of_all(scalarization: Scalarization, tour: list[int]) -> float:
+    """The most that any exchange of up to three steps gains: every way to join three blocks."""
+    cost = scalarization.costs.matrix.sum(axis=2) / 2
+
+    def length(way: list[int]) -> float:
+        return float(cost[way, [*way[1:], way[0]]].sum())
+
+    least = length(tour)
+    for turn, i, j in itertools.product(range(len(tour)), repeat=3):
+        turned = tour[turn:] + tour[:turn]
+        head, middle, tail = turned[:i], turned[i:j], turned[j:]
+        if head and i <= j:
+            for a, b in itertools.product((middle, middle[::-1]), (tail, tail[::-1])):
+                least = min(least, length(head + a + b), length(head + b + a))
+    return length(tour) - least
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_an_exchange_gains_what_it_says_changes_three_steps_and_can_be_undone(seed: int) -> None:
+    scalarization = scalarization_of(random_matrices(N, seed, symmetric=True))
+    working = shuffled(scalarization, seed)
+    before, at = working.tour.copy(), working.length.copy()
+    for city in range(N):
+        exchange = best_exchange(working, scalarization, city, LEAST)
+        if exchange[1] == NONE:
+            continue
+        make_exchange(working, scalarization, exchange)
+        gained = weighted_length(scalarization, before) - weighted_length(
+            scalarization, working.tour
+        )
+        assert gained == pytest.approx(exchange[0])
+        assert working.length == pytest.approx(lengths(scalarization.costs, working.tour))
+        assert sorted(working.tour) == list(range(N))
+        assert working.position[working.tour].tolist() == list(range(N))
+        changed = neighbours(before) - neighbours(working.tour)
+        assert len(changed) in (2, 3)
+        assert all(working.queued[list(step)].all() for step in changed)
+        undo(working)
+        assert working.tour.tolist() == before.tolist()
+        assert working.length.tolist() == at.tolist()
+
+
+def test_the_best_exchange_of_a_short_tour_is_the_best_of_all() -> None:
+    """Most, not all: a step added may cost more than the one before it that is removed."""
+    found = most = 0
+    for seed in range(30):
+        scalarization = scalarization_of(random_matrices(7, seed, symmetric=True))
+        working = shuffled(scalarization, seed)
+        gain = max(best_exchange(working, scalarization, city, LEAST)[0] for city in range(7))
+        expected = best_of_all(scalarization, working.tour.tolist())
+        assert gain <= expected + 1e-9
+        found, most = found + (gain > expected - 1e-9), most + 1
+    assert found > 0.9 * most
+
+
+@pytest.mark.parametrize("fixed", ["no", "start", "both"])
+def test_a_search_of_a_route_keeps_its_ends_and_returns_to_the_best(fixed: str) -> None:
+    for seed in range(5):
+        instance = opened(random_matrices(12, seed, symmetric=True), fixed)
+        scalarization = scalarization_of(instance)
+        working = make_undoable_tour(13)
+        load(working, working.tour.copy(), *lengths(scalarization.costs, working.tour))
+        archive = make_archive(13)
+        enqueue_cities(working, working.tour.copy())
+        while descend(working, scalarization, LEAST, 3, False) == 0:
+            pass
+        value = weighted_length(scalarization, working.tour)
+        random = np.array([seed + 1])
+        iterated_local_search(working, scalarization, archive, random, 30)
+        assert weighted_length(scalarization, working.tour) <= value + 1e-9
+        assert sorted(working.tour) == list(range(13))
+        assert working.position[working.tour].tolist() == list(range(13))
+        assert working.length == pytest.approx(lengths(scalarization.costs, working.tour))
