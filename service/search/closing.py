@@ -39,13 +39,24 @@ def closing_costs(instance: Instance) -> Array:
 
 def close_routes(routes: NDArray[np.integer]) -> NDArray[np.int32]:
     """Return open routes, shape (k, n), as closed tours that begin at city 0, shape (k, n + 1)."""
-    return np.pad(routes.astype(np.int32) + 1, ((0, 0), (1, 0)))
+    tours = np.zeros((len(routes), routes.shape[1] + 1), np.int32)
+    tours[:, 1:] = routes
+    tours[:, 1:] += 1
+    return tours
 
 
 def open_tours(instance: Instance, tours: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return closed tours, shape (k, n + 1), as open routes of an instance, shape (k, n)."""
     routes = rotated(tours, (tours == 0).argmax(axis=1))[:, 1:] - np.int32(1)
     return oriented(instance, routes).astype(np.int32)
+
+
+def with_end_last(instance: Instance, tour: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return a closed tour that begins at city 0, with the instance's fixed end, if any, last."""
+    if instance.end is None:
+        return tour
+    end = np.int32(1 + instance.end)
+    return np.append(tour[tour != end], end)
 
 
 @inlined

@@ -31,14 +31,13 @@ from service.search.candidates import (
     make_candidate_pool,
     rank_candidates,
 )
-from service.search.closing import close_routes, open_tours
+from service.search.closing import close_routes, open_tours, with_end_last
 from service.search.costs import lengths, make_costs, scaled_reference
 from service.search.local_search import (
     LEAST_GAIN,
     nearest_neighbour,
     offer,
 )
-from service.search.open_routes import moved_ends
 from service.search.pareto_local_search import (
     LARGE,
     STEPS,
@@ -206,7 +205,7 @@ class Search:
             return tour
         tour[1] = 1 + (self.instance.start or 0)
         nearest_neighbour(scalarization, 2, tour)
-        return close_routes(moved_ends(self.instance, tour[np.newaxis, 1:] - 1))[0]
+        return with_end_last(self.instance, tour)
 
     def _descend(self, k: int, construct: bool) -> Iterator[int]:
         """Rank the candidates of weight k, and descend to a local optimum under it."""
