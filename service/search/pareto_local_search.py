@@ -25,6 +25,7 @@ WEIGHTS = 50  # at 500 cities and 0.3 s better than 100, which get too little ti
 LEAST_SHARE = 1e-3  # of a weight: the other length still counts at the ends, to break ties
 WIDEST_LOGIT = 7.0  # of a weight, where weights are evenly spaced by their logit
 LARGE = 1_500  # cities from which on they are; at 1,000 it is the worse
+FIRST_DIVISOR = 4  # in the first round a weight gets a quarter of the iterations of later ones
 TOURNAMENT_SIZE = 8  # points drawn, of which one is chosen
 STEPS = 10  # of the iterated local search at each point
 SLOPE_REACH = 5  # points to either side over which the slope of the front is taken
@@ -63,6 +64,17 @@ def bisection_order(count: int) -> list[int]:
             order.append(middle)
             intervals += [(low, middle), (middle, high)]
     return order
+
+
+def round_divisors(n: int, touched: NDArray[np.int32] | None) -> tuple[int, ...]:
+    """Return by what the n iterations of every weight are divided, for each round of all weights.
+
+    Tours of an earlier front that may have become worse at most of their cities get a short round,
+    and others none: these are good enough for all to compete at once.
+    """
+    if touched is None:
+        return FIRST_DIVISOR, 1
+    return (FIRST_DIVISOR,) if 2 * len(touched) > n else ()
 
 
 class SearchState(NamedTuple):

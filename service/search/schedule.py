@@ -46,6 +46,7 @@ from service.search.pareto_local_search import (
     bisection_order,
     fill_gaps,
     make_weighted_candidates,
+    round_divisors,
 )
 from service.search.three_opt.choice import choose_local_search
 from service.search.working_tour import enqueue_cities, make_working_tour
@@ -54,7 +55,6 @@ Array = NDArray[np.float64]
 
 CONSTRUCTIONS = 17  # weights for which a tour is constructed as well
 LARGE_CONSTRUCTIONS = 5  # the same, of a large instance
-FIRST_DIVISOR = 4  # in the first round a weight gets a quarter of the iterations of later ones
 OFFERS = 50  # of a large tour on the way of a descent, in each sweep along it
 BLOCK = 300  # iterations between two checks of the deadline, some milliseconds
 FULL_BLOCK = 1_000  # cities beyond which iterations take longer, and fewer are a block
@@ -161,7 +161,7 @@ class Search:
         constructions = LARGE_CONSTRUCTIONS if self.large else CONSTRUCTIONS
         for rank, k in enumerate(bisection_order(WEIGHTS)):
             yield from self._descend(k, construct=rank < constructions and self.touched is None)
-        for divisor in (FIRST_DIVISOR, 1) if self.touched is None else ():
+        for divisor in round_divisors(self.n, self.touched):
             for k in bisection_order(WEIGHTS):
                 yield from self._iterate(k, self.n // divisor)
         yield from self._compete()

@@ -6,7 +6,12 @@ import pytest
 from service.instance import tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve
-from service.search.pareto_local_search import LARGE, LEAST_SHARE
+from service.search.pareto_local_search import (
+    FIRST_DIVISOR,
+    LARGE,
+    LEAST_SHARE,
+    round_divisors,
+)
 from service.search.schedule import Search
 from tests.helpers.instances import ENDS, opened, random_tours, small_integers, uniform
 
@@ -56,6 +61,13 @@ def test_of_many_cities_the_tours_on_the_way_of_a_descent_are_kept() -> None:
     points = search.points()
     assert len(points) > 2
     np.testing.assert_allclose(points, tour_lengths(search.instance, search.tours()))
+
+
+def test_earlier_tours_that_changed_in_most_places_get_a_round_under_each_weight() -> None:
+    few, most = (np.arange(size, dtype=np.int32) for size in (30, 31))
+    assert round_divisors(60, few) == ()
+    assert round_divisors(60, most) == (FIRST_DIVISOR,)
+    assert len(round_divisors(60, None)) == 2
 
 
 def test_little_hypervolume_is_missing_between_the_best_of_many_cities() -> None:
