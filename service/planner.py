@@ -24,6 +24,7 @@ from service.search.open_routes import oriented, plain_tours, rotated
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
+Indices = NDArray[np.intp]
 BOUND_SECONDS = 5.0  # after these a bound, which is valid all along, is tight enough
 
 
@@ -49,6 +50,8 @@ class PlanOptions:
         repairs: How often the constructor repairs each of its tours, at most; with a time limit
             only as often as is estimated to fit.
         fewer_repairs: Whether as many repairs will do as are worth their time at this size.
+        choose_again: Called with what was found and the indices of the best subset of the size:
+            returns those of the tours to report. None reports the best subset.
     """
 
     angles: Array
@@ -63,6 +66,7 @@ class PlanOptions:
     touched: NDArray[np.integer] | None = None
     repairs: int = 0
     fewer_repairs: bool = False
+    choose_again: Callable[[SearchResult, Indices], Indices] | None = None
 
     @property
     def needs_compiled_code(self) -> bool:
@@ -158,6 +162,8 @@ def plan(
     clock.ends("improvement")
     gained = None if before is None else hypervolume(found.points, reference_point) - before
     chosen = best_subset(found.points, options.size, reference_point, stop)
+    if options.choose_again is not None:
+        chosen = options.choose_again(found, chosen)
     tours = found.tours_at(chosen).astype(np.int64)
     clock.ends("selection")
     bound = None

@@ -26,11 +26,13 @@ class EarlierTours:
         min_kept: The least share of the driven tour's legs that a tour shall keep.
         touched: The cities beside which another has gone from one of the tours, or to or from which
             a cost has changed; None where that may be any.
+        balance: Of the tour being driven, in the earlier front; None where it was not of that.
     """
 
     tours: Tours
     min_kept: float = 0.0
     touched: NDArray[np.int64] | None = None
+    balance: float | None = None
 
     @property
     def driven(self) -> NDArray[np.int64]:

@@ -4,9 +4,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance, tour_lengths, tour_steps
+from service.pareto import balances
+from service.search.improve import SearchResult
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
+Indices = NDArray[np.intp]
+_MOST_COMPARED = 100  # tours of about one balance, some milliseconds at thousands of cities
 _EQUAL = 1e-12  # lengths whose relative difference is less count as equal, as in the search
 
 
@@ -54,3 +58,37 @@ def most_like_driven(
     chosen = tours.copy()
     chosen[better] = others[kept_of_equal.argmax(axis=1)[better]]
     return chosen
+
+
+def with_most_kept_at(
+    instance: Instance,
+    driven: NDArray[np.int64],
+    balance: float,
+    found: SearchResult,
+    chosen: Indices,
+) -> Indices:
+    """Return tours chosen of a front, that at a balance replaced by one that keeps more legs.
+
+    Of the tours nearer to the balance than those chosen on either side, that is the one that keeps
+    most of the driven tour's legs. The ends of the front stay.
+
+    Args:
+        instance: The instance.
+        driven: As of kept_shares().
+        balance: In the box of the tours chosen.
+        found: The front.
+        chosen: Indices in it, ascending.
+    """
+    begin = chosen[0]
+    away = np.abs(balances(found.points[begin : chosen[-1] + 1]) - balance)
+    at = int(away[chosen - begin].argmin())
+    if not 0 < at < len(chosen) - 1:
+        return chosen
+    before, after = chosen[at - 1], chosen[at + 1]
+    between = np.arange(before + 1, after)
+    nearest = between[np.argsort(away[between - begin], kind="stable")][:_MOST_COMPARED]
+    nearer = nearest[away[nearest - begin] <= away[[before - begin, after - begin]].min()]
+    kept = kept_shares(instance, found.tours_at(nearer), driven)
+    instead = chosen.copy()
+    instead[at] = nearer[kept.argmax()]
+    return instead

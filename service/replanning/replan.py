@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from service.replanning.earlier_tours import (
     few_enough,
     touched_cities,
 )
-from service.replanning.kept_legs import kept_shares, most_like_driven
+from service.replanning.kept_legs import kept_shares, most_like_driven, with_most_kept_at
 from service.search.improve import Progress
 
 _LEAST_SECONDS = 1e-3  # that are left for the search when the earlier tours took all of its time
@@ -38,7 +39,8 @@ def replan(
 
     The search sets out from the earlier tours. Where it has time, the network builds tours only if
     preferences are asked for: from tours that are nearly right the search gains nothing by more.
-    Of tours of equal lengths an earlier one that keeps more of the driven tour's legs is returned.
+    Of tours of equal lengths an earlier one that keeps more of the driven tour's legs is returned,
+    and at the driven tour's balance, of tours about equally near to it, the one that keeps most.
 
     Args:
         constructor: Builds further tours.
@@ -60,6 +62,9 @@ def replan(
         wanted = replace(wanted, time_limit=max(_LEAST_SECONDS, wanted.time_limit - spent))
     if earlier.min_kept > 0:
         wanted = replace(wanted, size=max(options.size, _MOST_CELLS // instance.n))
+    elif earlier.balance is not None:
+        choose = partial(with_most_kept_at, instance, earlier.driven, earlier.balance)
+        wanted = replace(wanted, choose_again=choose)
 
     def report_kept(progress: Progress, best: Callable[[int], Front]) -> None:
         report(progress, lambda size: _with_kept(instance, best(size), earlier))

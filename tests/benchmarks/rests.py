@@ -69,12 +69,14 @@ class Rest:
         request: The body of a request for a front of the same rest.
         instance: The same rest, with the cities in the order of the request.
         hints: The tours of the front, cut and completed, shape (k, cities).
+        balance: Of the tour being driven, in the front.
     """
 
     changes: dict[str, Any]
     request: dict[str, Any]
     instance: Instance
     hints: Tours
+    balance: float
 
 
 def draw_stops(shape: str, n: int, changed: int, generator: Generator) -> Stops:
@@ -98,12 +100,12 @@ def _road_stops(n: int, changed: int, generator: Generator) -> Stops:
 
 
 def with_stops_changed(
-    stops: Stops, front: dict[str, Any], changed: int, generator: Generator
+    stops: Stops, front: dict[str, Any], removals: int, additions: int, generator: Generator
 ) -> Rest:
-    """Return the rest where so many stops are removed, and as many added."""
+    """Return the rest where so many stops are removed, and so many added."""
     driven, done = _driven(front)
-    removed = generator.choice(driven[done + 1 :], changed, replace=False).tolist()
-    added = list(range(stops.n, stops.n + changed))
+    removed = generator.choice(driven[done + 1 :], removals, replace=False).tolist()
+    added = list(range(stops.n, stops.n + additions))
     changes = {
         "done": driven[: done + 1],
         "tour": driven,
@@ -137,8 +139,13 @@ def with_costs_changed(
 
 def _driven(front: dict[str, Any]) -> tuple[list[int], int]:
     """Return the tour nearest to balance 0.5, and how many steps of it are done."""
-    driven = min(front["front"], key=lambda tour: abs(tour["balance"] - 0.5))["tour"]
+    driven = _driven_item(front)["tour"]
     return driven, len(driven) // _DONE
+
+
+def _driven_item(front: dict[str, Any]) -> dict[str, Any]:
+    tour: dict[str, Any] = min(front["front"], key=lambda tour: abs(tour["balance"] - 0.5))
+    return tour
 
 
 def _rest(stops: Stops, front: dict[str, Any], changes: dict[str, Any], order: list[int]) -> Rest:
@@ -151,4 +158,5 @@ def _rest(stops: Stops, front: dict[str, Any], changes: dict[str, Any], order: l
     left = [[stop for stop in each["tour"] if stop in inner] for each in front["front"]]
     tours = [[0, *(place[stop] for stop in each), len(order) - 1] for each in left]
     hints = completed(instance, EarlierTours(np.array(tours)))
-    return Rest(changes, {**members, **ends}, instance, hints)
+    balance = _driven_item(front)["balance"]
+    return Rest(changes, {**members, **ends}, instance, hints, balance)

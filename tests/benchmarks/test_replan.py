@@ -11,7 +11,7 @@ from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.task import TaskSource
-from tests.benchmarks.replan import longer_than, share_of, unmet
+from tests.benchmarks.replan import longer_than, removed_and_added, share_of, unmet
 from tests.benchmarks.rests import (
     ROADS,
     ROADS_COSTS,
@@ -32,8 +32,18 @@ def drawn(shape: str) -> tuple[Stops, dict[str, Any], Rest]:
     stops = draw_stops(shape, N, 0 if shape == ROADS_COSTS else 2, generator)
     tours = [[0, *generator.permutation(np.arange(1, N)).tolist()] for _ in range(3)]
     front = {"front": [{"balance": each / 2, "tour": tours[each]} for each in range(3)]}
-    change = with_costs_changed if shape == ROADS_COSTS else with_stops_changed
-    return stops, front, change(stops, front, 2, generator)
+    if shape == ROADS_COSTS:
+        return stops, front, with_costs_changed(stops, front, 2, generator)
+    return stops, front, with_stops_changed(stops, front, 2, 2, generator)
+
+
+def test_a_share_of_the_stops_is_never_more_than_asked_but_for_one_stop() -> None:
+    for n in (50, 200, 1000):
+        for share in (1, 5, 10):
+            for seed in (0, 1):
+                changed = sum(removed_and_added(n, share, seed))
+                assert changed == 1 or 0.8 <= changed / (n * share / 100) <= 1
+    assert {removed_and_added(50, 1, seed) for seed in (0, 1)} == {(1, 0), (0, 1)}
 
 
 @pytest.mark.parametrize("shape", ["uniform", "clustered", ROADS, ROADS_COSTS])

@@ -7,17 +7,18 @@ import numpy as np
 import pytest
 
 from service.errors import Refusal
-from service.instance import Instance
-from service.pareto import nondominated
+from service.instance import Instance, tour_lengths
+from service.pareto import balances, nondominated
 from service.planner import Front, PlanOptions
 from service.replanning.earlier_tours import EarlierTours, completed, few_enough, touched_cities
-from service.replanning.kept_legs import kept_shares
+from service.replanning.kept_legs import kept_shares, with_most_kept_at
 from service.replanning.replan import replan
 from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.stops import UnmeasuredStops, make_instance
 from service.requests.task import Task, TaskSource
+from service.search.improve import SearchResult
 from tests.helpers.actors import Shuffler, info_of
 from tests.helpers.changes import Change, random_change
 
@@ -193,6 +194,50 @@ def test_new_objectives_may_have_touched_every_city() -> None:
     task = task_of(change, objectives=objectives, add=places, position=None, costs=[])
     assert task.earlier is not None
     assert task.earlier.touched is None
+
+
+def test_the_driven_tour_has_the_balance_that_it_had_in_the_earlier_front() -> None:
+    for seed in range(40):
+        change = random_change(seed)
+        items = json.loads(b"[" + change.front.tours + b"]")
+        driven = [change.ids.index(stop) for stop in change.request["tour"]]
+        ways = [np.roll(item["tour"], -item["tour"].index(driven[0])).tolist() for item in items]
+        expected = balances(np.array([item["lengths"] for item in items]))[ways.index(driven)]
+        earlier = task_of(change).earlier
+        assert earlier is not None
+        assert earlier.balance == expected
+
+
+def test_a_driven_tour_that_was_not_in_the_earlier_front_has_no_balance() -> None:
+    change = random_change(1, least=7)
+    swapped = [*change.request["tour"][:-3], *change.request["tour"][:-4:-1]]
+    earlier = task_of(change, tour=swapped).earlier
+    assert earlier is not None
+    assert earlier.balance is None
+
+
+def test_of_tours_about_equally_balanced_the_one_that_keeps_most_is_chosen() -> None:
+    rng = np.random.default_rng(4)
+    instance = Instance(coordinates=rng.random((9, 4)))
+    tours = np.array([rng.permutation(9) for _ in range(4000)])
+    tours = tours[nondominated(tour_lengths(instance, tours))]
+    found = SearchResult(tour_lengths(instance, tours), tours.__getitem__, None)
+    more = 0
+    for driven in rng.permuted(np.tile(np.arange(9), (40, 1)), axis=1):
+        balance = float(rng.random())
+        chosen = np.sort(rng.permutation(len(tours))[: len(tours) // 3])
+        instead = with_most_kept_at(instance, driven, balance, found, chosen)
+        own = balances(found.points[chosen[0] : chosen[-1] + 1])
+        away = dict(enumerate(np.abs(own - balance), start=chosen[0]))
+        at = min(range(len(chosen)), key=lambda k: away[chosen[k]])
+        others = np.delete(chosen, at)
+        assert np.delete(instead, at).tolist() == others.tolist()
+        kept = kept_shares(instance, tours, driven)
+        nearer = [k for k in away if away[k] < min(away[other] for other in others)]
+        inner = 0 < at < len(chosen) - 1
+        assert kept[instead[at]] == max(kept[nearer]) if inner else instead[at] == chosen[at]
+        more += kept[instead[at]] > kept[chosen[at]]
+    assert more > 0
 
 
 def test_of_equal_lengths_the_tour_most_like_the_driven_one_is_returned() -> None:

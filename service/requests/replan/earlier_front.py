@@ -9,13 +9,14 @@ from pydantic_core import from_json
 
 from service.errors import Refusal
 from service.instance import PLANE, RouteEnds
-from service.pareto import knee
+from service.pareto import balances, knee
 from service.requests.front import FrontRequest
 from service.requests.front_parser import parse_front_request
 from service.requests.limits import Limits
 from service.requests.replan.rest_request import RestRequest
 from service.requests.stops import Labels, Matrix, Objective, Plane, Source, Stop
 from service.requests.task import TaskSource
+from service.search.open_routes import rotated
 
 Array = NDArray[np.float64]
 MOST_TOURS = 50  # of an earlier front, from which the search sets out, as many as it has weights
@@ -52,6 +53,8 @@ class EarlierFront:
         tours: The stops of each tour in order, shape (m, n), evenly spread over the front where
             it has more than MOST_TOURS.
         knee: The tour with the least sum of lengths, each in the front's own box, shape (n,).
+        known: All tours of the front, shape (k, n).
+        balances: Of these, shape (k,).
     """
 
     labels: Labels
@@ -60,11 +63,24 @@ class EarlierFront:
     start: int
     tours: NDArray[np.int64]
     knee: NDArray[np.int64]
+    known: NDArray[np.int64]
+    balances: Array
 
     @property
     def n(self) -> int:
         """The number of stops."""
         return len(self.labels.stops)
+
+    def balance_of(self, tour: NDArray[np.int64]) -> float | None:
+        """Return the balance of a tour in the front; None where it is none of its tours."""
+        same = (self.from_start(self.known) == self.from_start(tour[np.newaxis])).all(axis=1)
+        return float(self.balances[same.argmax()]) if same.any() else None
+
+    def from_start(self, tours: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return tours of the front's stops, shape (m, n), the closed ones from their start on."""
+        if not self.ends.closed:
+            return tours
+        return rotated(tours, (tours == self.start).argmax(axis=1))
 
 
 def read_earlier_front(stored: StoredFront, limits: Limits) -> EarlierFront:
@@ -107,7 +123,16 @@ def with_tours(
     tours, lengths = _read_tours(stored, n)
     chosen = np.linspace(0, len(tours) - 1, min(len(tours), MOST_TOURS)).astype(np.intp)
     ends, start = ends_of(tours[0])
-    return EarlierFront(_numbered(n), (), ends, start, tours[chosen], tours[knee(lengths)])
+    return EarlierFront(
+        labels=_numbered(n),
+        sources=(),
+        ends=ends,
+        start=start,
+        tours=tours[chosen],
+        knee=tours[knee(lengths)],
+        known=tours,
+        balances=balances(lengths),
+    )
 
 
 def refused_now(front: str, refusal: Refusal) -> Refusal:

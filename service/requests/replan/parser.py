@@ -18,7 +18,7 @@ from service.requests.replan.earlier_map import MAP_MODELS
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.map_fields import check_of_stops
 from service.requests.replan.rest_of_map import rest_of_map
-from service.requests.replan.way import RestOfWay, left_of_tours, rest_of_way
+from service.requests.replan.way import RestOfWay, driven_tour, left_of_tours, rest_of_way
 from service.requests.stops import Changed, Matrix, Measured, Objective, Plane, Source, kind_of
 from service.requests.task import TaskSource, parse_task
 from service.requests.validation import parse_json, too_many_stops
@@ -74,7 +74,8 @@ def rest_source(source: ReplanSource, limits: Limits) -> TaskSource:
     sources = [between(each, rest.stops) for each in sources]
     place = np.full(len(stops.stops), -1)
     place[rest.stops] = np.arange(len(rest.stops))
-    left, moved = left_of_tours(front, request, rest)
+    driven = driven_tour(front, request)
+    left, moved = left_of_tours(front, driven, rest)
     file = _matrices_file(sources)
     members = {
         "stops": [vars(stops.stops[index]) for index in rest.stops],
@@ -85,6 +86,7 @@ def rest_source(source: ReplanSource, limits: Limits) -> TaskSource:
         **rest.end_members(place),
         "earlier_tours": place[left].tolist(),
         "touched": _touched(request, stops, moved, place),
+        "balance": front.balance_of(driven),
         "min_kept": request.min_kept,
         **request.model_dump(include=set(request.options_given)),
     }

@@ -22,6 +22,9 @@ class EarlierMembers(BaseModel):
         Field(min_length=1, fail_fast=True),
     ] = Field(description="what is left of each tour, first of the one being driven")
     min_kept: float = Field(default=0.0, ge=0, le=1, allow_inf_nan=False)
+    balance: float | None = Field(
+        default=None, ge=0, le=1, description="of the tour being driven, in the earlier front"
+    )
     touched: Annotated[list[Index], Field(fail_fast=True)] | None = Field(
         default=None, description="the stops at which these may have become worse; null is any"
     )
@@ -38,10 +41,11 @@ class EarlierMembers(BaseModel):
         if not _are_tours(tours, n, ends):
             raise invalid("earlier_tours", "must be of the same stops, between the ends")
         if self.touched is None:
-            return EarlierTours(tours, self.min_kept)
+            return EarlierTours(tours, self.min_kept, balance=self.balance)
         if max(self.touched, default=0) >= n:
             raise invalid("touched", "must be of stops that there are")
-        return EarlierTours(tours, self.min_kept, np.array(self.touched, np.int64))
+        touched = np.array(self.touched, np.int64)
+        return EarlierTours(tours, self.min_kept, touched, self.balance)
 
 
 def _are_tours(tours: NDArray[np.int64], n: int, ends: RouteEnds) -> bool:

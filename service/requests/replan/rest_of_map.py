@@ -20,7 +20,7 @@ from service.requests.replan.earlier_map import read_earlier_map
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.map_fields import check_of_map
 from service.requests.replan.new_places import all_places
-from service.requests.replan.way import RestOfWay, left_of_tours, rest_of_way
+from service.requests.replan.way import RestOfWay, driven_tour, left_of_tours, rest_of_way
 from service.requests.stops import Stop
 from service.requests.task import TaskSource
 from service.requests.validation import invalid, too_many_cities
@@ -51,7 +51,8 @@ def rest_of_map(request: ReplanRequest, stored: StoredFront, limits: Limits) -> 
     check_amounts(request, len(rest.stops), limits)
     place = np.full(len(places.cells), -1)
     place[rest.stops] = np.arange(len(rest.stops))
-    left, moved = left_of_tours(earlier.front, request, rest)
+    driven = driven_tour(earlier.front, request)
+    left, moved = left_of_tours(earlier.front, driven, rest)
     task = _task_of_rest(coverage, places.cells, rest, place)
     _check_places(task, rest, earlier.front.n, request, limits)
     members = {
@@ -59,6 +60,7 @@ def rest_of_map(request: ReplanRequest, stored: StoredFront, limits: Limits) -> 
         **rest.end_members(place),
         "earlier_tours": place[left].tolist(),
         "touched": None if request.map_changed else _at(place, moved),
+        "balance": earlier.front.balance_of(driven),
         "min_kept": request.min_kept,
         **request.model_dump(include={*request.options_given, "paths"}),
     }

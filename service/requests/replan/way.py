@@ -13,7 +13,6 @@ from service.requests.replan.earlier_front import EarlierFront
 from service.requests.replan.fields import ReplanRequest
 from service.requests.stop_fields import find_index
 from service.requests.validation import invalid, show
-from service.search.open_routes import rotated
 
 Tours = NDArray[np.int64]
 
@@ -93,21 +92,18 @@ def rest_of_way(front: EarlierFront, request: ReplanRequest, stops: AllStops) ->
 
 
 def left_of_tours(
-    front: EarlierFront, request: ReplanRequest, rest: RestOfWay
+    front: EarlierFront, driven: NDArray[np.int64], rest: RestOfWay
 ) -> tuple[Tours, NDArray[np.int64]]:
     """Return what is left of the earlier tours, shape (m, k), and the stops with new neighbours.
 
-    In indexes of all stops. The first tour is left of the one being driven. One that begins with
-    its last stops, more of which are done than of its first, is driven the other way round. New
-    neighbours may have the ends, and the stops beside which another has gone from a tour.
-
-    Raises:
-        Refusal: The tour being driven has not all stops of the front once.
+    In indexes of all stops. The first tour is left of the one being driven, shape (n,). One that
+    begins with its last stops, more of which are done than of its first, is driven the other way
+    round. New neighbours may have the ends, and the stops beside which another has gone from a
+    tour.
     """
-    driven = _driven(front, request)
-    if front.ends.closed:
-        driven = np.roll(driven, -int((driven == front.start).argmax()))
-    tours = np.concatenate((_as_driven(front, driven, rest.done)[np.newaxis], _begun(front)))
+    [driven] = front.from_start(driven[np.newaxis])
+    driven = _as_driven(front, driven, rest.done)
+    tours = np.concatenate((driven[np.newaxis], front.from_start(front.tours)))
     is_left = np.zeros(front.n, np.bool_)
     is_left[list(rest.left)] = True
     kept = tours[is_left[tours]].reshape(len(tours), -1)
@@ -144,7 +140,12 @@ def _start(
     return _index(request.position, ids, "position")
 
 
-def _driven(front: EarlierFront, request: ReplanRequest) -> NDArray[np.int64]:
+def driven_tour(front: EarlierFront, request: ReplanRequest) -> NDArray[np.int64]:
+    """Return the tour being driven, shape (n,): by default the front's knee.
+
+    Raises:
+        Refusal: It has not all stops of the front once.
+    """
     if not request.tour:
         return front.knee
     ids = {stop.id: index for index, stop in enumerate(front.labels.stops)}
@@ -152,13 +153,6 @@ def _driven(front: EarlierFront, request: ReplanRequest) -> NDArray[np.int64]:
     if len(tour) != front.n:
         raise invalid("tour", f"must have all {front.n} stops of the front, got {len(tour)}")
     return np.array(tour, np.int64)
-
-
-def _begun(front: EarlierFront) -> Tours:
-    """Return a front's tours, the closed ones from their start on."""
-    if not front.ends.closed:
-        return front.tours
-    return rotated(front.tours, (front.tours == front.start).argmax(axis=1))
 
 
 def _as_driven(
