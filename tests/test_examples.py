@@ -17,7 +17,7 @@ import pytest
 from service.construction.call_estimate import CallEstimate
 from service.coverage.survey import survey
 from service.examples.deliveries import BLACK_SPOTS
-from service.examples.helsinki import CROWDS
+from service.examples.helsinki import CROWDS, people_along
 from service.examples.streets import KINDS
 from service.examples.warehouse import DOCKS
 from service.fleet.planner import FleetOptions, plan_fleet
@@ -40,7 +40,8 @@ INDEX: list[dict[str, Any]] = json.loads((EXAMPLES / "index.json").read_text())
 FLEET = "helsinki-vans.json"
 ROBOTS = "warehouse-robots.json"
 STREETS = "helsinki-streets.json"
-FILES = [*(example["file"] for example in INDEX), STREETS]
+LEGS = "helsinki-legs.json"
+FILES = [*(example["file"] for example in INDEX), STREETS, LEGS]
 OF_TOURS = [example for example in INDEX if example["file"] not in (FLEET, ROBOTS)]
 
 
@@ -133,8 +134,8 @@ def test_without_a_routing_engine_the_script_says_what_it_leaves(tmp_path: Path)
     left = {path.name for path in EXAMPLES.glob("*.json")} - {
         path.name for path in tmp_path.iterdir()
     }
-    assert left == {"index.json", "helsinki-deliveries.json", STREETS}
-    assert f"helsinki-deliveries.json and {STREETS} are left" in said
+    assert left == {"index.json", "helsinki-deliveries.json", STREETS, LEGS}
+    assert f"helsinki-deliveries.json, {STREETS} and {LEGS} are left" in said
 
 
 @pytest.mark.parametrize(
@@ -158,8 +159,35 @@ def test_every_stop_in_helsinki_is_near_a_street_that_is_drawn() -> None:
         assert great_circle_distances(there, places).min() < 60
 
 
-def test_the_streets_are_a_small_file() -> None:
-    assert len(gzip.compress((EXAMPLES / STREETS).read_bytes())) < 30_000
+@pytest.mark.parametrize("file", [STREETS, LEGS])
+def test_streets_and_ways_along_them_are_small_files(file: str) -> None:
+    assert len(gzip.compress((EXAMPLES / file).read_bytes())) < 30_000
+
+
+def test_the_ways_between_stops_meet_as_many_people_as_their_costs_say() -> None:
+    legs = json.loads((EXAMPLES / LEGS).read_text())
+    places = np.array(legs["origin"]) + legs["step"] * np.array(legs["nodes"])
+    one_van = json.loads((EXAMPLES / "helsinki-deliveries.json").read_text())
+    people = np.array(one_van["objectives"][1]["matrix"])
+    stops = range(len(people))
+    np.testing.assert_allclose([stop["location"] for stop in one_van["stops"]], places[stops])
+    # From and to the street nobody is counted; a step is a metre, and the thickest crowd 3 on each.
+    met = [
+        [people_along(places[_way(legs, i, j)[1:-1]]) if i != j else 0 for j in stops]
+        for i in stops
+    ]
+    np.testing.assert_allclose(met, people, rtol=0.02, atol=3)
+
+
+def _way(legs: dict[str, Any], start: int, end: int) -> list[int]:
+    """Return the nodes of the way from stop to stop."""
+    digits = iter(legs["legs"][start][end])
+    way = [start]
+    while way[-1] != end:
+        ahead = legs["next"][way[-1]]
+        way.append(ahead[int(next(digits))] if len(ahead) > 1 else ahead[0])
+    assert not list(digits)
+    return way
 
 
 def _without_numbers(value: Any) -> Any:

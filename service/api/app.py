@@ -117,7 +117,7 @@ def create_app(
         version=version,
         lifespan=lifespan,
         middleware=edge.middleware,
-        routes=[edge.tiles.route, *static_routes(), *guide_routes()],
+        routes=[edge.tiles.route(edge.streets is not None), *static_routes(), *guide_routes()],
         exception_handlers=dict.fromkeys(HANDLED, answer_refusal),
         redirect_slashes=False,
         generate_unique_id_function=lambda route: route.name,

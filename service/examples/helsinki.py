@@ -91,11 +91,11 @@ def _people(streets: Mapping[Leg, Line]) -> NDArray[np.int64]:
     """Return how many people are met on the way from each stop to each, shape (n, n)."""
     people = np.zeros((STOPS, STOPS), dtype=np.int64)
     for leg, line in streets.items():
-        people[leg] = round(_people_along(np.array(line)))
+        people[leg] = round(people_along(np.array(line)))
     return people
 
 
-def _people_along(line: Array) -> float:
+def people_along(line: Array) -> float:
     """Return how many people are met along a line of places, shape (p, 2)."""
     middles = (line[:-1] + line[1:]) / 2
     people = np.full(len(middles), USUAL)

@@ -17,7 +17,7 @@ from service.roads.polyline import decode_polyline
 CREDIT = "Streets © OpenStreetMap contributors (ODbL)"
 STEP = 1e-5  # degrees: half a metre to the east, one to the north
 KINDS = ("main", "side", "path")
-_SOUTH_WEST, _NORTH_EAST = (24.934, 60.162), (24.956, 60.180)  # all that the extract holds
+ORIGIN, _NORTH_EAST = (24.934, 60.162), (24.956, 60.180)  # all that the extract holds
 _SPACING = (0.0011, 0.00055)  # degrees between places that are asked about: 60 metres either way
 _REACH = 60  # metres around each
 _AT_ONCE = 200  # places in a question
@@ -37,7 +37,7 @@ def streets(router_url: str) -> dict[str, Any]:
         if kind and len(line) > 1:
             lines[kind].add(min(_row(line), _row(line[::-1])))  # both ways along it are one line
     drawn = {kind: sorted(map(list, rows)) for kind, rows in lines.items()}
-    return {"credit": CREDIT, "origin": list(_SOUTH_WEST), "step": STEP, **drawn}
+    return {"credit": CREDIT, "origin": list(ORIGIN), "step": STEP, **drawn}
 
 
 def _edges(router_url: str) -> Iterator[tuple[str | None, NDArray[np.int64]]]:
@@ -52,8 +52,8 @@ def _edges(router_url: str) -> Iterator[tuple[str | None, NDArray[np.int64]]]:
 
 
 def _grid() -> Iterator[dict[str, float]]:
-    for lon in np.arange(_SOUTH_WEST[0], _NORTH_EAST[0], _SPACING[0]).tolist():
-        for lat in np.arange(_SOUTH_WEST[1], _NORTH_EAST[1], _SPACING[1]).tolist():
+    for lon in np.arange(ORIGIN[0], _NORTH_EAST[0], _SPACING[0]).tolist():
+        for lat in np.arange(ORIGIN[1], _NORTH_EAST[1], _SPACING[1]).tolist():
             yield {"lon": lon, "lat": lat, "radius": _REACH}
 
 
@@ -68,7 +68,7 @@ def _kind(classification: dict[str, str]) -> str | None:
 
 def _line(shape: str) -> NDArray[np.int64]:
     """Return the places of a line in steps from the origin, none of them twice in a row."""
-    places = ((decode_polyline(shape, 6) - _SOUTH_WEST) / STEP).round().astype(np.int64)
+    places = ((decode_polyline(shape, 6) - ORIGIN) / STEP).round().astype(np.int64)
     moved = np.append(True, (np.diff(places, axis=0) != 0).any(axis=1))
     return places[moved]
 

@@ -14,6 +14,7 @@ import { RequestForm } from "./inputs/request_form.js";
 import { say, sentence } from "./planning/status.js";
 import { Planning } from "./planning/planning.js";
 import { stored } from "./planning/stored.js";
+import { Surroundings } from "./opening/surroundings.js";
 import { takeDropped } from "./opening/dropping.js";
 import { Service } from "./planning/service.js";
 
@@ -23,15 +24,20 @@ const { Result } = await import("./result/result.js");
 const form = element("request");
 const service = new Service(() => element("key").value.trim());
 const narrow = matchMedia("(max-width: 860px)"); // the form stands above what it gives, not beside
-const result = new Result((...place) => {
-  placing.clicked(...place);
-  replanForm.clicked(...place);
+const result = new Result({
+  onClick: (...place) => [placing, replanForm].forEach((each) => each.clicked(...place)),
+  onMove(...moved) {
+    input.moveCity(...moved);
+    if (input.priced) say("Moved. Costs that were given as a matrix stay as they are.");
+  },
+  onDelete: (city) => input.deleteCity(city),
 });
 const input = new RequestForm(form, edited);
-const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row));
+const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row), result.wait);
 const examples = new Examples(element("example"), element("about"));
+const surroundings = new Surroundings(service, result);
 const exporting = new ExportButtons(service, screen);
-const replanForm = new ReplanForm(replan);
+const replanForm = new ReplanForm(replan, result.wait);
 
 let way = null; // on which the front that is shown may be replanned
 let objectives = UNNAMED; // as the front that is shown calls them
@@ -52,7 +58,7 @@ function edited(instance, fit) {
   clearFaults();
   say("");
   result.name((objectives = input.objectives), input.ids);
-  result.clear(instance, fit);
+  result.clear(instance, { fit });
   way = null;
   answered(null);
 }
@@ -79,9 +85,10 @@ function screen() {
 
 /** Where form and result stand above each other, the result comes first from when one is planned. */
 function arrange() {
-  const main = element("result").parentElement;
-  if (narrow.matches && (answer || planning)) main.prepend(element("result"));
-  else if (!narrow.matches) main.append(element("result"));
+  const [main, shown] = [form.parentElement, element("result")];
+  const above = main.firstElementChild === shown;
+  const wanted = narrow.matches && Boolean(above || answer || planning);
+  if (wanted !== above) main[wanted ? "prepend" : "append"](shown); // moved, it loses the focus
 }
 
 /** Shows what comes of a plan; `states` asks a planning for it, and until then `waiting` is said. */
@@ -206,18 +213,18 @@ async function openExample(file) {
   leave();
   say("The example is being opened.");
   const mine = (opened += 1);
-  const { places, streets, objectives: names } = examples.chosen;
+  const { objectives: names } = examples.chosen;
   try {
     const wanted = await service.get(`examples/${file}`);
     if (opened > mine) return false;
-    result.surround({ places });
+    surroundings.begin(examples.chosen);
     open(wanted, names);
   } catch (error) {
     fail(error);
     return false;
   }
   examples.opened(input.asked);
-  if (streets) drawStreets(file, streets, places);
+  surroundings.fetch();
   return true;
 }
 
@@ -225,15 +232,9 @@ async function planExample(file) {
   if (await openExample(file)) await plan();
 }
 
-/** Draws the streets of an example, which come after its stops. The map is good without them. */
-async function drawStreets(file, path, places) {
-  const streets = await service.get(`examples/${path}`).catch(() => null);
-  if (examples.chosen?.file === file) result.surround({ streets, places });
-}
-
 function forgetExample() {
   examples.forget();
-  result.surround({});
+  surroundings.forget();
 }
 
 /** Opens the front that the address names; false where it names none. */
@@ -274,6 +275,6 @@ addEventListener("paste", pasted);
 addEventListener("hashchange", openLinked);
 openChosen(); // while the page was being loaded
 
-service.get("page/tiles.json").then((tiles) => result.tile(tiles), () => {});
+service.get("page/map.json").then((map) => result.equip(map, service), () => {});
 examples.offer(await service.get("examples/index.json"));
 if (!(await openLinked()) && !opened) await planExample(examples.first);

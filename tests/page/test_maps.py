@@ -3,13 +3,18 @@
 import json
 import math
 import re
+from urllib.parse import parse_qs, urlsplit
+from xml.etree import ElementTree
 
-from playwright.sync_api import Browser, FloatRect, Page, expect
+from playwright.sync_api import Browser, FloatRect, Page, Route, expect
 
 from tests.helpers.browsing import (
+    SVG,
     needs_chromium,
     open_files,
     open_page,
+    saved,
+    shown_front,
     wait_for_next_frame,
     wait_until_planned,
 )
@@ -28,9 +33,10 @@ COLOURS = """(canvas) => {
 
 
 def test_stops_lie_on_the_tiles_of_their_place(browser: Browser, released: str) -> None:
-    tiles = {"url": f"{released}/page/icon.svg?z={{z}}&x={{x}}&y={{y}}", "credit": "© somebody"}
+    tiles = f"{released}/page/icon.svg?z={{z}}&x={{x}}&y={{y}}"
+    told = {"tiles": tiles, "credit": "© somebody", "roads": False}
     with open_page(browser, "about:blank") as page:
-        page.route("**/page/tiles.json", lambda route: route.fulfill(body=json.dumps(tiles)))
+        page.route("**/page/map.json", lambda route: route.fulfill(body=json.dumps(told)))
         page.goto(released)
         wait_until_planned(page)
         expect(page.locator("#credit")).to_have_text("© somebody")
@@ -77,6 +83,45 @@ def test_without_tiles_an_example_has_its_own_streets_and_the_places_of_its_stor
         expect(page.locator("#credit")).to_be_empty()
         page.get_by_role("button", name="Clear").click()
         expect(page.locator(".place-name")).to_have_count(0)
+
+
+def test_tours_of_the_example_follow_its_streets_and_those_of_a_routing_engine(
+    browser: Browser, released: str
+) -> None:
+    asked = []
+
+    def lead(route: Route) -> None:
+        asked.append(parse_qs(urlsplit(route.request.url).query))
+        line = {"type": "LineString", "coordinates": [[24.94, 60.17], [24.95, 60.17]]}
+        route.fulfill(json={"features": [{"geometry": line}]})
+
+    with open_page(browser, "about:blank") as page:
+        told = {"tiles": None, "credit": "", "roads": True}
+        page.route("**/page/map.json", lambda route: route.fulfill(json=told))
+        page.route("**/tour?*", lead)
+        page.goto(released)
+        wait_until_planned(page)
+        expect(page.locator("#lines")).to_have_text("along the streets")
+        drawing = ElementTree.fromstring(saved(page, "SVG"))
+        line = [path.get("d") or "" for path in drawing.iter(f"{SVG}path")][-1]
+        assert line.count("L") > 500  # places along the streets between 60 stops
+        assert asked == []  # the example's streets are known
+        stops = "id,lon,lat,risk\na,24.94,60.17,1\nb,24.95,60.18,2\nc,24.93,60.16,3"
+        open_files(page, {"stops.csv": stops})
+        page.get_by_role("button", name="Plan", exact=True).click()
+        wait_until_planned(page)
+        expect(page.locator("#lines")).to_have_text("along the streets")
+        front = shown_front(page)
+        most = str(front["front"][0]["lengths"][0])
+        assert asked == [{"front": [front["id"]], "first_at_most": [most], "geometry": ["roads"]}]
+        open_files(page, {"stops.csv": stops})
+        page.route("**/tour?*", lambda route: route.fulfill(status=503))
+        page.get_by_role("button", name="Plan", exact=True).click()
+        with page.expect_response("**/tour?*"):
+            wait_until_planned(page)
+        expect(page.locator("#lines")).to_have_text(
+            "straight lines from stop to stop, not the streets"
+        )
 
 
 def test_an_open_route_has_a_start_and_an_end_on_each_map(page: Page) -> None:

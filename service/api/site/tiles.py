@@ -34,15 +34,18 @@ class Tiles:
         scheme, server, *_ = urlsplit(self.url)
         return f"{scheme}://{server.replace('{s}', '*')}"
 
-    @property
-    def route(self) -> Route:
-        """The route by which the page learns of the tiles."""
-        answer = {"url": self.url, "credit": self.credit}
+    def route(self, roads: bool) -> Route:
+        """Return the route by which the page learns what it may draw on its map.
 
-        async def tiles(_: Request) -> Response:
+        Args:
+            roads: Whether tours can be drawn along the streets, as a routing engine knows them.
+        """
+        answer = {"tiles": self.url, "credit": self.credit, "roads": roads}
+
+        async def tell(_: Request) -> Response:
             return JSONResponse(answer, headers={"Cache-Control": "no-cache"})
 
-        return Route("/page/tiles.json", tiles)
+        return Route("/page/map.json", tell)
 
 
 def checked_template(url: str) -> str:

@@ -4,15 +4,19 @@ export class Placing {
   #button;
   #help;
   #onCity;
+  #onWaiting;
   #once;
   #waiting = null; // { plane, place } of a city that has no second place yet
 
   /**
    * @param {(row: number[]) => void} onCity told of each city that has all its places
+   * @param {(plane: number, place: number[] | null) => void} onWaiting told of a city that has one place
+   *   of two, and with null that there is none
    * @param {{ once?: boolean }} options whether one city is all that is clicked
    */
-  constructor(button, help, onCity, { once = false } = {}) {
+  constructor(button, help, onCity, onWaiting, { once = false } = {}) {
     this.#button = button;
+    this.#onWaiting = onWaiting;
     this.#once = once;
     this.#help = help;
     this.#onCity = onCity;
@@ -27,8 +31,7 @@ export class Placing {
       const first = this.#waiting.place;
       this.#done(plane === 1 ? [...first, ...place] : [...place, ...first]);
     } else {
-      this.#waiting = { plane, place };
-      this.#say();
+      this.#wait({ plane, place });
     }
   }
 
@@ -48,7 +51,12 @@ export class Placing {
 
   #turn(on) {
     this.#button.setAttribute("aria-pressed", String(on));
-    this.#waiting = null;
+    this.#wait(null);
+  }
+
+  #wait(waiting) {
+    this.#waiting = waiting;
+    this.#onWaiting(waiting?.plane, waiting?.place ?? null);
     this.#say();
   }
 

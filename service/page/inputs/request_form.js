@@ -6,7 +6,7 @@ import { askedFor, described, kindOf, requestFor } from "./instance.js";
 import { RequestText } from "../fleet/request_text.js";
 import { nameOf } from "./names.js";
 import { ObjectiveFields } from "./objective_fields.js";
-import { isMeasured, moved, renamed, withAnother, without } from "./stops.js";
+import { isMeasured, moved, put, renamed, withAnother, without } from "./stops.js";
 import { StopsTable } from "./table.js";
 import { counted } from "../common/numbers.js";
 import { asksForPlans } from "../common/nouns.js";
@@ -89,6 +89,33 @@ export class RequestForm {
   /** Adds a stop where it was clicked: a row of four numbers, or longitude and latitude. */
   addCity(row) {
     this.#insert(row);
+  }
+
+  /** Puts a stop where it was dragged: in one of both planes, or on the only map. */
+  moveCity(plane, city, place) {
+    const rounded = place.map((value) => Number(value.toPrecision(7)));
+    if (this.#brought.stops) {
+      this.#brought = put(this.#brought, city, rounded);
+      return this.#edited(false);
+    }
+    const row = this.#rowOf(city);
+    this.#write(this.#rows.map((each, at) => (at === row ? each.toSpliced(2 * plane, 2, ...rounded) : each)), false);
+  }
+
+  /** Whether some costs are those of a matrix, and not measured between places. */
+  get priced() {
+    return Boolean(this.#brought.objectives?.some(({ matrix }) => matrix));
+  }
+
+  /** Deletes a stop that is drawn. */
+  deleteCity(city) {
+    this.#delete(this.#brought.stops ? city : this.#rowOf(city));
+  }
+
+  /** The row of a city, as rows that cannot be drawn are none. */
+  #rowOf(city) {
+    const drawn = this.#rows.flatMap((row, at) => (isCity(row) ? [at] : []));
+    return drawn[city];
   }
 
   get #rows() {

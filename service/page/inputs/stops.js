@@ -1,5 +1,7 @@
 /** Change the stops of a request and, with them, its costs: rename, move, add, delete. */
 
+import { placesOf } from "../fleet/fleet_request.js";
+
 export const isMeasured = ({ objectives }) => Boolean(objectives?.every(({ from }) => from));
 
 /** The same request with other stops, whose objectives keep the rows and columns of `kept`. */
@@ -27,6 +29,15 @@ export function moved(asked, row, column, value) {
     at === row ? { ...stop, location: (stop.location ?? [0, 0]).with(column, value) } : stop,
   );
   return { ...asked, stops };
+}
+
+/** With a stop elsewhere on its map: of locations, or where some lack one of an objective's plane. */
+export function put(asked, row, place) {
+  if (placesOf(asked).onEarth) return { ...asked, stops: asked.stops.with(row, { ...asked.stops[row], location: place }) };
+  const plane = asked.objectives.findIndex(({ coordinates }) => coordinates);
+  const objective = asked.objectives[plane];
+  const coordinates = objective.coordinates.with(row, place);
+  return { ...asked, objectives: asked.objectives.with(plane, { ...objective, coordinates }) };
 }
 
 export function without(asked, row) {

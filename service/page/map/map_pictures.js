@@ -5,17 +5,17 @@ const DASHED = { colour: "pinned", dash: [5, 5] };
 
 export const styleOfTour = (dashed) => (dashed ? DASHED : SELECTED);
 
-/** The map of stops at these places, with tours, each `{ cities, dashed }`, of which the last is selected. */
-export function pictureOfTours(places, tours) {
-  const lines = tours.map(({ cities, dashed }) => ({ places: cities.map((city) => places[city]), ...styleOfTour(dashed) }));
+/** The map of stops at these places, with tours, each `{ cities, dashed }`, of which the last is selected; `lineOf` gives the line of a way. */
+export function pictureOfTours(places, tours, lineOf) {
+  const lines = tours.map(({ cities, dashed }) => ({ places: lineOf(cities), ...styleOfTour(dashed) }));
   return { places: places.filter(Boolean), lines, starts: startsOf(lines.slice(-1)) };
 }
 
 /** The map of stops at these places, with the routes of a plan, each `{ name, stops, style }`. */
-export function pictureOfRoutes(places, routes) {
-  const lines = routes.map(({ name, stops, style }) => ({ name, places: stops.map((stop) => places[stop]), ...style, cased: true }));
-  const starts = [...new Set(lines.map((line) => line.places[0]))];
-  return { places, lines, starts: starts.map((place) => ({ place, colour: "ink" })) };
+export function pictureOfRoutes(places, routes, lineOf) {
+  const lines = routes.map(({ name, stops, style }) => ({ name, places: lineOf(stops), ...style, cased: true }));
+  const starts = [...new Set(routes.map(({ stops }) => stops[0]))];
+  return { places, lines, starts: starts.map((stop) => ({ place: places[stop], colour: "ink" })) };
 }
 
 /** A disc in the colour of each line. */

@@ -8,11 +8,13 @@ import { kindOf } from "../inputs/instance.js";
 import { stylesOf } from "../fleet/route_styles.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
 import { isPlan } from "../common/nouns.js";
-import { Planes } from "./planes.js";
+import { Planes, roundOf } from "./planes.js";
+import { Ways } from "./ways/ways.js";
 
 const element = (id) => document.getElementById(id);
 
 const SINGLE = ["stops", "fleet"]; // of which one map is drawn, of both objectives
+const EDITED = ["stops", "coordinates"]; // of which stops are moved and deleted on the map
 
 /** The places that are drawn, as rows, and whether they are longitude and latitude. */
 const placed = (instance, kind) =>
@@ -20,6 +22,7 @@ const placed = (instance, kind) =>
 
 export class Maps {
   #planes;
+  #ways = new Ways();
   #grid;
   #kind = "coordinates";
   #drawn = 2; // of the planes
@@ -29,14 +32,18 @@ export class Maps {
   #objectives = UNNAMED;
   #ids = null; // of the stops
   #robots = []; // of the request
+  #flown = false; // whether both objectives are measured in straight lines
 
   /**
    * @param {(plane: number, place: number[], only: boolean) => void} onClick told where a plane was
    *   clicked, in longitude and latitude where it is the only one
+   * @param {(plane: number, city: number, place: number[]) => void} onMove told where a stop was put
+   * @param {(city: number) => void} onDelete told which stop is to go
    */
-  constructor(onClick) {
+  constructor({ onClick, onMove, onDelete }) {
     const clicked = (plane, place) => onClick(plane, place, this.#kind === "stops");
-    this.#planes = new Planes([element("plane-1"), element("plane-2")], clicked);
+    this.#planes = new Planes([element("plane-1"), element("plane-2")], { onClick: clicked, onMove, onDelete });
+    this.#planes.follow((cities) => this.#ways.along(cities));
     this.#grid = new GridMap(element("grid"));
   }
 
@@ -48,11 +55,22 @@ export class Maps {
     this.#sayCredit();
   }
 
-  /** Draws what lies around the stops: `streets` where there are no tiles, and `places` by name. */
-  surround({ streets = null, places = [] }) {
+  /** Draws what lies around the stops: `streets` where there are no tiles, and `places` by name; and tours along `legs`. */
+  surround({ streets = null, places = [], legs = null }) {
     this.#streetsCredit = streets?.credit ?? "";
     this.#planes.surround({ streets, places });
+    this.#ways.know(legs);
     this.#sayCredit();
+  }
+
+  /** The ways along streets by which tours are drawn. */
+  get ways() {
+    return this.#ways;
+  }
+
+  /** Whether tours are driven: on the earth, and not under straight lines alone. */
+  get driven() {
+    return this.#onEarth && !this.#flown;
   }
 
   #sayCredit() {
@@ -75,10 +93,19 @@ export class Maps {
     element("length-1").hidden = single;
   }
 
-  /** Shows an instance without tours; `fit` says whether the view moves to hold all of it. */
-  show(instance, fit) {
+  /** Rings a place on a map that is clicked, but no stop yet; null takes the rings away. */
+  wait(plane, place) {
+    this.#planes.wait(plane, place);
+  }
+
+  /**
+   * Shows an instance without tours; `fit` says whether the view moves to hold all of it, `editable`
+   * whether its stops may be moved and deleted, where the page can.
+   */
+  show(instance, fit, editable) {
     this.#kind = kindOf(instance);
     this.#robots = instance.robots ?? [];
+    this.#flown = Boolean(instance.objectives?.every(({ from }) => from === "great_circle"));
     this.#title();
     const { places: rows, onEarth } = placed(instance, this.#kind);
     // Stops lie in one plane, whatever their objectives.
@@ -87,7 +114,10 @@ export class Maps {
     document.querySelector(".wide").hidden = this.#kind !== "grid";
     if (this.#kind === "grid") this.#grid.show(instance);
     else this.#planes.show(rows, fit, onEarth);
+    this.#planes.edit(editable && EDITED.includes(this.#kind), !fit);
     this.#onEarth = onEarth && rows.length > 0;
+    this.#ways.lead(this.#onEarth ? rows : []);
+    this.#sayLines(null);
     this.#sayCredit();
   }
 
@@ -106,8 +136,13 @@ export class Maps {
     const routes = isPlan(item) ? this.#routes(item) : null;
     return this.#planes.drawn.slice(0, this.#drawn).map((places, plane) => ({
       title: element(`plane-${plane + 1}-title`).textContent,
-      ...(routes ? pictureOfRoutes(places, routes) : pictureOfTours(places, tours)),
+      ...this.#pictureOn(plane, places, routes, tours),
     }));
+  }
+
+  #pictureOn(plane, places, routes, tours) {
+    const lineOf = (cities) => this.#planes.drawnLine(plane, cities);
+    return routes ? pictureOfRoutes(places, routes, lineOf) : pictureOfTours(places, tours, lineOf);
   }
 
   #pictureOnGrid(tours, item) {
@@ -120,10 +155,19 @@ export class Maps {
 
   /** Draws a tour as "selected" or "pinned", closed or open; null takes it away. Of plans the selected one alone is drawn. */
   draw(name, item, closed = true) {
+    if (name === "selected") this.#sayLines(item, closed);
     if (this.#kind === "fleet") {
       if (name === "selected") this.#planes.drawRoutes(isPlan(item) ? this.#routes(item) : []);
     } else if (this.#kind === "grid") this.#drawOnGrid(name, item);
     else if (this.#drawn) this.#planes.draw(name, item?.tour ?? null, closed);
+  }
+
+  /** Says under the map's title whether the lines of what is drawn follow the streets. */
+  #sayLines(item, closed) {
+    const ways = !this.#onEarth || !item ? [] : isPlan(item) ? this.#routes(item).map(({ stops }) => stops) : [roundOf(item.tour, closed)];
+    const followed = ways.length > 0 && ways.every((cities) => this.#ways.along(cities));
+    const said = followed ? "along the streets" : "straight lines from stop to stop, not the streets";
+    element("lines").textContent = ways.length ? said : "";
   }
 
   #drawOnGrid(name, item) {

@@ -4,6 +4,7 @@ import "../vendor/leaflet/leaflet.js";
 import { colour, onSchemeChange } from "../common/colours.js";
 import { fitting, flatMap } from "./flatmap.js";
 import { Frame } from "./frame.js";
+import { Handling } from "./handling.js";
 import { Mercator } from "./mercator.js";
 import { Routes } from "./routes.js";
 import { Streets } from "./streets.js";
@@ -20,23 +21,33 @@ export class Plane {
   #start = ring("start", 18);
   #end = ring("end", 18);
   #highlight = ring("highlight", 16);
+  #waiting = ring("waiting", 12);
   #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
   #routes = new Routes();
   #streets = new Streets();
   #names = L.layerGroup();
   #surroundings = { streets: null, places: [] };
   #places = [];
+  #dots = []; // of the cities
+  #along = () => null; // of a way through cities the places along the streets
   #onEarth = false;
   #tiles = null;
 
-  /** @param {{ onHover: (city: number | null) => void, onClick: (place: number[]) => void }} told */
-  constructor(element, { onHover, onClick }) {
+  /**
+   * @param {{ onHover: (city: number | null) => void, onClick: (place: number[]) => void }} told
+   * @param {ChosenStop} chosen the stop that is chosen on this map and on the other
+   */
+  constructor(element, { onHover, onClick, onMove }, chosen) {
     this.#map = flatMap(element, { zoomDelta: 0.5, minZoom: -3, maxZoom: 20, doubleClickZoom: false });
     for (const line of [this.#streets, ...Object.values(this.#lines), this.#routes, this.#names]) line.addTo(this.#map);
     this.#cities = L.featureGroup().addTo(this.#map);
     this.#cities.on("mouseover", (event) => onHover(event.sourceTarget.city));
     this.#cities.on("mouseout", () => onHover(null));
     this.#map.on("click", (event) => onClick(this.#frame.place(event.latlng)));
+    element.role = "application";
+    element.setAttribute("aria-labelledby", `${element.id}-title`);
+    element.setAttribute("aria-describedby", "stop-help");
+    new Handling(this.#map, this.#handled(onMove), chosen);
     new ResizeObserver(() => this.#resize()).observe(element);
     onSchemeChange(() => this.#colour());
     this.#fit();
@@ -53,9 +64,11 @@ export class Plane {
     this.#cities.clearLayers();
     const crowded = places.length > 300 || this.#map.getContainer().clientWidth < NARROW;
     const radius = crowded ? 2 : 3.5;
-    places.forEach((place, city) => this.#cities.addLayer(this.#dot(place, city, radius)));
-    this.draw("selected", null);
-    this.draw("pinned", null);
+    this.#dots = places.map((place, city) => this.#dot(place, city, radius));
+    for (const dot of this.#dots) this.#cities.addLayer(dot);
+    this.wait(null);
+    this.draw("selected", []);
+    this.draw("pinned", []);
     this.drawRoutes([]);
     this.highlight(null);
     if (fit) this.#fit();
@@ -97,19 +110,33 @@ export class Plane {
     else this.#tiles.remove();
   }
 
-  /** Draws a tour as "selected" or "pinned", closed or open; null takes it away. */
-  draw(name, tour, closed = true) {
-    const stops = tour && closed ? [...tour, tour[0]] : (tour ?? []);
-    this.#lines[name].show(stops.map((city) => this.#frame.latlng(this.#places[city])));
+  /** Draws a way through cities as "selected" or "pinned", back to the first where it is closed; of none nothing. */
+  draw(name, cities) {
+    const along = this.#along(cities);
+    this.#lines[name].show(this.#latlngs(cities, along), along !== null);
     if (name !== "selected") return;
-    this.#mark(this.#start, tour?.[0]);
-    this.#mark(this.#end, closed ? null : tour?.at(-1));
+    this.#mark(this.#start, cities[0]);
+    this.#mark(this.#end, cities[0] === cities.at(-1) ? null : cities.at(-1));
+  }
+
+  /** Draws ways along the streets from now on: `along` gives the places of a way through cities, or null where it does not know. */
+  follow(along) {
+    this.#along = along;
+  }
+
+  /** Where a way through cities is drawn, in x and y. */
+  drawnLine(cities) {
+    return this.#latlngs(cities, this.#along(cities)).map(([lat, lng]) => [lng, lat]);
+  }
+
+  #latlngs(cities, along) {
+    return (along ?? cities.map((city) => this.#places[city])).map((place) => this.#frame.latlng(place));
   }
 
   /** Draws the routes of a plan, `{ stops, style }` each, with a ring where all of them start; none takes them away. */
   drawRoutes(routes) {
-    const latlngs = ({ stops }) => stops.map((city) => this.#frame.latlng(this.#places[city]));
-    this.#routes.show(routes.map((route) => ({ latlngs: latlngs(route), style: route.style })));
+    const drawn = routes.map(({ stops, style }) => [stops, this.#along(stops), style]);
+    this.#routes.show(drawn.map(([stops, along, style]) => ({ latlngs: this.#latlngs(stops, along), along: along !== null, style })));
     const starts = new Set(routes.map(({ stops }) => stops[0]));
     this.#mark(this.#start, starts.size === 1 ? [...starts][0] : null);
   }
@@ -119,6 +146,43 @@ export class Plane {
     this.#mark(this.#highlight, city);
     if (city == null) this.#highlight.unbindTooltip();
     else this.#highlight.bindTooltip(said, { permanent: true, direction: "top" }).openTooltip();
+  }
+
+  /** Rings a place that is clicked, but no stop yet; null takes the ring away. */
+  wait(place) {
+    if (place) this.#waiting.setLatLng(this.#frame.latlng(place)).addTo(this.#map);
+    else this.#waiting.remove();
+  }
+
+  /** What Handling is to know of the cities, and to do with them. */
+  #handled(onMove) {
+    const placeAt = (point) => this.#frame.place(this.#map.containerPointToLatLng(point));
+    return {
+      near: (point, reach) => this.#near(point, reach),
+      pointOf: (city) => this.#pointOf(this.#places[city]),
+      drag: (city, point) => this.#drag(city, placeAt(point)),
+      drop: (city, point) => onMove(city, placeAt(point)),
+    };
+  }
+
+  #pointOf(place) {
+    return this.#map.latLngToContainerPoint(this.#frame.latlng(place));
+  }
+
+  /** The city that is drawn nearest to a point, if it lies within reach; null otherwise. */
+  #near(point, reach) {
+    let [nearest, least] = [null, reach];
+    this.#places.forEach((place, city) => {
+      const far = this.#pointOf(place).distanceTo(point);
+      if (far <= least) [nearest, least] = [city, far];
+    });
+    return nearest;
+  }
+
+  #drag(city, place) {
+    const latlng = this.#frame.latlng(place);
+    this.#dots[city].setLatLng(latlng);
+    this.#highlight.setLatLng(latlng).addTo(this.#map);
   }
 
   #mark(ring, city) {

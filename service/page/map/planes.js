@@ -1,5 +1,6 @@
 /** Two linked maps of the same cities: a city that is pointed at on one is marked on both. */
 
+import { ChosenStop } from "./chosen_stop.js";
 import { Plane } from "./plane.js";
 
 export class Planes {
@@ -7,18 +8,36 @@ export class Planes {
   #tour = null;
   #routes = []; // of the plan that is drawn
   #ids = null;
+  #chosen;
 
-  /** @param {(plane: number, place: number[]) => void} onClick told where a map was clicked */
-  constructor(elements, onClick) {
+  /**
+   * @param {(plane: number, place: number[]) => void} onClick told where a map was clicked
+   * @param {(plane: number, city: number, place: number[]) => void} onMove told where a stop was put
+   * @param {(city: number) => void} onDelete told which stop is to go
+   */
+  constructor(elements, { onClick, onMove, onDelete }) {
+    this.#chosen = new ChosenStop((city) => this.#highlight(city), onDelete);
     this.#maps = elements.map((element, plane) => {
-      const onHover = (city) => this.#highlight(city);
-      return new Plane(element, { onHover, onClick: (place) => onClick(plane, place) });
+      const onHover = (city) => this.#highlight(city ?? this.#chosen.city);
+      const moved = (city, place) => onMove(plane, city, place);
+      return new Plane(element, { onHover, onClick: (place) => onClick(plane, place), onMove: moved }, this.#chosen);
     });
+  }
+
+  /** Rings a place on a map that is clicked, but no stop yet; null takes the rings away. */
+  wait(plane, place) {
+    this.#maps.forEach((map, at) => map.wait(at === plane ? place : null));
   }
 
   /** Calls the cities by these ids, or by numbers where there are none. */
   name(ids) {
     this.#ids = ids;
+    this.#chosen.name((city) => this.#nameOf(city));
+  }
+
+  /** Whether the cities that are shown can be moved and deleted, and are `kept`, so that the chosen one stays chosen. */
+  edit(editable, kept) {
+    this.#chosen.show(this.#maps[0].places.length, editable, kept);
   }
 
   /** Draws map tiles under the first map, while places on the earth are shown. */
@@ -47,7 +66,18 @@ export class Planes {
   /** Draws a tour as "selected" or "pinned"; null takes it away. */
   draw(name, tour, closed = true) {
     if (name === "selected") this.#tour = tour;
-    for (const map of this.#maps) if (map.places.length) map.draw(name, tour, closed);
+    const cities = roundOf(tour ?? [], closed);
+    for (const map of this.#maps) if (map.places.length) map.draw(name, cities);
+  }
+
+  /** Draws ways on the first map along the streets from now on: see Plane. */
+  follow(along) {
+    this.#maps[0].follow(along);
+  }
+
+  /** Where a way through cities is drawn on a map, in x and y. */
+  drawnLine(plane, cities) {
+    return this.#maps[plane].drawnLine(cities);
   }
 
   /** Draws the routes of a plan, each `{ name, stops, style }`; none takes them away. */
@@ -65,11 +95,17 @@ export class Planes {
   }
 
   #highlight(city) {
-    const name = this.#ids?.[city] ?? `stop ${city + 1}`;
-    const said = name + this.#turn(city);
+    const said = city === null ? "" : this.#nameOf(city) + this.#turn(city);
     this.#maps.forEach((map) => map.highlight(city, said));
   }
+
+  #nameOf(city) {
+    return this.#ids?.[city] ?? `stop ${city + 1}`;
+  }
 }
+
+/** The cities of a tour, back to the first where it is closed. */
+export const roundOf = (tour, closed) => (closed && tour.length ? [...tour, tour[0]] : tour);
 
 const ENDINGS = { one: "st", two: "nd", few: "rd", other: "th" };
 const RULES = new Intl.PluralRules("en", { type: "ordinal" });

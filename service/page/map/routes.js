@@ -18,11 +18,11 @@ export class Routes extends CanvasLayer {
     super("routes");
   }
 
-  /** Draws routes, each `{ latlngs, style }`, maybe `marked` with a disc where each starts; none takes them away. */
+  /** Draws routes, each `{ latlngs, style }`, maybe `along` streets, maybe `marked` with a disc where each starts; none takes them away. */
   show(routes, marked = false) {
     this.#marked = marked;
     this.lines = routes.map(({ latlngs }) => latlngs);
-    this.#styles = routes.map(({ style }) => style);
+    this.#styles = routes.map(({ style, along }) => ({ ...style, along }));
     this.redraw();
   }
 
@@ -41,7 +41,7 @@ function draw(context, places, style, width) {
   stroke(context, "ink", width + CASING);
   stroke(context, style.colour, width);
   context.fillStyle = colour("ink");
-  drawArrows(context, places);
+  drawArrows(context, places, style.along);
 }
 
 function drawStart(context, { x, y }, style) {

@@ -12,6 +12,7 @@ const [WIDE, NARROW] = [2, 1]; // pixels
 export class TourLine extends CanvasLayer {
   #name;
   #dash;
+  #along = false;
 
   /**
    * @param {string} name of its colour, and of its class
@@ -23,20 +24,21 @@ export class TourLine extends CanvasLayer {
     this.#dash = dash;
   }
 
-  /** Draws a line through these; none takes it away. */
-  show(latlngs) {
+  /** Draws a line through these, maybe along streets; none takes it away. */
+  show(latlngs, along = false) {
     this.lines = [latlngs];
+    this.#along = along;
     this.redraw();
   }
 
   paint(context, [places]) {
     context.strokeStyle = context.fillStyle = colour(this.#name);
-    context.lineWidth = places.length > MANY ? NARROW : WIDE;
+    context.lineWidth = places.length > MANY && !this.#along ? NARROW : WIDE;
     context.lineJoin = "round";
     context.setLineDash(this.#dash);
     context.beginPath();
     for (const { x, y } of places) context.lineTo(x, y);
     context.stroke();
-    if (!this.#dash.length) drawArrows(context, places);
+    if (!this.#dash.length) drawArrows(context, places, this.#along);
   }
 }

@@ -5,6 +5,7 @@ import { Problem } from "./service.js";
 
 const GLANCE = 300; // milliseconds from one look at a growing front to the next
 const MOST_WAIT = 5; // seconds between two attempts
+const MANY = 1500; // stops, of which a network's front takes longer than many a search
 const REFUSED = Symbol("the network has no plan");
 // Of shipments, of windows that are hard to keep, and of very many stops, only the search finds any.
 const SEARCH_ALONE = ["no-plan", "too-many-for-network"];
@@ -28,6 +29,7 @@ export class Planning {
   }
 
   async *plan(request) {
+    if (request.body.time_limit !== 0 && stopsIn(request.body) > MANY) return yield* this.#improved(request, null);
     for await (const alone of this.#alone(request)) {
       if (alone === null) yield { stage: "warming-up", alone: null, answer: null };
       else if (request.body.time_limit === 0) yield { stage: "done", alone, answer: alone, growth: [] };
@@ -151,6 +153,8 @@ const grown = (alone, answer) => {
   if (answer.front.length) return answer;
   return alone && { ...alone, id: answer.id, terminated: answer.terminated };
 };
+
+const stopsIn = ({ coordinates, stops, matrices }) => (coordinates ?? stops ?? matrices?.[0] ?? []).length;
 
 function pause(seconds, signal) {
   return new Promise((resolve, reject) => {

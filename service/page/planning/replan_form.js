@@ -12,12 +12,15 @@ export class ReplanForm {
   #vehicles = 0; // places so far, each of which needs an id of its own
   #placings;
 
-  /** @param {() => void} onReplan told when to plan what is left */
-  constructor(onReplan) {
+  /**
+   * @param {() => void} onReplan told when to plan what is left
+   * @param {(plane: number, place: number[] | null) => void} onWaiting as of Placing
+   */
+  constructor(onReplan, onWaiting) {
     const help = element("replan-help");
     this.#placings = [
-      new Placing(element("place-vehicle"), help, (row) => this.#drive(row), { once: true }),
-      new Placing(element("place-added"), help, (row) => this.#add(row), { once: true }),
+      new Placing(element("place-vehicle"), help, (row) => this.#drive(row), onWaiting, { once: true }),
+      new Placing(element("place-added"), help, (row) => this.#add(row), onWaiting, { once: true }),
     ];
     element("replan").addEventListener("click", onReplan);
   }

@@ -12,6 +12,7 @@ import { PlanView } from "../fleet/plan_view.js";
 import { length } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
 import { BalanceSlider } from "../chart/slider.js";
+import { RoutedWay } from "../map/ways/routed_way.js";
 import { nearest } from "./tours.js";
 
 const MIDDLE = 0.5; // of balances
@@ -34,11 +35,13 @@ export class Result {
   #frame = 0;
   #objectives = UNNAMED;
   #ids = null; // of the stops
+  #id = null; // of the front, once it is final
+  #routed = null; // where the service has a routing engine
 
-  /** @param {(plane: number, place: number[]) => void} onClick told where a plane was clicked */
-  constructor(onClick) {
+  /** @param {object} edited told of clicks on the maps, and of stops moved and deleted: see Maps */
+  constructor(edited) {
     const onSelect = (index) => this.#choose(index);
-    this.#maps = new Maps(onClick);
+    this.#maps = new Maps(edited);
     const onPreview = (index) => this.#preview(index);
     const told = { onSelect, onPreview, onBudget: (index) => this.#choose(index) };
     this.#chart = new FrontChart(element("front-chart"), element("front-labels"), told);
@@ -62,13 +65,14 @@ export class Result {
     });
   }
 
-  /** An instance without a front. */
-  clear(instance, fit = true) {
+  /** An instance without a front; `editable` says whether its stops may be changed on the maps. */
+  clear(instance, { fit = true, editable = true } = {}) {
     cancelAnimationFrame(this.#frame);
-    this.#maps.show(instance, fit);
+    this.#maps.show(instance, fit, editable);
     this.#planView.open(instance);
     element("shade").textContent = instance.cost_layer ? `shaded: ${this.#objectives[1].name}` : "";
     this.#front = [];
+    this.#id = null;
     this.#balance = MIDDLE;
     this.#selected = this.#pinned = this.#previewed = this.#before = null;
     this.#chart.show([], []);
@@ -82,8 +86,9 @@ export class Result {
   }
 
   /** The front of the network alone, where it is known, and the best so far. */
-  show({ alone, answer, growth }) {
+  show({ stage, alone, answer, growth }) {
     this.#front = answer.front;
+    this.#id = ["done", "cancelled"].includes(stage) ? answer.id : null;
     this.#previewed = null;
     this.#closed = answer.closed !== false;
     // Until the search has found something, the best front so far is the network's.
@@ -104,15 +109,25 @@ export class Result {
     return this.#selected;
   }
 
-  /** Draws map tiles under stops, where the service names any. */
-  tile(tiles) {
-    this.#maps.tile(tiles);
+  /** Draws map tiles under stops where the service names any, and tours along the streets where it has an engine. */
+  equip({ tiles, credit, roads }, service) {
+    this.#maps.tile({ url: tiles, credit });
+    if (roads) this.#routed = new RoutedWay(service, this.#maps.ways, () => this.#redraw());
   }
 
-  /** Draws what lies around the stops, from now on: `streets`, and `places` by name. */
+  /** Draws what lies around the stops, from now on: `streets`, `places` by name, and the `legs` of tours. */
   surround(surroundings) {
     this.#maps.surround(surroundings);
+    this.#redraw();
   }
+
+  #redraw() {
+    this.#drawPin();
+    this.#draw();
+  }
+
+  /** Rings a place on a map that is clicked, but no stop yet; null takes the rings away. */
+  wait = (plane, place) => this.#maps.wait(plane, place);
 
   /** The balance that the viewer wants of the next front. */
   want(balance) {
@@ -136,7 +151,7 @@ export class Result {
   /** Keeps the selected tour on the maps of an instance of which the rest is planned. */
   replan(instance, names) {
     const before = this.#selected && { tour: this.#selected.tour, closed: this.#closed };
-    this.clear(instance, false);
+    this.clear(instance, { fit: false, editable: false });
     this.#ids = names;
     this.#maps.name(this.#objectives, names);
     this.#before = before;
@@ -201,6 +216,14 @@ export class Result {
       element(`length-${objective + 1}`).textContent = said;
     }
     this.#order();
+    this.#follow();
+  }
+
+  /** Wants the way of the selected tour along the streets, once its front is final. */
+  #follow() {
+    const tour = this.#selected?.tour;
+    if (!tour || !this.#id || !this.#maps.driven) this.#routed?.forget();
+    else this.#routed?.want(this.#id, this.#selected, this.#round(this.#selected));
   }
 
   /** Says what a colour on the chart means, while it is there. */

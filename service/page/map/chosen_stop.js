@@ -1,0 +1,73 @@
+/** The stop that is chosen on the maps, to be moved or deleted, and what is said of it under them. */
+
+const element = (id) => document.getElementById(id);
+const HINTS = matchMedia("(pointer: coarse)").matches
+  ? ["Tap a stop to choose it.", "Drag it where it belongs, or"]
+  : ["Drag a stop to move it. Click one to choose it, or press Enter on a map.", "Drag it, or move it by arrow keys; the key Delete takes it away."];
+
+export class ChosenStop {
+  #city = null;
+  #editable = false;
+  #count = 0;
+  #nameOf = String;
+  #onChosen;
+  #onDelete;
+
+  /**
+   * @param {(city: number | null) => void} onChosen told which stop is chosen
+   * @param {(city: number) => void} onDelete told which stop is to go
+   */
+  constructor(onChosen, onDelete) {
+    this.#onChosen = onChosen;
+    this.#onDelete = onDelete;
+    element("delete-stop").addEventListener("click", () => this.remove());
+  }
+
+  get city() {
+    return this.#city;
+  }
+
+  /** Whether stops can be moved and deleted. */
+  get editable() {
+    return this.#editable;
+  }
+
+  /** Calls the stops by these names from now on. */
+  name(nameOf) {
+    this.#nameOf = nameOf;
+  }
+
+  /** So many stops are shown; `kept` if they are as before, unless one was added or deleted. */
+  show(count, editable, kept) {
+    const chosen = editable && kept && count === this.#count ? this.#city : null;
+    this.#count = count;
+    this.#editable = editable && count > 0;
+    this.choose(chosen);
+  }
+
+  choose(city) {
+    this.#city = city;
+    this.#onChosen(city);
+    this.#say();
+  }
+
+  /** Chooses the next stop, or the one before; of none the first, or the last. */
+  turn(by) {
+    if (!this.#editable) return;
+    const from = this.#city ?? (by > 0 ? -1 : this.#count);
+    this.choose((from + by + this.#count) % this.#count);
+  }
+
+  remove() {
+    const city = this.#city;
+    this.choose(null);
+    this.#onDelete(city);
+  }
+
+  #say() {
+    const [all, one] = HINTS;
+    const said = this.#city === null ? all : `${this.#nameOf(this.#city)} is chosen. ${one}`;
+    element("stop-help").textContent = this.#editable ? said : "";
+    element("delete-stop").hidden = this.#city === null;
+  }
+}

@@ -1,0 +1,117 @@
+/** Take hold of the stops on a map: choose one, drag it, or move and delete it by keys. */
+
+const REACH = { mouse: 9, pen: 14, touch: 22 }; // pixels from a stop within which it is taken hold of
+const STILL = 4; // pixels that a pointer may move in a click
+const STEP = 10; // pixels that an arrow key moves a stop, with Shift one
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+export class Handling {
+  #map;
+  #plane;
+  #chosen;
+  #held = null; // { city, from, moved } of the stop under a pointer
+  #nudged = null; // where keys have moved the chosen stop so far
+  #dragged = false; // whether the click to come is the end of a drag
+
+  /**
+   * @param {L.Map} map whose stops these are
+   * @param {object} plane with `near(point, reach)`, the city at a point in pixels or null;
+   *   `pointOf(city)`; and `drag(city, point)` and `drop(city, point)`, told where one is put
+   * @param {ChosenStop} chosen the stop that is chosen
+   */
+  constructor(map, plane, chosen) {
+    this.#map = map;
+    this.#plane = plane;
+    this.#chosen = chosen;
+    const container = map.getContainer();
+    const listen = (kind, told) => container.addEventListener(kind, told, { capture: true, passive: false });
+    listen("pointerdown", (event) => this.#press(event));
+    listen("pointermove", (event) => this.#move(event));
+    listen("pointerup", (event) => this.#release(event));
+    listen("pointercancel", () => this.#letGo());
+    listen("touchstart", (event) => this.#held && event.preventDefault()); // the page would scroll
+    listen("click", (event) => this.#click(event));
+    listen("keydown", (event) => this.#key(event));
+    listen("keyup", (event) => event.key in ARROWS && this.#settle());
+  }
+
+  /** A finger moves the stop that it has chosen before, so that any other touch scrolls the page. */
+  #press(event) {
+    if (event.button !== 0 || !event.isPrimary) return;
+    const city = this.#at(event);
+    if (city === null || (event.pointerType === "touch" && city !== this.#chosen.city)) return;
+    this.#held = { city, from: this.#point(event), moved: false, panning: this.#map.dragging.enabled() };
+    this.#map.dragging.disable();
+    this.#map.getContainer().setPointerCapture(event.pointerId);
+  }
+
+  #move(event) {
+    if (!this.#held) return;
+    const point = this.#point(event);
+    this.#held.moved ||= point.distanceTo(this.#held.from) > STILL;
+    if (this.#held.moved) this.#plane.drag(this.#held.city, point);
+  }
+
+  #release(event) {
+    if (!this.#held) return;
+    const { city, moved } = this.#held;
+    this.#end();
+    this.#dragged = moved && event.pointerType !== "touch";
+    if (moved) this.#plane.drop(city, this.#point(event));
+  }
+
+  /** A drag that the browser broke off leaves the stop where it was. */
+  #letGo() {
+    if (!this.#held) return;
+    const { city, from } = this.#held;
+    this.#end();
+    this.#plane.drag(city, from);
+  }
+
+  #end() {
+    if (this.#held.panning) this.#map.dragging.enable();
+    this.#held = null;
+  }
+
+  #click(event) {
+    if (this.#dragged) event.stopImmediatePropagation();
+    else if (!event.target.closest(".leaflet-control")) this.#chosen.choose(this.#at(event));
+    this.#dragged = false;
+  }
+
+  #key(event) {
+    const { city } = this.#chosen;
+    if (event.target !== this.#map.getContainer()) return; // the zoom buttons have keys of their own
+    if (event.key === "Enter") this.#chosen.turn(event.shiftKey ? -1 : 1);
+    else if (city === null) return;
+    else if (event.key in ARROWS) this.#nudge(city, ARROWS[event.key], event.shiftKey ? 1 : STEP);
+    else if (event.key === "Escape") this.#chosen.choose(null);
+    else if (event.key === "Delete" || event.key === "Backspace") this.#chosen.remove();
+    else return;
+    event.preventDefault();
+    event.stopImmediatePropagation(); // arrow keys would move the map as well
+  }
+
+  #nudge(city, [right, down], pixels) {
+    this.#nudged = (this.#nudged ?? this.#plane.pointOf(city)).add([right * pixels, down * pixels]);
+    this.#plane.drag(city, this.#nudged);
+  }
+
+  /** While an arrow key is held down, the stop is on its way. */
+  #settle() {
+    if (!this.#nudged) return;
+    const point = this.#nudged;
+    this.#nudged = null;
+    if (this.#chosen.city !== null) this.#plane.drop(this.#chosen.city, point);
+  }
+
+  /** The stop at a pointer, null where there is none, or none may be changed. */
+  #at(event) {
+    if (!this.#chosen.editable) return null;
+    return this.#plane.near(this.#point(event), REACH[event.pointerType] ?? REACH.mouse);
+  }
+
+  #point(event) {
+    return this.#map.mouseEventToContainerPoint(event);
+  }
+}

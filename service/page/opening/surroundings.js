@@ -1,0 +1,34 @@
+/** What lies around the stops of an example: streets, places by name, and the streets of its tours. */
+
+export class Surroundings {
+  #service;
+  #result;
+  #example = null; // whose surroundings are drawn
+
+  constructor(service, result) {
+    this.#service = service;
+    this.#result = result;
+  }
+
+  /** Draws what is known of an example before its stops are. */
+  begin(example) {
+    this.#example = example;
+    this.#result.surround({ places: example.places });
+  }
+
+  /** Draws what comes after the stops. The maps are good without it. */
+  async fetch() {
+    const example = this.#example;
+    const [streets, legs] = await Promise.all([example.streets, example.legs].map((file) => this.#get(file)));
+    if (this.#example === example) this.#result.surround({ places: example.places, streets, legs });
+  }
+
+  forget() {
+    this.#example = null;
+    this.#result.surround({});
+  }
+
+  async #get(file) {
+    return file ? this.#service.get(`examples/${file}`).catch(() => null) : null;
+  }
+}

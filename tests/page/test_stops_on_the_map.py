@@ -1,0 +1,136 @@
+"""Stops on the maps of the page: dragged by mouse and by finger, moved and deleted by keys."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.helpers.browsing import curl_body, needs_chromium, open_files, wait_until_planned
+
+pytestmark = needs_chromium
+
+PLANES = "name,x,y,u,v\ndepot,0,0,5,5\nshop,3,1,9,1\nschool,5,2,2,8\n"
+ON_EARTH = "id,lon,lat,risk\ndepot,24.94,60.17,1\nshop,24.95,60.18,2\nschool,24.93,60.16,3\n"
+Place = tuple[float, float]  # pixels from the window's upper left
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, released: str) -> Iterator[Page]:
+    """A page on a screen that can be touched, for tests that open stops of their own."""
+    page = browser.new_page(viewport={"width": 1440, "height": 1400}, has_touch=True)
+    page.goto(released)
+    wait_until_planned(page)
+    yield page
+    page.close()
+
+
+def test_a_stop_is_dragged_by_the_mouse_on_either_plane(opened: Page) -> None:
+    open_files(opened, {"stops.csv": PLANES})
+    for plane, columns in enumerate(("x₁ y₁", "x₂ y₂")):
+        before = numbers(opened, "shop", columns)
+        others = curl_body(opened)["objectives"][1 - plane]
+        x, y = place_of_stop(opened, 2, f"#plane-{plane + 1}")
+        opened.mouse.move(x, y)
+        opened.mouse.down()
+        opened.mouse.move(x - 30, y - 20, steps=3)
+        opened.mouse.up()
+        after = numbers(opened, "shop", columns)
+        assert after[0] < before[0]
+        assert after[1] > before[1]
+        assert curl_body(opened)["objectives"][1 - plane] == others
+        moved = place_of_stop(opened, 2, f"#plane-{plane + 1}")
+        assert moved == pytest.approx((x - 30, y - 20), abs=2)
+    expect(opened.locator("#count")).to_have_text("3 stops")
+
+
+def test_keys_choose_move_and_delete_a_stop(opened: Page) -> None:
+    open_files(opened, {"stops.csv": ON_EARTH})
+    column = "Longitude Latitude"
+    before = numbers(opened, "shop", column)
+    x, y = place_of_stop(opened, 2)
+    for key in ("ArrowRight", "ArrowRight", "Shift+ArrowDown"):
+        opened.keyboard.press(key)
+    expect(opened.locator("#stop-help")).to_contain_text("shop is chosen.")
+    after = numbers(opened, "shop", column)
+    assert after[0] > before[0]
+    assert after[1] < before[1]
+    assert place_of_stop(opened, 2) == pytest.approx((x + 20, y + 1), abs=1)
+    # Its risk on the way was written into a matrix when the file was read.
+    expect(opened.locator("#status")).to_contain_text("as a matrix stay")
+    opened.keyboard.press("Delete")
+    expect(opened.locator("#count")).to_have_text("2 stops")
+    assert [stop["id"] for stop in curl_body(opened)["stops"]] == ["depot", "school"]
+    opened.locator("#plane-1").press("Delete")  # none is chosen
+    opened.locator("#plane-1").press("Enter")
+    opened.keyboard.press("Escape")
+    expect(opened.get_by_role("button", name="Delete it")).to_be_hidden()
+    expect(opened.locator("#count")).to_have_text("2 stops")
+
+
+def test_a_finger_scrolls_past_stops_and_moves_the_one_it_has_chosen(opened: Page) -> None:
+    opened.get_by_label("Example").select_option("City deliveries")
+    expect(opened.locator("#count")).to_have_text("61 stops")
+    before = curl_body(opened)["coordinates"]
+    start = place_of_stop(opened, 1)
+    opened.keyboard.press("Escape")
+    slide_finger(opened, start, (start[0] + 24, start[1] + 30))
+    assert curl_body(opened)["coordinates"] == before
+    start = place_of_stop(opened, 1)
+    opened.keyboard.press("Escape")
+    opened.touchscreen.tap(*start)
+    expect(opened.locator("#stop-help")).to_contain_text("stop 1 is chosen.")
+    slide_finger(opened, start, (start[0] + 24, start[1] + 30))
+    after = curl_body(opened)["coordinates"]
+    assert [
+        row for row, (one, two) in enumerate(zip(before, after, strict=True)) if one != two
+    ] == [0]
+    assert after[0][0] > before[0][0]
+    assert after[0][2:] == before[0][2:]
+    opened.get_by_role("button", name="Delete it").click()
+    expect(opened.locator("#count")).to_have_text("60 stops")
+
+
+def test_a_place_that_is_clicked_on_the_first_of_two_maps_is_seen_at_once(opened: Page) -> None:
+    open_files(opened, {"stops.csv": PLANES})
+    opened.get_by_role("button", name="Click into place").click()
+    opened.locator("#plane-1").click(position={"x": 90, "y": 60})
+    expect(opened.locator("#plane-1 .ring.waiting")).to_be_visible()
+    expect(opened.locator("#plane-2 .ring.waiting")).to_have_count(0)
+    opened.locator("#plane-2").click(position={"x": 90, "y": 60})
+    expect(opened.locator("#count")).to_have_text("4 stops")
+    expect(opened.locator(".ring.waiting")).to_have_count(0)
+    opened.get_by_role("button", name="Click into place").click()
+
+
+def place_of_stop(page: Page, number: int, plane: str = "#plane-1") -> Place:
+    """Choose the stop of this number by keys, and return its place on a map."""
+    page.locator(plane).press("Escape")
+    for _ in range(number):
+        page.keyboard.press("Enter")
+    ring = page.locator(f"{plane} .ring.highlight").bounding_box()
+    assert ring is not None
+    return ring["x"] + ring["width"] / 2, ring["y"] + ring["height"] / 2
+
+
+def slide_finger(page: Page, start: Place, end: Place) -> None:
+    """Touch the screen at a place, slide to another, and let go."""
+    session = page.context.new_cdp_session(page)
+
+    def touch(kind: str, *points: dict[str, Any]) -> None:
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": list(points)})
+
+    places = [
+        {"x": start[0] + s * (end[0] - start[0]), "y": start[1] + s * (end[1] - start[1])}
+        for s in (0, 0.4, 0.7, 1)
+    ]
+    touch("touchStart", places[0])
+    for place in places[1:]:
+        touch("touchMove", place)
+    touch("touchEnd")
+    session.detach()
+
+
+def numbers(page: Page, name: str, columns: str) -> list[float]:
+    """Return what the table says of a stop in these columns."""
+    return [float(page.get_by_label(f"{each} of {name}").input_value()) for each in columns.split()]
