@@ -24,7 +24,7 @@ FOLDERS = {
     "service/page/fleet": "Fleets: their request in the form, and the selected plan by vehicle.",
     "service/page/inputs": "The fields of a request, files, and cities clicked into place.",
     "service/page/map": "The maps: two planes, one of both objectives, or a grid.",
-    "service/page/map/ways": "Ways along the streets: those of an example, and those of a routing engine.",
+    "service/page/map/ways": "Ways along the streets: of an example, or of a routing engine.",
     "service/page/planning": "Calls of the service, and the refusals that it answers with.",
     "service/page/result": "The front that was found: figures, comparison, links and downloads.",
     "service/page/vendor": "Libraries of others, as they are released, each with its licence.",

@@ -76,8 +76,10 @@ def slug(heading: str) -> str:
 def _with_scrolling_tables(html: str) -> str:
     """Return the HTML with each table in a block of its own, which scrolls on narrow screens.
 
-    It can be focused, as blocks of code can, so that keys scroll them too.
+    It can be focused, as blocks of code can, so that keys scroll them too. A heading without a word
+    is a cell, since a screen reader would read it as a heading of nothing.
     """
+    html = html.replace("<th></th>", "<td></td>")
     html = html.replace("<table>", '<div class="wide" tabindex="0"><table>')
     return html.replace("</table>", "</table></div>").replace("<pre>", '<pre tabindex="0">')
 
