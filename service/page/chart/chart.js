@@ -52,6 +52,7 @@ export class FrontChart {
     objectives.forEach((objective, axis) => (this.#chart.axes[axis].label = withUnit(objective)));
     this.#labels.show(this.#front, objectives);
     this.#budget.name(objectives);
+    this.#place();
   }
 
   /** The best tour within the budget that was drawn, null where there is none; and the same in words. */
@@ -74,18 +75,21 @@ export class FrontChart {
   mark(name, lengths) {
     this.#marked[name] = lengths;
     if (name === "selected" && lengths) this.#budget.release(lengths);
-    this.#place();
+    this.#placeMarker(name);
   }
 
+  #placeMarker(name) {
+    const [marker, lengths] = [this.#markers[name], this.#marked[name]];
+    marker.hidden = !lengths;
+    if (!lengths) return;
+    const [x, y] = this.#position(lengths);
+    marker.style.transform = `translate(${x}px, ${y}px)`;
+  }
+
+  /** What is placed by its own size, or the chart's, waits for the layout: not at each step of the slider. */
   #place() {
     this.#budget.place();
-    for (const [name, marker] of Object.entries(this.#markers)) {
-      const lengths = this.#marked[name];
-      marker.hidden = !lengths;
-      if (!lengths) continue;
-      const [x, y] = this.#position(lengths);
-      marker.style.transform = `translate(${x}px, ${y}px)`;
-    }
+    for (const name of Object.keys(this.#markers)) this.#placeMarker(name);
     const { offsetLeft, offsetTop } = this.#chart.over;
     this.#labels.place(this.#front, (lengths) => {
       const [x, y] = this.#position(lengths);

@@ -32,8 +32,13 @@ export class CanvasLayer extends L.Layer {
   redraw() {
     this.#canvas.hidden = !this.lines.some((latlngs) => latlngs.length);
     if (this.#canvas.hidden) return;
-    const places = this.lines.map((latlngs) => latlngs.map((latlng) => this._map.latLngToContainerPoint(latlng)));
-    this.paint(this.#cleared(), places);
+    this.paint(this.#cleared(), this.placed);
+  }
+
+  /** The lines in the map's pixels. */
+  get placed() {
+    const point = pointOn(this._map);
+    return this.lines.map((latlngs) => latlngs.map(point));
   }
 
   /** The canvas's context, empty and in the map's pixels. */
@@ -55,4 +60,11 @@ export class CanvasLayer extends L.Layer {
     this.#canvas.style.width = `${size.x}px`;
     this.#canvas.style.height = `${size.y}px`;
   }
+}
+
+/** Where a position stands on a map, in pixels. Leaflet says so too, of thousands at many times the cost. */
+function pointOn(map) {
+  const scale = map.options.crs.scale(map.getZoom());
+  const corner = map.getPixelOrigin().subtract(map._getMapPanePos());
+  return ([lat, lng]) => ({ x: scale * lng - corner.x, y: -scale * lat - corner.y });
 }

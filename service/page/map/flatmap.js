@@ -12,9 +12,9 @@ export function fitting(map, room) {
   return { paddingTopLeft: [buttons, room], paddingBottomRight: [room, room], animate: false };
 }
 
-const PANES = { streets: 300, tours: 350, names: 450 }; // the cities are at 400
+const PANES = { streets: 300, tours: 350, stops: 400, names: 450 };
 
-/** A map with panes for streets and tours beneath that of the cities, and for names above it. */
+/** A map with panes for streets, tours, stops and names, each above the one before. */
 export function flatMap(element, options) {
   const map = L.map(element, {
     crs: L.CRS.Simple,

@@ -1,8 +1,8 @@
 /** The cities and tours on the map of one plane. */
 
 import "../vendor/leaflet/leaflet.js";
-import { colour, onSchemeChange } from "../common/colours.js";
 import { fitting, flatMap } from "./flatmap.js";
+import { Dots } from "./dots.js";
 import { Frame } from "./frame.js";
 import { Handling } from "./handling.js";
 import { Mercator } from "./mercator.js";
@@ -12,12 +12,16 @@ import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
 const NARROW = 240; // pixels, as a map on a phone
+const CROWD = 300; // stops
+const POINTED = 6; // pixels from a stop within which it is pointed at
+const [MOVING, STILL] = [1500, 150]; // stops of a way that are drawn while one follows another, and the milliseconds until all are
 
 export class Plane {
   #map;
   #frame = Frame.around([]);
-  #cities;
-  #renderer = L.canvas({ padding: 0.2 });
+  #stops = new Dots();
+  #pointed = null; // the city that is pointed at
+  #rests = {}; // timers until a way is drawn whole, by its name
   #start = ring("start", 18);
   #end = ring("end", 18);
   #highlight = ring("highlight", 16);
@@ -28,7 +32,6 @@ export class Plane {
   #names = L.layerGroup();
   #surroundings = { streets: null, places: [] };
   #places = [];
-  #dots = []; // of the cities
   #along = () => null; // of a way through cities the places along the streets
   #onEarth = false;
   #tiles = null;
@@ -39,19 +42,17 @@ export class Plane {
    */
   constructor(element, { onHover, onClick, onMove }, chosen) {
     this.#map = flatMap(element, { zoomDelta: 0.5, minZoom: -3, maxZoom: 20, doubleClickZoom: false });
-    for (const line of [this.#streets, ...Object.values(this.#lines), this.#routes, this.#names]) line.addTo(this.#map);
-    this.#cities = L.featureGroup().addTo(this.#map);
-    this.#cities.on("mouseover", (event) => onHover(event.sourceTarget.city));
-    this.#cities.on("mouseout", () => onHover(null));
+    const layers = [this.#streets, ...Object.values(this.#lines), this.#routes, this.#stops, this.#names];
+    for (const layer of layers) layer.addTo(this.#map);
+    this.#map.on("mousemove", (event) => this.#point(this.#near(event.containerPoint, POINTED), onHover));
+    this.#map.on("mouseout", () => this.#point(null, onHover));
     this.#map.on("click", (event) => onClick(this.#frame.place(event.latlng)));
     element.role = "application";
     element.setAttribute("aria-labelledby", `${element.id}-title`);
     element.setAttribute("aria-describedby", "stop-help");
     new Handling(this.#map, this.#handled(onMove), chosen);
     new ResizeObserver(() => this.#resize()).observe(element);
-    onSchemeChange(() => this.#colour());
     this.#fit();
-    this.#colour();
   }
 
   /** Draws cities at these places; `fit` says whether the view moves to hold them all. */
@@ -61,18 +62,15 @@ export class Plane {
     this.#onEarth = onEarth;
     this.#showTiles();
     this.#showSurroundings();
-    this.#cities.clearLayers();
-    const crowded = places.length > 300 || this.#map.getContainer().clientWidth < NARROW;
-    const radius = crowded ? 2 : 3.5;
-    this.#dots = places.map((place, city) => this.#dot(place, city, radius));
-    for (const dot of this.#dots) this.#cities.addLayer(dot);
+    const crowded = places.length > CROWD || this.#map.getContainer().clientWidth < NARROW;
+    this.#stops.show(places.map((place) => this.#frame.latlng(place)), crowded);
+    this.#pointed = null;
     this.wait(null);
     this.draw("selected", []);
     this.draw("pinned", []);
     this.drawRoutes([]);
     this.highlight(null);
     if (fit) this.#fit();
-    this.#colour();
   }
 
   get places() {
@@ -112,11 +110,20 @@ export class Plane {
 
   /** Draws a way through cities as "selected" or "pinned", back to the first where it is closed; of none nothing. */
   draw(name, cities) {
-    const along = this.#along(cities);
-    this.#lines[name].show(this.#latlngs(cities, along), along !== null);
+    this.#line(name, cities);
     if (name !== "selected") return;
     this.#mark(this.#start, cities[0]);
     this.#mark(this.#end, cities[0] === cities.at(-1) ? null : cities.at(-1));
+  }
+
+  /** Draws the line of a way; one of thousands of stops by some of them, until no other follows. */
+  #line(name, cities) {
+    const along = this.#along(cities);
+    const apart = along ? 1 : Math.ceil(cities.length / MOVING);
+    const drawn = apart > 1 ? cities.filter((_, at) => at % apart === 0 || at === cities.length - 1) : cities;
+    this.#lines[name].show(this.#latlngs(drawn, along), along !== null);
+    clearTimeout(this.#rests[name]);
+    if (apart > 1) this.#rests[name] = setTimeout(() => this.#lines[name].show(this.#latlngs(cities, along)), STILL);
   }
 
   /** Draws ways along the streets from now on: `along` gives the places of a way through cities, or null where it does not know. */
@@ -172,8 +179,8 @@ export class Plane {
   /** The city that is drawn nearest to a point, if it lies within reach; null otherwise. */
   #near(point, reach) {
     let [nearest, least] = [null, reach];
-    this.#places.forEach((place, city) => {
-      const far = this.#pointOf(place).distanceTo(point);
+    this.#stops.points.forEach(({ x, y }, city) => {
+      const far = Math.hypot(x - point.x, y - point.y);
       if (far <= least) [nearest, least] = [city, far];
     });
     return nearest;
@@ -181,7 +188,7 @@ export class Plane {
 
   #drag(city, place) {
     const latlng = this.#frame.latlng(place);
-    this.#dots[city].setLatLng(latlng);
+    this.#stops.move(city, latlng);
     this.#highlight.setLatLng(latlng).addTo(this.#map);
   }
 
@@ -191,11 +198,11 @@ export class Plane {
     else ring.remove();
   }
 
-  #dot(place, city, radius) {
-    const style = { renderer: this.#renderer, radius, weight: 0 };
-    const dot = L.circleMarker(this.#frame.latlng(place), style);
-    dot.city = city;
-    return dot;
+  #point(city, onHover) {
+    if (city === this.#pointed) return;
+    this.#pointed = city;
+    this.#map.getContainer().style.cursor = city === null ? "" : "pointer";
+    onHover(city);
   }
 
   #resize() {
@@ -205,10 +212,6 @@ export class Plane {
 
   #fit() {
     this.#map.fitBounds(this.#frame.bounds, fitting(this.#map, 20));
-  }
-
-  #colour() {
-    this.#cities.setStyle({ fillColor: colour("ink"), fillOpacity: 1 });
   }
 }
 
