@@ -119,6 +119,9 @@ def test_a_name_on_the_chart_previews_its_tour_and_selects_it(page: Page) -> Non
     place = f"distance {knee.json()['lengths'][0]:,.6g}"
     expect(slider).to_have_attribute("aria-valuetext", re.compile(place))
     marker = page.locator("#front-chart .marker.selected").bounding_box()
+    label = page.get_by_role("button", name="knee").bounding_box()
+    # Its name stands to the left of its point.
+    assert abs(label["x"] + label["width"] - marker["x"] - marker["width"] / 2) < 3
     slider.press("Home")
     page.mouse.move(marker["x"] + marker["width"] / 2, marker["y"] + marker["height"] / 2)
     expect(page.locator("#choice")).to_contain_text("more distance")

@@ -31,7 +31,8 @@ export class FrontChart {
   constructor(element, names, { onSelect, onPreview, onBudget }) {
     this.#element = element;
     this.#labels = new Labels(names, onSelect, onPreview);
-    this.#chart = new uPlot(options(element), [[], [], []], element);
+    const hooks = { draw: [() => this.#chart && this.#place()] }; // the scales are known from then on
+    this.#chart = new uPlot({ ...options(element), hooks }, [[], [], []], element);
     this.#budget = new Budget(this.#chart, onBudget);
     for (const name of ["pinned", "selected", "previewed"]) {
       const marker = document.createElement("i");
@@ -88,7 +89,7 @@ export class FrontChart {
 
   /** What is placed by its own size, or the chart's, waits for the layout: not at each step of the slider. */
   #place() {
-    this.#budget.place();
+    this.#budget?.place();
     for (const name of Object.keys(this.#markers)) this.#placeMarker(name);
     const { offsetLeft, offsetTop } = this.#chart.over;
     this.#labels.place(this.#front, (lengths) => {
@@ -114,7 +115,6 @@ export class FrontChart {
 
   #resize() {
     this.#chart.setSize(size(this.#element));
-    this.#place();
   }
 }
 

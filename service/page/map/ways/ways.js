@@ -26,7 +26,7 @@ export class Ways {
 
   /** The places along a way through stops, null where they are not known. */
   along(cities) {
-    if (!cities.length || (!this.#legs && !this.#found.size)) return null;
+    if (!cities.length || !this.#places.length || (!this.#legs && !this.#found.size)) return null;
     const key = cities.join();
     if (this.#legs && !this.#found.has(key)) this.#found.set(key, this.#legs.along(cities.map((city) => this.#places[city])));
     return this.#found.get(key) ?? null;
