@@ -166,7 +166,7 @@ export class Maps {
   #sayLines(item, closed) {
     const ways = !this.#onEarth || !item ? [] : isPlan(item) ? this.#routes(item).map(({ stops }) => stops) : [roundOf(item.tour, closed)];
     const followed = ways.length > 0 && ways.every((cities) => this.#ways.along(cities));
-    const said = followed ? "along the streets" : "straight lines from stop to stop, not the streets";
+    const said = followed ? "along the streets" : "in straight lines";
     element("lines").textContent = ways.length ? said : "";
   }
 
