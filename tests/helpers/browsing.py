@@ -23,6 +23,7 @@ CHROMIUM = Path("/usr/bin/chromium")
 DESK, PHONE = 1440, 375  # widths of a window in pixels
 DEFAULT_SECONDS, SHORT_SECONDS = 3, 0.3  # of search: as the page asks, and as tests need
 SECOND = 1000.0  # in milliseconds, playwright's unit
+CLIPBOARD = ["clipboard-read", "clipboard-write"]  # permissions
 NOTHING = "about:blank"  # the address of a window that shows nothing
 
 SVG = "{http://www.w3.org/2000/svg}"  # before the names of elements
@@ -110,7 +111,7 @@ def _free_window(browser: Browser) -> Page:
         for page in context.pages:
             if page.url == NOTHING:
                 return page
-    page = browser.new_page(permissions=["clipboard-read", "clipboard-write"])
+    page = browser.new_page(permissions=CLIPBOARD)
     page.set_default_timeout(120 * SECOND)
     page.add_init_script(SHORTEN_SEARCH)
     return page

@@ -3,9 +3,9 @@
 from typing import Any, Literal
 
 import pytest
-from axe_playwright_python.base import AXE_SCRIPT
 from playwright.sync_api import Browser, Page, expect
 
+from tests.helpers.accessibility import load_axe, unfold, violations
 from tests.helpers.browsing import DESK, PHONE, needs_chromium, open_page, wait_until_planned
 
 TABLET = 768
@@ -20,7 +20,7 @@ def test_axe_finds_nothing_on_the_page(browser: Browser, released: str) -> None:
     with open_page(browser, released) as page:
         wait_until_planned(page)
         page.get_by_role("button", name="Pin to compare").click()
-        page.evaluate("for (const each of document.querySelectorAll('details')) each.open = true")
+        unfold(page)
         assert findings(page) == []
 
 
@@ -40,14 +40,14 @@ def test_axe_finds_nothing_serious_in_the_reference(browser: Browser, released: 
 
 def findings(page: Page) -> list[Any]:
     """Return what axe finds at each width, light and dark: impact, rule, and where first."""
-    page.evaluate(AXE_SCRIPT)
+    load_axe(page)
     found = []
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": 900})
         for scheme in SCHEMES:
             page.emulate_media(color_scheme=scheme)
             page.wait_for_timeout(SETTLED)  # colours fade into one another
-            for rule in page.evaluate("axe.run().then(({ violations }) => violations)"):
+            for rule in violations(page):
                 where = rule["nodes"][0]["target"]
                 found.append((rule["impact"], rule["id"], where, width, scheme))
     return found

@@ -4,12 +4,11 @@ import json
 import re
 from xml.etree import ElementTree
 
-from axe_playwright_python.base import AXE_SCRIPT
 from playwright.sync_api import Browser, expect
 
+from tests.helpers.accessibility import check_on_a_phone
 from tests.helpers.browsing import (
     DRAWN,
-    PHONE,
     SVG,
     needs_chromium,
     open_files,
@@ -85,11 +84,7 @@ def test_six_vans_have_a_route_a_lane_and_a_row_each(browser: Browser, released:
             len(COLOURS) - len(routes)
         )
         assert {"van 1", f"van {len(routes)}"} <= {text.text for text in drawing.iter(f"{SVG}text")}
-        page.evaluate("for (const each of document.querySelectorAll('details')) each.open = true")
-        page.set_viewport_size({"width": PHONE, "height": 900})
-        assert page.evaluate("document.documentElement.scrollWidth") == PHONE
-        page.evaluate(AXE_SCRIPT)
-        assert page.evaluate("axe.run().then(({ violations }) => violations)") == []
+        check_on_a_phone(page)
 
 
 def test_the_search_plans_what_the_network_cannot(browser: Browser, released: str) -> None:

@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, expect
 
+from tests.helpers.accessibility import unfold
 from tests.helpers.browsing import (
     DESK,
     PHONE,
@@ -164,11 +165,6 @@ def test_a_thousand_cities_and_their_front_are_shown(browser: Browser, released:
             wait_for_next_frame(page)
             shown.add(page.locator("#plane-1 canvas.selected").evaluate("c => c.toDataURL()"))
         assert len(shown) == len(set(places.values()))
-
-
-def unfold(page: Page) -> None:
-    """Opens everything that is folded."""
-    page.evaluate("for (const each of document.querySelectorAll('details')) each.open = true")
 
 
 def contrast(one: list[float], other: list[float]) -> float:

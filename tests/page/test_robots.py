@@ -7,13 +7,12 @@ import re
 from contextlib import redirect_stdout
 from xml.etree import ElementTree
 
-from axe_playwright_python.base import AXE_SCRIPT
 from PIL import Image
 from playwright.sync_api import Browser, Locator, Page, expect
 
+from tests.helpers.accessibility import check_on_a_phone
 from tests.helpers.browsing import (
     DRAWN,
-    PHONE,
     SVG,
     curl_body,
     needs_chromium,
@@ -93,11 +92,7 @@ def test_three_robots_have_a_path_and_a_row_each(browser: Browser, released: str
         wait_for_next_frame(page)
         [[alone, *_]] = rows_of(page.locator("#fleet-legend"))
         assert set(COLOURS.values()) & set(routes.evaluate(DRAWN)) == {COLOURS[alone]}
-        page.evaluate("for (const each of document.querySelectorAll('details')) each.open = true")
-        page.set_viewport_size({"width": PHONE, "height": 900})
-        assert page.evaluate("document.documentElement.scrollWidth") == PHONE
-        page.evaluate(AXE_SCRIPT)
-        assert page.evaluate("axe.run().then(({ violations }) => violations)") == []
+        check_on_a_phone(page)
 
 
 def test_a_request_for_robots_is_opened_and_taken_along(browser: Browser, released: str) -> None:

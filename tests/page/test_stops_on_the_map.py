@@ -6,7 +6,14 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.helpers.browsing import curl_body, needs_chromium, open_files, wait_until_planned
+from tests.helpers.browsing import (
+    CLIPBOARD,
+    DESK,
+    curl_body,
+    needs_chromium,
+    open_files,
+    wait_until_planned,
+)
 
 pytestmark = needs_chromium
 
@@ -18,7 +25,8 @@ Place = tuple[float, float]  # pixels from the window's upper left
 @pytest.fixture(scope="module")
 def opened(browser: Browser, released: str) -> Iterator[Page]:
     """A page on a screen that can be touched, for tests that open stops of their own."""
-    page = browser.new_page(viewport={"width": 1440, "height": 1400}, has_touch=True)
+    window = {"width": DESK, "height": 1400}
+    page = browser.new_page(viewport=window, has_touch=True, permissions=CLIPBOARD)
     page.goto(released)
     wait_until_planned(page)
     yield page

@@ -37,7 +37,7 @@ export class ExportButtons {
     this.#shown = answer;
     element("link-help").textContent = "";
     for (const id of OF_FRONT) element(id).disabled = !answer;
-    element("geojson").hidden = !answer?.stops?.every(({ location }) => location);
+    if (!answer?.stops?.every(({ location }) => location)) element("geojson").disabled = true;
   }
 
   async #copyLink({ asked, example, objectives, balance }, button) {
