@@ -89,11 +89,7 @@ class Settings(BaseSettings):
     threads: int = Field(1, ge=1, description="threads of one inference call")
     queue: int = Field(16, ge=0, description="requests that may wait for a worker")
     caller_share: float = Field(
-        0.5,
-        gt=0,
-        le=1,
-        description="share of the workers, the queue and the bytes of bodies that one caller may"
-        " fill",
+        0.5, gt=0, le=1, description="share of workers, queue and bodies that one caller may fill"
     )
 
     # Connections.

@@ -1,5 +1,6 @@
 """The compiled code that requests need: compiled once, and loaded by later processes."""
 
+from numba import config
 from numba.core.event import Event, Listener, install_listener
 
 from service.coverage import shortest_paths
@@ -18,6 +19,8 @@ def warm_up() -> None:
 
 def load_from_cache() -> None:
     """Do as `warm_up` does, until something would have to be compiled, which takes long."""
+    if config.DISABLE_JIT:  # type: ignore[attr-defined]  # set from the environment
+        return
     try:
         with install_listener("numba:compile", _RefuseCompilation()):
             warm_up()

@@ -161,7 +161,7 @@ def test_what_is_wrong_with_a_long_body_is_said_as_of_a_short_one(service: Serve
     assert fault["detail"] == "matrices/1/7/3 must not be negative, got -1.5"
     cities = json.dumps({"coordinates": [[0, 0, 0, 0]] * 40_000}).encode()
     document = problem(post(service.url, cities), 413, "too-many-cities")
-    assert (document["limit"], document["actual"]) == (1000, 40_000)
+    assert (document["limit"], document["actual"]) == (10_000, 40_000)
 
 
 def test_the_service_goes_on_answering_while_it_reads_a_long_body(service: ServeProcess) -> None:

@@ -1,4 +1,4 @@
-"""What workers are forked with: imported once, by the process that forks them.
+"""Import what workers are forked with, once, in the process that forks them.
 
 They have these modules then, and the compiled code, where an earlier process has left it in the
 cache. Where it has not, one of them compiles it: that takes a minute, and until this is imported
@@ -11,5 +11,7 @@ import scipy.linalg  # numba imports it when it first loads compiled code
 import scipy.ndimage  # noqa: F401  # as the first survey does
 
 from service.jobs.compiled_code import load_from_cache
+from service.jobs.workers import messages  # noqa: F401
+from service.requests import road_measurer  # noqa: F401
 
 load_from_cache()

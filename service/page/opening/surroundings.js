@@ -1,4 +1,4 @@
-/** What lies around the stops of an example: streets, places by name, and the streets of its tours. */
+/** The surroundings of an example's stops: streets, places by name, and the streets of its tours. */
 
 export class Surroundings {
   #service;
