@@ -168,7 +168,11 @@ class Connection(H11Protocol):
             return
         self.lingering = True
         self._unset_keepalive_if_required()
-        self._socket.write_eof()
+        try:
+            self._socket.write_eof()
+        except OSError:  # the client has reset the connection since its answer was written
+            self.abort()
+            return
         self.flow.resume_reading()
         self._connections.set_idle(self, True)
         self._linger_timer = self.loop.call_later(_LINGER_SECONDS, self.abort)

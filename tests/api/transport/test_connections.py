@@ -1,9 +1,11 @@
 """Connections that are many, silent, slow or endless, against live servers and raw sockets."""
 
+import errno
 import json
 import resource
 import socket
 import time
+from asyncio.selector_events import _SelectorSocketTransport
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from urllib.parse import urlsplit
@@ -240,6 +242,21 @@ def test_httpx_gets_the_refusal_of_a_body_of_twenty_megabytes(url: str, chunked:
         content = (body[at : at + 2**16] for at in range(0, len(body), 2**16))
         answer = httpx.post(f"{url}/front", content=content if chunked else body, headers=headers)
         assert (answer.status_code, answer.json()["code"]) == (413, "body-too-long")
+
+
+def test_a_client_that_resets_a_refused_connection_is_no_error_in_the_log(
+    url: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def find_it_gone(_: object) -> None:
+        raise OSError(errno.ENOTCONN, "Transport endpoint is not connected")
+
+    # As where the reset comes between the answer and the end of what is sent.
+    monkeypatch.setattr(_SelectorSocketTransport, "write_eof", find_it_gone)
+    with connected(url) as connection:
+        connection.sendall(STALLED.replace(b"100", b"20000000"))
+        read_to_the_end(connection)
+    assert httpx.get(f"{url}/actors").status_code == 200
+    assert "Traceback" not in caplog.text
 
 
 @pytest.mark.parametrize("close", [True, False], ids=["close", "keep-alive"])
