@@ -1,7 +1,7 @@
 """Import what workers are forked with, once, in the process that forks them.
 
 They have these modules then, and the compiled code, where an earlier process has left it in the
-cache. Where it has not, one of them compiles it: that takes a minute, and until this is imported
+cache. Where it has not, one of them compiles it: that takes minutes, and until this is imported
 there are no workers, not even for what the network does alone.
 
 Not the service nor ONNX Runtime: a fork copies the locks of their threads, but not the threads.
