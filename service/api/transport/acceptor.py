@@ -4,7 +4,7 @@ import asyncio
 import logging
 from collections import deque
 from collections.abc import Callable
-from socket import socket
+from socket import IPPROTO_TCP, TCP_NODELAY, socket
 from typing import Any
 
 import uvicorn
@@ -91,6 +91,9 @@ class Acceptor:
         self._sockets, self._make_protocol = sockets, make_protocol
         for listening in sockets:
             listening.setblocking(False)
+            # Its connections inherit this: else the body of an answer waits 40 ms for the client's
+            # acknowledgement of the head, which asyncio prevents for sockets that it makes itself.
+            listening.setsockopt(IPPROTO_TCP, TCP_NODELAY, 1)
             listening.listen(_IN_KERNEL)
             self._watch(listening)
 

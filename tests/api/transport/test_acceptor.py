@@ -93,6 +93,8 @@ def beside_an_acceptor(test: Callable[[Connect, list[str]], Awaitable[None]]) ->
 
     class Note(asyncio.Protocol):
         def connection_made(self, transport: asyncio.BaseTransport) -> None:
+            served_by = transport.get_extra_info("socket")
+            assert served_by.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
             served.append(transport.get_extra_info("peername")[0])
             transport.close()
 
