@@ -70,6 +70,14 @@ def test_a_whole_run_is_stored_over_another() -> None:
 
 
 @pytest.mark.usefixtures("clean")
+def test_a_whole_run_need_not_fail_as_the_stored_one_did() -> None:
+    store("attack", {"commit": "abc", "tracebacks": {"OSError": 2}, "statuses": {"200": 1}})
+    better = {"commit": "def", "tracebacks": {}, "statuses": {"503": 1}}
+    store("attack", better)
+    assert load("attack") == better
+
+
+@pytest.mark.usefixtures("clean")
 def test_a_run_of_code_that_is_no_commit_is_not_stored(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(provenance, "changed_files", lambda: ["service/planner.py"])
     store("actors", WHOLE)
