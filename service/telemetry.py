@@ -79,7 +79,7 @@ def log_loading(app: Any, check_ready: Callable[[], Awaitable[None]]) -> None:
 
 async def _log_until_ready(check_ready: Callable[[], Awaitable[None]]) -> None:
     log = logging.getLogger("paretour")
-    log.info("loading the search; the first time it is compiled, for two minutes or so")
+    log.info("loading the search; the first time it is compiled, for a minute or two")
     began = time.monotonic()
     said = 0.0
     while True:

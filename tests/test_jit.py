@@ -3,6 +3,24 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
+
+KERNEL = """
+import sys, time
+from service import jit
+from numba.core.caching import IndexDataCacheFile
+
+@jit.compiled
+def half(number):
+    return number / 2
+
+load_index = IndexDataCacheFile._load_index
+def load_index_slowly(self):
+    index = load_index(self)
+    time.sleep(float(sys.argv[1]))
+    return index
+IndexDataCacheFile._load_index = load_index_slowly
+"""
 
 
 def test_compiled_code_works_where_it_cannot_be_cached() -> None:
@@ -33,3 +51,24 @@ def test_two_processes_give_what_they_compile_different_names() -> None:
     names = [subprocess.run(command, capture_output=True, check=True).stdout for _ in range(2)]
     assert names[0].startswith(b"_Z")
     assert names[0] != names[1]
+
+
+def test_processes_that_compile_one_function_at_once_keep_what_each_compiled(
+    tmp_path: Path,
+) -> None:
+    """Each saves code for another type, and takes so long for it that all do it at once."""
+    module = tmp_path / "kernel.py"
+    module.write_text(KERNEL)
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": f"{tmp_path}:."}
+
+    def run(code: str, seconds: float) -> subprocess.Popen[str]:
+        command = [sys.executable, "-c", code, str(seconds)]
+        return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True)
+
+    numbers = ["3", "3.0", "True"]
+    compiling = [run(f"from kernel import half; half({number})", 0.7) for number in numbers]
+    assert [process.communicate() for process in compiling] == [("", None)] * len(numbers)
+    code = f"from kernel import half; print([half(number) for number in [{', '.join(numbers)}]])"
+    printed, _ = run(f"{code}; print(half.stats.cache_misses)", 0).communicate()
+    assert printed == "[1.5, 1.5, 0.5]\nCounter()\n"
+    assert len(list(tmp_path.rglob("*.nbc"))) == len(numbers)

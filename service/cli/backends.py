@@ -15,7 +15,7 @@ from rich.console import Console
 from service.cli.errors import UsageError
 from service.cli.progress import interrupt_flag, progress_bar
 
-LOADING = "loading the search; the first time it is compiled, for two minutes or so"
+LOADING = "loading the search; the first time it is compiled, for a minute or two"
 
 
 class Backend(Protocol):

@@ -1,31 +1,67 @@
-"""The compiled code that requests need: compiled once, and loaded by later processes."""
+"""The compiled code that requests need: compiled once, and loaded by later processes.
+
+Compiling takes one process a minute and a half. So where processors and a cache are there, several
+compile a part each into the cache, and the process that needs it all loads it from there.
+
+`python -m service.jobs.compiled_code FIRST STEP` compiles every STEP-th part from the FIRST on, and
+ends when its standard input does.
+"""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from functools import partial
+from threading import Thread
 
 from numba import config
 from numba.core.event import Event, Listener, install_listener
 
+from service import jit
 from service.coverage import shortest_paths
 from service.jobs.fleets import fleet_run
 from service.replanning import earlier_tours
 from service.search import improve
 
 
-def warm_up() -> None:
-    """Compile everything that is compiled, or load it from the cache, unless it is there."""
-    improve.warm_up()
+def _compile_beside() -> None:
     earlier_tours.warm_up()
     shortest_paths.warm_up()
     fleet_run.warm_up()
 
 
-def load_from_cache() -> None:
-    """Do as `warm_up` does, until something would have to be compiled, which takes long."""
-    if config.DISABLE_JIT:  # type: ignore[attr-defined]  # set from the environment
+_PARTS: Sequence[Callable[[], None]] = (
+    *(partial(improve.warm_up_kind, *kind) for kind in improve.KINDS),
+    _compile_beside,
+)
+
+
+def warm_up() -> None:
+    """Compile everything that is compiled, or load it from the cache, unless it is there."""
+    if load_from_cache():
         return
+    processes = len(os.sched_getaffinity(0))
+    if jit.CACHED and processes > 1:
+        _compile_elsewhere(processes)
+    for compile_part in _PARTS:  # or load it
+        compile_part()
+
+
+def load_from_cache() -> bool:
+    """Do as `warm_up` does, until something would have to be compiled; return whether all is there.
+
+    Where numba's compilation is switched off, nothing has to be.
+    """
+    if config.DISABLE_JIT:  # type: ignore[attr-defined]  # set from the environment
+        return True
     try:
         with install_listener("numba:compile", _RefuseCompilation()):
-            warm_up()
+            for load_part in _PARTS:
+                load_part()
     except _NotCached:
-        return
+        return False
+    return True
 
 
 class _NotCached(Exception):
@@ -38,3 +74,33 @@ class _RefuseCompilation(Listener):
 
     def on_end(self, event: Event) -> None:
         """Do nothing: nothing was begun."""
+
+
+def _compile_elsewhere(processes: int) -> None:
+    """Compile everything into the cache in processes, which end with this one at the latest."""
+    # Of all folders that modules are in, and in a group of its own, which no Ctrl-C ends.
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    with ExitStack() as stack:
+        running = []
+        for first in range(min(processes, len(_PARTS))):
+            process = subprocess.Popen(
+                [sys.executable, "-m", __name__, str(first), str(processes)],
+                stdin=subprocess.PIPE,
+                env=environment,
+                process_group=0,
+            )
+            running.append(stack.enter_context(process))
+            stack.callback(process.kill)
+        for process in running:
+            process.wait()
+
+
+def _end_with_parent() -> None:
+    sys.stdin.read()
+    os._exit(1)
+
+
+if __name__ == "__main__":
+    Thread(target=_end_with_parent, daemon=True).start()
+    for compile_part in _PARTS[int(sys.argv[1]) :: int(sys.argv[2])]:
+        compile_part()

@@ -5,7 +5,7 @@ between what they reach are filled. Every nondominated tour that is visited is k
 """
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from itertools import islice
@@ -29,6 +29,7 @@ Array = NDArray[np.float64]
 Termination = Literal["converged", "time_limit", "cancelled"]
 
 REPORT_EVERY = 0.1  # seconds
+KINDS = ((True, True), (False, True), (True, False), (False, False))  # closed, of coordinates
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,16 +161,20 @@ def _front(instance: Instance, tours: NDArray[np.integer], terminated: Terminati
 
 def warm_up() -> None:
     """Compile all that a request can need, or load it from the cache of an earlier process."""
+    for closed, coordinates in KINDS:
+        warm_up_kind(closed, coordinates)
+
+
+def warm_up_kind(closed: bool, coordinates: bool) -> None:
+    """Compile or load what a request can need of one kind, with coordinates or matrices."""
     best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
-    for instance in _instances(5):
-        exact_tours(instance)
-    tours = np.arange(12)[np.newaxis]
-    for instance in _instances(12):
-        improve(instance, tours, iterations=5_000)
-        hypervolume_bound(instance, 12 * instance.scale)
-        candidates.warm_up(instance)
-        if instance.coordinates is not None:
-            _warm_up_three_opt(instance)
+    exact_tours(_instance(5, closed, coordinates))
+    instance = _instance(12, closed, coordinates)
+    improve(instance, np.arange(12)[np.newaxis], iterations=5_000)
+    hypervolume_bound(instance, 12 * instance.scale)
+    candidates.warm_up(instance)
+    if coordinates:
+        _warm_up_three_opt(instance)
 
 
 def _warm_up_three_opt(instance: Instance) -> None:
@@ -180,11 +185,11 @@ def _warm_up_three_opt(instance: Instance) -> None:
         pass
 
 
-def _instances(n: int) -> Iterator[Instance]:
-    """Yield an instance of n cities of every kind that is compiled apart."""
+def _instance(n: int, closed: bool, coordinates: bool) -> Instance:
+    """Return an instance of n cities of a kind that is compiled apart."""
     cities = np.arange(float(n))
-    coordinates = np.stack([cities, cities**2 % 11, cities**2 % 7, cities], axis=1)
+    if coordinates:
+        planes = np.stack([cities, cities**2 % 11, cities**2 % 7, cities], axis=1)
+        return Instance(coordinates=planes, closed=closed)
     matrices = np.triu(np.outer(cities, cities)[None] % np.array([7, 5]).reshape(2, 1, 1))
-    for closed in (True, False):
-        yield Instance(coordinates=coordinates, closed=closed)
-        yield Instance(matrices=matrices, closed=closed)
+    return Instance(matrices=matrices, closed=closed)

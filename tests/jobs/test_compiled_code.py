@@ -57,3 +57,10 @@ def test_what_is_not_in_the_cache_is_not_compiled_by_loading_it(tmp_path: Path) 
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
     subprocess.run([sys.executable, "-c", load], check=True, env=environment)
     assert not list(tmp_path.rglob("*.nbc"))
+
+
+def test_a_process_that_compiles_ends_with_the_one_that_needs_it(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "service.jobs.compiled_code", "0", "1"]
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    ran = subprocess.run(command, stdin=subprocess.DEVNULL, check=False, env=environment)
+    assert ran.returncode == 1
