@@ -31,6 +31,7 @@ _NAMES = (
     "search",
     "shapes",
     "soak",
+    "solomon",
     "tables",
     "training",
     "weights",

@@ -116,17 +116,22 @@ def swept_plainly(fleet: Fleet, seconds: float) -> list[Plan]:
     """
     translation = Translation(fleet)
     translation.distance_scale = 1e4
-    least = 2 * fleet.costs[0, 0].max()
+    return swept(translation, 2 * fleet.costs[0, 0].max(), seconds)
+
+
+def swept(translation: Translation, least: float, seconds: float) -> list[Plan]:
+    """The plans of PyVRP from scratch, without a limit and then under limits down to the least."""
+    fleet = translation.fleet
     plans = [_solved(translation, UNBOUNDED, seconds / LIMITS)]
     longest = points_of(fleet, plans)[0, 1]
     for limit in np.linspace(longest, least, LIMITS)[1:]:
-        ceiling = int(np.ceil(1e4 * limit)) + fleet.rules.n
+        ceiling = int(np.ceil(translation.limit_scale * limit)) + fleet.rules.n
         plans.append(_solved(translation, ceiling, seconds / LIMITS))
     return [plan for plan in plans if not violations(fleet, plan)]
 
 
 def _solved(translation: Translation, limit: int, seconds: float) -> Plan:
-    data = translation.data(Goal(weights=(1, 0), limit=limit))
+    data = translation.data(Goal(weights=translation.sum_weights, limit=limit))
     result = pyvrp.solve(data, MaxRuntime(seconds), collect_stats=False, display=False)
     return translation.plan(result.best)
 
