@@ -17,6 +17,7 @@ _NAMES = (
     "curves",
     "fleet",
     "fronts",
+    "growth",
     "kro",
     "large",
     "layers",
