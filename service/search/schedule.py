@@ -239,8 +239,9 @@ class Search:
         if self.large:
             yield from self._sweep_from_neighbours(k)
         self._load_start(scalarization, construct=False)
-        for done in range(0, iterations, self.block):
-            steps = min(iterations - done, self.block)
+        block = BLOCK if self.large else self.block
+        for done in range(0, iterations, block):
+            steps = min(iterations - done, block)
             self.local_search.iterate(scalarization, steps)
             yield steps
 

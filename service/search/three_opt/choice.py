@@ -17,6 +17,7 @@ from service.search.working_tour import QueuedTour, WorkingTour
 Cities = NDArray[np.int32]
 
 THREE_OPT = LARGE  # cities from which on three-opt, with sweeps, is the better
+OFFERED = 2_000  # cities, of which every local optimum is offered; of more, proportionally fewer
 
 
 class LocalSearch(Protocol):
@@ -86,7 +87,7 @@ class ThreeOptSearch:
 
     def iterate(self, scalarization: Scalarization, steps: int) -> None:
         """Perturb and descend."""
-        state = self.state
+        state, every = self.state, max(1, len(self.working.tour) // OFFERED)
         three_opt.iterated_local_search(
-            self.working, scalarization, state.archive, state.random, steps
+            self.working, scalarization, state.archive, state.random, steps, every
         )
