@@ -187,8 +187,10 @@ def lower_defaults(request: AnyPlanRequest, n: int, limits: Limits) -> AnyPlanRe
         for name, default in defaults(limits, n).items()
         if name not in request.model_fields_set and default < getattr(request, name)
     }
+    copied = request.model_copy(update=lowered)
     # A field with a lower default still counts as not given.
-    return type(request).model_construct(request.model_fields_set, **{**dict(request), **lowered})
+    copied.model_fields_set.difference_update(lowered)
+    return copied
 
 
 def defaults(limits: Limits, n: int = 1) -> dict[str, float]:

@@ -108,6 +108,13 @@ def test_matrices_may_come_as_a_file() -> None:
     assert request.labels.objectives == (Objective("time", "s"), Objective("risk"))
 
 
+def test_the_stops_of_a_checked_request_are_read_already() -> None:
+    request = parsed()
+    assert "repairs" not in request.model_fields_set
+    assert request.repairs == LIMITS.repairs
+    assert vars(request)["labels"].stops[0].id == "depot"
+
+
 def test_names_are_kept_and_measures_have_their_own_units() -> None:
     labels = parsed(stops=[*STOPS[:3], {"id": "far", "location": [0, 0]}]).labels
     assert labels is not None
