@@ -25,7 +25,6 @@ WEIGHTS = 50  # at 500 cities and 0.3 s better than 100, which get too little ti
 LEAST_SHARE = 1e-3  # of a weight: the other length still counts at the ends, to break ties
 WIDEST_LOGIT = 7.0  # of a weight, where weights are evenly spaced by their logit
 LARGE = 1_500  # cities from which on they are; at 1,000 it is the worse
-FIRST_DIVISOR = 4  # in the first round a weight gets a quarter of the iterations of later ones
 TOURNAMENT_SIZE = 8  # points drawn, of which one is chosen
 STEPS = 10  # of the iterated local search at each point
 SLOPE_REACH = 5  # points to either side over which the slope of the front is taken
@@ -66,15 +65,26 @@ def bisection_order(count: int) -> list[int]:
     return order
 
 
-def round_divisors(n: int, touched: NDArray[np.int32] | None) -> tuple[int, ...]:
-    """Return by what the n iterations of every weight are divided, for each round of all weights.
+class Round(NamedTuple):
+    """A round of iterated local search under all weights."""
 
-    Tours of an earlier front that may have become worse at most of their cities get a short round,
-    and others none: these are good enough for all to compete at once.
+    divisor: int  # of n, which gives the iterations under each weight
+    fills: int  # how many times n iterations fill gaps after it
+
+
+def rounds(n: int, touched: NDArray[np.integer] | None) -> tuple[Round, ...]:
+    """Return the rounds of a search for n cities, before weights and gaps compete.
+
+    Tours of an earlier front, which have touched cities, are good enough for gaps to be filled
+    between them at once. But to fill gaps alone brings more tours than a front is answered with,
+    and none of them as short as after a round. Of a large instance a round takes too long for that,
+    unless the tours may have become worse at most of their cities.
     """
     if touched is None:
-        return FIRST_DIVISOR, 1
-    return (FIRST_DIVISOR,) if 2 * len(touched) > n else ()
+        return Round(4, 0), Round(1, 0)
+    if n < LARGE:
+        return Round(2, 8), Round(4, 8)
+    return (Round(4, 0),) if 2 * len(touched) > n else ()
 
 
 class SearchState(NamedTuple):

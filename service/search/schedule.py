@@ -4,8 +4,9 @@ First every weight gets a tour by descent, then each gets iterated local search,
 on weights and gaps in the front compete for the time, by the hypervolume that they lately gained.
 Of many cities the gaps are too wide for that: at its turn each weight is first descended to from
 the best tours under both neighbouring weights, what lies between is offered to the archive, and
-the local search is by three-opt. Tours of an earlier front that changed in places are descended
-from these, and then all compete.
+the local search is by three-opt. Where there are tours of an earlier front, descents begin at what
+has changed, and gaps are filled after each of two shorter rounds; of many cities there is no round,
+unless most of them are touched.
 """
 
 from collections.abc import Iterator
@@ -33,11 +34,7 @@ from service.search.candidates import (
 )
 from service.search.closing import close_routes, open_tours, with_end_last
 from service.search.costs import lengths, make_costs, scaled_reference
-from service.search.local_search import (
-    LEAST_GAIN,
-    nearest_neighbour,
-    offer,
-)
+from service.search.local_search import LEAST_GAIN, nearest_neighbour, offer
 from service.search.pareto_local_search import (
     LARGE,
     STEPS,
@@ -46,7 +43,7 @@ from service.search.pareto_local_search import (
     bisection_order,
     fill_gaps,
     make_weighted_candidates,
-    round_divisors,
+    rounds,
 )
 from service.search.three_opt.choice import choose_local_search
 from service.search.working_tour import enqueue_cities, make_working_tour
@@ -161,9 +158,11 @@ class Search:
         constructions = LARGE_CONSTRUCTIONS if self.large else CONSTRUCTIONS
         for rank, k in enumerate(bisection_order(WEIGHTS)):
             yield from self._descend(k, construct=rank < constructions and self.touched is None)
-        for divisor in round_divisors(self.n, self.touched):
+        for divisor, fills in rounds(self.n, self.touched):
             for k in bisection_order(WEIGHTS):
                 yield from self._iterate(k, self.n // divisor)
+            for _ in range(fills):
+                yield from self._fill_gaps()
         yield from self._compete()
 
     def pool_candidates(self) -> Iterator[int]:

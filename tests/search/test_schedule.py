@@ -1,17 +1,14 @@
 """A search keeps costs exact, and tells which tours its archive dropped."""
 
+from itertools import islice
+
 import numpy as np
 import pytest
 
 from service.instance import tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve
-from service.search.pareto_local_search import (
-    FIRST_DIVISOR,
-    LARGE,
-    LEAST_SHARE,
-    round_divisors,
-)
+from service.search.pareto_local_search import LARGE, LEAST_SHARE, rounds
 from service.search.schedule import Search
 from tests.helpers.instances import ENDS, opened, random_tours, small_integers, uniform
 
@@ -63,11 +60,21 @@ def test_of_many_cities_the_tours_on_the_way_of_a_descent_are_kept() -> None:
     np.testing.assert_allclose(points, tour_lengths(search.instance, search.tours()))
 
 
-def test_earlier_tours_that_changed_in_most_places_get_a_round_under_each_weight() -> None:
-    few, most = (np.arange(size, dtype=np.int32) for size in (30, 31))
-    assert round_divisors(60, few) == ()
-    assert round_divisors(60, most) == (FIRST_DIVISOR,)
-    assert len(round_divisors(60, None)) == 2
+def test_gaps_between_earlier_tours_are_filled_after_each_of_two_rounds() -> None:
+    n, touched = 60, np.arange(3, dtype=np.int32)
+    search = Search(uniform(n), 0, np.full(2, float(n)), touched=touched)
+    search.add(random_tours(n, 9))
+    done = (iterations for iterations in search.run() if iterations > 1)
+    for divisor, fills in rounds(n, touched):
+        assert list(islice(done, len(search.weights))) == [n // divisor] * len(search.weights)
+        assert list(islice(done, fills)) == [search.block] * fills
+
+
+def test_large_earlier_tours_get_a_round_only_where_most_of_their_cities_are_touched() -> None:
+    few, most = (np.arange(size, dtype=np.int32) for size in (LARGE // 2, LARGE // 2 + 1))
+    assert rounds(LARGE, few) == ()
+    assert len(rounds(LARGE, most)) == 1
+    assert len(rounds(LARGE - 1, few)) == len(rounds(LARGE, None)) == 2
 
 
 def test_little_hypervolume_is_missing_between_the_best_of_many_cities() -> None:
