@@ -16,6 +16,7 @@ from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Array, Fleet
 from service.fleet.necessary import check_necessary
 from service.fleet.plans import FleetFront, Plan
+from service.fleet.scales import Units
 from service.fleet.solver import Solver
 from service.fleet.splitting.cutter import Cutter
 from service.fleet.splitting.first_plans import first_plans
@@ -130,8 +131,9 @@ class _Search:
         self._report = report
         self._began = self._reported = began
         self._deadline = self._began + options.time_limit
-        self._reference_point = reference_point_of(fleet, options)
-        self._translation = Translation(fleet)
+        units = Units.of(fleet)
+        self._reference_point = units.points(reference_point_of(fleet, options))
+        self._translation = Translation(units.fleet)
         self._archive = SolutionArchive(self._translation)
         self._constructed = 0
         self._iterations = 0

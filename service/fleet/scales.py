@@ -1,19 +1,20 @@
 """The whole numbers that PyVRP computes with: how finely costs and times are scaled to them."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
 
 from service.errors import Refusal
-from service.fleet.fleet import Array, Fleet
+from service.fleet.fleet import Array, Fleet, VehicleType, Visit
 from service.instance import OBJECTIVES
 
 _LARGEST = 2.0**61  # that a penalty for all routes together may be: PyVRP's integers have 64 bits
 _COARSEST = 1000  # units of the longest leg, at least
 _ROUNDING = 1e-12  # relative, of what a float has too much or too little
 _HARDEST = 10  # costs of the longest leg, for one unit over a limit or a capacity
+_TINY = 2.0**-900  # of the longest leg: the power of ten that scales a much shorter one is infinite
 
 
 def round_up(scaled: Array | float) -> Array:
@@ -54,6 +55,84 @@ def _longest_route(fleet: Fleet, objective: int) -> float:
     timed = objective == fleet.rules.clock
     services = sum(visit.service for visit in fleet.rules.visits) if timed else 0.0
     return float(fleet.costs[objective].max(axis=1).sum()) + services
+
+
+@dataclass(frozen=True, eq=False)
+class Units:
+    """A fleet in units in which no objective has tiny costs alone.
+
+    Args:
+        fleet: The fleet in these units.
+        shifts: The powers of two, shape (2,), by which each objective was multiplied: exactly.
+    """
+
+    fleet: Fleet
+    shifts: Array
+
+    @classmethod
+    def of(cls, fleet: Fleet) -> "Units":
+        """Return the units of a fleet, which are its own where costs are not tiny.
+
+        Raises:
+            Refusal: In such units a prize or a time would overflow.
+        """
+        largest = fleet.costs.max(axis=(1, 2), initial=0.0)
+        tiny = (largest > 0) & (largest < _TINY)
+        shifts = np.where(tiny, 1 - np.frexp(largest)[1], 0)
+        if not tiny.any():
+            return cls(fleet, shifts)
+        rules = fleet.rules
+        timed = rules.maximum if rules.clock is None else rules.clock
+        extra, time = int(shifts[0]), 0 if timed is None else int(shifts[timed])
+        scaled = replace(
+            rules,
+            visits=tuple(_scaled_visit(visit, extra, time) for visit in rules.visits),
+            vehicles=tuple(_scaled_vehicle(vehicle, extra, time) for vehicle in rules.vehicles),
+        )
+        costs = np.ldexp(fleet.costs, shifts[:, np.newaxis, np.newaxis])
+        return cls(Fleet(rules=scaled, costs=costs), shifts)
+
+    def points(self, points: Array) -> Array:
+        """Return points, shape (..., 2), in these units; infinite where these are too small."""
+        with np.errstate(over="ignore"):
+            scaled: Array = np.ldexp(points, self.shifts)
+        return scaled
+
+
+def _scaled_visit(visit: Visit, extra: int, time: int) -> Visit:
+    """Return a visit whose prize and times are multiplied by powers of two."""
+    opens, closes = visit.window
+    return replace(
+        visit,
+        service=_scaled(visit.service, time),
+        window=(_scaled(opens, time), _scaled_bound(closes, time)),
+        prize=None if visit.prize is None else _scaled(visit.prize, extra),
+    )
+
+
+def _scaled_vehicle(vehicle: VehicleType, extra: int, time: int) -> VehicleType:
+    """Return a type of vehicles in the same way."""
+    opens, closes = vehicle.shift
+    return replace(
+        vehicle,
+        shift=(_scaled(opens, time), _scaled_bound(closes, time)),
+        longest=_scaled_bound(vehicle.longest, time),
+        fixed=_scaled(vehicle.fixed, extra),
+    )
+
+
+def _scaled(value: float, shift: int) -> float:
+    scaled = _scaled_bound(value, shift)
+    if scaled == inf:
+        reason = f"costs, prizes and times must not be so far apart as tiny costs and {value:g}"
+        raise Refusal("invalid-instance", reason=reason)
+    return scaled
+
+
+def _scaled_bound(value: float, shift: int) -> float:
+    """Return an upper bound multiplied by a power of two: none where no double is so large."""
+    with np.errstate(over="ignore"):
+        return float(np.ldexp(value, shift))
 
 
 def scales_of(fleet: Fleet, horizon: Horizon) -> tuple[list[float], float]:

@@ -173,6 +173,32 @@ def test_costs_of_any_size_are_planned(unit: float) -> None:
 OPEN = VehicleType(start=0, count=3)
 
 
+def test_tiny_costs_and_times_are_planned_like_common_ones() -> None:
+    unit = 2.0**-1040
+    common = deliveries(8)
+    visits = tuple(
+        replace(visit, service=visit.service * unit, window=(begin * unit, end * unit))
+        for visit in common.rules.visits
+        for begin, end in [visit.window]
+    )
+    vehicles = (replace(common.rules.vehicles[0], shift=(0, 12 * unit)),)
+    rules = replace(common.rules, visits=visits, vehicles=vehicles)
+    tiny = Fleet(rules=rules, costs=common.costs * unit)
+    options = FleetOptions(time_limit=inf, iterations=500)
+    expected, front = (plan_fleet(fleet, options) for fleet in (common, tiny))
+    assert [violations(tiny, plan) for plan in front.plans] == [[]] * len(front.plans)
+    np.testing.assert_allclose(front.points / unit, expected.points, rtol=1e-5)
+    assert front.hypervolume == pytest.approx(expected.hypervolume, rel=1e-5)
+
+
+def test_times_that_tiny_costs_leave_no_double_for_are_refused() -> None:
+    fleet = deliveries(8)
+    visits = (Visit(), *(Visit(window=(1e150, inf)),) * 8)
+    rules = replace(fleet.rules, visits=visits, vehicles=(OPEN,))
+    with pytest.raises(Refusal, match="must not be so far apart"):
+        plan_fleet(Fleet(rules=rules, costs=fleet.costs * 1e-310), FleetOptions(time_limit=1))
+
+
 def plain_deliveries(n: int) -> Fleet:
     """Return deliveries without windows."""
     fleet = deliveries(n)

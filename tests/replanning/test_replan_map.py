@@ -1,7 +1,8 @@
 """Replanned fronts of maps against new fronts of what is left on the map as it is then."""
 
 import json
-from dataclasses import dataclass, field
+import tracemalloc
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -203,3 +204,20 @@ def test_a_place_that_no_path_leads_to_any_more_is_to_be_removed() -> None:
     walled = grid([cell for cell in walls if 0 <= cell[0] < ROWS and 0 <= cell[1] < COLUMNS])
     with pytest.raises(Refusal, match="place 3, as it must be reachable from where the way goes"):
         scene.rest(grid=walled)
+
+
+def test_the_paths_of_a_front_are_not_parsed() -> None:
+    scene = Scene(7)
+    cells = ",".join(["[0,1]"] * 100_000)
+    path = f',"arrivals":[{cells}],"path":{{"cells":[{cells}],"metres":1.0}}}}'.encode()
+    plain = StoredFront("front", scene.source, scene.front.tours, scene.front.places)
+    long = replace(plain, tours=scene.front.tours.replace(b"]}", b"]" + path))
+    expected = rest_source(ReplanSource(b'{"done": [1]}', plain), LIMITS)
+    tracemalloc.start()
+    try:
+        rest = rest_source(ReplanSource(b'{"done": [1]}', long), LIMITS)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert rest == expected
+    assert peak < 2**20

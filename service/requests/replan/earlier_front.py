@@ -1,5 +1,6 @@
 """The front that is replanned: its stops, costs, ends and tours, from what was stored of it."""
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -21,6 +22,8 @@ from service.search.open_routes import rotated
 Array = NDArray[np.float64]
 MOST_TOURS = 50  # of an earlier front, from which the search sets out, as many as it has weights
 _NAMES = ("first", "second")  # of objectives that the front's request did not name
+# What is read of a tour: not its path, whose millions of cells take seconds and half a gigabyte.
+_LENGTHS = re.compile(rb'"lengths":\s*\[[^]]*],\s*"tour":\s*\[[^]]*]')
 _MODELS: Mapping[str, type[FrontRequest]] = {"front": FrontRequest, "replan": RestRequest}
 
 
@@ -147,7 +150,9 @@ def not_replannable(front: str, reason: str) -> Refusal:
 
 def _read_tours(stored: StoredFront, n: int) -> tuple[NDArray[np.int64], Array]:
     """Return the stops of all tours, shape (m, n), and their lengths, shape (m, 2)."""
-    items = from_json(b"[" + stored.tours + b"]")
+    items = from_json(
+        b"[%b]" % b",".join(b"{%b}" % each for each in _LENGTHS.findall(stored.tours))
+    )
     if not items:
         raise not_replannable(stored.id, "it has no tour")
     tours = np.array([item["tour"] for item in items], np.int64)
