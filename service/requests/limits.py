@@ -12,6 +12,7 @@ from service.requests.stops import ROAD_MEASURES, Measured, UnmeasuredStops, bas
 from service.requests.validation import invalid
 
 _TOURS_BY_ID = 100  # initial tours that may name every stop by its id
+_ID_BYTES = 40  # in an answer, of an id that counts for one cell: a UUID with its quotation marks
 AnyPlanRequest = TypeVar("AnyPlanRequest", bound=PlanFields)
 
 
@@ -27,7 +28,8 @@ class Limits:
         network_cities: Cities of which a network builds tours.
         fleet_stops: Stops of a fleet, and places that several robots share.
         cells: Cells of a map.
-        path_cells: Cells of all paths of an answer, and stops of all its tours.
+        path_cells: Cells of all paths of an answer, and stops of all its tours; long ids of stops
+            count for more.
         preferences: Preferences of a front.
         repairs: Repairs of the network's tours.
         size: Tours to return, or to bring as initial tours.
@@ -57,9 +59,14 @@ class Limits:
         places = self.most_cities("matrices")
         return min(places, self.fleet_stops) if shared else places
 
-    def most_tours(self, n: int) -> int:
-        """Return the most tours of n cities, each with its return, that an answer may have."""
-        return max(1, min(self.size, self.path_cells // (n + 1)))
+    def most_tours(self, n: int, id_bytes: int = 0) -> int:
+        """Return the most tours of n cities, each with its return, that an answer may have.
+
+        Args:
+            n: The number of cities.
+            id_bytes: Bytes of the ids in one tour.
+        """
+        return max(1, min(self.size, self.path_cells // max(n + 1, id_bytes // _ID_BYTES)))
 
 
 def check_structure(body: bytes, limits: Limits) -> None:
@@ -95,9 +102,23 @@ def check_amounts(request: PlanFields, n: int, limits: Limits) -> None:
     for name, (limit, actual) in asked.items():
         if name in request.model_fields_set:
             check_limit(name, limit, actual)
-    most = limits.most_tours(n)
-    if "size" in request.model_fields_set and request.size > most:
-        raise invalid("size", f"must be at most {most} with {n} cities, got {request.size}")
+    if "size" in request.model_fields_set:
+        check_size(request.size, n, request.id_bytes, limits)
+
+
+def check_size(size: int, n: int, id_bytes: int, limits: Limits) -> None:
+    """Raise a refusal where an answer of so many tours of n cities would be too large.
+
+    Args:
+        size: The number of tours.
+        n: The number of cities.
+        id_bytes: Bytes of the ids in one tour.
+        limits: The limits.
+    """
+    most = limits.most_tours(n, id_bytes)
+    if size > most:
+        ids = " and ids so long" if most < limits.most_tours(n) else ""
+        raise invalid("size", f"must be at most {most} with {n} cities{ids}, got {size}")
 
 
 def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
@@ -184,7 +205,7 @@ def lower_defaults(request: AnyPlanRequest, n: int, limits: Limits) -> AnyPlanRe
     """Return a request about n cities, with the limit in place of every default that is over it."""
     lowered = {
         name: default
-        for name, default in defaults(limits, n).items()
+        for name, default in defaults(limits, n, request.id_bytes).items()
         if name not in request.model_fields_set and default < getattr(request, name)
     }
     copied = request.model_copy(update=lowered)
@@ -193,11 +214,17 @@ def lower_defaults(request: AnyPlanRequest, n: int, limits: Limits) -> AnyPlanRe
     return copied
 
 
-def defaults(limits: Limits, n: int = 1) -> dict[str, float]:
-    """Return the defaults under these limits, for n cities: silence is never over a limit."""
+def defaults(limits: Limits, n: int = 1, id_bytes: int = 0) -> dict[str, float]:
+    """Return the defaults under these limits, for n cities: silence is never over a limit.
+
+    Args:
+        limits: The limits.
+        n: The number of cities.
+        id_bytes: Bytes of the ids in one tour.
+    """
     most = {
         "preferences": limits.preferences,
-        "size": limits.most_tours(n),
+        "size": limits.most_tours(n, id_bytes),
         "repairs": limits.repairs,
         "time_limit": limits.seconds,
     }

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pydantic_core import to_json
 
 from service.errors import Refusal
 from service.instance import Instance
@@ -320,3 +321,18 @@ def test_a_file_of_matrices_that_does_not_fit_is_named(
     refused = refusal(body(objectives=objectives), npy(matrices))
     assert (refused.code, refused.errors[0].pointer) == ("invalid-request", pointer)
     assert sentence in refused.detail
+
+
+def test_long_ids_make_room_for_fewer_tours() -> None:
+    def request(letter: str, **members: Any) -> FrontRequest:
+        stops = [{"id": letter * 90 + f"{i}", "location": LOCATIONS[i]} for i in range(4)]
+        few = replace(LIMITS, path_cells=5 * LIMITS.size)
+        return parse_front_request(body(stops=stops, **members), few)
+
+    assert request("x", size=LIMITS.size // 2).size == LIMITS.size // 2
+    most = request("🔑").size
+    assert most < LIMITS.size // 4
+    assert len(to_json([stop.id for stop in request("🔑").stops])) * most < 40 * 5 * LIMITS.size
+    with pytest.raises(Refusal, match=f"size must be at most {most} with 4 cities and ids so long"):
+        request("🔑", size=most + 1)
+    assert parsed().size == LIMITS.size

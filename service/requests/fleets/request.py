@@ -5,6 +5,7 @@ from typing import Annotated
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
+from pydantic_core import to_json
 
 from service.fleet.fleet import Rules, Shipment, VehicleType
 from service.instance import OBJECTIVES
@@ -16,7 +17,7 @@ from service.requests.fleets.fields import (
     VehicleItem,
 )
 from service.requests.fleets.subject import UnmeasuredFleet
-from service.requests.limits import Limits, check_limit, defaults
+from service.requests.limits import Limits, check_limit, check_size, defaults
 from service.requests.schemas import (
     GEOMETRY,
     Geometry,
@@ -76,6 +77,14 @@ class FleetRequest(BaseModel):
         """The names of stops and objectives."""
         return Labels(read_stops(self.stops), read_objectives(self.objectives))
 
+    @property
+    def id_bytes(self) -> int:
+        """The bytes of all ids in one plan of the answer, at most."""
+        stops = [len(to_json(stop.id)) for stop in self.stops]
+        routes = min(sum(vehicle.count for vehicle in self.vehicles), len(stops))
+        of_route = max(len(to_json(vehicle.id)) for vehicle in self.vehicles) + 2 * max(stops)
+        return sum(stops) + routes * of_route
+
     def subject(self) -> UnmeasuredFleet:
         """Return the fleet, whose costs are still to be measured.
 
@@ -130,7 +139,11 @@ def parse_fleet_request(body: bytes, limits: Limits) -> FleetRequest:
     for name, limit in (("size", limits.size), ("time_limit", limits.seconds)):
         if name in given:
             check_limit(name, limit, getattr(request, name))
-    lowered = {k: v for k, v in defaults(limits).items() if k in ("size", "time_limit")}
+    n, id_bytes = len(request.stops), request.id_bytes
+    if "size" in given:
+        check_size(request.size, n, id_bytes, limits)
+    default = defaults(limits, n, id_bytes)
+    lowered = {name: default[name] for name in ("size", "time_limit")}
     return request.model_copy(update={k: v for k, v in lowered.items() if k not in given})
 
 

@@ -2,6 +2,7 @@
 
 import copy
 import json
+from dataclasses import replace
 from math import inf
 from typing import Any
 
@@ -9,6 +10,7 @@ import pytest
 
 from service.errors import Refusal
 from service.fleet.fleet import ALWAYS, Shipment, VehicleType, Visit
+from service.requests.fleets.request import parse_fleet_request
 from service.requests.fleets.schemas import fleet_schemas
 from service.requests.limits import Limits
 from service.requests.task import TaskSource, parse_task
@@ -48,6 +50,19 @@ def test_limits_lower_the_defaults_and_refuse_what_is_over_them() -> None:
     with pytest.raises(Refusal) as refused:
         parse_task(TaskSource("fleet", json.dumps(request).encode()), few, {})
     assert (refused.value.code, refused.value.limit) == ("too-many-cities", 7)
+
+
+def test_long_ids_make_room_for_fewer_plans() -> None:
+    request = fleet_request()
+    del request["size"]
+    limits = replace(LIMITS, path_cells=LIMITS.size * (len(request["stops"]) + 1))
+    assert parse_fleet_request(json.dumps(request).encode(), limits).size == LIMITS.size
+    request["vehicles"][1] |= {"id": "é" * 100, "count": 10**6}
+    most = parse_fleet_request(json.dumps(request).encode(), limits).size
+    assert most < LIMITS.size
+    request["size"] = most + 1
+    with pytest.raises(Refusal, match=f"size must be at most {most} with 8 cities and ids so long"):
+        parse_fleet_request(json.dumps(request).encode(), limits)
 
 
 def changed(path: str, value: Any) -> dict[str, Any]:
