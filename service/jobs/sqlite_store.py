@@ -1,6 +1,7 @@
 """The store in SQLite: in a file, which outlives the process, or in memory."""
 
 import asyncio
+import logging
 import sqlite3
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -9,7 +10,7 @@ from functools import partial
 from time import time
 from typing import Any, TypeVar
 
-from service.errors import Expired, IdempotencyMismatch, NotFound
+from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
 from service.jobs.record import Record
 from service.jobs.sqlite_schema import IN_MEMORY, UNFINISHED, open_file
 from service.jobs.store import (
@@ -42,6 +43,7 @@ _NEXT_OUT = f"""
 SELECT min(number) FROM front WHERE {_FINISHED} GROUP BY caller
 ORDER BY count(*) > 1 DESC, {{most}} DESC, min(number) LIMIT 1
 """
+_LOG = logging.getLogger("paretour")
 
 
 class SqliteStore:
@@ -129,8 +131,17 @@ class SqliteStore:
         )
 
     def _in_transaction(self, act: Callable[..., T], *arguments: object) -> T:
-        with self._database:
-            return act(*arguments)
+        """Return what an action does with the file, all of it or nothing.
+
+        Raises:
+            StoreUnavailable: The file cannot be read or written, mostly as the disk is full.
+        """
+        try:
+            with self._database:
+                return act(*arguments)
+        except sqlite3.Error as error:
+            _LOG.error("the file of the store cannot be used: %s", error)
+            raise StoreUnavailable from error
 
     def _put(self, record: Record) -> None:
         self._delete(record.id)

@@ -2,13 +2,15 @@
 
 import asyncio
 import json
+import resource
 import sqlite3
-from contextlib import closing
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 import pytest
 
-from service.errors import Expired
+from service.errors import Expired, NotFound, StoreUnavailable
 from service.jobs.sqlite_store import SqliteStore
 from service.requests.task import TaskSource
 from tests.helpers.released_records import ANSWERS, SQLITE_ROWS, SQLITE_SCHEMA
@@ -36,6 +38,38 @@ def test_what_is_in_a_file_is_there_after_a_restart(tmp_path: Path) -> None:
 def test_a_store_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=f"store must be a file of its own, {tmp_path} is not"):
         SqliteStore(str(tmp_path), entries=1, max_age=1)
+
+
+@contextmanager
+def full_disk() -> Iterator[None]:
+    """Let no file of this process grow until the block ends."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+def test_a_store_whose_disk_is_full_is_unavailable_until_there_is_room(tmp_path: Path) -> None:
+    async def test() -> None:
+        store = SqliteStore(str(tmp_path / "fronts.sqlite"), entries=9, max_age=60)
+        await store.put(record("a"))
+        with full_disk():
+            for change in (
+                store.put(record("b")),
+                store.admit(job("c")),
+                store.delete(record("a")),
+            ):
+                with pytest.raises(StoreUnavailable):
+                    await change
+            assert (await store.get("us", "a")).json() == record("a").json()
+        await store.delete(record("a"))
+        with pytest.raises(NotFound):
+            await store.get("us", "a")
+        await store.close()
+
+    asyncio.run(test())
 
 
 def test_a_file_of_the_last_release_is_read(tmp_path: Path) -> None:
