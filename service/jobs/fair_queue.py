@@ -3,7 +3,7 @@
 import math
 from collections import deque
 from collections.abc import Container, Iterable, Iterator
-from itertools import chain
+from itertools import chain, count
 
 from service.errors import QueueFull, ShareFull
 from service.jobs.submission import Submission
@@ -18,6 +18,9 @@ def places_of_client(workers: int, queue: int, share: float) -> int:
     return max(math.ceil(share * (workers + queue)), workers + 1)
 
 
+_REMEMBERED = 1000  # clients whose latest turns are known
+
+
 class FairQueue:
     """Submissions that wait: the next is that of the client whose turn is longest ago.
 
@@ -26,7 +29,9 @@ class FairQueue:
 
     def __init__(self) -> None:
         self._first: deque[Submission] = deque()
-        self._by_client: dict[str, deque[Submission]] = {}  # in the order of their turns
+        self._by_client: dict[str, deque[Submission]] = {}
+        self._turns: dict[str, int] = {}  # the number of each client's latest turn, ascending
+        self._numbers = count()
 
     def __len__(self) -> int:
         """Return how many wait."""
@@ -55,13 +60,19 @@ class FairQueue:
         """
         if self._first or not self._by_client:
             return self._first.popleft()
-        unserved = (client for client in self._by_client if client not in served)
-        client = next(unserved, next(iter(self._by_client)))
-        waiting = self._by_client.pop(client)
+        client = min(self._by_client, key=lambda each: (each in served, self._turns.get(each, -1)))
+        self._note_turn(client)
+        waiting = self._by_client[client]
         submission = waiting.popleft()
-        if waiting:
-            self._by_client[client] = waiting
+        if not waiting:
+            del self._by_client[client]
         return submission
+
+    def _note_turn(self, client: str) -> None:
+        self._turns.pop(client, None)
+        self._turns[client] = next(self._numbers)
+        if len(self._turns) > _REMEMBERED:
+            del self._turns[next(iter(self._turns))]
 
     def remove(self, submission: Submission) -> None:
         """Remove a submission, if it waits."""

@@ -18,6 +18,7 @@ from service.errors import Refusal
 from service.requests.multipart import split_parts
 from service.requests.replan.parser import ReplanSource
 from service.requests.task import TaskSource
+from tests.fuzz.fleets import fleet
 from tests.fuzz.mutations import EXTREMES, TOKENS, mutated
 from tests.fuzz.replans import replan
 
@@ -200,6 +201,7 @@ GENERATORS: Mapping[str, Callable[[random.Random], TaskSource | ReplanSource | R
     "pgm": pgm,
     "json": json_body,
     "robots": robots,
+    "fleet": fleet,
     "multipart": multipart,
     "replan": replan,
 }

@@ -8,6 +8,7 @@ import pytest
 
 from tests.fuzz.attack import largest_memory, parse_many, post_many, strict_json
 from tests.fuzz.bodies import GENERATORS, extreme
+from tests.fuzz.fleets import extreme_fleet
 from tests.helpers.serving import ACTORS, LIMITS, app_of, serving, workers_of
 
 INFO = {actor.info.name: actor.info for actor in ACTORS}
@@ -37,6 +38,14 @@ def url() -> Iterator[str]:
 
 def test_extreme_numbers_over_http_are_planned_or_refused(url: str) -> None:
     sources = (extreme(random.Random(f"extreme {number}")) for number in range(EXTREMES))
+    statuses = post_many(url, sources)
+    assert statuses.total() == EXTREMES
+    assert set(statuses) == {200, 422}
+    assert statuses[200] > EXTREMES // 5
+
+
+def test_fleets_of_extreme_numbers_over_http_are_planned_or_refused(url: str) -> None:
+    sources = [extreme_fleet(random.Random(f"extreme {number}")) for number in range(EXTREMES)]
     statuses = post_many(url, sources)
     assert statuses.total() == EXTREMES
     assert set(statuses) == {200, 422}

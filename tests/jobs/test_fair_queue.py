@@ -1,0 +1,67 @@
+"""The queue of submissions: whose turn it is."""
+
+import asyncio
+from collections.abc import Sequence
+
+import pytest
+
+from service.jobs.fair_queue import FairQueue
+from service.jobs.submission import Submission
+from service.requests.task import TaskSource
+
+
+def turns(before: str, then: str, taken: int = 1, served: Sequence[str] = ()) -> str:
+    """Return the clients in the order of their turns, a letter for each submission.
+
+    Args:
+        before: The clients of submissions that wait first.
+        then: Those of submissions that come when some have had their turn.
+        taken: How many have had it by then.
+        served: The clients for which one is being run, from then on.
+    """
+
+    async def take() -> str:
+        queue = FairQueue()
+        for number, client in enumerate(before):
+            queue.append(Submission(number, TaskSource("front", b""), lambda: None, True, client))
+        order = [queue.take().client for _ in range(taken)]
+        for number, client in enumerate(then, len(before)):
+            queue.append(Submission(number, TaskSource("front", b""), lambda: None, True, client))
+        order += [queue.take(served).client for _ in range(len(queue))]
+        assert len(queue) == 0
+        return "".join(order)
+
+    return asyncio.run(take())
+
+
+@pytest.mark.parametrize(
+    ("before", "then", "order"),
+    [
+        ("aaaa", "b", "abaaa"),  # the crowd had its turn just before, and one who comes had none
+        ("a", "aab", "abaa"),  # also where nothing of the crowd waited any more
+        ("aaab", "cc", "abcaca"),
+        ("aabb", "", "abab"),
+    ],
+)
+def test_the_next_is_of_the_client_whose_turn_is_longest_ago(
+    before: str, then: str, order: str
+) -> None:
+    assert turns(before, then, 2 if then == "cc" else 1) == order
+
+
+def test_a_client_that_is_served_waits_behind_those_that_are_not() -> None:
+    assert turns("ab", "aabb", 2, served="a") == "abbbaa"
+
+
+def test_turns_of_many_clients_take_little_memory() -> None:
+    async def take() -> int:
+        queue = FairQueue()
+        for number in range(3000):
+            submission = Submission(
+                number, TaskSource("front", b""), lambda: None, True, str(number)
+            )
+            queue.append(submission)
+            queue.take()
+        return len(queue._turns)
+
+    assert asyncio.run(take()) == 1000
