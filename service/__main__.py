@@ -1,12 +1,17 @@
 """The command `paretour`, also `python -m service`."""
 
+import sys
 from collections.abc import Sequence
 
-from service.cli.commands import app
+_INTERRUPTED = 130
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command."""
+    """Run the command; Ctrl-C while it loads ends it as it does later."""
+    try:
+        from service.cli.commands import app
+    except KeyboardInterrupt:
+        sys.exit(_INTERRUPTED)
     app(args=arguments, prog_name="paretour")
 
 

@@ -39,7 +39,7 @@ def tracked() -> list[str]:
 
 def test_the_service_starts_without_the_factory() -> None:
     code = (
-        "import sys, service.api.app, service.actor, service.__main__;"
+        "import sys, service.api.app, service.actor, service.cli.commands;"
         "sys.exit(len({'torch', 'onnx', 'models', 'export'} & set(sys.modules)))"
     )
     subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True)

@@ -230,6 +230,19 @@ def test_help_waits_for_nothing_heavy() -> None:
     subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True)
 
 
+def test_ctrl_c_while_the_command_loads_ends_with_130_and_no_traceback() -> None:
+    code = (
+        "import sys\n"
+        "class Pressed:\n"
+        "    def find_spec(self, name, *_):\n"
+        "        if name == 'service.cli.options': raise KeyboardInterrupt\n"
+        "sys.meta_path.insert(0, Pressed())\n"
+        "from service.__main__ import main; main(['--help'])"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (130, b"", b"")
+
+
 def test_the_rest_of_a_front_of_a_service_is_replanned(url: str, tmp_path: Path) -> None:
     cities = np.random.default_rng(2).random((8, 4)).tolist()
     with Client(url) as client:
