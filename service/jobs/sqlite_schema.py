@@ -32,6 +32,13 @@ STEPS = (
     DROP INDEX IF EXISTS finished;
     CREATE INDEX finished ON front (caller, number, kept, size) WHERE NOT {UNFINISHED};
     """,
+    # Records make way by client: the caller, or an address where there are no keys.
+    f"""
+    ALTER TABLE front ADD COLUMN client;
+    UPDATE front SET client = caller;
+    DROP INDEX finished;
+    CREATE INDEX finished ON front (client, number, kept, size) WHERE NOT {UNFINISHED};
+    """,
 )
 
 

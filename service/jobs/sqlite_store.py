@@ -38,9 +38,9 @@ _READ = ", ".join(
 )
 _FINISHED = f"NOT {UNFINISHED}"
 _SUMS = f"SELECT count(*), total(size) FROM front WHERE {_FINISHED}"
-# The oldest record of the caller that has most; of those with one alone where nobody has two.
+# The oldest record of the client that has most; of those with one alone where nobody has two.
 _NEXT_OUT = f"""
-SELECT min(number) FROM front WHERE {_FINISHED} GROUP BY caller
+SELECT min(number) FROM front WHERE {_FINISHED} GROUP BY client
 ORDER BY count(*) > 1 DESC, {{most}} DESC, min(number) LIMIT 1
 """
 _LOG = logging.getLogger("paretour")
@@ -148,9 +148,10 @@ class SqliteStore:
         columns = record_columns(record)
         if record.finished and _source_size(columns) > self._max_bytes // SOURCE_SHARE:
             columns |= dict.fromkeys(SOURCE_COLUMNS)
-        places = ", ".join("?" * (len(columns) + 2))
-        insert = f"INSERT INTO front (kept, size, {_COLUMNS}) VALUES ({places})"
-        self._database.execute(insert, (self._clock(), record_size(columns), *columns.values()))
+        places = ", ".join("?" * (len(columns) + 3))
+        insert = f"INSERT INTO front (kept, size, client, {_COLUMNS}) VALUES ({places})"
+        beside = (self._clock(), record_size(columns), record.client or record.caller)
+        self._database.execute(insert, (*beside, *columns.values()))
         self._evict()
 
     def _admit(self, record: Record) -> Record:
@@ -192,14 +193,17 @@ class SqliteStore:
 
     def _select(self, where: str, *values: str) -> list[Record]:
         """Return the records that can be read; the others are dropped."""
-        query = f"SELECT number, {_READ} FROM front WHERE {where}"
+        query = f"SELECT number, client, {_READ} FROM front WHERE {where}"
         rows = self._database.execute(query, values).fetchall()
-        found = (self._read(number, dict(zip(COLUMNS, row, strict=True))) for number, *row in rows)
+        found = (
+            self._read(number, client, dict(zip(COLUMNS, row, strict=True)))
+            for number, client, *row in rows
+        )
         return [record for record in found if record is not None]
 
-    def _read(self, number: int, columns: dict[str, object]) -> Record | None:
+    def _read(self, number: int, client: str, columns: dict[str, object]) -> Record | None:
         try:
-            record = record_from(columns)
+            record = replace(record_from(columns), client=client)
             if not record.finished and record.source is None:
                 raise UnreadableRecord("it is unfinished, and what to plan is missing")
         except UnreadableRecord as error:
@@ -224,7 +228,7 @@ class SqliteStore:
             self._drop(f"number = ({_NEXT_OUT.format(most=most)})")
 
     def _most_over(self) -> str | None:
-        """Return what there is too much of in the store, as an expression for each caller."""
+        """Return what there is too much of in the store, as an expression for each client."""
         entries, size = self._database.execute(_SUMS).fetchone()
         if entries > self._entries:
             return "count(*)"

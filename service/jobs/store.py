@@ -28,6 +28,7 @@ class Store(Protocol):
 
     When finished ones are too many, or take too many bytes, the oldest of the caller that has
     most makes way: a caller's last one only where nobody has two, or where no store could hold it.
+    In SQLite each address counts as a caller of its own where there are no keys.
     """
 
     async def put(self, record: Record) -> None:

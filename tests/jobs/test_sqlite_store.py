@@ -40,6 +40,30 @@ def test_a_store_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
         SqliteStore(str(tmp_path), entries=1, max_age=1)
 
 
+def test_without_keys_the_records_of_one_address_leave_those_of_another(tmp_path: Path) -> None:
+    path = str(tmp_path / "fronts.sqlite")
+
+    async def test() -> None:
+        store = SqliteStore(path, entries=4, max_age=60)
+        await store.admit(record("a", client="192.0.2.1", key="k", digest="1"))
+        await store.admit(job("b", client="192.0.2.1"))
+        for id_ in map(str, range(9)):
+            await store.put(record(id_, client="192.0.2.2"))
+        assert (await store.get("us", "a")).client == "192.0.2.1"
+        assert (await store.admit(job("c", key="k", digest="1"))).id == "a"
+        await store.close()
+        again = SqliteStore(path, entries=4, max_age=60)
+        [unfinished] = await again.unfinished()
+        assert unfinished.client == "192.0.2.1"
+        await again.put(record("b", client=unfinished.client))
+        assert (await again.latest("us")).id == "b"
+        for id_ in ("a", "7", "8"):
+            assert (await again.get("us", id_)).id == id_
+        await again.close()
+
+    asyncio.run(test())
+
+
 @contextmanager
 def full_disk() -> Iterator[None]:
     """Let no file of this process grow until the block ends."""
