@@ -2,9 +2,11 @@
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from service.errors import Refusal
 from service.fleet.evaluation import route_violations
-from service.fleet.fleet import Fleet, Rules, VehicleType
+from service.fleet.fleet import Array, Fleet, Rules, VehicleType
 from service.fleet.plans import Route
 
 
@@ -18,6 +20,28 @@ def check_necessary(fleet: Fleet) -> None:
         raise Refusal("no-plan", reason=reason)
     for reason in _unreachable(fleet):
         raise Refusal("no-plan", reason=reason)
+
+
+def least_lengths(fleet: Fleet) -> Array:
+    """Return lengths, shape (2,), that no plan goes below, by what is cheap. O(n^2).
+
+    Where all vehicles have a start, a leg leads to each stop that must be visited; where all have
+    an end, one leads away from it.
+    """
+    rules = fleet.rules
+    required = _required(rules)
+    steps = np.where(np.eye(rules.n, dtype=bool), np.inf, fleet.costs)
+    least = np.zeros(len(steps))
+    for ends, legs in (
+        ([vehicle.start for vehicle in rules.vehicles], steps.min(axis=1)),
+        ([vehicle.end for vehicle in rules.vehicles], steps.min(axis=2)),
+    ):
+        if required and None not in ends:
+            of_stops = legs[:, required]
+            longest = np.array([over == "max" for over in rules.over])
+            total = np.where(longest, of_stops.max(axis=1), of_stops.sum(axis=1))
+            least = np.maximum(least, total)
+    return least
 
 
 def _required(rules: Rules) -> list[int]:

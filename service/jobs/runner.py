@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Protocol
 
@@ -13,7 +14,7 @@ from service.actor import NamedActor, load_actors
 from service.coverage.coverage import Coverage
 from service.coverage.survey import CoveragePath, Survey, survey
 from service.errors import Cancelled
-from service.instance import Instance, cumulated_lengths
+from service.instance import Instance, cumulated_lengths, least_lengths
 from service.jobs.compiled_code import warm_up
 from service.jobs.fleets.fleet_run import run_fleet
 from service.jobs.fleets.robot_run import run_robots
@@ -113,7 +114,7 @@ class TaskRunner:
     ) -> FrontDocument:
         began = time.perf_counter()
         instance = make_instance(stops)
-        check_reference_point(instance, task.options)
+        check_reference_point(task.options, partial(least_lengths, instance))
         timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
         return self._plan_instance(task, instance, stop, report, timings)
 
@@ -136,7 +137,7 @@ class TaskRunner:
     ) -> FrontDocument:
         began = time.perf_counter()
         surveyed = survey(coverage, self.limits.most_places(shared=False), stop)
-        check_reference_point(surveyed.instance, task.options)
+        check_reference_point(task.options, partial(least_lengths, surveyed.instance))
         survey_seconds = time.perf_counter() - began
         places = surveyed.places.tolist()
         options = within_network(task.options, surveyed.instance.n, self.limits)

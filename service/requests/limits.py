@@ -1,11 +1,11 @@
 """The limits of a service: on what a request may bring or ask for, as checks and as JSON schema."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from service.errors import Refusal
-from service.instance import Instance, Kind, least_lengths
+from service.instance import Array, Kind
 from service.planner import PlanOptions
 from service.requests.schemas import PlanFields, PlanRequest
 from service.requests.stops import ROAD_MEASURES, Measured, UnmeasuredStops, base_of
@@ -154,20 +154,27 @@ def _check_ends(request: PlanRequest, n: int) -> None:
         raise invalid("end", f"must not be the start, or tours are closed, got {request.end}")
 
 
-def check_reference_point(instance: Instance, options: PlanOptions) -> None:
-    """Raise a refusal where it is plain that no tour lies below the reference point.
+def check_reference_point(
+    options: PlanOptions, least: Callable[[], Array], noun: str = "tour"
+) -> None:
+    """Raise a refusal where it is plain that no tour, or plan, lies below the reference point.
 
     Every hypervolume would be 0. Where that is not plain, it is.
 
+    Args:
+        options: The options, with the reference point if one was given.
+        least: Returns lengths, shape (2,), that none goes below.
+        noun: What a front is of.
+
     Raises:
-        Refusal: In one objective, every tour is as long or longer.
+        Refusal: In one objective, every tour or plan is as long or longer.
     """
     if options.reference_point is None:
         return
-    lengths = zip(options.reference_point, least_lengths(instance), strict=True)
+    lengths = zip(options.reference_point, least(), strict=True)
     for m, (length, shortest) in enumerate(lengths):
         if length <= shortest:
-            demand = f"must be more than {shortest:.6g}, which every tour has at least"
+            demand = f"must be more than {shortest:.6g}, which every {noun} has at least"
             raise invalid(f"reference_point/{m}", f"{demand}, got {length:.6g}")
 
 

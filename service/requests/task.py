@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Literal
 
 from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage
 from service.errors import Refusal
-from service.instance import Instance, Kind
+from service.instance import Instance, Kind, least_lengths
 from service.planner import PlanOptions
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.coverage import CoverageRequest, parse_coverage_request
@@ -101,7 +102,7 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
     options = within_network(_options(request, actors[name]), request.n, limits)
     subject = request.subject()
     if isinstance(subject, Instance):
-        check_reference_point(subject, options)
+        check_reference_point(options, partial(least_lengths, subject))
     return Task(
         subject=subject,
         options=options,

@@ -117,6 +117,15 @@ def test_a_fleet_without_a_plan_is_refused_with_the_reason(client: httpx.Client)
     assert (front["status"], front["problem"]["code"]) == ("failed", "no-plan")
 
 
+def test_a_reference_point_that_plainly_no_plan_comes_below_is_refused(
+    client: httpx.Client,
+) -> None:
+    request = {**fleet_request(), "reference_point": [1e9, 1]}
+    refused = problem(client.post("/fleet", json=request), 422, "invalid-request")
+    assert refused["detail"].startswith("reference_point/1 must be more than ")
+    assert refused["detail"].endswith("which every plan has at least, got 1")
+
+
 def test_plans_are_drawn_with_a_line_for_each_route(
     client: httpx.Client, answer: dict[str, Any]
 ) -> None:

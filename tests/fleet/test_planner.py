@@ -14,6 +14,7 @@ from service.errors import Cancelled, Refusal
 from service.fleet.archive import SolutionArchive
 from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.fleet import Fleet, Over, Rules, VehicleType, Visit
+from service.fleet.necessary import least_lengths
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import FleetFront
 from service.fleet.solver import Solver
@@ -149,6 +150,23 @@ def test_a_necessary_condition_that_fails_is_named(rules: dict[str, Any], senten
     )
     with pytest.raises(Refusal, match=sentence):
         plan_fleet(fleet, FleetOptions(time_limit=1))
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_no_plan_goes_below_the_least_lengths(seed: int) -> None:
+    fleet = random_fleet(seed)
+    least = least_lengths(fleet)
+    assert all((point >= least).all() for point in np.array(exact_front(fleet)).reshape(-1, 2))
+
+
+def test_least_lengths_are_those_of_the_legs_to_and_from_each_stop() -> None:
+    costs = np.array([[[0, 4, 9], [2, 0, 7], [3, 5, 0]]] * 2, float)
+    for start, end, expected in ((0, None, [11, 7]), (None, 0, [5, 3]), (0, 0, [11, 7])):
+        vehicles = (VehicleType(start=start, end=end, count=2),)
+        rules = Rules(visits=(Visit(),) * 3, vehicles=vehicles, over=("sum", "max"))
+        assert least_lengths(Fleet(rules=rules, costs=costs)).tolist() == expected
+    free = Rules(visits=(Visit(),) * 3, vehicles=(VehicleType(),))
+    assert least_lengths(Fleet(rules=free, costs=costs)).tolist() == [0, 0]
 
 
 def test_what_was_not_found_in_time_is_said_so() -> None:

@@ -3,13 +3,16 @@
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 from service.actor import NamedActor
 from service.fleet.fleet import Fleet
+from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront
 from service.jobs.fleets.fleet_document import encode_fleet
 from service.jobs.front_document import FrontDocument
 from service.requests.fleets.subject import UnmeasuredFleet
+from service.requests.limits import check_reference_point
 from service.requests.task import Task
 from service.search.improve import Progress
 
@@ -62,6 +65,7 @@ def plan_front(
     # Here, so that a service or a worker starts without PyVRP.
     from service.fleet.planner import FleetOptions, plan_fleet
 
+    check_reference_point(task.options, partial(least_lengths, fleet), "plan")
     options = FleetOptions(
         time_limit=task.options.time_limit,
         size=task.options.size,
