@@ -118,7 +118,9 @@ class Settings(BaseSettings):
     # Limits of a request.
     max_body_bytes: int = Field(2**24, ge=1, description="the longest request body")
     bodies_bytes: int = Field(
-        2**27, ge=2**20, description="bytes of all request bodies under way, together"
+        2**27,
+        ge=2**20,
+        description="bytes of all bodies of requests under way, and of answers",
     )
     parse_seconds: float = Field(20.0, gt=0, description="how long a body may take to parse")
     parse_bytes: int = Field(

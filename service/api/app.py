@@ -12,7 +12,7 @@ from starlette.responses import Response
 
 from service.actor_info import ActorInfo
 from service.api.auth import Access
-from service.api.body_budget import BodyBounds
+from service.api.body_budget import AnswerBudget, BodyBounds
 from service.api.exception_handlers import HANDLED, answer_refusal
 from service.api.geojson.answers import FrontAnswers, Streets
 from service.api.metrics import Metrics
@@ -100,7 +100,7 @@ def create_app(
 ) -> FastAPI:
     """Return the application, which starts the engine and closes engine and store at its end."""
     edge = edge or Edge()
-    answers = FrontAnswers(edge.streets)
+    answers = FrontAnswers(edge.streets, AnswerBudget(edge.bodies.under_way, edge.bodies.share))
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:

@@ -1,22 +1,26 @@
-"""A budget of bytes for all request bodies under way, so that stalled uploads fill no memory."""
+"""Budgets of bytes for the bodies of requests and answers, so that stalled ones fill no memory."""
 
 import sys
 from collections import Counter
 from dataclasses import dataclass, field
+
+from starlette.responses import Response
+from starlette.types import Receive, Scope, Send
 
 from service.api.task_parser import ParserBounds
 from service.errors import Refusal
 
 _SMALL_SHARE = 8  # one part of so many is left to small bodies
 _SMALL = 2**17  # bytes
+_PART = 2**18  # bytes of an answer that are sent at once
 
 
 @dataclass(frozen=True, kw_only=True)
 class BodyBounds:
-    """What the bodies of all requests may take together.
+    """What the bodies of all requests may take together, and those of all answers.
 
     Args:
-        under_way: Bytes of all bodies under way.
+        under_way: Bytes of all bodies of requests under way, and as many of those of answers.
         share: The share of these that the long bodies of one client may take.
         parser: The bounds of a process that parses.
     """
@@ -122,3 +126,104 @@ class BodyAllowance:
         if missing > 0:
             self._budget.take(self._client, missing, self._held)
             self._held = whole
+
+
+class AnswerBudget:
+    """So many bytes for the long answers that are being made and sent.
+
+    Short ones, of at most 128 KiB, are not counted. A long one may take more than there is where
+    it is the only one.
+
+    Args:
+        limit: Bytes of all long answers.
+        share: The share of them that the answers of one client may take; one alone may take more.
+    """
+
+    def __init__(self, limit: int, share: float) -> None:
+        self._limit = limit
+        self._limit_of_client = int(share * limit)
+        self._used = 0
+        self._used_by: Counter[str] = Counter()
+
+    @property
+    def used(self) -> int:
+        """The bytes that are taken."""
+        return self._used
+
+    def open(self, client: str, count: int, *, always: bool = False) -> "AnswerAllowance":
+        """Return the allowance of an answer, a context that gives its bytes back at its end.
+
+        Args:
+            client: For whom it is.
+            count: Its bytes.
+            always: Whether it is counted even where there is no room.
+
+        Raises:
+            Refusal: There is no room.
+        """
+        count = count if count > _SMALL else 0
+        total, own = self._used, self._used_by[client]
+        full = (total and total + count > self._limit) or (
+            own and own + count > self._limit_of_client
+        )
+        if count and full and not always:
+            raise Refusal("bodies-full", limit=self._limit)
+        self._add(client, count)
+        return AnswerAllowance(self, client, count)
+
+    def give_back(self, client: str, count: int) -> None:
+        """Give bytes of a client back."""
+        self._add(client, -count)
+
+    def _add(self, client: str, count: int) -> None:
+        self._used += count
+        self._used_by[client] += count
+        if not self._used_by[client]:
+            del self._used_by[client]
+
+
+class AnswerAllowance:
+    """The bytes of one answer, until it is sent, or until the block ends without an answer."""
+
+    def __init__(self, budget: AnswerBudget, client: str, count: int) -> None:
+        self._budget = budget
+        self._client = client
+        self._held = count
+        self._handed_over = False
+
+    def __enter__(self) -> "AnswerAllowance":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if not self._handed_over:
+            self.close()
+
+    def until_sent(self, response: Response) -> Response:
+        """Return a response as one that gives the bytes back once it is sent."""
+        self._handed_over = True
+        return _CountedResponse(response, self)
+
+    def close(self) -> None:
+        """Give the bytes back."""
+        self._budget.give_back(self._client, self._held)
+        self._held = 0
+
+
+class _CountedResponse(Response):
+    """A response that is sent in parts, the next once the client has read most of those before."""
+
+    def __init__(self, response: Response, allowance: AnswerAllowance) -> None:
+        vars(self).update(vars(response))
+        self._allowance = allowance
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:  # noqa: ARG002
+        """Send the response."""
+        start = {"status": self.status_code, "headers": self.raw_headers}
+        length = len(self.body)
+        try:
+            await send({"type": "http.response.start", **start})
+            for begin in range(0, max(length, 1), _PART):
+                part, more = self.body[begin : begin + _PART], begin + _PART < length
+                await send({"type": "http.response.body", "body": part, "more_body": more})
+        finally:
+            self._allowance.close()

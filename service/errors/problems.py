@@ -127,7 +127,9 @@ PROBLEMS: Mapping[str, Problem] = {
     "router-unusable": Problem(
         502, "the routing engine must answer as documented, and does not: {reason}", _ROADS
     ),
-    "bodies-full": Problem(503, "all bodies under way must fit {limit} bytes: ask again", _PLANS),
+    "bodies-full": Problem(
+        503, "all bodies under way must fit {limit} bytes: ask again", (*_PLANS, _STORED)
+    ),
     "no-worker": Problem(
         503, "a worker must be running, and none can be started yet", ("GET /health/ready",)
     ),

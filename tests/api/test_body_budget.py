@@ -1,18 +1,26 @@
 """The budget of all bodies under way: what is over it is refused, and all is given back."""
 
+import asyncio
 import re
 import socket
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
+from dataclasses import replace
 
 import httpx
 import pytest
+from starlette.responses import Response
+from starlette.types import Message
 
 from service.api.app import Edge
-from service.api.body_budget import BodyBounds, BodyBudget
+from service.api.body_budget import AnswerBudget, BodyBounds, BodyBudget
 from service.errors import Refusal
+from service.jobs.front_document import joined
+from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
+from tests.helpers.scripted_runner import document
 from tests.helpers.serving import app_of, problem, serving
+from tests.helpers.stores import record
 
 BUDGET = 800_000
 JSON = {"Content-Type": "application/json"}
@@ -111,3 +119,64 @@ def test_small_bodies_pass_while_long_ones_stall(url: str) -> None:
             connections.enter_context(stalled(url, 80_000))
         answer = httpx.post(f"{url}/front", content=REQUEST, headers=JSON, timeout=30)
         assert answer.status_code == 200, answer.text
+
+
+def test_an_answer_gives_its_bytes_back_once_it_is_sent_or_has_failed() -> None:
+    budget = AnswerBudget(BUDGET, share=0.5)
+    sent: list[Message] = []
+
+    async def send(message: Message) -> None:
+        assert budget.used == 600_000
+        sent.append(message)
+
+    async def test() -> None:
+        with budget.open("one", 600_000) as allowance:
+            response = allowance.until_sent(Response(bytes(600_000)))
+        await response({"type": "http"}, None, send)  # type: ignore[arg-type]
+
+    asyncio.run(test())
+    assert budget.used == 0
+    assert sum(len(message.get("body", b"")) for message in sent) == 600_000
+    assert [message.get("more_body") for message in sent] == [None, True, True, False]
+    with pytest.raises(KeyError), budget.open("one", 600_000):
+        raise KeyError
+    assert budget.used == 0
+
+
+def test_long_answers_have_room_beside_others_or_alone() -> None:
+    budget = AnswerBudget(BUDGET, share=0.5)
+    with budget.open("one", 2 * BUDGET), budget.open("other", 1000):
+        with pytest.raises(Refusal, match="all bodies under way must fit 800000 bytes"):
+            budget.open("other", 200_000)
+        with budget.open("other", 200_000, always=True):
+            assert budget.used == 2 * BUDGET + 200_000
+    with budget.open("one", 300_000):
+        with pytest.raises(Refusal):
+            budget.open("one", 200_000)
+        with budget.open("other", 200_000):
+            assert budget.used == 500_000
+    assert budget.used == 0
+
+
+def test_answers_that_nobody_reads_take_no_more_than_the_budget() -> None:
+    tour = b'{"balance":0.5,"lengths":[1.0,1.0],"tour":[0],"more":"%b"}' % (b"x" * 20_000_000)
+    tours, ends = joined([tour])
+    front = replace(document("converged"), tours=tours, ends=ends)
+    store = SqliteStore(IN_MEMORY, entries=9, max_age=60)
+    asyncio.run(store.put(record("long", caller="anonymous", front=front)))
+    edge = Edge(bodies=BodyBounds(under_way=30_000_000))
+    with serving(app_of(store=store, edge=edge)) as url, closing(socket.socket()) as unread:
+        unread.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        unread.connect(("127.0.0.1", int(url.rpartition(":")[2])))
+        unread.sendall(b"GET /front/long HTTP/1.1\r\nHost: x\r\n\r\n")
+        assert unread.recv(5) == b"HTTP/"
+        refused = httpx.get(f"{url}/front/long")
+        assert problem(refused, 503, "bodies-full")["limit"] == 30_000_000
+        assert refused.headers["Retry-After"]
+        short = httpx.post(f"{url}/front", content=REQUEST, headers=JSON)
+        assert short.status_code == 200
+        unread.close()
+        deadline = time.monotonic() + 10
+        while (again := httpx.get(f"{url}/front/long")).status_code == 503:
+            assert time.monotonic() < deadline
+        assert again.content.endswith(tour + b"]}")

@@ -14,6 +14,8 @@ from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response
 
+from service.api.auth import client_of
+from service.api.body_budget import AnswerBudget
 from service.api.compression import compressed
 from service.api.disconnect import unless_disconnected
 from service.api.geojson.accept import GEOJSON, accepts_geojson
@@ -66,10 +68,12 @@ class FrontAnswers:
 
     Args:
         streets: The routing engine's streets, None where none is configured.
+        budget: The bytes of all answers that are being made and sent.
     """
 
-    def __init__(self, streets: Streets | None = None) -> None:
+    def __init__(self, streets: Streets | None, budget: AnswerBudget) -> None:
         self._streets = streets
+        self._budget = budget
 
     def check(self, request: Request, stops: Stops | None, geometry: Geometry) -> None:
         """Raise a refusal where a request accepts GeoJSON, and there can be no such lines.
@@ -88,6 +92,8 @@ class FrontAnswers:
     ) -> Response:
         """Return a front as GeoJSON where the request accepts that, else as JSON.
 
+        One that was planned for this request alone is answered even where there is no room.
+
         Args:
             request: The request to answer.
             record: The front's record.
@@ -95,13 +101,18 @@ class FrontAnswers:
             seconds: The time that is left for this.
 
         Raises:
-            Refusal: As of `check`, and of RoadClient.lines.
+            Refusal: As of `check`, and of RoadClient.lines; or too many answers are being sent.
         """
         self.check(request, record.front.stops, geometry)
-        if not accepts_geojson(request):
-            return await compressed(request, json_bytes(record.json()))
-        tours = b"[" + record.front.tours + b"]"
-        return await self._drawn(request, record, tours, geometry, seconds)
+        length = len(record.front.tours)
+        alone = request.method == "POST" and "idempotency-key" not in request.headers
+        with self._budget.open(client_of(request), length, always=alone) as allowance:
+            if accepts_geojson(request):
+                tours = b"[" + record.front.tours + b"]"
+                response = await self._drawn(request, record, tours, geometry, seconds)
+            else:
+                response = await compressed(request, json_bytes(record.json()))
+            return allowance.until_sent(response)
 
     async def tour(
         self, request: Request, record: Record, index: int, geometry: Geometry
