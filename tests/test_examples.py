@@ -167,6 +167,8 @@ def test_streets_and_ways_along_them_are_small_files(file: str) -> None:
 def test_the_ways_between_stops_meet_as_many_people_as_their_costs_say() -> None:
     legs = json.loads((EXAMPLES / LEGS).read_text())
     places = np.array(legs["origin"]) + legs["step"] * np.array(legs["nodes"])
+    for extent in (each["extent"] for each in INDEX if each.get("legs") == LEGS):
+        assert np.array(extent) == pytest.approx(np.stack((places.min(axis=0), places.max(axis=0))))
     one_van = json.loads((EXAMPLES / "helsinki-deliveries.json").read_text())
     people = np.array(one_van["objectives"][1]["matrix"])
     stops = range(len(people))

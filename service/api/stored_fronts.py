@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
+from pydantic.json_schema import SkipJsonSchema
 from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
@@ -26,10 +27,14 @@ from service.jobs.engine import Engine, JobState
 from service.jobs.fleets.fleet_document import holds_plans
 from service.jobs.record import Record
 from service.jobs.store import Store
-from service.requests.schemas import GEOMETRY, Geometry
+from service.requests.schemas import GEOMETRY, Geometry, NonNegativeInteger
 from service.requests.tour import TourQuery
 from service.search.improve import Progress
 
+PLAN = (
+    "of a fleet's front in GeoJSON, the one plan whose routes are drawn, by its place from 0; by"
+    " default all are"
+)
 HEARTBEAT = 15.0  # seconds of silence before a comment says that the stream is alive
 
 
@@ -77,9 +82,11 @@ class StoredFrontRoutes:
         request: Request,
         id: str,  # noqa: A002
         geometry: Annotated[Geometry, Query(description=GEOMETRY)] = "straight",
+        plan: Annotated[NonNegativeInteger | SkipJsonSchema[None], Query(description=PLAN)] = None,
     ) -> Response:
         """Give a front again, or the best so far of one that is being planned."""
-        return await self._answers.front(request, await self._record(request, id), geometry)
+        record = await self._record(request, id)
+        return await self._answers.front(request, record, geometry, plan=plan)
 
     async def forget(self, request: Request, id: str) -> Response:  # noqa: A002
         """Forget a front; one that is being planned ends with what was found, and is kept."""

@@ -78,8 +78,7 @@ function screen() {
     asked,
     example: examples.unchanged(asked),
     objectives,
-    picture: result.selected && result.picture,
-    balance: result.selected?.balance,
+    ...result.taken,
   };
 }
 

@@ -34,6 +34,8 @@ def before_call(context: Any, case: Any, kwargs: dict[str, Any]) -> None:  # noq
         _choose_in_one_way(case)
     if (case.query or {}).get("geometry") == "roads":  # there is no routing engine
         case.query["geometry"] = "straight"
+    if "plan" in (case.query or {}) and case.meta.generation.mode.is_positive:
+        del case.query["plan"]  # fronts are of tours
     if _is_key((case.headers or {}).get("Idempotency-Key")):
         case.headers["Idempotency-Key"] = uuid.uuid4().hex
     if case.path.endswith("/replan") and case.meta.generation.mode.is_positive:

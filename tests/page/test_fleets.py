@@ -6,6 +6,10 @@ from xml.etree import ElementTree
 
 from playwright.sync_api import Browser, expect
 
+from service.api.app import Edge
+from service.roads.client import RoadClient
+from service.roads.router import RouterSettings
+from service.settings import Settings
 from tests.helpers.accessibility import check_on_a_phone
 from tests.helpers.browsing import (
     DRAWN,
@@ -18,6 +22,8 @@ from tests.helpers.browsing import (
     select_last,
     wait_until_planned,
 )
+from tests.helpers.fake_router import fake_osrm
+from tests.helpers.serving import app_of, serving
 
 pytestmark = needs_chromium
 
@@ -110,3 +116,45 @@ def test_the_search_plans_what_the_network_cannot(browser: Browser, released: st
         wait_until_planned(page)
         expect(page.locator("#fleet")).to_be_hidden()
         expect(page.get_by_label("End elsewhere")).to_be_visible()
+
+
+def test_routes_follow_the_streets_of_a_routing_engine(browser: Browser) -> None:
+    places = [[24.941, 60.171], [24.952, 60.169], [24.933, 60.165], [24.925, 60.18], [24.96, 60.17]]
+    request = {
+        "stops": [{"id": f"s{at}", "location": place} for at, place in enumerate(places)],
+        "vehicles": [{"id": "van", "count": 2, "start": "s0", "end": "s0"}],
+        "objectives": [
+            {"name": "distance", "from": "great_circle"},
+            {"name": "time", "unit": "min", "matrix": [[7] * 5] * 5, "over": "max"},
+        ],
+    }
+    with fake_osrm() as engine:
+        settings = RouterSettings(url=engine.url, router="osrm", profile="driving")
+        app = app_of(edge=Edge(streets=RoadClient(settings)), limits=Settings().limits)
+        with serving(app) as address, open_page(browser, address) as page:
+            wait_until_planned(page)
+            open_files(page, {"fleet.json": json.dumps(request)})
+            page.get_by_role("button", name="Plan", exact=True).click()
+            wait_until_planned(page)
+            plan = select_last(page)
+            assert len(plan["routes"]) == 2
+            expect(page.locator("#lines")).to_have_text("along the streets")
+            legs = sum(len(route["stops"]) - 1 for route in plan["routes"])
+            drawing = ElementTree.fromstring(saved(page, "SVG"))
+            # Each leg of the engine has a corner, and each route is drawn, and cased, and named.
+            lines = [path.get("d") or "" for path in drawing.iter(f"{SVG}path")][1:]
+            assert sum(line.count("L") for line in lines) == 2 * 2 * legs + 2 * 2
+            collection = json.loads(saved(page, "GeoJSON"))
+            routes = [each for each in collection["features"] if "plan" in each["properties"]]
+            places_of_last = [
+                len(each["geometry"]["coordinates"])
+                for each in routes
+                if each["properties"]["plan"] == routes[-1]["properties"]["plan"]
+            ]
+            assert sum(places_of_last) == 2 * legs + 2
+            # Where streets are too many for one file, it has straight lines, and that is said.
+            page.route("**/front/*?geometry=roads", lambda route: route.fulfill(status=503))
+            straight = json.loads(saved(page, "GeoJSON"))
+            assert len(straight["features"]) == len(collection["features"])
+            assert straight != collection
+            expect(page.locator("#link-help")).to_contain_text("straight from stop to stop")

@@ -21,6 +21,15 @@ from tests.helpers.browsing import (
 
 pytestmark = needs_chromium
 
+# Whether a canvas has anything in its outermost pixels.
+DRAWN_AT_EDGE = """canvas => {
+  const context = canvas.getContext("2d");
+  const drawn = (...box) => context.getImageData(...box).data.some(part => part > 0);
+  const { width, height } = canvas;
+  return drawn(0, 0, width, 1) || drawn(0, height - 1, width, 1) ||
+    drawn(0, 0, 1, height) || drawn(width - 1, 0, 1, height);
+}"""
+
 TILE = re.compile(r"z=(\d+)&x=(-?\d+)&y=(-?\d+)")
 # The colours that a canvas has, where nothing shines through.
 COLOURS = """(canvas) => {
@@ -68,6 +77,8 @@ def test_without_tiles_an_example_has_its_own_streets_and_the_places_of_its_stor
         wait_until_planned(page)
         streets = page.locator("#plane-1 canvas.streets")
         expect(streets).to_be_visible()
+        expect(page.locator("#lines")).to_have_text("along the streets")
+        assert page.locator("#plane-1 canvas.selected").evaluate(DRAWN_AT_EDGE) is False
         light = streets.evaluate(COLOURS)
         assert len(light) >= 2  # main streets stand out from paths
         expect(page.locator("#credit")).to_contain_text("© OpenStreetMap contributors (ODbL)")

@@ -13,6 +13,7 @@ from tests.helpers.browsing import (
     PHONE,
     curl_body,
     needs_chromium,
+    open_files,
     open_page,
     saved,
     shown_front,
@@ -83,6 +84,18 @@ def test_the_slider_and_the_chart_select_the_tour_that_is_shown(page: Page) -> N
     slider.press("Home")
     page.mouse.click(marker["x"] + marker["width"] / 2, marker["y"] + marker["height"] / 2)
     expect(slider).to_have_attribute("aria-valuetext", re.compile(f"tour {count - 1} of {count}"))
+
+
+def test_the_slider_stands_at_the_balance_of_the_selected_tour(page: Page) -> None:
+    rows = "id,lon,lat,x,y\na,24.941,60.171,0,1\nb,24.952,60.169,5,2\nc,24.933,60.165,2,9\n"
+    open_files(page, {"stops.csv": f"{rows}d,24.925,60.18,8,8\ne,24.96,60.175,3,3\n"})
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+    assert [tour["balance"] for tour in shown_front(page)["front"]] == [0, 1]
+    slider = page.get_by_role("slider", name="Balance")
+    assert slider.input_value() == "0"
+    page.get_by_role("button", name="least second length").click()
+    assert slider.input_value() == "1"
 
 
 def test_the_page_says_what_a_tour_gives_up_and_what_it_gains(page: Page) -> None:

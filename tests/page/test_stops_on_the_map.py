@@ -52,6 +52,36 @@ def test_a_stop_is_dragged_by_the_mouse_on_either_plane(opened: Page) -> None:
     expect(opened.locator("#count")).to_have_text("3 stops")
 
 
+def test_stops_on_the_earth_have_a_second_map_where_the_second_objective_has_a_plane(
+    opened: Page,
+) -> None:
+    rows = "id,lon,lat,x,y\ndepot,24.94,60.17,0,5\nshop,24.95,60.18,3,1\nschool,24.93,60.16,9,2\n"
+    open_files(opened, {"stops.csv": rows})
+    expect(opened.locator("#plane-1-title")).to_have_text("Map")
+    expect(opened.locator("#plane-2-title")).to_have_text("Second length")
+    opened.get_by_label("Second objective", exact=True).fill("effort")
+    opened.get_by_label("Second objective", exact=True).press("Tab")
+    expect(opened.locator("#plane-2-title")).to_have_text("Effort")
+    before = curl_body(opened)
+    x, y = place_of_stop(opened, 2, "#plane-2")
+    opened.mouse.move(x, y)
+    opened.mouse.down()
+    opened.mouse.move(x + 20, y + 10, steps=3)
+    opened.mouse.up()
+    after = curl_body(opened)
+    assert after["stops"] == before["stops"]
+    plane = [each["objectives"][1]["coordinates"] for each in (before, after)]
+    assert plane[1][1][0] > plane[0][1][0]
+    assert plane[1][1][1] < plane[0][1][1]
+    assert plane[1][::2] == plane[0][::2]
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    for plane_map in ("#plane-1", "#plane-2"):
+        expect(opened.locator(f"{plane_map} canvas.selected")).to_be_visible()
+    open_files(opened, {"stops.csv": ON_EARTH})
+    expect(opened.locator("#plane-2")).to_be_hidden()
+
+
 def test_keys_choose_move_and_delete_a_stop(opened: Page) -> None:
     open_files(opened, {"stops.csv": ON_EARTH})
     column = "Longitude Latitude"

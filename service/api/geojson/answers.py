@@ -23,6 +23,7 @@ from service.api.geojson.features import Drawing
 from service.api.geojson.lines import Line
 from service.api.responses import json_bytes
 from service.errors import Fault, Refusal
+from service.jobs.fleets.fleet_document import holds_plans
 from service.jobs.record import Record
 from service.requests.schemas import Geometry
 
@@ -88,7 +89,12 @@ class FrontAnswers:
             _check_located(stops)
 
     async def front(
-        self, request: Request, record: Record, geometry: Geometry, seconds: float = math.inf
+        self,
+        request: Request,
+        record: Record,
+        geometry: Geometry,
+        seconds: float = math.inf,
+        plan: int | None = None,
     ) -> Response:
         """Return a front as GeoJSON where the request accepts that, else as JSON.
 
@@ -99,17 +105,21 @@ class FrontAnswers:
             record: The front's record.
             geometry: What the lines follow.
             seconds: The time that is left for this.
+            plan: The number of the one plan to draw; None draws all that the front holds.
 
         Raises:
-            Refusal: As of `check`, and of RoadClient.lines; or too many answers are being sent.
+            Refusal: As of `check`, and of RoadClient.lines; or there is no such plan to draw, or
+                too many answers are being sent.
         """
         self.check(request, record.front.stops, geometry)
-        length = len(record.front.tours)
+        if plan is not None:
+            _check_plan(request, record, plan)
+        items = record.front.tours if plan is None else record.front.tour(plan)
         alone = request.method == "POST" and "idempotency-key" not in request.headers
-        with self._budget.open(client_of(request), length, always=alone) as allowance:
+        with self._budget.open(client_of(request), len(items), always=alone) as allowance:
             if accepts_geojson(request):
-                tours = b"[" + record.front.tours + b"]"
-                response = await self._drawn(request, record, tours, geometry, seconds)
+                drawing = await asyncio.to_thread(Drawing.of, record, b"[" + items + b"]", plan or 0)
+                response = await self._drawn(request, drawing, geometry, seconds)
             else:
                 response = await compressed(request, json_bytes(record.json()))
             return allowance.until_sent(response)
@@ -123,7 +133,8 @@ class FrontAnswers:
         if not accepts_geojson(request):
             answer = json_bytes(b'{"front":' + to_json(record.id) + b"," + tour[1:])
             return await compressed(request, answer)
-        return await self._drawn(request, record, b"[" + tour + b"]", geometry, math.inf)
+        drawing = await asyncio.to_thread(Drawing.of, record, b"[" + tour + b"]")
+        return await self._drawn(request, drawing, geometry, math.inf)
 
     async def close(self) -> None:
         """Close the connections to the routing engine."""
@@ -140,9 +151,8 @@ class FrontAnswers:
             raise refusal
 
     async def _drawn(
-        self, request: Request, record: Record, tours: bytes, geometry: Geometry, seconds: float
+        self, request: Request, drawing: Drawing, geometry: Geometry, seconds: float
     ) -> Response:
-        drawing = await asyncio.to_thread(Drawing.of, record, tours)
         if geometry == "roads" and drawing.tours:
             assert self._streets is not None
             ways = [np.array(way, dtype=np.int64) for way in drawing.ways]
@@ -160,6 +170,20 @@ def _fault(request: Request, sentence: str) -> Fault:
     if request.method == "POST":
         return Fault(sentence, pointer="/geometry")
     return Fault(sentence, parameter="geometry")
+
+
+def _check_plan(request: Request, record: Record, plan: int) -> None:
+    """Raise a refusal unless a plan of this number is to be drawn, and is there."""
+    plans = len(record.front.split())
+    if not accepts_geojson(request):
+        sentence = f"plan is of answers in GeoJSON: send Accept: {GEOJSON}"
+    elif not holds_plans(record.front):
+        sentence = f"plan is of a fleet's front, and front {record.id} is of tours: ask GET /tour"
+    elif plan >= plans:
+        sentence = f"plan must be less than {plans}, the number of plans, got {plan}"
+    else:
+        return
+    raise Refusal("invalid-request", detail=sentence, errors=[Fault(sentence, parameter="plan")])
 
 
 def _check_located(stops: Stops | None) -> None:

@@ -28,11 +28,17 @@ class Drawing:
     ways: Sequence[Sequence[int]]
 
     @classmethod
-    def of(cls, record: Record, tours: bytes) -> "Drawing":
-        """Return the drawing of tours of a front, or of the routes of plans, a JSON array."""
+    def of(cls, record: Record, tours: bytes, first: int = 0) -> "Drawing":
+        """Return the drawing of tours of a front, or of the routes of its plans.
+
+        Args:
+            record: As of the class.
+            tours: Tours or plans that follow one another in the front, a JSON array.
+            first: The number of the first one.
+        """
         parsed = from_json(tours)
         if holds_plans(record.front):
-            return cls._of_plans(record, parsed)
+            return cls._of_plans(record, parsed, first)
         # Fronts have this member where tours are open routes alone.
         returns = record.front.closed is None or record.front.cities == 1
         orders = [tour["tour"] for tour in parsed]
@@ -40,12 +46,12 @@ class Drawing:
         return cls(record, parsed, ways)
 
     @classmethod
-    def _of_plans(cls, record: Record, plans: Sequence[dict[str, Any]]) -> "Drawing":
+    def _of_plans(cls, record: Record, plans: Sequence[dict[str, Any]], first: int) -> "Drawing":
         """Return the drawing of all routes, each with the number of its plan and its lengths."""
         indexes = {stop["id"]: index for index, stop in enumerate(record.front.stops or ())}
         routes = [
             {"plan": number, "balance": plan["balance"], "plan_lengths": plan["lengths"], **route}
-            for number, plan in enumerate(plans)
+            for number, plan in enumerate(plans, first)
             for route in plan["routes"]
         ]
         ways = [[indexes[stop] for stop in route["stops"]] for route in routes]

@@ -11,6 +11,7 @@ export class BalanceSlider {
   #input;
   #shown;
   #front = [];
+  #balance = 0; // of the tour that is selected
   #objectives = UNNAMED;
 
   /** @param {(index: number) => void} onSelect told which tour is wanted */
@@ -18,6 +19,7 @@ export class BalanceSlider {
     this.#input = input;
     this.#shown = shown;
     input.addEventListener("input", () => onSelect(nearest(this.#front, Number(input.value))));
+    input.addEventListener("change", () => (input.value = this.#balance));
     input.addEventListener("keydown", (event) => this.#step(event, onSelect));
   }
 
@@ -31,10 +33,11 @@ export class BalanceSlider {
     if (!front.length) this.#shown.textContent = "";
   }
 
-  /** Stands at a tour of the front. A hand that drags the slider is not pulled back. */
+  /** Stands at a tour of the front. A hand that drags the slider is pulled there when it lets go. */
   select(index) {
     const { balance, lengths } = this.#front[index];
-    if (nearest(this.#front, Number(this.#input.value)) !== index) this.#input.value = balance;
+    this.#balance = balance;
+    if (!this.#input.matches(":active") || nearest(this.#front, Number(this.#input.value)) !== index) this.#input.value = balance;
     const at = balance.toFixed(2);
     this.#shown.textContent = at;
     const place = `${nounOf(this.#front).one} ${index + 1} of ${this.#front.length}`;

@@ -1,4 +1,4 @@
-/** The request of a fleet, or of robots: in a few words, as JSON, and where a fleet's stops lie. */
+/** The request of a fleet, or of robots: in a few words, and as JSON. */
 
 import { counted } from "../common/numbers.js";
 
@@ -24,15 +24,3 @@ export function jsonOf(asked) {
       : value;
   return JSON.stringify(asked, short, 1);
 }
-
-/** Longitude and latitude of the stops, or without them their places in an objective's plane; none without either. */
-export function placesOf({ stops = [], objectives }) {
-  const located = stops.map(({ location }) => location);
-  if (arePlaces(located)) return { places: located, onEarth: true };
-  const sources = Array.isArray(objectives) ? objectives : [];
-  const plane = sources.map((each) => each?.coordinates).find((rows) => arePlaces(rows) && rows.length === stops.length);
-  return { places: plane ?? [], onEarth: false };
-}
-
-const arePlaces = (rows) =>
-  Array.isArray(rows) && rows.every((row) => Array.isArray(row) && row.length === 2 && row.every(Number.isFinite));

@@ -56,7 +56,7 @@ function second(name, heading, rows, stops, left) {
   const plane = ["x", "y"].map((each) => heading.indexOf(each));
   if (!plane.includes(-1)) {
     checkRows(name, heading, rows, plane);
-    return { name: "second", coordinates: rows.map((row) => plane.map((column) => Number(row[column]))) };
+    return { name: "second length", coordinates: rows.map((row) => plane.map((column) => Number(row[column]))) };
   }
   const column = left.find((each) => rows.every((row) => isNumber(row[each] ?? "") && Number(row[each]) >= 0));
   if (column === undefined || rows.length > MOST_WEIGHTED) return MEASURED[1];

@@ -2,7 +2,7 @@
 
 import { membersOfTable, membersOfTables } from "./columns.js";
 import { isCollection, stopsOf } from "./geojson.js";
-import { OBJECTIVES, coverageOf } from "./image.js";
+import { OBJECTIVES, coverageOf, isOfMap, withoutMessage } from "./maps/map_request.js";
 import { namesIn } from "../common/objectives.js";
 import { isTsplib, pair } from "./tsplib.js";
 
@@ -11,9 +11,7 @@ import { isTsplib, pair } from "./tsplib.js";
  * cannot be read is an Error.
  */
 export async function read(files) {
-  if (files.length === 1 && files[0].type.startsWith("image/")) {
-    return { members: await coverageOf(files[0]), objectives: OBJECTIVES };
-  }
+  if (files.some(isOfMap)) return { members: await coverageOf(files), objectives: OBJECTIVES };
   return request(await textsOf(files));
 }
 
@@ -51,7 +49,7 @@ function parsed(name, text) {
     throw new Error(`${name} must be JSON, and is not: ${error.message}`);
   }
   if (isCollection(given)) return stopsOf(name, given);
-  return drawable(name, Array.isArray(given) ? { coordinates: given } : given);
+  return drawable(name, Array.isArray(given) ? { coordinates: given } : withoutMessage(name, given));
 }
 
 /** The members, of which those that are drawn are rows; all else is for the service to check. */

@@ -91,11 +91,11 @@ export class RequestForm {
     this.#insert(row);
   }
 
-  /** Puts a stop where it was dragged: in one of both planes, or on the only map. */
+  /** Puts a stop where it was dragged on the first or second map. */
   moveCity(plane, city, place) {
     const rounded = place.map((value) => Number(value.toPrecision(7)));
     if (this.#brought.stops) {
-      this.#brought = put(this.#brought, city, rounded);
+      this.#brought = put(this.#brought, plane, city, rounded);
       return this.#edited(false);
     }
     const row = this.#rowOf(city);

@@ -1,6 +1,6 @@
 /** Change the stops of a request and, with them, its costs: rename, move, add, delete. */
 
-import { placesOf } from "../fleet/fleet_request.js";
+import { EARTH, mapsOf } from "./places.js";
 
 export const isMeasured = ({ objectives }) => Boolean(objectives?.every(({ from }) => from));
 
@@ -31,10 +31,10 @@ export function moved(asked, row, column, value) {
   return { ...asked, stops };
 }
 
-/** With a stop elsewhere on its map: of locations, or where some lack one of an objective's plane. */
-export function put(asked, row, place) {
-  if (placesOf(asked).onEarth) return { ...asked, stops: asked.stops.with(row, { ...asked.stops[row], location: place }) };
-  const plane = asked.objectives.findIndex(({ coordinates }) => coordinates);
+/** With a stop elsewhere on the first or second of its maps. */
+export function put(asked, map, row, place) {
+  const plane = mapsOf(asked).drawn[map];
+  if (plane === EARTH) return { ...asked, stops: asked.stops.with(row, { ...asked.stops[row], location: place }) };
   const objective = asked.objectives[plane];
   const coordinates = objective.coordinates.with(row, place);
   return { ...asked, objectives: asked.objectives.with(plane, { ...objective, coordinates }) };

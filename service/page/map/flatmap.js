@@ -12,6 +12,12 @@ export function fitting(map, room) {
   return { paddingTopLeft: [buttons, room], paddingBottomRight: [room, room], animate: false };
 }
 
+/** A ring around a place, of a style by its name, that is put on a map where it is wanted. */
+export function ring(name, side) {
+  const icon = L.divIcon({ className: `ring ${name}`, iconSize: [side, side], tooltipAnchor: [0, -side / 2] });
+  return L.marker([0, 0], { icon, interactive: false, keyboard: false });
+}
+
 const PANES = { streets: 300, tours: 350, stops: 400, names: 450 };
 
 /** A map with panes for streets, tours, stops and names, each above the one before. */

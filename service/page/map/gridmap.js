@@ -2,12 +2,14 @@
 
 import "../vendor/leaflet/leaflet.js";
 import { colour, onSchemeChange, rgb } from "../common/colours.js";
-import { fitting, flatMap } from "./flatmap.js";
+import { fitting, flatMap, ring } from "./flatmap.js";
+import { turnOf } from "./planes.js";
 import { Routes } from "./routes.js";
 import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
 const TINT = 0.55; // how much of a cell's colour the dearest cost takes
+const POINTED = 9; // pixels from a place within which it is pointed at
 
 export class GridMap {
   #map;
@@ -17,9 +19,13 @@ export class GridMap {
   #cells = []; // of the places
   #places = L.featureGroup();
   #renderer = L.canvas({ padding: 0.2 });
-  #start = L.circleMarker([0, 0], { radius: 8, weight: 2, fill: false, interactive: false });
+  #start = ring("start", 18);
+  #end = ring("end", 18);
+  #highlight = ring("highlight", 16);
+  #tour = null; // that is selected
   #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
   #routes = new Routes();
+  #visits = []; // of the routes that are drawn, `{ name, stops }` each
 
   constructor(element) {
     this.#element = element;
@@ -27,6 +33,8 @@ export class GridMap {
     this.#map.setView([0, 0], 0);
     for (const line of [...Object.values(this.#lines), this.#routes]) line.addTo(this.#map);
     this.#places.addTo(this.#map);
+    this.#map.on("mousemove", ({ containerPoint }) => this.#point(this.#near(containerPoint)));
+    element.addEventListener("mouseleave", () => this.#point(null)); // Leaflet's canvas keeps it from the map
     new ResizeObserver(() => this.#fit()).observe(element);
     onSchemeChange(() => this.#grid && this.#colour());
   }
@@ -45,6 +53,7 @@ export class GridMap {
   /** Shows places, a row and a column each. */
   place(places) {
     this.#cells = places;
+    this.#point(null);
     this.#places.clearLayers();
     const style = { renderer: this.#renderer, radius: 3, weight: 0, fillOpacity: 1, interactive: false };
     for (const cell of places) this.#places.addLayer(L.circleMarker(middle(cell), style));
@@ -56,12 +65,34 @@ export class GridMap {
     const path = lineOf(item?.path);
     this.#lines[name].show(path);
     if (name !== "selected") return;
-    if (path.length) this.#start.setStyle({ color: colour("selected") }).setLatLng(path[0]).addTo(this.#map);
-    else this.#start.remove();
+    this.#tour = item?.tour ?? null;
+    this.#mark(this.#start, path[0]);
+    this.#mark(this.#end, String(path[0]) === String(path.at(-1)) ? undefined : path.at(-1));
   }
 
-  /** Draws the paths of a plan's robots, `{ path, style }` each, and where they start; none takes them away. */
+  #mark(ring, place) {
+    if (place) ring.setLatLng(place).addTo(this.#map);
+    else ring.remove();
+  }
+
+  /** The place that is drawn nearest to a point, if it is pointed at; null otherwise. */
+  #near(point) {
+    const far = this.#cells.map((cell) => this.#map.latLngToContainerPoint(middle(cell)).distanceTo(point));
+    const least = Math.min(...far);
+    return least <= POINTED ? far.indexOf(least) : null;
+  }
+
+  /** Rings a place, and says what it is; null takes the ring away. */
+  #point(place) {
+    this.#mark(this.#highlight, place === null ? undefined : middle(this.#cells[place]));
+    if (place === null) return this.#highlight.unbindTooltip();
+    const said = `place ${place + 1}${turnOf(place, this.#tour, this.#visits)}`;
+    this.#highlight.bindTooltip(said, { permanent: true, direction: "top" }).openTooltip();
+  }
+
+  /** Draws the paths of a plan's robots, `{ name, stops, path, style }` each, and where they start; none takes them away. */
   drawRoutes(routes) {
+    this.#visits = routes;
     this.#routes.show(routes.map(({ path, style }) => ({ latlngs: lineOf(path), style })), true);
   }
 

@@ -1,10 +1,10 @@
-/** The maps of an instance: two linked planes, stops, one grid, or none where there are only costs. */
+/** The maps of an instance: of the earth, of planes, both linked, of one grid, or none where there are only costs. */
 
 import { GridMap } from "./gridmap.js";
 import { pictureOfRoutes, pictureOfTours, startsOf, styleOfTour } from "./map_pictures.js";
 import { UNNAMED, titled } from "../common/objectives.js";
-import { placesOf } from "../fleet/fleet_request.js";
 import { kindOf } from "../inputs/instance.js";
+import { EARTH, mapsOf } from "../inputs/places.js";
 import { stylesOf } from "../fleet/route_styles.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
 import { isPlan } from "../common/nouns.js";
@@ -13,19 +13,18 @@ import { Ways } from "./ways/ways.js";
 
 const element = (id) => document.getElementById(id);
 
-const SINGLE = ["stops", "fleet"]; // of which one map is drawn, of both objectives
 const EDITED = ["stops", "coordinates"]; // of which stops are moved and deleted on the map
 
-/** The places that are drawn, as rows, and whether they are longitude and latitude. */
+/** The maps that are drawn, as of `mapsOf`. */
 const placed = (instance, kind) =>
-  kind === "fleet" ? placesOf(instance) : kind === "stops" ? placesOf({ stops: instance.stops }) : { places: instance.coordinates ?? [], onEarth: false };
+  ["stops", "fleet"].includes(kind) ? mapsOf(instance) : { drawn: kind === "coordinates" ? [0, 1] : [], rows: instance.coordinates ?? [] };
 
 export class Maps {
   #planes;
   #ways = new Ways();
   #grid;
   #kind = "coordinates";
-  #drawn = 2; // of the planes
+  #drawn = [0, 1]; // what is drawn on the first map, and on the second: see `mapsOf`
   #tilesCredit = "";
   #streetsCredit = "";
   #onEarth = false;
@@ -55,10 +54,13 @@ export class Maps {
     this.#sayCredit();
   }
 
-  /** Draws what lies around the stops: `streets` where there are no tiles, and `places` by name; and tours along `legs`. */
-  surround({ streets = null, places = [], legs = null }) {
+  /**
+   * Draws what lies around the stops: `streets` where there are no tiles, and `places` by name; and
+   * tours along `legs`, which lie between the corners of an `extent`.
+   */
+  surround({ streets = null, places = [], legs = null, extent = [] }) {
     this.#streetsCredit = streets?.credit ?? "";
-    this.#planes.surround({ streets, places });
+    this.#planes.surround({ streets, places, extent });
     this.#ways.know(legs);
     this.#sayCredit();
   }
@@ -86,11 +88,11 @@ export class Maps {
   }
 
   #title() {
-    const single = SINGLE.includes(this.#kind);
-    this.#objectives.forEach((objective, plane) => {
-      element(`plane-${plane + 1}-title`).textContent = single ? "Map" : titled(objective);
+    const single = this.#drawn.length < 2;
+    this.#drawn.forEach((drawn, map) => {
+      element(`plane-${map + 1}-title`).textContent = single || drawn === EARTH ? "Map" : titled(this.#objectives[drawn]);
     });
-    element("length-1").hidden = single;
+    element("length-1").hidden = single || this.#drawn[0] === EARTH;
   }
 
   /** Rings a place on a map that is clicked, but no stop yet; null takes the rings away. */
@@ -106,17 +108,17 @@ export class Maps {
     this.#kind = kindOf(instance);
     this.#robots = instance.robots ?? [];
     this.#flown = Boolean(instance.objectives?.every(({ from }) => from === "great_circle"));
+    const { drawn, rows } = placed(instance, this.#kind);
+    const onEarth = drawn[0] === EARTH;
+    this.#drawn = drawn;
     this.#title();
-    const { places: rows, onEarth } = placed(instance, this.#kind);
-    // Stops lie in one plane, whatever their objectives.
-    this.#drawn = this.#kind === "coordinates" ? 2 : Math.sign(rows.length);
-    document.querySelectorAll(".plane").forEach((figure, plane) => (figure.hidden = plane >= this.#drawn));
+    document.querySelectorAll(".plane").forEach((figure, map) => (figure.hidden = map >= drawn.length));
     document.querySelector(".wide").hidden = this.#kind !== "grid";
     if (this.#kind === "grid") this.#grid.show(instance);
     else this.#planes.show(rows, fit, onEarth);
     this.#planes.edit(editable && EDITED.includes(this.#kind), !fit);
     this.#onEarth = onEarth && rows.length > 0;
-    this.#ways.lead(this.#onEarth ? rows : []);
+    this.#ways.lead(this.#onEarth ? rows.map((row) => row.slice(0, 2)) : []);
     this.#sayLines(null);
     this.#sayCredit();
   }
@@ -134,7 +136,7 @@ export class Maps {
     const { item } = tours.at(-1);
     if (this.#kind === "grid") return [{ title: "Map", ...this.#pictureOnGrid(tours, item) }];
     const routes = isPlan(item) ? this.#routes(item) : null;
-    return this.#planes.drawn.slice(0, this.#drawn).map((places, plane) => ({
+    return this.#planes.drawn.slice(0, this.#drawn.length).map((places, plane) => ({
       title: element(`plane-${plane + 1}-title`).textContent,
       ...this.#pictureOn(plane, places, routes, tours),
     }));
@@ -159,12 +161,17 @@ export class Maps {
     if (this.#kind === "fleet") {
       if (name === "selected") this.#planes.drawRoutes(isPlan(item) ? this.#routes(item) : []);
     } else if (this.#kind === "grid") this.#drawOnGrid(name, item);
-    else if (this.#drawn) this.#planes.draw(name, item?.tour ?? null, closed);
+    else if (this.#drawn.length) this.#planes.draw(name, item?.tour ?? null, closed);
+  }
+
+  /** The stops along a tour, as one way, or along each route of a plan. */
+  waysOf(item, closed) {
+    return isPlan(item) ? this.#routes(item).map(({ stops }) => stops) : [roundOf(item.tour, closed)];
   }
 
   /** Says under the map's title whether the lines of what is drawn follow the streets. */
   #sayLines(item, closed) {
-    const ways = !this.#onEarth || !item ? [] : isPlan(item) ? this.#routes(item).map(({ stops }) => stops) : [roundOf(item.tour, closed)];
+    const ways = this.#onEarth && item ? this.waysOf(item, closed) : [];
     const followed = ways.length > 0 && ways.every((cities) => this.#ways.along(cities));
     const said = followed ? "along the streets" : "in straight lines";
     element("lines").textContent = ways.length ? said : "";
@@ -175,10 +182,10 @@ export class Maps {
     if (name === "selected") this.#grid.drawRoutes(isPlan(item) ? this.#paths(item) : []);
   }
 
-  /** The paths of a plan's robots, each `{ name, path, style }`. */
+  /** The paths of a plan's robots, each `{ name, stops, path, style }`, whose stops are places. */
   #paths({ routes }) {
     const styles = stylesOf(routes, this.#robots);
-    return routes.map(({ robot, path }, at) => ({ name: robot, path, style: styles[at] }));
+    return routes.map(({ robot, tour, path }, at) => ({ name: robot, stops: tour, path, style: styles[at] }));
   }
 
   /** The routes of a plan, each `{ name, stops, style }`, whose stops are indexes. */

@@ -1,8 +1,8 @@
 /** The cities and tours on the map of one plane. */
 
 import "../vendor/leaflet/leaflet.js";
-import { fitting, flatMap } from "./flatmap.js";
 import { Dots } from "./dots.js";
+import { fitting, flatMap, ring } from "./flatmap.js";
 import { Frame } from "./frame.js";
 import { Handling } from "./handling.js";
 import { Mercator } from "./mercator.js";
@@ -30,7 +30,7 @@ export class Plane {
   #routes = new Routes();
   #streets = new Streets();
   #names = L.layerGroup();
-  #surroundings = { streets: null, places: [] };
+  #surroundings = { streets: null, places: [], extent: [] };
   #places = [];
   #along = () => null; // of a way through cities the places along the streets
   #onEarth = false;
@@ -58,7 +58,7 @@ export class Plane {
   /** Draws cities at these places; `fit` says whether the view moves to hold them all. */
   show(places, fit = true, onEarth = false) {
     this.#places = places;
-    if (fit || onEarth !== this.#onEarth) this.#frame = (onEarth ? Mercator : Frame).around(places);
+    if (fit || onEarth !== this.#onEarth) this.#frame = onEarth ? Mercator.around([...places, ...this.#surroundings.extent]) : Frame.around(places);
     this.#onEarth = onEarth;
     this.#showTiles();
     this.#showSurroundings();
@@ -89,7 +89,7 @@ export class Plane {
     this.#showSurroundings();
   }
 
-  /** Draws places by name, and streets where there are no tiles, from now on. */
+  /** Draws places by name, and streets where there are no tiles, from now on; the next stops are shown with all of an `extent`. */
   surround(surroundings) {
     this.#surroundings = surroundings;
     this.#showSurroundings();
@@ -140,11 +140,11 @@ export class Plane {
     return (along ?? cities.map((city) => this.#places[city])).map((place) => this.#frame.latlng(place));
   }
 
-  /** Draws the routes of a plan, `{ stops, style }` each, with a ring where all of them start; none takes them away. */
+  /** Draws the routes of a plan, `{ stops, style }` each, with a ring where all of them start, or a disc for each; none takes them away. */
   drawRoutes(routes) {
     const drawn = routes.map(({ stops, style }) => [stops, this.#along(stops), style]);
-    this.#routes.show(drawn.map(([stops, along, style]) => ({ latlngs: this.#latlngs(stops, along), along: along !== null, style })));
     const starts = new Set(routes.map(({ stops }) => stops[0]));
+    this.#routes.show(drawn.map(([stops, along, style]) => ({ latlngs: this.#latlngs(stops, along), along: along !== null, style })), starts.size > 1);
     this.#mark(this.#start, starts.size === 1 ? [...starts][0] : null);
   }
 
@@ -219,9 +219,4 @@ function nameAt(name, latlng) {
   const html = Object.assign(document.createElement("span"), { textContent: name });
   const icon = L.divIcon({ className: "place-name", iconSize: [0, 0], html });
   return L.marker(latlng, { icon, pane: "names", interactive: false, keyboard: false });
-}
-
-function ring(name, side) {
-  const icon = L.divIcon({ className: `ring ${name}`, iconSize: [side, side], tooltipAnchor: [0, -side / 2] });
-  return L.marker([0, 0], { icon, interactive: false, keyboard: false });
 }

@@ -86,22 +86,22 @@ export class Planes {
     for (const map of this.#maps) if (map.places.length) map.drawRoutes(routes);
   }
 
-  /** Where a stop stands on the tour, or on the route that visits it; of a depot nothing. */
-  #turn(city) {
-    if (this.#tour?.includes(city)) return `: ${ordinal(this.#tour.indexOf(city) + 1)} on the tour`;
-    const visiting = this.#routes.filter(({ stops }) => stops.includes(city));
-    if (visiting.length !== 1) return "";
-    return `: ${ordinal(visiting[0].stops.indexOf(city) + 1)} of ${visiting[0].name}`;
-  }
-
   #highlight(city) {
-    const said = city === null ? "" : this.#nameOf(city) + this.#turn(city);
+    const said = city === null ? "" : this.#nameOf(city) + turnOf(city, this.#tour, this.#routes);
     this.#maps.forEach((map) => map.highlight(city, said));
   }
 
   #nameOf(city) {
     return this.#ids?.[city] ?? `stop ${city + 1}`;
   }
+}
+
+/** Says where a stop stands on a tour, or on the one of these routes, each `{ name, stops }`, that visits it; of a depot nothing. */
+export function turnOf(city, tour, routes) {
+  if (tour?.includes(city)) return `: ${ordinal(tour.indexOf(city) + 1)} on the tour`;
+  const visiting = routes.filter(({ stops }) => stops.includes(city));
+  if (visiting.length !== 1) return "";
+  return `: ${ordinal(visiting[0].stops.indexOf(city) + 1)} of ${visiting[0].name}`;
 }
 
 /** The cities of a tour, back to the first where it is closed. */

@@ -8,7 +8,7 @@ import { CanvasLayer } from "./canvas_layer.js";
 const CASING = 1.5;
 const [LINE, THIN] = [3, 2];
 const NARROW = 400; // of a map, as on a phone
-const START = 6; // the radius of a disc
+const [START, END] = [6, 10]; // the radius of a disc, and the side of a square
 
 export class Routes extends CanvasLayer {
   #styles = [];
@@ -18,7 +18,7 @@ export class Routes extends CanvasLayer {
     super("routes");
   }
 
-  /** Draws routes, each `{ latlngs, style }`, maybe `along` streets, maybe `marked` with a disc where each starts; none takes them away. */
+  /** Draws routes, each `{ latlngs, style }`, maybe `along` streets, maybe `marked` with a disc where each starts; open ones have a square where they end. None takes them away. */
   show(routes, marked = false) {
     this.#marked = marked;
     this.lines = routes.map(({ latlngs }) => latlngs);
@@ -30,7 +30,13 @@ export class Routes extends CanvasLayer {
     context.lineJoin = "round";
     const width = this._map.getSize().x < NARROW ? THIN : LINE;
     lines.forEach((places, at) => draw(context, places, this.#styles[at], width));
-    if (this.#marked) lines.forEach(([place], at) => place && drawStart(context, place, this.#styles[at]));
+    lines.forEach((places, at) => places.length && this.#mark(context, places, this.#styles[at]));
+  }
+
+  #mark(context, places, style) {
+    const [start, end] = [places[0], places.at(-1)];
+    if (this.#marked) fill(context, style, () => context.arc(start.x, start.y, START, 0, 2 * Math.PI));
+    if (start.x !== end.x || start.y !== end.y) fill(context, style, () => context.rect(end.x - END / 2, end.y - END / 2, END, END));
   }
 }
 
@@ -44,10 +50,10 @@ function draw(context, places, style, width) {
   drawArrows(context, places, style.along);
 }
 
-function drawStart(context, { x, y }, style) {
+function fill(context, style, trace) {
   context.setLineDash([]);
   context.beginPath();
-  context.arc(x, y, START, 0, 2 * Math.PI);
+  trace();
   context.fillStyle = colour(style.colour);
   context.fill();
   stroke(context, "ink", CASING);

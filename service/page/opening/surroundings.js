@@ -13,14 +13,14 @@ export class Surroundings {
   /** Draws what is known of an example before its stops are. */
   begin(example) {
     this.#example = example;
-    this.#result.surround({ places: example.places });
+    this.#result.surround(drawn(example));
   }
 
   /** Draws what comes after the stops. The maps are good without it. */
   async fetch() {
     const example = this.#example;
     const [streets, legs] = await Promise.all([example.streets, example.legs].map((file) => this.#get(file)));
-    if (this.#example === example) this.#result.surround({ places: example.places, streets, legs });
+    if (this.#example === example) this.#result.surround({ ...drawn(example), streets, legs });
   }
 
   forget() {
@@ -32,3 +32,6 @@ export class Surroundings {
     return file ? this.#service.get(`examples/${file}`).catch(() => null) : null;
   }
 }
+
+/** Places by name, and the corners of a box that holds the streets of all tours. */
+const drawn = ({ places, extent }) => ({ places, extent });

@@ -33,7 +33,7 @@ export class Way {
     const instance = coordinates
       ? { coordinates: [...coordinates, ...rows] }
       : before
-        ? { stops: [...before, ...stops.map(({ id, row }) => ({ id, location: row }))] }
+        ? { ...this.instance, stops: [...before, ...stops.map(({ id, row }) => ({ id, location: row }))] }
         : this.instance;
     const way = new Way(instance, [...this.keys.map(String), ...stops.map(({ id }) => id)]);
     way.replanned = true;

@@ -17,7 +17,8 @@ export class ExportButtons {
   /**
    * @param {Service} service that has the front
    * @param {() => { request: object, asked: object, example: string | null, objectives: object[],
-   *   picture: object, balance: number }} screen what is on the screen; the example that it is
+   *   picture: object, balance: number, driven: boolean }} screen what is on the screen; the example
+   *   that it is; whether its lines can follow the streets
    */
   constructor(service, screen) {
     this.#service = service;
@@ -27,7 +28,7 @@ export class ExportButtons {
     on("link", (shown, button) => this.#copyLink(shown, button));
     on("json", () => download("front.json", "application/json", JSON.stringify(this.#shown)));
     on("csv", () => download("front.csv", "text/csv", csv(this.#shown)));
-    on("geojson", () => this.#saveGeojson());
+    on("geojson", ({ driven }) => this.#saveGeojson(driven));
     on("svg", ({ picture }) => download("front.svg", "image/svg+xml", svgOf(picture)));
     on("png", async ({ picture }) => download("front.png", "image/png", await pngOf(svgOf(picture))));
   }
@@ -35,7 +36,7 @@ export class ExportButtons {
   /** Takes a front along, or none. */
   show(answer) {
     this.#shown = answer;
-    element("link-help").textContent = "";
+    say("");
     for (const id of OF_FRONT) element(id).disabled = !answer;
     if (!answer?.stops?.every(({ location }) => location)) element("geojson").disabled = true;
   }
@@ -44,14 +45,26 @@ export class ExportButtons {
     const wanted = asked && { request: asked, objectives };
     const { hash, whole } = await fragment(this.#shown.id, balance, wanted, example);
     history.replaceState(null, "", hash);
-    element("link-help").textContent = whole || !asked ? "" : ALONE;
+    say(whole || !asked ? "" : ALONE);
     await copy(location.href, button);
   }
 
-  async #saveGeojson() {
-    const response = await this.#service.ask(`front/${this.#shown.id}`, { headers: { Accept: "application/geo+json" } });
-    download("front.geojson", "application/geo+json", await response.text());
+  /** Of very many stops the streets are refused: then the lines are straight, and that is said. */
+  async #saveGeojson(driven) {
+    const streets = driven && (await this.#geojson("?geometry=roads").catch(({ message }) => say(straight(message))));
+    download("front.geojson", "application/geo+json", streets || (await this.#geojson("")));
   }
+
+  async #geojson(query) {
+    const headers = { Accept: "application/geo+json" };
+    return (await this.#service.ask(`front/${this.#shown.id}${query}`, { headers })).text();
+  }
+}
+
+const straight = (message) => `The lines in the file go straight from stop to stop: ${message}.`;
+
+function say(text) {
+  element("link-help").textContent = text;
 }
 
 async function copy(text, button) {

@@ -8,7 +8,7 @@ const [NAMES, ACROSS, MOST_LETTERS] = [8, 4, 12]; // of the list of names: how m
 
 /** A map whose longer side fills its panel; north, or the larger y, is up. A grid's ground is a picture of its cells. */
 export function mapPanel({ title, places, lines, starts, ground }) {
-  const held = ground ? [[0, -ground.height], [ground.width, 0]] : places;
+  const held = ground ? [[0, -ground.height], [ground.width, 0]] : [...places, ...lines.flatMap((line) => line.places)];
   const [left, low, right, top] = boundsOf(held);
   const unit = (SIDE - 2 * ROOM) / (Math.max(right - left, top - low) || 1);
   const put = ([x, y]) => [round(ROOM + (x - left) * unit), round(SIDE - ROOM - (y - low) * unit)];

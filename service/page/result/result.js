@@ -12,7 +12,7 @@ import { PlanView } from "../fleet/plan_view.js";
 import { length } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
 import { BalanceSlider } from "../chart/slider.js";
-import { RoutedWay } from "../map/ways/routed_way.js";
+import { RoutedWay, pathOfWays } from "../map/ways/routed_way.js";
 import { nearest } from "./tours.js";
 
 const MIDDLE = 0.5; // of balances
@@ -134,8 +134,13 @@ export class Result {
     this.#balance = balance ?? MIDDLE;
   }
 
-  /** What is to be seen on a picture of it. */
-  get picture() {
+  /** What is taken along: a picture, the balance of what is selected, and whether its lines can follow the streets. */
+  get taken() {
+    const driven = Boolean(this.#routed) && this.#maps.driven;
+    return { picture: this.#selected && this.#picture, balance: this.#selected?.balance, driven };
+  }
+
+  get #picture() {
     const lines = [this.#pinned ?? this.#before, this.#selected].filter(Boolean);
     const tours = lines.map((item) => ({ item, cities: this.#round(item), dashed: item !== this.#selected }));
     const maps = this.#maps.pictures(tours);
@@ -219,11 +224,11 @@ export class Result {
     this.#follow();
   }
 
-  /** Wants the way of the selected tour along the streets, once its front is final. */
+  /** Wants the ways of what is selected along the streets, once its front is final. */
   #follow() {
-    const tour = this.#selected?.tour;
-    if (!tour || !this.#id || !this.#maps.driven) this.#routed?.forget();
-    else this.#routed?.want(this.#id, this.#selected, this.#round(this.#selected));
+    const item = this.#selected;
+    if (!item || !this.#id || !this.#maps.driven) return this.#routed?.forget();
+    this.#routed?.want(pathOfWays(this.#id, item, this.#front.indexOf(item)), this.#maps.waysOf(item, this.#closed));
   }
 
   /** Says what a colour on the chart means, while it is there. */

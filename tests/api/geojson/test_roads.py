@@ -208,3 +208,31 @@ def test_without_an_engine_streets_are_refused_before_anything_is_planned() -> N
         for path in (f"/front/{planned}?geometry=roads", "/tour?knee&geometry=roads"):
             document = problem(client.get(path, headers=ACCEPT), 422, "no-router")
             assert document["errors"][0]["parameter"] == "geometry"
+
+
+def test_one_plan_of_a_fleet_is_drawn_alone(client: httpx.Client) -> None:
+    request = _request()
+    request["objectives"][1]["over"] = "max"
+    request["vehicles"] = [{"id": "van", "count": 2, "start": "order-0", "end": "order-0"}]
+    front = client.post("/fleet", json=request).json()
+    assert len(front["front"]) > 1
+    path = f"/front/{front['id']}"
+    drawn = client.get(path, params=ROADS, headers=ACCEPT).json()["features"]
+    stops = [each for each in drawn if "stop" in each["properties"]]
+    for plan in range(len(front["front"])):
+        alone = client.get(path, params={"plan": plan, **ROADS}, headers=ACCEPT).json()
+        routes = [each for each in drawn if each["properties"].get("plan") == plan]
+        assert alone["features"] == [*routes, *stops]
+    many = {"plan": len(front["front"])}
+    document = problem(client.get(path, params=many, headers=ACCEPT), 422, "invalid-request")
+    assert document["errors"][0]["parameter"] == "plan"
+    assert f"less than {len(front['front'])}" in document["detail"]
+
+
+def test_a_plan_is_drawn_of_a_fleet_and_in_geojson_alone(client: httpx.Client) -> None:
+    path = f"/front/{client.post('/front', json=_request()).json()['id']}"
+    for headers, said in ((ACCEPT, "GET /tour"), ({}, "application/geo+json")):
+        answer = client.get(path, params={"plan": 0}, headers=headers)
+        document = problem(answer, 422, "invalid-request")
+        assert document["errors"][0]["parameter"] == "plan"
+        assert said in document["detail"]

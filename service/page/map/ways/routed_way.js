@@ -1,4 +1,4 @@
-/** Ask the service for the way of a tour along the streets, as its routing engine knows it. */
+/** Ask the service for the ways of a tour, or of a plan's routes, along the streets, as its routing engine knows them. */
 
 const REST = 250; // milliseconds for which a tour is selected before its way is asked for
 
@@ -7,12 +7,12 @@ export class RoutedWay {
   #ways;
   #onFound;
   #timer = 0;
-  #wanted = null; // the cities of the way that is to come
+  #wanted = null; // the ways that are to come
 
   /**
    * @param {Service} service which has a routing engine
    * @param {Ways} ways in which ways are kept
-   * @param {() => void} onFound told when another one is known
+   * @param {() => void} onFound told when others are known
    */
   constructor(service, ways, onFound) {
     this.#service = service;
@@ -20,12 +20,12 @@ export class RoutedWay {
     this.#onFound = onFound;
   }
 
-  /** Asks for the way of a tour of a stored front through these cities, unless another is wanted soon. */
-  want(front, { lengths }, cities) {
+  /** Asks at a path for ways through these stops, a list of cities each, unless others are wanted soon. */
+  want(path, wanted) {
     clearTimeout(this.#timer);
-    this.#wanted = cities;
-    if (this.#ways.along(cities)) return;
-    this.#timer = setTimeout(() => this.#ask(front, lengths[0], cities), REST);
+    this.#wanted = wanted;
+    if (wanted.every((cities) => this.#ways.along(cities))) return;
+    this.#timer = setTimeout(() => this.#ask(path, wanted), REST);
   }
 
   /** Wants none any more. */
@@ -35,13 +35,22 @@ export class RoutedWay {
   }
 
   /** The map is good without; why the engine has no way is said where costs are asked for. */
-  async #ask(front, most, cities) {
-    const path = `tour?${new URLSearchParams({ front, first_at_most: most, geometry: "roads" })}`;
+  async #ask(path, wanted) {
     const headers = { Accept: "application/geo+json" };
     const answer = await this.#service.ask(path, { headers }).then((response) => response.json(), () => null);
-    if (this.#wanted !== cities || !answer) return;
-    const { type, coordinates } = answer.features[0].geometry;
-    this.#ways.keep(cities, type === "LineString" ? coordinates : coordinates.flat());
+    if (this.#wanted !== wanted || !answer) return;
+    // Lines come before the stops, in the order of the routes.
+    wanted.forEach((cities, at) => this.#ways.keep(cities, placesOf(answer.features[at].geometry)));
     this.#onFound();
   }
 }
+
+/** The path at which the service tells the way of a tour of a front, or those of a plan's routes. */
+export function pathOfWays(front, { lengths, routes }, index) {
+  const geometry = "roads";
+  if (routes) return `front/${front}?${new URLSearchParams({ plan: index, geometry })}`;
+  return `tour?${new URLSearchParams({ front, first_at_most: lengths[0], geometry })}`;
+}
+
+/** The places of a line, which is cut where it crosses longitude 180. */
+const placesOf = ({ type, coordinates }) => (type === "LineString" ? coordinates : coordinates.flat());

@@ -1,0 +1,22 @@
+/** Tell where the stops of a request lie: on the earth, in the planes of its objectives, or nowhere. */
+
+/** That a map is of the earth, and not of an objective's plane. */
+export const EARTH = "earth";
+
+/**
+ * The maps of a request: `drawn` says of each whether it is the EARTH or the plane of objective 0 or 1,
+ * and `rows` has the places of each stop on all of them, two numbers a map. Beside a map of the earth, or
+ * of the first objective's plane, there is a second one where the second objective has a plane.
+ */
+export function mapsOf({ stops = [], objectives }) {
+  const located = stops.map(({ location }) => location);
+  const planes = [0, 1].map((axis) => objectives?.[axis]?.coordinates);
+  const places = new Map([[EARTH, located], ...planes.entries()]);
+  const known = [...places.keys()].filter((each) => arePlaces(places.get(each), stops.length));
+  const second = known.length > 1 && known.includes(1) ? [1] : [];
+  const drawn = [...known.slice(0, 1), ...second];
+  return { drawn, rows: drawn.length ? stops.map((_, row) => drawn.flatMap((each) => places.get(each)[row])) : [] };
+}
+
+const arePlaces = (rows, count) =>
+  Array.isArray(rows) && rows.length === count && rows.every((row) => Array.isArray(row) && row.length === 2 && row.every(Number.isFinite));

@@ -1,0 +1,182 @@
+"""Maps of robots on the page: read as the service reads them, drawn with names and ends."""
+
+import json
+from collections.abc import Iterator
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+from playwright.sync_api import Browser, Page, expect
+
+from service.requests.maps.fields import MapRequest
+from tests.helpers.browsing import (
+    curl_body,
+    needs_chromium,
+    open_page,
+    shown_front,
+    wait_until_planned,
+)
+
+pytestmark = needs_chromium
+
+MOST_CELLS = 10_000
+ORIGIN = [-2.0, -1.5, 0.25]
+THRESHOLDS: dict[str, Any] = {"occupied_thresh": 0.65, "free_thresh": 0.25}
+HOW: list[dict[str, Any]] = [
+    {"mode": "trinary", "negate": False, **THRESHOLDS},
+    {"mode": "trinary", "negate": True, **THRESHOLDS},
+    {"mode": "scale", "negate": False, **THRESHOLDS},
+    {"mode": "raw", "negate": False, **THRESHOLDS},
+]
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, released: str) -> Iterator[Page]:
+    """A page for all of these tests, each of which opens its own map."""
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        yield page
+
+
+def open_map(page: Page, files: dict[str, bytes]) -> None:
+    """Open files on the page, of no type that a browser knows."""
+    payloads = [
+        {"name": name, "mimeType": "", "buffer": content} for name, content in files.items()
+    ]
+    page.get_by_label("Open files").set_input_files(payloads)  # type: ignore[arg-type]
+    expect(page.get_by_text("A grid of 18 by 16 cells")).to_be_visible()
+
+
+def grid_of(picture: bytes | None, **fields: Any) -> Any:
+    """Return the grid that the service makes of a map."""
+    request = MapRequest.model_validate({"cell_size": 0.5, **fields})
+    return request.with_map(picture, MOST_CELLS).grid.tolist()
+
+
+def yaml_of(how: dict[str, Any], origin: str) -> bytes:
+    """Return a map.yaml of a map of half a metre a cell."""
+    keys = {**how, "negate": int(how["negate"]), "image": "'office.pgm'", "resolution": 5e-1}
+    lines = "".join(f"{name}: {value}  # as saved\n" for name, value in keys.items())
+    return f"# a map\n{lines}{origin}\n".encode()
+
+
+def shades(white: int = 255) -> NDArray[np.uint8]:
+    """Return a picture of all shades, 18 rows of 16; the last two rows are of grey 205."""
+    all_shades = np.append(np.arange(256), np.full(32, 205)).reshape(18, 16)
+    return np.minimum(all_shades, white).astype(np.uint8)
+
+
+def pgm(cells: NDArray[np.uint8], white: int = 255, plain: bool = False) -> bytes:
+    """Return a PGM file, binary or plain."""
+    header = f"{'P2' if plain else 'P5'}\n# CREATOR: map_saver\n16 18\n{white}\n".encode()
+    return header + (" ".join(map(str, cells.ravel())).encode() if plain else cells.tobytes())
+
+
+@pytest.mark.parametrize("how", HOW, ids=lambda how: f"{how['mode']}-{how['negate']}")
+def test_a_map_of_ros_is_read_as_the_service_reads_it(opened: Page, how: dict[str, Any]) -> None:
+    picture = pgm(shades())
+    inline = f"origin: {ORIGIN}"
+    open_map(opened, {"office.pgm": picture, "office.yaml": yaml_of(how, inline)})
+    body = curl_body(opened, "coverage")
+    assert body["grid"] == grid_of(picture, **how)
+    assert (body["cell_size"], body["origin"]) == (0.5, ORIGIN)
+    listed = "origin:\n" + "".join(f"- {value}\n" for value in ORIGIN)
+    open_map(opened, {"a.yml": yaml_of(how, listed), "z.pgm": pgm(shades(), plain=True)})
+    assert curl_body(opened, "coverage") == body
+
+
+def test_a_picture_alone_is_read_as_the_service_reads_it(opened: Page) -> None:
+    pictures = [pgm(shades()), pgm(shades(10), white=10), pgm(shades(10), white=10, plain=True)]
+    colours = np.stack([shades(), shades().T.reshape(18, 16), shades()[::-1]], axis=2)
+    for array in (shades(), colours):
+        with BytesIO() as file:
+            Image.fromarray(array).save(file, "PNG")
+            pictures.append(file.getvalue())
+    for picture in pictures:
+        open_map(opened, {"map.pgm": picture})
+        assert curl_body(opened, "coverage")["grid"] == grid_of(picture)
+
+
+def test_a_message_of_ros_is_read_as_the_service_reads_it(opened: Page) -> None:
+    data = np.resize(np.arange(-1, 101), 18 * 16).tolist()
+    turned = {"x": 0, "y": 0, "z": float(np.sin(0.3)), "w": float(np.cos(0.3))}
+    place = {"position": {"x": -2, "y": 3.5, "z": 0}, "orientation": turned}
+    info = {"resolution": 0.5, "width": 16, "height": 18, "origin": place}
+    message = {"header": {"frame_id": "map"}, "info": info, "data": data}
+    open_map(opened, {"message.json": json.dumps(message).encode()})
+    body = curl_body(opened, "coverage")
+    request = MapRequest.model_validate({"occupancy_grid": message})
+    expected = request.with_map(None, MOST_CELLS)
+    assert body["grid"] == expected.grid.tolist()
+    assert body["cell_size"] == expected.cell_size
+    assert body["origin"] == pytest.approx(expected.origin)
+    fields = {"obstacle_from": 20, "unknown": "free"}
+    asked = {"occupancy_grid": message, **fields, "spacing": 2, "cost_layer": [[1] * 16] * 18}
+    open_map(opened, {"request.json": json.dumps(asked).encode()})
+    body = curl_body(opened, "coverage")
+    request = MapRequest.model_validate({"occupancy_grid": message, **fields})
+    assert body["grid"] == request.with_map(None, MOST_CELLS).grid.tolist()
+    assert (body["spacing"], body["cost_layer"]) == (2, asked["cost_layer"])
+    assert not body.keys() & {"occupancy_grid", *fields}
+
+
+@pytest.mark.parametrize(
+    ("files", "said"),
+    [
+        ({"a.yaml": yaml_of(HOW[0], "origin: [0, 0, 0]")}, "how to read office.pgm: open both"),
+        ({"a.yaml": b"image: a.pgm\n", "a.pgm": pgm(shades())}, "a.yaml must have resolution"),
+        ({"a.pgm": b"P5\n4 4\n255\nshort"}, "a.pgm must have 4 x 4 shades"),
+        ({"a.pgm": b"P5\n4 4\n70000\n"}, "a.pgm must be a PGM file"),
+        ({"a.pgm": pgm(shades()), "b.pgm": pgm(shades())}, "one map is wanted"),
+        (
+            {"a.yaml": yaml_of(HOW[0], "origin: [0, 0]"), "a.pgm": pgm(shades())},
+            "origin of a.yaml must be x, y and yaw",
+        ),
+        (
+            {"a.json": b'{"info": {"resolution": 1, "width": 2, "height": 2}, "data": [0]}'},
+            "data of a.json must have 2 x 2 numbers, got 1",
+        ),
+    ],
+)
+def test_a_map_that_cannot_be_read_is_refused_in_a_sentence(
+    opened: Page, files: dict[str, bytes], said: str
+) -> None:
+    payloads = [{"name": name, "mimeType": "", "buffer": text} for name, text in files.items()]
+    opened.get_by_label("Open files").set_input_files(payloads)  # type: ignore[arg-type]
+    expect(opened.locator("#file-fault")).to_contain_text(said, ignore_case=True)
+
+
+def test_a_robots_map_names_its_places_and_marks_both_ends(opened: Page) -> None:
+    office = {
+        "grid": [[0] * 7] * 3,
+        "cell_size": 1,
+        "places": [[0, 0], [2, 6], [0, 6], [2, 0]],
+        "cost_layer": [[1] * 7] * 3,
+        "closed": False,
+        "start": 0,
+        "end": 3,
+        "time_limit": 0.1,
+    }
+    payload = {"name": "office.json", "mimeType": "", "buffer": json.dumps(office).encode()}
+    opened.get_by_label("Open files").set_input_files([payload])  # type: ignore[list-item]
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    for end in (".ring.start", ".ring.end"):
+        expect(opened.locator(f"#grid {end}")).to_be_visible()
+    [tour] = [item["tour"] for item in shown_front(opened)["front"]]
+    box = opened.locator("#grid .ring.end").bounding_box()
+    assert box
+    opened.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    expect(opened.locator("#grid .leaflet-tooltip")).to_have_text("place 4: 4th on the tour")
+    assert tour[-1] == 3
+    opened.mouse.move(0, 0)
+    expect(opened.locator("#grid .leaflet-tooltip")).to_have_count(0)
+    opened.get_by_label("End elsewhere").fill("")
+    opened.get_by_label("Open route").uncheck()
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    expect(opened.locator("#grid .ring.end")).to_have_count(0)
+    expect(opened.locator("#grid .ring.start")).to_be_visible()
