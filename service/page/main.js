@@ -177,7 +177,7 @@ function fail(error) {
   if (error.code === undefined) throw error;
   say("");
   showFaults(error);
-  element("waiting").textContent = element("request-fault").textContent; // a phone shows the form below
+  element("waiting").textContent = document.querySelector(".fault:not(:empty)").textContent; // a phone shows the form below
 }
 
 function openChosen() {

@@ -201,6 +201,7 @@ def test_what_the_service_refuses_is_said_at_the_field(page: Page) -> None:
     fault = page.locator("#time_limit-fault")
     expect(fault).to_have_text('Seconds of planning must be a valid number, got "soon".')
     expect(page.get_by_label("Seconds of planning")).to_be_focused()
+    expect(page.locator("#waiting")).to_have_text(fault.inner_text())
     stops_as_text(page).fill("1, 2, 3, 4\n1, 2, 3\n")
     page.get_by_role("button", name="Plan", exact=True).click()
     expect(page.locator("#cities-fault")).to_contain_text("Stop 2 must have 4 items")

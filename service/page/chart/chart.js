@@ -118,6 +118,8 @@ export class FrontChart {
   }
 }
 
+const NONE = "No front yet: bring stops, then press Plan";
+
 const size = (element) => ({ width: element.clientWidth, height: element.clientHeight });
 
 const columns = (front) => [
@@ -173,7 +175,7 @@ function roomy(_, least, most) {
 }
 
 function described(front, objectives) {
-  if (!front.length) return "No front yet";
+  if (!front.length) return NONE;
   const from = (axis) => length(Math.min(front[0].lengths[axis], front.at(-1).lengths[axis]));
   const to = (axis) => length(Math.max(front[0].lengths[axis], front.at(-1).lengths[axis]));
   const { one, many } = nounOf(front);

@@ -1,6 +1,9 @@
 /** Follow a front that the service has already, by a link to it. */
 
+import { Problem } from "./service.js";
+
 const GONE = ["unknown-front", "front-expired"];
+const FORGOTTEN = "the service has no front of this link any more, and the link does not say which stops to plan again: open them, and press Plan";
 
 /**
  * The states of a stored front, as a planning yields them. One that the service has no more is
@@ -13,7 +16,8 @@ export async function* stored(planning, id, request, searched) {
       yield searched ? state : { ...state, alone: state.answer, growth: [] };
     }
   } catch (error) {
-    if (!request || !GONE.includes(error.code)) throw error;
+    if (!GONE.includes(error.code)) throw error;
+    if (!request) throw new Problem({ code: error.code, detail: FORGOTTEN });
     yield* planning.plan(request);
   }
 }
