@@ -130,7 +130,7 @@ class PlanRoutes:
         return await self._plan(request, "front")
 
     async def plan_coverage(self, request: Request) -> Response:
-        """Plan the front of tours through places on a map, or of plans for several `robots`.
+        """Plan the front of tours through places on a map, or of plans for several robots.
 
         The map may come as a PNG or PGM file instead, where dark is an obstacle: the part `map` of
         a multipart/form-data body, beside the part `request` with everything else.

@@ -39,3 +39,16 @@ def test_a_job_of_a_fleet_gives_its_plans_and_is_found_by_its_id(
     again.forget()
     with pytest.raises(Refused, match="there is no front"):
         again.front()
+
+
+def test_one_plan_of_a_fleet_is_given_as_geojson(connect: Connect, url: str) -> None:
+    client = connect(url)
+    front = client.fleet(**fleet_request())
+    last = len(front.plans) - 1
+    lines = client.geojson(front.id, plan=last)["features"][: len(front.plans[last].routes)]
+    assert [line["properties"]["plan"] for line in lines] == [last] * len(lines)
+    assert [tuple(line["properties"]["stops"]) for line in lines] == [
+        route.stops for route in front.plans[last].routes
+    ]
+    with pytest.raises(Refused, match="plan must be less than"):
+        client.geojson(front.id, plan=last + 1)

@@ -207,6 +207,28 @@ def test_what_the_service_refuses_is_said_at_the_field(page: Page) -> None:
     expect(page.locator("#cities-fault")).to_contain_text("Stop 2 must have 4 items")
 
 
+@pytest.mark.parametrize(
+    ("label", "typed", "said"),
+    [
+        ("End elsewhere", "99", "End elsewhere must be a stop, 1 to 61, got 99."),
+        ("Start", "62", "Start must be a stop, 1 to 61, got 62."),
+        ("End elsewhere", "1", "End elsewhere must be another stop than the start"),
+        ("End elsewhere", "shop", "End elsewhere must be the number of a stop"),
+    ],
+)
+def test_refusals_count_stops_as_people_do(page: Page, label: str, typed: str, said: str) -> None:
+    page.get_by_label(label, exact=True).fill(typed)
+    page.get_by_role("button", name="Plan", exact=True).click()
+    name = "end" if label.startswith("End") else "start"
+    expect(page.locator(f"#{name}-fault")).to_contain_text(said)
+
+
+def test_a_plan_of_no_stops_is_refused_in_words_of_the_page(page: Page) -> None:
+    page.get_by_role("button", name="Clear").click()
+    page.get_by_role("button", name="Plan", exact=True).click()
+    expect(page.locator("#cities-fault")).to_contain_text("There must be a stop: open a file")
+
+
 def test_cities_are_clicked_into_place_plane_by_plane(page: Page) -> None:
     page.get_by_role("button", name="Clear").click()
     page.get_by_role("button", name="Click into place").click()

@@ -140,15 +140,18 @@ class AsyncClient:
         """Return a tour of a front by its id, or of the latest, as `Front.choose` does."""
         return await self._connection.run(self._calls.tour(angle, front, choice))
 
-    async def geojson(self, front: str, geometry: Geometry = "straight") -> dict[str, Any]:
+    async def geojson(
+        self, front: str, geometry: Geometry = "straight", plan: int | None = None
+    ) -> dict[str, Any]:
         """Return a front by its id as a FeatureCollection (RFC 7946), if its stops have locations.
 
         Args:
             front: The front's id.
             geometry: Whether its lines are straight, or follow the streets where the service has a
                 routing engine.
+            plan: Of a fleet's front, the one plan to draw, by its place from 0; None draws all.
         """
-        return await self._connection.run(self._calls.geojson(front, geometry))
+        return await self._connection.run(self._calls.geojson(front, geometry, plan))
 
     async def actors(self) -> tuple[Actor, ...]:
         """Return the actors that the service has loaded."""

@@ -109,10 +109,11 @@ class Calls:
         params = parameters(angle, choice) | ({} if front_id is None else {"front": front_id})
         return parse_tour((yield from self._get("/tour", params)).json())
 
-    def geojson(self, front_id: str, geometry: Geometry) -> Call[dict[str, Any]]:
-        """Return a front as GeoJSON."""
+    def geojson(self, front_id: str, geometry: Geometry, plan: int | None) -> Call[dict[str, Any]]:
+        """Return a front, or one plan of it, as GeoJSON."""
         headers = {"Accept": "application/geo+json"}
-        response = yield from self._get(_path(front_id), {"geometry": geometry}, headers)
+        query = {"geometry": geometry} if plan is None else {"geometry": geometry, "plan": plan}
+        response = yield from self._get(_path(front_id), query, headers)
         return response.json()
 
     def actors(self) -> Call[tuple[Actor, ...]]:

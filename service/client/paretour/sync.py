@@ -142,15 +142,18 @@ class Client:
         """Return a tour of a front by its id, or of the latest, as `Front.choose` does."""
         return self._connection.run(self._calls.tour(angle, front, choice))
 
-    def geojson(self, front: str, geometry: Geometry = "straight") -> dict[str, Any]:
+    def geojson(
+        self, front: str, geometry: Geometry = "straight", plan: int | None = None
+    ) -> dict[str, Any]:
         """Return a front by its id as a FeatureCollection (RFC 7946), if its stops have locations.
 
         Args:
             front: The front's id.
             geometry: Whether its lines are straight, or follow the streets where the service has a
                 routing engine.
+            plan: Of a fleet's front, the one plan to draw, by its place from 0; None draws all.
         """
-        return self._connection.run(self._calls.geojson(front, geometry))
+        return self._connection.run(self._calls.geojson(front, geometry, plan))
 
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors that the service has loaded."""

@@ -57,9 +57,20 @@ function selectLine(area, row) {
   area.setSelectionRange(before, before + (lines[row]?.length ?? 0));
 }
 
+const counted = (index) => Number(index) + 1; // as people count
+
+// What the service says of requests, and what is said of the page instead.
+const SAID = [
+  [/^(start|end) must be a city, 0 to (\d+), got (-?\d+)/, (_, name, last, got) => `${name} must be a stop, 1 to ${counted(last)}, got ${counted(got)}`],
+  [/^(start|end) must be the index of a city, as there are no stops with ids/, (_, name) => `${name} must be the number of a stop, as the stops have no names`],
+  [/^end must not be the start.*/, () => "end must be another stop than the start; leave it empty for a tour that returns"],
+  [/^(coordinates|stops) must have 1 item or more.*/, () => "There must be a stop: open a file, add one, or click it into place"],
+];
+
 /** What a fault calls by its name in the request is called here as on the page. */
-function inWords(detail, field) {
+function inWords(fault, field) {
   const label = document.querySelector(`label[for="${field}"]`)?.textContent;
+  const detail = SAID.reduce((said, [pattern, instead]) => said.replace(pattern, instead), fault);
   return detail
     .replace(/^coordinates\/(\d+)\/([0-3])\b/, (_, city, column) => `${COLUMNS[column]} of stop ${Number(city) + 1}`)
     .replace(/^objectives\/([01])\b/, (_, axis) => `the ${["first", "second"][axis]} objective`)
