@@ -236,11 +236,13 @@ export class Result {
     element("legend").querySelector(`.${name}`).hidden = !there;
   }
 
-  /** The order of a tour's stops; of a plan each vehicle has its own. */
+  /** The order of a tour's stops, back to its start where it is closed; of a plan each vehicle has its own. */
   #order() {
     element("order").hidden = isPlan(this.#selected);
     if (!element("order").open || isPlan(this.#selected)) return;
-    element("order").querySelector("p").textContent = named(this.#selected, this.#ids).join(" → ");
+    const names = named(this.#selected, this.#ids);
+    const back = this.#closed && names.length > 1 ? [names[0]] : [];
+    element("order").querySelector("p").textContent = [...names, ...back].join(" → ");
   }
 }
 
