@@ -261,7 +261,7 @@ def test_the_front_can_be_taken_along(page: Page, released: str) -> None:
     answer = shown_front(page)
     assert answer == httpx.get(f"{released}/front/{answer['id']}").json()
     head, *lines = saved(page, "CSV").decode().splitlines()
-    assert head == "angle,length_1,length_2,tour"
+    assert head == "angle,distance (m),risk (accidents in a thousand million drives),tour"
     assert len(lines) == len(answer["front"])
     asked = curl_body(page)
     found = httpx.post(f"{released}/front", json={**asked, "time_limit": 0}).json()

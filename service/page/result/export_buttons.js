@@ -27,7 +27,7 @@ export class ExportButtons {
     on("python", ({ request, balance }, button) => copy(python(request, balance), button));
     on("link", (shown, button) => this.#copyLink(shown, button));
     on("json", () => download("front.json", "application/json", JSON.stringify(this.#shown)));
-    on("csv", () => download("front.csv", "text/csv", csv(this.#shown)));
+    on("csv", ({ objectives }) => download("front.csv", "text/csv", csv(this.#shown, objectives)));
     on("geojson", ({ driven }) => this.#saveGeojson(driven));
     on("svg", ({ picture }) => download("front.svg", "image/svg+xml", svgOf(picture)));
     on("png", async ({ picture }) => download("front.png", "image/png", await pngOf(svgOf(picture))));

@@ -1,6 +1,7 @@
 /** Write a request as a curl command, and a front as CSV. */
 
 import { isPlan } from "../common/nouns.js";
+import { UNNAMED } from "../common/objectives.js";
 import { movedBy, stopsOf, wordsOf } from "../fleet/routes_of_plan.js";
 
 /** The same request as a shell command. */
@@ -9,9 +10,9 @@ export function curl({ path, body }) {
   return `curl ${address} -H 'Content-Type: application/json' -d @- <<'END'\n${JSON.stringify(body)}\nEND\n`;
 }
 
-/** A front as CSV: a tour on each line, or a route of a plan, with the answer's names and ids where it has them. */
-export function csv({ front, objectives }) {
-  const titles = objectives?.map(({ name, unit }) => (unit ? `${name} (${unit})` : name)) ?? ["length_1", "length_2"];
+/** A front as CSV: a tour on each line, or a route of a plan, with these names of objectives, and the answer's ids where it has them. */
+export function csv({ front }, objectives) {
+  const titles = objectives === UNNAMED ? ["length_1", "length_2"] : objectives.map(({ name, unit }) => (unit ? `${name} (${unit})` : name));
   if (isPlan(front[0])) return csvOfPlans(front, titles);
   const rows = front.map(({ angle, lengths, tour, stops }) => {
     const places = stops?.map((id) => quoted(id, /[ "]/)) ?? tour;
