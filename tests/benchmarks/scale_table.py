@@ -11,6 +11,12 @@ def scale_table() -> str:
     """Return a row for each number and shape of cities, and each way to plan."""
     rows = [
         [key, *(f"{of(entry)[0][name]:{form}}" for name, form in COLUMNS.items())]
-        for key, entry in load("scale").items()
+        for key, entry in sorted(load("scale").items(), key=lambda row: _order(row[0]))
     ]
     return table(["", "seconds", "hypervolume, %", "tours", "ends", "memory, MB"], rows)
+
+
+def _order(key: str) -> tuple[int, bool, str]:
+    """The place of a row: by cities, uniform ones first, then as it was stored."""
+    cities, shape, _ = key.split(", ", 2)
+    return int(cities.partition(" ")[0]), shape != "uniform", shape
