@@ -51,6 +51,12 @@ DRAWN = """canvas => {
   return [...found];
 }"""
 
+CLIPBOARD_TEXT = """async () => {
+  let text = "";
+  while (!text) text = await navigator.clipboard.readText();
+  return text;
+}"""
+
 expect.set_options(timeout=30 * SECOND)  # five seconds are too few on a busy machine
 
 needs_chromium = pytest.mark.skipif(
@@ -132,6 +138,25 @@ def wait_until_planned(page: Page) -> None:
     expect(page.locator("#status")).to_contain_text("Done", timeout=300 * SECOND)
 
 
+def plan_city_deliveries(page: Page) -> None:
+    """Have the page plan its example of two planes, and wait until it has."""
+    # The example that the page opens with is left before it is planned, which takes seconds.
+    page.get_by_label("Example").select_option("City deliveries")
+    expect(page.locator("#count")).to_have_text("61 stops")
+    wait_until_planned(page)
+
+
+def copied(page: Page, name: str) -> str:
+    """Return the text that the page's button "Copy", of what is copied, copies."""
+    # In a window that serves several tests, the button may still say so of the time before.
+    page.evaluate("navigator.clipboard.writeText('')")
+    button = page.get_by_role("button", name=f"Copy {name}")
+    button.click()
+    expect(button).to_have_text("Copied")
+    text: str = page.evaluate(CLIPBOARD_TEXT)
+    return text
+
+
 def tours_of_front(page: Page) -> int:
     """Return how many tours the front has that is shown, by what the slider says."""
     said = page.get_by_role("slider", name="Balance").get_attribute("aria-valuetext") or ""
@@ -172,10 +197,7 @@ def select_last(page: Page) -> Any:
 
 def curl_body(page: Page, path: str = "front") -> Any:
     """Return the body of the request to a path that the page copies as a curl command."""
-    curl = page.get_by_role("button", name="Copy as curl")
-    curl.click()
-    expect(curl).to_have_text("Copied")
-    command = page.evaluate("navigator.clipboard.readText()")
+    command = copied(page, "as curl")
     assert command.startswith(f"curl {page.url.partition('#')[0]}{path} ")
     return json.loads(command.splitlines()[1])
 

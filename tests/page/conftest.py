@@ -5,7 +5,14 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.helpers.browsing import DESK, chromium, open_page, wait_until_planned
+from tests.helpers.browsing import (
+    DESK,
+    chromium,
+    copied,
+    open_page,
+    plan_city_deliveries,
+    wait_until_planned,
+)
 
 
 @pytest.fixture(scope="package")
@@ -21,12 +28,27 @@ def width() -> int:
     return DESK
 
 
+@pytest.fixture(scope="package")
+def planned(browser: Browser, released: str) -> Iterator[Page]:
+    """The page with its example of two planes planned, in one window for all tests that only look.
+
+    They may select tours; stops, fields and front stay as they are.
+    """
+    with open_page(browser, released) as page:
+        plan_city_deliveries(page)
+        yield page
+
+
+@pytest.fixture(scope="package")
+def link(planned: Page) -> str:
+    """The link to that front with its stops, by which a page shows it without planning it again."""
+    return copied(planned, "link")
+
+
 @pytest.fixture
-def page(width: int, browser: Browser, released: str) -> Iterator[Page]:
-    """The page with its example of two planes planned."""
-    with open_page(browser, released, width) as page:
-        # The example that the page opens with is left before it is planned, which takes seconds.
-        page.get_by_label("Example").select_option("City deliveries")
-        expect(page.locator("#count")).to_have_text("61 stops")
+def page(width: int, browser: Browser, link: str) -> Iterator[Page]:
+    """The page with its example of two planes planned, to do anything with."""
+    with open_page(browser, link, width) as page:
         wait_until_planned(page)
+        expect(page.locator("#count")).to_have_text("61 stops")
         yield page

@@ -13,37 +13,37 @@ pytestmark = needs_chromium
 
 @pytest.mark.parametrize(("objective", "name"), [(0, "distance"), (1, "risk")])
 def test_a_dragged_line_selects_the_tour_that_the_service_finds_within_the_budget(
-    page: Page, released: str, objective: int, name: str
+    planned: Page, released: str, objective: int, name: str
 ) -> None:
-    line = page.get_by_role("slider", name=f"At most this much {name}")
+    line = planned.get_by_role("slider", name=f"At most this much {name}")
     expect(line).to_have_attribute("aria-valuetext", "no limit")
     box = line.bounding_box()
     assert box is not None
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    page.mouse.move(x, y)
-    page.mouse.down()
-    page.mouse.move(x - 150 * (objective == 0), y + 100 * (objective == 1))
-    page.mouse.up()
-    expect(page.locator("#budget")).to_contain_text(f"of {name}")
+    planned.mouse.move(x, y)
+    planned.mouse.down()
+    planned.mouse.move(x - 150 * (objective == 0), y + 100 * (objective == 1))
+    planned.mouse.up()
+    expect(planned.locator("#budget")).to_contain_text(f"of {name}")
     most = float(line.get_attribute("aria-valuenow") or "")
-    asked = {"front": shown_front(page)["id"], ("first", "second")[objective] + "_at_most": most}
+    asked = {"front": shown_front(planned)["id"], ("first", "second")[objective] + "_at_most": most}
     found = httpx.get(f"{released}/tour", params=asked).json()["lengths"]
-    chosen = page.get_by_role("slider", name="Balance")
+    chosen = planned.get_by_role("slider", name="Balance")
     said = f"distance {found[0]:,.6g}, risk {found[1]:,.6g}"
     expect(chosen).to_have_attribute("aria-valuetext", re.compile(re.escape(said) + "$"))
     chosen.press("Home" if objective else "End")
     expect(line).to_have_attribute("aria-valuetext", "no limit")
 
 
-def test_keys_move_a_budget_from_tour_to_tour(page: Page) -> None:
-    front = [item["lengths"] for item in shown_front(page)["front"]]
+def test_keys_move_a_budget_from_tour_to_tour(planned: Page) -> None:
+    front = [item["lengths"] for item in shown_front(planned)["front"]]
     for objective, name, tightest, next_to_none in [
         (0, "distance", front[0], front[-2]),
         (1, "risk", front[-1], front[1]),
     ]:
-        line = page.get_by_role("slider", name=f"At most this much {name}")
+        line = planned.get_by_role("slider", name=f"At most this much {name}")
         line.press("ArrowLeft")
-        wait_for_next_frame(page)
+        wait_for_next_frame(planned)
         assert float(line.get_attribute("aria-valuenow") or "") == next_to_none[objective]
         line.press("Home")
         assert float(line.get_attribute("aria-valuenow") or "") == tightest[objective]

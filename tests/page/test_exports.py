@@ -12,6 +12,7 @@ from playwright.sync_api import Browser, Page, expect
 
 from tests.helpers.browsing import (
     SVG,
+    copied,
     needs_chromium,
     open_files,
     open_page,
@@ -24,19 +25,19 @@ from tests.helpers.browsing import (
 pytestmark = needs_chromium
 
 
-def test_pictures_show_the_front_and_the_selected_tour(page: Page) -> None:
-    page.get_by_role("slider", name="Balance").press("Home")
-    wait_for_next_frame(page)
-    front = shown_front(page)["front"]
-    drawing = ElementTree.fromstring(saved(page, "SVG"))
+def test_pictures_show_the_front_and_the_selected_tour(planned: Page) -> None:
+    planned.get_by_role("slider", name="Balance").press("Home")
+    wait_for_next_frame(planned)
+    front = shown_front(planned)["front"]
+    drawing = ElementTree.fromstring(saved(planned, "SVG"))
     texts = [text.text for text in drawing.iter(f"{SVG}text")]
-    assert page.locator("#choice").inner_text() in texts
+    assert planned.locator("#choice").inner_text() in texts
     assert {"Distance, m", "Risk", "Distance"} <= set(texts)
     dots = list(drawing.iter(f"{SVG}circle"))
     assert len(dots) == len(front) + 1 + 2 * (61 + 1)  # a ring at the selected tour, and its start
     paths = [path.get("d") or "" for path in drawing.iter(f"{SVG}path")]
     assert [path.count("L") for path in paths] == [0, 61, 61]
-    picture = Image.open(io.BytesIO(saved(page, "PNG")))
+    picture = Image.open(io.BytesIO(saved(planned, "PNG")))
     assert picture.size == (2 * int(drawing.get("width") or 0), 2 * int(drawing.get("height") or 0))
     colours = picture.convert("RGB").getcolors(1_000_000) or []
     assert (194, 65, 12) in [colour for _, colour in colours]  # of the selected tour
@@ -49,11 +50,9 @@ def test_the_python_program_plans_the_front_that_is_on_the_screen(page: Page) ->
     wait_until_planned(page)
     page.get_by_role("slider", name="Balance").press("End")
     wait_for_next_frame(page)
-    page.get_by_role("button", name="Copy as Python").click()
-    expect(page.get_by_text("Copied")).to_be_visible()
     output = io.StringIO()
     with redirect_stdout(output):
-        exec(page.evaluate("navigator.clipboard.readText()"), {})
+        exec(copied(page, "as Python"), {})
     last = shown_front(page)["front"][-1]
     assert output.getvalue().endswith(f"{tuple(last['stops'])}\n")
     collection = json.loads(saved(page, "GeoJSON"))
@@ -63,16 +62,14 @@ def test_the_python_program_plans_the_front_that_is_on_the_screen(page: Page) ->
 
 @pytest.mark.parametrize("expired", [False, True], ids=["stored", "expired"])
 def test_a_link_opens_the_selected_tour_and_plans_what_has_expired(
-    page: Page, browser: Browser, expired: bool
+    planned: Page, browser: Browser, expired: bool
 ) -> None:
-    slider = page.get_by_role("slider", name="Balance")
+    slider = planned.get_by_role("slider", name="Balance")
     slider.press("End")
     slider.press("ArrowLeft")
-    wait_for_next_frame(page)
+    wait_for_next_frame(planned)
     said = slider.get_attribute("aria-valuetext") or ""
-    page.get_by_role("button", name="Copy link").click()
-    expect(page.get_by_text("Copied")).to_be_visible()
-    link = page.evaluate("navigator.clipboard.readText()")
+    link = copied(planned, "link")
     if expired:
         link = re.sub("front=[0-9a-f]+", "front=" + 32 * "0", link)
     with open_page(browser, link) as other:

@@ -2,8 +2,7 @@
 
 import csv
 import json
-import subprocess
-import sys
+from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -15,8 +14,8 @@ from playwright.sync_api import Browser, Page, expect
 
 from service.cli.inputs.files import read_request
 from service.cli.inputs.tsplib import parse_matrix
-from service.settings import Settings
 from tests.helpers.browsing import (
+    copied,
     curl_body,
     needs_chromium,
     open_files,
@@ -26,32 +25,46 @@ from tests.helpers.browsing import (
     stops_as_text,
     wait_until_planned,
 )
-from tests.helpers.serving import app_of, serving
-
-ROOT = Path(__file__).parents[2]
+from tests.helpers.command import paretour
 
 pytestmark = needs_chromium
 
 
-def test_a_picture_of_a_map_is_covered(browser: Browser) -> None:
-    app = app_of(limits=Settings().limits)
-    with serving(app) as address, open_page(browser, address) as page:
-        walls = np.full((20, 30), 255, dtype=np.uint8)
-        walls[5:15, 12:14] = 0
-        picture = BytesIO()
-        Image.fromarray(walls).save(picture, "PNG")
-        given = {"name": "map.png", "mimeType": "image/png", "buffer": picture.getvalue()}
-        page.get_by_label("Open files").set_input_files([given])
-        expect(page.get_by_text("A grid of 20 by 30 cells")).to_be_visible()
-        expect(page.get_by_label("Metres a cell")).to_have_value("0.05")
-        page.get_by_label("Seconds of planning").fill("0.1")
-        page.get_by_role("button", name="Plan", exact=True).click()
+@pytest.fixture(scope="module")
+def window(browser: Browser, released: str) -> Iterator[Page]:
+    """A window for all tests that open files of their own."""
+    with open_page(browser, released) as page:
         wait_until_planned(page)
-        expect(page.locator("#grid")).to_be_visible()
-        expect(page.locator("#plane-1")).to_be_hidden()
+        yield page
 
 
-def test_stops_are_planned_under_their_names_and_ids(page: Page) -> None:
+@pytest.fixture
+def opened(window: Page) -> Page:
+    """The page with two stops from a file."""
+    open_files(window, {"two.csv": "0,0,5,5\n3,1,9,1\n"})
+    expect(window.locator("#count")).to_have_text("2 stops")
+    expect(window.locator("#file-fault")).to_be_empty()
+    expect(window.locator("#status")).not_to_contain_text("Done")
+    return window
+
+
+def test_a_picture_of_a_map_is_covered(opened: Page) -> None:
+    walls = np.full((20, 30), 255, dtype=np.uint8)
+    walls[5:15, 12:14] = 0
+    picture = BytesIO()
+    Image.fromarray(walls).save(picture, "PNG")
+    given = {"name": "map.png", "mimeType": "image/png", "buffer": picture.getvalue()}
+    opened.get_by_label("Open files").set_input_files([given])
+    expect(opened.get_by_text("A grid of 20 by 30 cells")).to_be_visible()
+    expect(opened.get_by_label("Metres a cell")).to_have_value("0.05")
+    opened.get_by_label("Seconds of planning").fill("0.1")
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    expect(opened.locator("#grid")).to_be_visible()
+    expect(opened.locator("#plane-1")).to_be_hidden()
+
+
+def test_stops_are_planned_under_their_names_and_ids(opened: Page) -> None:
     costs = np.random.default_rng(0).random((4, 4)).tolist()
     names = ["depot", 'order "1"', "c", "d"]
     request = {
@@ -63,13 +76,13 @@ def test_stops_are_planned_under_their_names_and_ids(page: Page) -> None:
         "start": 'order "1"',
         "time_limit": 0.1,
     }
-    open_files(page, {"stops.json": json.dumps(request)})
-    expect(page.locator("#count")).to_have_text("4 stops")
-    page.get_by_role("button", name="Plan", exact=True).click()
-    wait_until_planned(page)
-    expect(page.locator("#order p")).to_contain_text('order "1" →')
-    expect(page.locator("#comparison")).to_contain_text("Way, m")
-    rows = list(csv.DictReader(saved(page, "CSV").decode().splitlines()))
+    open_files(opened, {"stops.json": json.dumps(request)})
+    expect(opened.locator("#count")).to_have_text("4 stops")
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    expect(opened.locator("#order p")).to_contain_text('order "1" →')
+    expect(opened.locator("#comparison")).to_contain_text("Way, m")
+    rows = list(csv.DictReader(saved(opened, "CSV").decode().splitlines()))
     assert rows[0].keys() == {"angle", "way (m)", "risk, all", "tour"}
     assert all(row["tour"].startswith('"order ""1""" ') for row in rows)
 
@@ -93,33 +106,33 @@ def collection(**members: Any) -> str:
 
 @pytest.mark.parametrize("pasted", [False, True], ids=["opened", "pasted"])
 def test_points_of_geojson_are_stops_as_on_the_command_line(
-    page: Page, tmp_path: Path, pasted: bool
+    opened: Page, tmp_path: Path, pasted: bool
 ) -> None:
     text = collection(objectives=OBJECTIVES, time_limit=0.2)
     if pasted:
-        stops_as_text(page).focus()
-        page.evaluate("text => navigator.clipboard.writeText(text)", text)
-        page.keyboard.press("Control+V")
+        stops_as_text(opened).focus()
+        opened.evaluate("text => navigator.clipboard.writeText(text)", text)
+        opened.keyboard.press("Control+V")
     else:
-        open_files(page, {"stops.geojson": text})
-    expect(page.locator("#count")).to_have_text("3 stops")
+        open_files(opened, {"stops.geojson": text})
+    expect(opened.locator("#count")).to_have_text("3 stops")
     (tmp_path / "stops.geojson").write_text(text)
     request, ids = read_request([tmp_path / "stops.geojson"])
-    body = curl_body(page)
+    body = curl_body(opened)
     assert ids == ("depot", "order-17", "18")
     assert {name: body[name] for name in request} == request
-    page.get_by_role("button", name="Plan", exact=True).click()
-    wait_until_planned(page)
-    expect(page.locator("#order p")).to_contain_text("depot →")
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    expect(opened.locator("#order p")).to_contain_text("depot →")
 
 
-def test_rows_that_are_pasted_go_into_their_box(page: Page) -> None:
-    box = stops_as_text(page)
+def test_rows_that_are_pasted_go_into_their_box(opened: Page) -> None:
+    box = stops_as_text(opened)
     box.fill("")
-    page.evaluate("text => navigator.clipboard.writeText(text)", "1, 2, 3, 4")
+    opened.evaluate("text => navigator.clipboard.writeText(text)", "1, 2, 3, 4")
     box.focus()
-    page.keyboard.press("Control+V")
-    expect(page.locator("#count")).to_have_text("1 stop")
+    opened.keyboard.press("Control+V")
+    expect(opened.locator("#count")).to_have_text("1 stop")
 
 
 @pytest.mark.parametrize(
@@ -144,10 +157,10 @@ def test_rows_that_are_pasted_go_into_their_box(page: Page) -> None:
         ("kroA.tsp", "EDGE_WEIGHT_TYPE: EUC_2D\n", "open it together with the other"),
     ],
 )
-def test_a_bad_file_is_refused_in_a_sentence(page: Page, name: str, text: str, said: str) -> None:
-    open_files(page, {name: text})
-    expect(page.locator("#file-fault")).to_contain_text(said, ignore_case=True)
-    expect(page.locator("#count")).to_have_text("61 stops")
+def test_a_bad_file_is_refused_in_a_sentence(opened: Page, name: str, text: str, said: str) -> None:
+    open_files(opened, {name: text})
+    expect(opened.locator("#file-fault")).to_contain_text(said, ignore_case=True)
+    expect(opened.locator("#count")).to_have_text("2 stops")
 
 
 def tsplib(places: str) -> str:
@@ -168,11 +181,11 @@ def tsplib(places: str) -> str:
     ],
     ids=["csv", "json", "tsplib"],
 )
-def test_a_file_of_cities_is_planned(page: Page, files: dict[str, str]) -> None:
-    open_files(page, files)
-    expect(stops_as_text(page)).to_have_value("0, 0, 5, 5\n3, 1, 9, 1\n5, 2, 2, 8")
-    page.get_by_role("button", name="Plan", exact=True).click()
-    expect(page.locator("#status")).to_have_text("Done: 1 tour found.")
+def test_a_file_of_cities_is_planned(opened: Page, files: dict[str, str]) -> None:
+    open_files(opened, files)
+    expect(stops_as_text(opened)).to_have_value("0, 0, 5, 5\n3, 1, 9, 1\n5, 2, 2, 8")
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    expect(opened.locator("#status")).to_have_text("Done: 1 tour found.")
 
 
 @pytest.fixture
@@ -188,9 +201,7 @@ def tsplib_files(tmp_path: Path) -> list[Path]:
 def test_two_files_of_tsplib_give_the_front_of_the_command_line(
     page: Page, tsplib_files: list[Path]
 ) -> None:
-    command = [sys.executable, "-m", "service", "front", *tsplib_files, "--json"]
-    command += ["--time-limit", "50", "--seed", "3"]
-    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    ended = paretour("front", *tsplib_files, "--json", "--time-limit", 50, "--seed", 3)
     expected = json.loads(ended.stdout)
     assert expected["terminated"] == "converged"
     page.get_by_label("Open files").set_input_files(tsplib_files)
@@ -205,19 +216,16 @@ def test_two_files_of_tsplib_give_the_front_of_the_command_line(
 
 
 def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
-    page: Page, browser: Browser, tsplib_files: list[Path]
+    opened: Page, browser: Browser, tsplib_files: list[Path]
 ) -> None:
-    page.get_by_label("Open files").set_input_files(tsplib_files)
-    expect(page.get_by_label("Distances rounded")).to_be_checked()
-    page.get_by_role("button", name="Plan", exact=True).click()
-    wait_until_planned(page)
-    assert curl_body(page)["matrices"] == [
+    opened.get_by_label("Open files").set_input_files(tsplib_files)
+    expect(opened.get_by_label("Distances rounded")).to_be_checked()
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    assert curl_body(opened)["matrices"] == [
         parse_matrix(file.read_text()).tolist() for file in tsplib_files
     ]
-    link = page.get_by_role("button", name="Copy link")
-    link.click()
-    expect(link).to_have_text("Copied")
-    with open_page(browser, page.evaluate("navigator.clipboard.readText()")) as other:
+    with open_page(browser, copied(opened, "link")) as other:
         wait_until_planned(other)
         expect(other.get_by_label("Distances rounded")).to_be_checked()
         expect(other.locator("#plane-1 canvas.selected")).to_be_visible()
@@ -227,9 +235,9 @@ def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
         assert len(curl_body(other)["coordinates"]) == 12
 
 
-def test_a_list_of_angles_in_a_file_is_asked_for(page: Page) -> None:
-    open_files(page, {"few.json": '{"coordinates": [[0, 0, 5, 5]], "preferences": [10, 80]}'})
-    assert curl_body(page)["preferences"] == [10, 80]
-    page.get_by_text("More settings").click()
-    page.get_by_label("Directions of the network").fill("7")
-    assert curl_body(page)["preferences"] == 7
+def test_a_list_of_angles_in_a_file_is_asked_for(opened: Page) -> None:
+    open_files(opened, {"few.json": '{"coordinates": [[0, 0, 5, 5]], "preferences": [10, 80]}'})
+    assert curl_body(opened)["preferences"] == [10, 80]
+    opened.get_by_text("More settings").click()
+    opened.get_by_label("Directions of the network").fill("7")
+    assert curl_body(opened)["preferences"] == 7

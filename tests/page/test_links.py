@@ -6,21 +6,26 @@ import re
 import numpy as np
 from playwright.sync_api import Browser, Page, expect
 
-from tests.helpers.browsing import needs_chromium, open_files, open_page, wait_until_planned
+from tests.helpers.browsing import (
+    copied,
+    needs_chromium,
+    open_files,
+    open_page,
+    wait_until_planned,
+)
 
 pytestmark = needs_chromium
 
 
-def test_a_link_opens_the_same_front_with_its_cities(page: Page, browser: Browser) -> None:
-    page.get_by_role("button", name="Copy link").click()
-    expect(page.get_by_text("Copied")).to_be_visible()
-    front = page.locator("#front-chart").get_attribute("aria-label")
-    with open_page(browser, page.evaluate("navigator.clipboard.readText()")) as other:
+def test_a_link_opens_the_same_front_with_its_cities(planned: Page, browser: Browser) -> None:
+    link = copied(planned, "link")
+    front = planned.locator("#front-chart").get_attribute("aria-label")
+    with open_page(browser, link) as other:
         expect(other.locator("#count")).to_have_text("61 stops")
         expect(other.locator("#front-chart")).to_have_attribute("aria-label", front or "")
         other.get_by_text("Details", exact=True).click()
         expect(other.get_by_text("is drawn here while a search runs")).to_be_visible()
-        other.goto(page.url.partition("#")[0] + "#front=none")
+        other.goto(planned.url.partition("#")[0] + "#front=none")
         for told in ("#request-fault", "#waiting"):
             expect(other.locator(told)).to_contain_text("has no front of this link any more")
         assert other.get_by_label("Example").evaluate("choice => choice.selectedIndex") == 0
@@ -33,9 +38,7 @@ def test_a_link_to_a_front_of_an_example_names_the_example(browser: Browser, rel
         slider.press("Home")
         slider.press("ArrowRight")
         selected = slider.get_attribute("aria-valuetext") or ""
-        page.get_by_role("button", name="Copy link").click()
-        expect(page.get_by_text("Copied")).to_be_visible()
-        link = page.evaluate("navigator.clipboard.readText()")
+        link = copied(page, "link")
         assert link.endswith("&example=helsinki-deliveries.json")
         with open_page(browser, link) as other:
             wait_until_planned(other)
@@ -46,7 +49,7 @@ def test_a_link_to_a_front_of_an_example_names_the_example(browser: Browser, rel
                 "aria-valuetext", selected
             )
         page.get_by_label("Seconds of planning").fill("0")
-        page.get_by_role("button", name="Copy link").click()
+        copied(page, "link")
         expect(page).to_have_url(re.compile("&asked="))
 
 
@@ -54,9 +57,7 @@ def test_a_link_to_the_networks_front_calls_it_that(page: Page, browser: Browser
     page.get_by_label("Seconds of planning").fill("0")
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
-    page.get_by_role("button", name="Copy link").click()
-    expect(page.get_by_text("Copied")).to_be_visible()
-    with open_page(browser, page.evaluate("navigator.clipboard.readText()")) as other:
+    with open_page(browser, copied(page, "link")) as other:
         wait_until_planned(other)
         for shown in (page, other):
             expect(shown.locator("#legend .alone")).to_be_visible()
@@ -70,9 +71,8 @@ def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
     open_files(page, {"costs.json": json.dumps({"matrices": matrices, "time_limit": 0})})
     page.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(page)
-    page.get_by_role("button", name="Copy link").click()
+    link = copied(page, "link")
     expect(page.get_by_text("This link opens the front without its maps")).to_be_visible()
-    link = page.evaluate("navigator.clipboard.readText()")
     assert len(link) < 100
     with open_page(browser, link) as other:
         wait_until_planned(other)

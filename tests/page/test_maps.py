@@ -133,14 +133,14 @@ def test_tours_of_the_example_follow_its_streets_and_those_of_a_routing_engine(
         expect(page.locator("#lines")).to_have_text("in straight lines")
 
 
-def test_a_stop_that_is_pointed_at_is_named_on_both_maps(page: Page) -> None:
-    start = page.locator("#plane-2 .ring.start").bounding_box()
+def test_a_stop_that_is_pointed_at_is_named_on_both_maps(planned: Page) -> None:
+    start = planned.locator("#plane-2 .ring.start").bounding_box()
     assert start is not None
-    page.mouse.move(start["x"] + start["width"] / 2, start["y"] + start["height"] / 2)
+    planned.mouse.move(start["x"] + start["width"] / 2, start["y"] + start["height"] / 2)
     for plane in ("#plane-1", "#plane-2"):
-        expect(page.locator(f"{plane} .leaflet-tooltip")).to_have_text("stop 1: 1st on the tour")
-    page.mouse.move(0, 0)
-    expect(page.locator(".leaflet-tooltip")).to_have_count(0)
+        expect(planned.locator(f"{plane} .leaflet-tooltip")).to_have_text("stop 1: 1st on the tour")
+    planned.mouse.move(0, 0)
+    expect(planned.locator(".leaflet-tooltip")).to_have_count(0)
 
 
 def test_an_open_route_has_a_start_and_an_end_on_each_map(page: Page) -> None:

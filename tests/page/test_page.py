@@ -15,6 +15,7 @@ from tests.helpers.browsing import (
     needs_chromium,
     open_files,
     open_page,
+    plan_city_deliveries,
     saved,
     shown_front,
     stops_as_text,
@@ -46,10 +47,12 @@ def test_the_page_opens_with_stops_by_road_and_their_front(
 
 
 @at_both_widths
-def test_an_example_shows_its_front(page: Page) -> None:
-    expect(page.get_by_label(re.compile(r"A front of \d+ tours: distance from"))).to_be_visible()
-    expect(page.locator("#count")).to_have_text("61 stops")
-    expect(page.locator("#figures")).to_contain_text("Network alone")
+def test_an_example_shows_its_front(browser: Browser, released: str, width: int) -> None:
+    with open_page(browser, released, width) as page:
+        plan_city_deliveries(page)
+        shown = page.get_by_label(re.compile(r"A front of \d+ tours: distance from"))
+        expect(shown).to_be_visible()
+        expect(page.locator("#figures")).to_contain_text("Network alone")
 
 
 def test_a_front_that_is_done_before_its_stream_says_so_is_shown(page: Page) -> None:
@@ -98,9 +101,9 @@ def test_the_slider_stands_at_the_balance_of_the_selected_tour(page: Page) -> No
     assert slider.input_value() == "1"
 
 
-def test_the_page_says_what_a_tour_gives_up_and_what_it_gains(page: Page) -> None:
-    front = [item["lengths"] for item in shown_front(page)["front"]]
-    slider, choice = page.get_by_role("slider", name="Balance"), page.locator("#choice")
+def test_the_page_says_what_a_tour_gives_up_and_what_it_gains(planned: Page) -> None:
+    front = [item["lengths"] for item in shown_front(planned)["front"]]
+    slider, choice = planned.get_by_role("slider", name="Balance"), planned.locator("#choice")
     slider.press("Home")
     expect(choice).to_contain_text("The least distance.")
     (shortest, most), (longest, least) = front[0], front[-1]
@@ -111,49 +114,53 @@ def test_the_page_says_what_a_tour_gives_up_and_what_it_gains(page: Page) -> Non
     )
 
 
-def test_a_name_on_the_chart_previews_its_tour_and_selects_it(page: Page) -> None:
-    slider, drawn = page.get_by_role("slider", name="Balance"), page.locator("canvas.selected")
+def test_a_name_on_the_chart_previews_its_tour_and_selects_it(planned: Page) -> None:
+    slider, drawn = (
+        planned.get_by_role("slider", name="Balance"),
+        planned.locator("canvas.selected"),
+    )
     slider.press("End")
-    wait_for_next_frame(page)
+    wait_for_next_frame(planned)
     last = drawn.first.evaluate("canvas => canvas.toDataURL()")
-    name = page.get_by_role("button", name="least distance")
+    name = planned.get_by_role("button", name="least distance")
     name.focus()
-    expect(page.locator("#choice")).to_contain_text("The least distance.")
-    expect(page.locator("#front-chart .marker.previewed")).to_be_visible()
+    expect(planned.locator("#choice")).to_contain_text("The least distance.")
+    expect(planned.locator("#front-chart .marker.previewed")).to_be_visible()
     assert drawn.first.evaluate("canvas => canvas.toDataURL()") != last
-    page.get_by_label("Seconds of planning").focus()
-    expect(page.locator("#choice")).to_contain_text("the least risk there is")
-    wait_for_next_frame(page)
+    planned.get_by_label("Seconds of planning").focus()
+    expect(planned.locator("#choice")).to_contain_text("the least risk there is")
+    wait_for_next_frame(planned)
     assert drawn.first.evaluate("canvas => canvas.toDataURL()") == last
-    page.get_by_role("button", name="knee").click()
+    planned.get_by_role("button", name="knee").click()
     knee = httpx.get(
-        f"{page.url.partition('#')[0]}tour", params={"knee": "", "front": shown_front(page)["id"]}
+        f"{planned.url.partition('#')[0]}tour",
+        params={"knee": "", "front": shown_front(planned)["id"]},
     )
     place = f"distance {knee.json()['lengths'][0]:,.6g}"
     expect(slider).to_have_attribute("aria-valuetext", re.compile(place))
-    marker = page.locator("#front-chart .marker.selected").bounding_box()
-    label = page.get_by_role("button", name="knee").bounding_box()
+    marker = planned.locator("#front-chart .marker.selected").bounding_box()
+    label = planned.get_by_role("button", name="knee").bounding_box()
     # Its name stands to the left of its point.
     assert abs(label["x"] + label["width"] - marker["x"] - marker["width"] / 2) < 3
     slider.press("Home")
-    page.mouse.move(marker["x"] + marker["width"] / 2, marker["y"] + marker["height"] / 2)
-    expect(page.locator("#choice")).to_contain_text("more distance")
-    page.mouse.move(0, 0)
-    expect(page.locator("#choice")).to_contain_text("The least distance.")
+    planned.mouse.move(marker["x"] + marker["width"] / 2, marker["y"] + marker["height"] / 2)
+    expect(planned.locator("#choice")).to_contain_text("more distance")
+    planned.mouse.move(0, 0)
+    expect(planned.locator("#choice")).to_contain_text("The least distance.")
 
 
-def test_a_pinned_tour_stays_beside_the_selected_one(page: Page) -> None:
-    slider = page.get_by_role("slider", name="Balance")
+def test_a_pinned_tour_stays_beside_the_selected_one(planned: Page) -> None:
+    slider = planned.get_by_role("slider", name="Balance")
     slider.press("Home")
-    wait_for_next_frame(page)
-    page.get_by_role("button", name="Pin to compare").click()
+    wait_for_next_frame(planned)
+    planned.get_by_role("button", name="Pin to compare").click()
     slider.press("End")
-    wait_for_next_frame(page)
-    selected, pinned, difference = page.get_by_role("row", name="Risk").get_by_role("cell").all()
+    wait_for_next_frame(planned)
+    selected, pinned, difference = planned.get_by_role("row", name="Risk").get_by_role("cell").all()
     assert number(selected) < number(pinned)
     expect(difference).to_contain_text("\N{MINUS SIGN}")
-    page.get_by_role("button", name="Unpin").click()
-    expect(page.get_by_role("row", name="Risk").get_by_role("cell")).to_have_count(1)
+    planned.get_by_role("button", name="Unpin").click()
+    expect(planned.get_by_role("row", name="Risk").get_by_role("cell")).to_have_count(1)
 
 
 def test_what_was_found_stays_when_the_search_is_stopped(page: Page) -> None:
@@ -257,13 +264,13 @@ def test_the_keyboard_is_enough(page: Page) -> None:
     expect(slider).to_have_attribute("aria-valuetext", re.compile("tour 5 of 5"))
 
 
-def test_the_front_can_be_taken_along(page: Page, released: str) -> None:
-    answer = shown_front(page)
+def test_the_front_can_be_taken_along(planned: Page, released: str) -> None:
+    answer = shown_front(planned)
     assert answer == httpx.get(f"{released}/front/{answer['id']}").json()
-    head, *lines = saved(page, "CSV").decode().splitlines()
+    head, *lines = saved(planned, "CSV").decode().splitlines()
     assert head == "angle,distance (m),risk (accidents in a thousand million drives),tour"
     assert len(lines) == len(answer["front"])
-    asked = curl_body(page)
+    asked = curl_body(planned)
     found = httpx.post(f"{released}/front", json={**asked, "time_limit": 0}).json()
     assert found["cities"] == 61
 

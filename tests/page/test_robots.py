@@ -14,6 +14,7 @@ from tests.helpers.accessibility import check_on_a_phone
 from tests.helpers.browsing import (
     DRAWN,
     SVG,
+    copied,
     curl_body,
     needs_chromium,
     open_files,
@@ -119,18 +120,12 @@ def test_a_request_for_robots_is_opened_and_taken_along(browser: Browser, releas
             ]
             for route in plan["routes"]
         ]
-        copy = page.get_by_role("button", name="Copy as Python")
-        copy.click()
-        expect(copy).to_have_text("Copied")
         output = io.StringIO()
         with redirect_stdout(output):
-            exec(page.evaluate("navigator.clipboard.readText()"), {})
+            exec(copied(page, "as Python"), {})
         routes = [(route["robot"], route["tour"]) for route in plan["routes"]]
         assert output.getvalue().endswith(f"{routes}\n")
-        copy = page.get_by_role("button", name="Copy link")
-        copy.click()
-        expect(copy).to_have_text("Copied")
-        with open_page(browser, page.url) as other:
+        with open_page(browser, copied(page, "link")) as other:
             wait_until_planned(other)
             expect(other.locator("#brought")).to_contain_text("2 robots")
             assert rows_of(other.locator("#fleet-legend")) == rows_of(page.locator("#fleet-legend"))
