@@ -9,6 +9,7 @@ import pytest
 from hypothesis import settings
 
 from service.jobs.compiled_code import warm_up
+from tests.helpers.artifacts import by_coordinates, by_row_sums
 from tests.helpers.redis_server import Redis, redis_server
 from tests.helpers.serving import serving_released
 from tests.helpers.valhalla import RunningValhalla, valhalla_service
@@ -50,6 +51,18 @@ def valhalla(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningValhal
 def compiled() -> None:
     """The compiled search, for tests that give it some tenths of a second to search in."""
     warm_up()
+
+
+@pytest.fixture(scope="session")
+def quick_actors(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """The setting of networks that are opened in no time, for processes where any will do.
+
+    To open those released takes each process that plans two seconds and more.
+    """
+    folder = tmp_path_factory.mktemp("actors")
+    by_coordinates(folder / "pa-one.onnx", "pa-one")
+    by_row_sums(folder / "pa-one-matrix.onnx", "pa-one-matrix")
+    return {"PARETOUR_ACTORS": str(folder)}
 
 
 @pytest.fixture(scope="session")

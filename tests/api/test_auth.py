@@ -1,8 +1,6 @@
 """Who may call and how often, against a live server."""
 
 import re
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,6 +9,7 @@ import pytest
 
 from service.api.app import Edge
 from service.api.auth import Access, KeyHash, Rates, new_key
+from tests.helpers.command import paretour
 from tests.helpers.processes import serve_process
 from tests.helpers.redis_server import redis_server
 from tests.helpers.serving import app_of, problem, serving
@@ -172,12 +171,7 @@ def test_a_hash_is_read_as_it_is_written() -> None:
 
 
 def test_the_command_makes_a_key_that_its_entry_lets_in() -> None:
-    made = subprocess.run(
-        [sys.executable, "-m", "service", "key", "dispatch"],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    made = paretour("key", "dispatch")
     key, entry = made.stdout.splitlines()
     keys = f" {entry} , lab:{LAB_HASH}"
     with serve_process({"PARETOUR_API_KEYS": keys, "PARETOUR_WORKERS": "1"}) as service:
@@ -190,9 +184,7 @@ def test_the_command_makes_a_key_that_its_entry_lets_in() -> None:
 
 
 def test_the_command_makes_no_key_for_a_name_that_no_entry_can_hold() -> None:
-    made = subprocess.run(
-        [sys.executable, "-m", "service", "key", "the lab"], capture_output=True, text=True
-    )
+    made = paretour("key", "the lab")
     assert (made.returncode, made.stdout) == (2, "")
     assert (
         "a caller must be named by 1 to 64 letters, digits, dots, dashes, got 'the lab'"

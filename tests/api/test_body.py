@@ -112,8 +112,8 @@ def test_parts_that_are_not_as_they_should_be_are_named(
 
 
 @pytest.fixture(scope="module")
-def service() -> Iterator[ServeProcess]:
-    with serve_process({"PARETOUR_WORKERS": "1"}) as service:
+def service(quick_actors: dict[str, str]) -> Iterator[ServeProcess]:
+    with serve_process({"PARETOUR_WORKERS": "1", **quick_actors}) as service:
         yield service
 
 

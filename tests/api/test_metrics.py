@@ -99,8 +99,8 @@ def test_fronts_of_tours_of_fleets_and_of_robots_are_counted_apart() -> None:
     assert counted["paretour_fronts_total", "robots", "time_limit"] == 1
 
 
-def test_fronts_are_counted_by_phase_and_size_class() -> None:
-    with serve_process({"PARETOUR_WORKERS": "1"}, ready=True) as service:
+def test_fronts_are_counted_by_phase_and_size_class(quick_actors: dict[str, str]) -> None:
+    with serve_process({"PARETOUR_WORKERS": "1", **quick_actors}, ready=True) as service:
         for n, seconds in [(12, 1.0), (12, 0.0), (60, 0.0)]:
             cities = np.random.default_rng(n).random((n, 4)).tolist()
             request = {"coordinates": cities, "time_limit": seconds, "preferences": 5}

@@ -97,12 +97,14 @@ def test_stops_come_back_by_their_ids(tmp_path: Path) -> None:
     objectives = [{"name": "way", "from": "great_circle"}, {"name": "risk", "matrix": costs}]
     file = tmp_path / "stops.json"
     file.write_text(json.dumps({"stops": stops, "objectives": objectives, "time_limit": 0}))
-    ended = paretour("front", file, "--csv", "--start", "order 1")
+    by_row_sums(tmp_path / "sums.onnx")
+    actors = {"PARETOUR_ACTORS": str(tmp_path)}
+    ended = paretour("front", file, "--csv", "--start", "order 1", **actors)
     assert ended.returncode == 0, ended.stderr
     rows = list(csv.DictReader(ended.stdout.splitlines()))
     assert rows[0].keys() == {"angle", "way (m)", "risk", "tour"}
     assert all(row["tour"].startswith('"order 1" ') for row in rows)
-    tour = paretour("tour", file, "--angle", 45)
+    tour = paretour("tour", file, "--angle", 45, **actors)
     assert sorted(next(csv.reader([tour.stdout], delimiter=" "))) == sorted(names)
     assert re.search(r"way \S+ m, risk \S+", tour.stderr)
     refused = paretour("front", file, "--start", "ordr 1")

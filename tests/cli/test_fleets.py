@@ -30,8 +30,8 @@ def test_a_fleet_is_planned_by_a_service_and_printed_as_lines_of_routes(
     assert float(rows[0]["distance"]) >= float(rows[0]["route distance"])
 
 
-def test_this_process_plans_a_fleet_as_a_table(file: Path) -> None:
-    ended = paretour("fleet", file, "--time-limit", 0.1)
+def test_this_process_plans_a_fleet_as_a_table(file: Path, quick_actors: dict[str, str]) -> None:
+    ended = paretour("fleet", file, "--time-limit", 0.1, **quick_actors)
     assert ended.returncode == 0, ended.stderr
     assert "time (min)" in ended.stdout
     assert "hypervolume" in ended.stderr

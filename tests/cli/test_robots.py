@@ -88,7 +88,7 @@ def test_a_map_with_plans_is_a_picture_of_a_panel_each(tmp_path: Path) -> None:
     assert (np.abs(picture[..., :3] - blue).max(axis=-1) < 0.01).any()
 
 
-def test_two_robots_share_a_map_of_ros(tmp_path: Path) -> None:
+def test_two_robots_share_a_map_of_ros(tmp_path: Path, quick_actors: dict[str, str]) -> None:
     (tmp_path / "map.pgm").write_bytes(b"P5 6 1 255\n" + bytes(6 * [254]))
     (tmp_path / "map.yaml").write_text(
         "image: map.pgm\nresolution: 0.5\norigin: [-2.0, 1.0, 0.0]\nnegate: 0\n"
@@ -97,7 +97,7 @@ def test_two_robots_share_a_map_of_ros(tmp_path: Path) -> None:
     starts = ["--robot=-1.75,1.25", "--robot=0.75,1.25,3.14"]
     picture = tmp_path / "picture.svg"
     given = ["--spacing=0.5", "--open", *starts, "--json", "--plot", picture]
-    ended = paretour("coverage", tmp_path / "map.yaml", *given)
+    ended = paretour("coverage", tmp_path / "map.yaml", *given, **quick_actors)
     assert ended.returncode == 0, ended.stderr
     last = json.loads(ended.stdout)["front"][-1]
     assert [route["robot"] for route in last["routes"]] == ["robot-1", "robot-2"]

@@ -19,6 +19,7 @@ from service.__main__ import main
 from service.cluster.celery_app import QUEUE
 from service.cluster.worker_store import takes_work
 from tests.helpers.cluster_state import ClusterState
+from tests.helpers.command import paretour
 from tests.helpers.jobs import (
     CITIES,
     LATER,
@@ -44,6 +45,7 @@ class Machines:
 
     redis: Redis
     stack: ExitStack
+    actors: dict[str, str]
     workers: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -53,6 +55,7 @@ class Machines:
             "PARETOUR_REDIS_URL": self.redis.url,
             "PARETOUR_WORKERS": "1",
             "PARETOUR_DRAIN_SECONDS": "1",
+            **self.actors,
         }
 
     def start_worker(self) -> None:
@@ -69,12 +72,14 @@ class Machines:
 
 
 @pytest.fixture(scope="module")
-def machines(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machines]:
+def machines(
+    tmp_path_factory: pytest.TempPathFactory, quick_actors: dict[str, str]
+) -> Iterator[Machines]:
     with (
         redis_server(tmp_path_factory.mktemp("redis"), LASTING) as redis,
         ExitStack() as stack,
     ):
-        machines = Machines(redis, stack)
+        machines = Machines(redis, stack, quick_actors)
         machines.start_worker()
         yield machines
 
@@ -168,9 +173,8 @@ def test_a_worker_that_takes_no_work_is_found(machines: Machines, client: httpx.
 
 
 def test_where_there_is_no_worker_the_command_says_so(redis: Redis) -> None:
-    command = [sys.executable, "-m", "service", "work", "--alive"]
-    environment = {**os.environ, "PARETOUR_REDIS_URL": f"{redis.url.removesuffix('/0')}/15"}
-    asked = subprocess.run(command, env=environment, capture_output=True, text=True)
+    empty = f"{redis.url.removesuffix('/0')}/15"
+    asked = paretour("work", "--alive", PARETOUR_REDIS_URL=empty)
     assert (asked.returncode, asked.stdout) == (1, "")
     assert "no worker of this machine" in asked.stderr
 

@@ -64,3 +64,31 @@ def by_row_sums(path: Path, name: str = "sums") -> Path:
     helper.set_model_props(model, {**METADATA, "name": name, "inputs": "matrices"})
     onnx.save(model, path)
     return path
+
+
+def by_coordinates(path: Path, name: str = "places") -> Path:
+    """Write a file that reads cities and visits them by falling x; return its path.
+
+    That of the first plane weighs as much as the preference's first component says, that of the
+    second as much as its second.
+    """
+    graph = helper.make_graph(
+        [
+            helper.make_node("MatMul", ["cities", "across"], ["places"]),
+            helper.make_node("Transpose", ["places"], ["turned"]),
+            helper.make_node("MatMul", ["preferences", "turned"], ["scores"]),
+            helper.make_node("Shape", ["cities"], ["n"], start=0, end=1),
+            helper.make_node("TopK", ["scores", "n"], ["sorted", "tours"]),
+        ],
+        name,
+        [
+            helper.make_tensor_value_info("cities", TensorProto.FLOAT, ["n", 4]),
+            helper.make_tensor_value_info("preferences", TensorProto.FLOAT, ["k", 2]),
+        ],
+        [helper.make_tensor_value_info("tours", TensorProto.INT64, ["k", "n"])],
+        [helper.make_tensor("across", TensorProto.FLOAT, [4, 2], [1.0, 0, 0, 0, 0, 1, 0, 0])],
+    )
+    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 20)], ir_version=10)
+    helper.set_model_props(model, {**METADATA, "name": name, "inputs": "coordinates"})
+    onnx.save(model, path)
+    return path
