@@ -7,10 +7,6 @@ from playwright.sync_api import Page
 
 from tests.helpers.browsing import PHONE
 
-_VIOLATIONS = """
-axe.run({ resultTypes: ["violations"] }).then(({ violations }) => violations)
-"""
-
 
 def load_axe(page: Page) -> None:
     """Load axe into a page, once."""
@@ -19,7 +15,7 @@ def load_axe(page: Page) -> None:
 
 def violations(page: Page) -> list[Any]:
     """Return the rules that a page with axe violates, as it is shown now."""
-    found: list[Any] = page.evaluate(_VIOLATIONS)
+    found: list[Any] = page.evaluate("axe.run().then(({ violations }) => violations)")
     return found
 
 

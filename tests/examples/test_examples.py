@@ -35,7 +35,7 @@ from tests.helpers.helsinki import Array
 from tests.helpers.serving import app_of, serving
 from tests.helpers.valhalla import RunningValhalla
 
-EXAMPLES = Path(__file__).parent.parent / "service/examples"
+EXAMPLES = Path(__file__).parents[2] / "service/examples"
 INDEX: list[dict[str, Any]] = json.loads((EXAMPLES / "index.json").read_text())
 FLEET = "helsinki-vans.json"
 ROBOTS = "warehouse-robots.json"
