@@ -38,6 +38,7 @@ REQUESTED_AT = "kept"  # seconds since 1970
 ATTEMPTS = "attempts"
 GAINED = "gained"
 PROGRESS = "progress"
+CLIENT = "client"
 
 STOP_REASONS: Mapping[StopReason, bytes] = {Cancelled: b"Stopped", DeadlineExceeded: b"Overdue"}
 REASON_OF = {name: reason for reason, name in STOP_REASONS.items()}
@@ -54,7 +55,7 @@ UNAVAILABLE = (
 REFUSES_WRITES = ("MISCONF", "NOREPLICAS")
 
 Argument = str | bytes | float
-_TEXTS = ("id", "caller", "request_id", "status", "key", "digest", "kind")
+_TEXTS = ("id", "caller", "request_id", "status", "key", "digest", "kind", CLIENT)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -77,6 +78,8 @@ def record_arguments(record: Record) -> list[Argument]:
     source = {name: columns.pop(name) for name in SOURCE_COLUMNS if name in columns}
     if record.front.gained is not None:
         columns[GAINED] = record.front.gained
+    if record.client:
+        columns[CLIENT] = record.client
     fields = _names_and_values(columns)
     return [len(fields), *fields, *_names_and_values(source)]
 
@@ -108,7 +111,7 @@ def stored_source(source: Iterable[bytes]) -> TaskSource | None:
 
 def _decode(*hashes: Iterable[bytes]) -> StoredRecord:
     fields = {name: value for each in hashes for name, value in _fields(each).items()}
-    record = record_from(fields)
+    record = replace(record_from(fields), client=fields.get(CLIENT, ""))
     if GAINED in fields:
         front = replace(record.front, gained=float(fields[GAINED]))
         record = replace(record, front=front)

@@ -6,38 +6,49 @@ local UNFINISHED, FINISHED, GONE = P .. 'unfinished', P .. 'finished', P .. 'gon
 -- Of clients that wait: the number of the turn that each had last, or came in at; and the last one.
 local TURNS, TURN = P .. 'turns', P .. 'turn'
 local WORKERS, TOLD = P .. 'workers', P .. 'told'
--- Of finished records: how many each caller has and of how many bytes, the bytes of all, and
--- whether this was counted lately.
+-- Of finished records: how many each client has and of how many bytes, the bytes of all, and
+-- whether this was counted lately. A client is a caller, or an address where there are no keys.
 local ENTRIES, BYTES = P .. 'entries', P .. 'bytes'
 local TOTAL, COUNTED = P .. 'total', P .. 'counted'
 
 local function front_of(id) return P .. 'front:' .. id end
 local function work_of(id) return P .. 'work:' .. id end
 local function all_of(caller) return P .. 'caller:' .. caller end
+local function owned_by(client) return P .. 'client:' .. client end
 local function gone_of(caller) return P .. 'gone:' .. caller end
 local function key_of(caller, key) return P .. 'key:' .. caller .. ':' .. key end
 
 local function is_finished(status) return status ~= 'queued' and status ~= 'running' end
 
--- Count what a caller has more, or less.
-local function count(caller, entries, size)
+-- Count what a client has more, or less.
+local function count(client, entries, size)
   redis.call('INCRBY', TOTAL, size)
-  redis.call('ZINCRBY', BYTES, size, caller)
-  if tonumber(redis.call('ZINCRBY', ENTRIES, entries, caller)) <= 0 then
-    redis.call('ZREM', BYTES, caller)
-    redis.call('ZREM', ENTRIES, caller)
+  redis.call('ZINCRBY', BYTES, size, client)
+  if tonumber(redis.call('ZINCRBY', ENTRIES, entries, client)) <= 0 then
+    redis.call('ZREM', BYTES, client)
+    redis.call('ZREM', ENTRIES, client)
   end
+end
+
+-- Replicas of earlier releases name no client.
+local function client_of(id)
+  local client, caller = unpack(redis.call('HMGET', front_of(id), 'client', 'caller'))
+  return client or caller
 end
 
 -- The caller is named where the record may be damaged.
 local function forget(id, known)
   local caller, key, size = unpack(redis.call('HMGET', front_of(id), 'caller', 'key', 'size'))
+  local client = client_of(id)
   caller, size = known or caller, tonumber(size)
   redis.call('DEL', front_of(id), work_of(id))
   redis.call('ZREM', UNFINISHED, id)
   local finished = redis.call('ZREM', FINISHED, id) == 1
   if caller then redis.call('ZREM', all_of(caller), id) end
-  if finished and caller and size then count(caller, -1, -size) end
+  if finished and client then
+    redis.call('ZREM', owned_by(client), id)
+    if size then count(client, -1, -size) end
+  end
   if key and redis.call('GET', key_of(caller, key)) == id then
     redis.call('DEL', key_of(caller, key))
   end
@@ -66,7 +77,8 @@ local function put(now, id, fields, work)
     redis.call('ZADD', all_of(caller), number, id)
     local size = size_of(fields) + size_of(work)
     redis.call('HSET', front_of(id), 'size', size)
-    count(caller, 1, size)
+    redis.call('ZADD', owned_by(client_of(id)), number, id)
+    count(client_of(id), 1, size)
   else
     redis.call('ZADD', UNFINISHED, number, id)
   end
@@ -89,39 +101,41 @@ local function count_again()
   if redis.call('EXISTS', COUNTED) == 1 then return end
   redis.call('DEL', ENTRIES, BYTES, TOTAL)
   for _, id in ipairs(redis.call('ZRANGE', FINISHED, 0, -1)) do
-    local caller, size = unpack(redis.call('HMGET', front_of(id), 'caller', 'size'))
-    size = tonumber(size)
-    if caller and not size then
+    local client, size = client_of(id), tonumber(redis.call('HGET', front_of(id), 'size'))
+    if client and not size then
       size = size_of(redis.call('HGETALL', front_of(id)))
       redis.call('HSET', front_of(id), 'size', size)
     end
-    if caller then count(caller, 1, size) end
+    if client then
+      redis.call('ZADD', owned_by(client), redis.call('ZSCORE', FINISHED, id), id)
+      count(client, 1, size)
+    end
   end
   redis.call('SET', COUNTED, 1, 'EX', 60)
 end
 
-local function oldest_of(caller) return redis.call('ZRANGE', all_of(caller), 0, 0, 'WITHSCORES') end
+local function oldest_of(client) return redis.call('ZRANGE', owned_by(client), 0, 0, 'WITHSCORES') end
 
--- The oldest record of the caller with most entries; of several such, the oldest of all.
+-- The oldest record of the client with most entries; of several such, the oldest of all.
 local function next_of_most_entries()
   local most = redis.call('ZREVRANGE', ENTRIES, 0, 0, 'WITHSCORES')[2]
   local found, owner, least
-  for _, caller in ipairs(
+  for _, client in ipairs(
     most and redis.call('ZRANGEBYSCORE', ENTRIES, most, most, 'LIMIT', 0, 100) or {}
   ) do
-    local id, number = unpack(oldest_of(caller))
+    local id, number = unpack(oldest_of(client))
     number = tonumber(number)
-    if id and (not least or number < least) then found, owner, least = id, caller, number end
+    if id and (not least or number < least) then found, owner, least = id, client, number end
   end
   return found, owner
 end
 
--- The oldest record of the caller with most bytes; of those with one alone where nobody has two.
+-- The oldest record of the client with most bytes; of those with one alone where nobody has two.
 local function next_of_most_bytes()
   local most = tonumber(redis.call('ZREVRANGE', ENTRIES, 0, 0, 'WITHSCORES')[2] or 0)
-  for _, caller in ipairs(redis.call('ZREVRANGE', BYTES, 0, 99)) do
-    if most <= 1 or redis.call('ZCARD', all_of(caller)) > 1 then
-      return oldest_of(caller)[1], caller
+  for _, client in ipairs(redis.call('ZREVRANGE', BYTES, 0, 99)) do
+    if most <= 1 or redis.call('ZCARD', owned_by(client)) > 1 then
+      return oldest_of(client)[1], client
     end
   end
   return next_of_most_entries()
@@ -133,7 +147,7 @@ local function drop_source(id)
   local source = size_of(redis.call('HGETALL', work_of(id)))
   redis.call('DEL', work_of(id))
   redis.call('HINCRBY', front_of(id), 'size', -source)
-  count(redis.call('HGET', front_of(id), 'caller'), 0, -source)
+  count(client_of(id), 0, -source)
 end
 
 local function size_of_record(id) return tonumber(redis.call('HGET', front_of(id), 'size')) or 0 end
@@ -142,12 +156,12 @@ local function size_of_record(id) return tonumber(redis.call('HGET', front_of(id
 -- many bytes could hold.
 local function drop_too_large(bytes)
   local most = math.floor(bytes / 4)
-  for _, caller in ipairs(redis.call('ZREVRANGEBYSCORE', BYTES, '+inf', '(' .. most)) do
-    for _, id in ipairs(redis.call('ZRANGE', all_of(caller), 0, -1)) do
+  for _, client in ipairs(redis.call('ZREVRANGEBYSCORE', BYTES, '+inf', '(' .. most)) do
+    for _, id in ipairs(redis.call('ZRANGE', owned_by(client), 0, -1)) do
       if size_of_record(id) > most and size_of(redis.call('HGETALL', work_of(id))) > most then
         drop_source(id)
       end
-      if size_of_record(id) > bytes then drop(id, caller) end
+      if size_of_record(id) > bytes then drop(id) end
     end
   end
 end
@@ -165,16 +179,17 @@ local function make_way(now, max_age, entries, tombstones, bytes)
   drop_too_large(bytes)
   old = oldest()
   while old do
-    local id, caller
+    local id, client
     if redis.call('ZCARD', FINISHED) > entries then
-      id, caller = next_of_most_entries()
+      id, client = next_of_most_entries()
     elseif total() > bytes then
-      id, caller = next_of_most_bytes()
+      id, client = next_of_most_bytes()
     else
       break
     end
-    -- Where the counts are wrong there may be none.
-    drop(id or old, id and caller)
+    -- Where the counts are wrong there may be none, or one that is damaged or gone.
+    drop(id or old)
+    if id then redis.call('ZREM', owned_by(client), id) end
     old = oldest()
   end
   while redis.call('ZCARD', GONE) > tombstones do

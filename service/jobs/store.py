@@ -26,9 +26,9 @@ class Store(Protocol):
 
     Finished ones are returned without their source, which `source` alone reads.
 
-    When finished ones are too many, or take too many bytes, the oldest of the caller that has
-    most makes way: a caller's last one only where nobody has two, or where no store could hold it.
-    In SQLite each address counts as a caller of its own where there are no keys.
+    When finished ones are too many, or take too many bytes, the oldest of the client that has
+    most makes way: a client's last one only where nobody has two, or where no store could hold it.
+    A client is a caller, or an address where there are no keys.
     """
 
     async def put(self, record: Record) -> None:

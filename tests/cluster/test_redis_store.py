@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -147,6 +148,29 @@ def test_what_replicas_of_the_last_release_store_is_counted(redis: Redis) -> Non
         assert await connection.zcard("paretour:finished") < 10
         assert int(await connection.get("paretour:total")) <= 3_000
         await by_bytes.close()
+
+    asyncio.run(test())
+
+
+def test_without_keys_the_records_of_one_address_leave_those_of_another(redis: Redis) -> None:
+    async def test() -> None:
+        async with redis_store(redis.url, entries=4, max_age=60) as store:
+            await store.put(record("a", client="192.0.2.1"))
+            await store.put(job("b", client="192.0.2.1"))
+            for id_ in map(str, range(9)):
+                await store.put(record(id_, client="192.0.2.2"))
+            assert (await store.get("us", "a")).client == "192.0.2.1"
+            worker = WorkerStore(redis.url, "host:1:aa")
+            begun = worker.begin("b", known_lost=False)
+            assert begun is not None
+            assert begun.record.client == "192.0.2.1"
+            await store.put(replace(begun.record, status="done", source=None))
+            for id_ in ("a", "b", "7", "8"):
+                assert (await store.get("us", id_)).id == id_
+            for id_ in map(str, range(7)):
+                with pytest.raises(Expired):
+                    await store.get("us", id_)
+            assert (await store.latest("us")).id == "b"
 
     asyncio.run(test())
 
