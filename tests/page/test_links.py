@@ -31,6 +31,15 @@ def test_a_link_opens_the_same_front_with_its_cities(planned: Page, browser: Bro
         assert other.get_by_label("Example").evaluate("choice => choice.selectedIndex") == 0
 
 
+def test_a_copy_button_says_for_a_moment_that_it_copied_however_often_it_is_pressed(
+    planned: Page,
+) -> None:
+    button = planned.get_by_role("button", name="Copy link")
+    label = button.inner_text()
+    assert copied(planned, "link") == copied(planned, "link")
+    expect(button).to_have_text(label)
+
+
 def test_a_link_to_a_front_of_an_example_names_the_example(browser: Browser, released: str) -> None:
     with open_page(browser, released) as page:
         wait_until_planned(page)

@@ -6,6 +6,7 @@ import { pngOf, svgOf } from "./picture.js";
 import { python } from "./python.js";
 
 const ALONE = "This link opens the front without its maps: what was asked for is too long for an address.";
+const COPIED = "Copied"; // a button's text, for a moment
 const OF_FRONT = ["link", "json", "csv", "geojson", "svg", "png"];
 
 const element = (id) => document.getElementById(id);
@@ -69,7 +70,8 @@ function say(text) {
 
 async function copy(text, button) {
   await navigator.clipboard.writeText(text);
+  if (button.textContent === COPIED) return;
   const label = button.textContent;
-  button.textContent = "Copied";
+  button.textContent = COPIED;
   setTimeout(() => (button.textContent = label), 1500);
 }
