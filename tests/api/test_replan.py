@@ -251,8 +251,10 @@ def test_fronts_that_cannot_be_replanned_say_why(client: httpx.Client, store: Sq
 
 def test_a_front_that_was_dropped_has_expired(client: httpx.Client, store: SqliteStore) -> None:
     front = client.post("/front", json=SHORT).json()
+    address = asyncio.run(store.get("anonymous", front["id"])).client
     for _ in range(20):
-        asyncio.run(store.put(record(uuid.uuid4().hex, caller="anonymous")))
+        later = record(uuid.uuid4().hex, caller="anonymous", client=address)
+        asyncio.run(store.put(later))
     answer = replan(client, front)
     assert (answer.status_code, problem(answer)["code"]) == (410, "front-expired")
 

@@ -49,7 +49,7 @@ def test_a_share_of_the_stops_is_never_more_than_asked_but_for_one_stop() -> Non
 @pytest.mark.parametrize("shape", ["uniform", "clustered", ROADS, ROADS_COSTS])
 def test_the_rest_from_nothing_is_that_which_is_replanned(shape: str) -> None:
     stops, front, rest = drawn(shape)
-    items = [{"tour": each["tour"], "lengths": [1.0, 2.0]} for each in front["front"]]
+    items = [{"lengths": [1.0, 2.0], "tour": each["tour"]} for each in front["front"]]
     source = TaskSource("front", json.dumps(stops.request(range(N))).encode())
     stored = StoredFront("a", source, json.dumps(items)[1:-1].encode())
     body = json.dumps(rest.changes).encode()

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from service.search.archive import make_archive
+from service.search.archive import accepts, make_archive
 from service.search.candidates import Scalarization, weighted_cost
 from service.search.costs import lengths
 from service.search.three_opt.exchanges import NONE, best_exchange, make_exchange
@@ -110,7 +110,8 @@ def test_a_search_of_a_route_keeps_its_ends_and_returns_to_the_best(fixed: str) 
             pass
         value = weighted_length(scalarization, working.tour)
         random = np.array([seed + 1])
-        iterated_local_search(working, scalarization, archive, random, 30)
+        iterated_local_search(working, scalarization, archive, random, 30, 1 + 10 * seed)
+        assert not accepts(archive, *working.length)  # at least the last tour has been offered
         assert weighted_length(scalarization, working.tour) <= value + 1e-9
         assert sorted(working.tour) == list(range(13))
         assert working.position[working.tour].tolist() == list(range(13))
