@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 PICTURES = ROOT / "service/guide/pictures"
 
 _EXTENTS = ("instances", "minutes", "visitors", "frames", "rounds")  # of how much was measured
-_OCCURRED = ("statuses", "answers", "tracebacks")  # counts by name, of whatever came up
+_OCCURRED = ("statuses", "answers", "tracebacks", "long_bodies")  # counts of what came up
 _MADE = (
     ":!tests/benchmarks/results",
     ":!tests/benchmarks/RESULTS.md",
