@@ -37,6 +37,7 @@ def test_a_copy_button_says_for_a_moment_that_it_copied_however_often_it_is_pres
     button = planned.get_by_role("button", name="Copy link")
     label = button.inner_text()
     assert copied(planned, "link") == copied(planned, "link")
+    expect(button).to_have_text("Copied")
     expect(button).to_have_text(label)
 
 

@@ -88,10 +88,12 @@ function addCopyButton(block) {
   const button = document.createElement("button");
   button.type = "button";
   button.textContent = "Copy";
+  let timer;
   button.addEventListener("click", async () => {
     await navigator.clipboard.writeText(block.querySelector("code").textContent);
     button.textContent = "Copied";
-    setTimeout(() => (button.textContent = "Copy"), 1500);
+    clearTimeout(timer);
+    timer = setTimeout(() => (button.textContent = "Copy"), 1500);
   });
   frame.append(block, button);
 }

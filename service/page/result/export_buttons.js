@@ -6,7 +6,8 @@ import { pngOf, svgOf } from "./picture.js";
 import { python } from "./python.js";
 
 const ALONE = "This link opens the front without its maps: what was asked for is too long for an address.";
-const COPIED = "Copied"; // a button's text, for a moment
+const COPIED = "Copied"; // a button's text, for a moment after it was last pressed
+const MOMENT = 1500; // ms
 const OF_FRONT = ["link", "json", "csv", "geojson", "svg", "png"];
 
 const element = (id) => document.getElementById(id);
@@ -68,10 +69,16 @@ function say(text) {
   element("link-help").textContent = text;
 }
 
+const said = new Map(); // of buttons that say so: their own text, and the timer that puts it back
+
 async function copy(text, button) {
   await navigator.clipboard.writeText(text);
-  if (button.textContent === COPIED) return;
-  const label = button.textContent;
+  const { label, timer } = said.get(button) ?? { label: button.textContent };
+  clearTimeout(timer);
   button.textContent = COPIED;
-  setTimeout(() => (button.textContent = label), 1500);
+  const back = () => {
+    button.textContent = label;
+    said.delete(button);
+  };
+  said.set(button, { label, timer: setTimeout(back, MOMENT) });
 }
