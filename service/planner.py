@@ -18,7 +18,7 @@ from service.construction.repairs import TOURS_REPAIRED, repairs_worth
 from service.instance import Instance, tour_lengths
 from service.pareto import best_subset, hypervolume, nondominated, selection_seconds
 from service.preferences import angles
-from service.search.bound import hypervolume_bound
+from service.search.bound.hypervolume import hypervolume_bound
 from service.search.improve import Progress, SearchResult, Termination, improve
 from service.search.open_routes import oriented, plain_tours, rotated
 

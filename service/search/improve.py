@@ -18,7 +18,7 @@ from service.instance import Instance, tour_lengths
 from service.pareto import best_subset, nondominated
 from service.search import candidates
 from service.search.archive import MAX_POINTS
-from service.search.bound import hypervolume_bound
+from service.search.bound.hypervolume import hypervolume_bound
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
 from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import Search

@@ -14,7 +14,7 @@ from service.instance import Instance
 from service.pareto import best_subset
 from service.planner import Front, PlanOptions, plan
 from service.preferences import fan
-from service.search.bound import hypervolume_bound
+from service.search.bound.hypervolume import hypervolume_bound
 from service.search.improve import improve
 from tests.helpers.instances import no_tours
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
-from service.search.bound import (
+from service.search.bound.hypervolume import (
     WEIGHTS,
     area_above,
     assignment_bounds,

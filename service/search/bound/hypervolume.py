@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
-from service.search.assignment import augment, make_assignment, price_bound
+from service.search.bound.assignment import augment, make_assignment, price_bound
+from service.search.bound.one_tree import ascend, make_ascent
 from service.search.costs import Costs, make_costs, scaled_reference
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
-from service.search.one_tree import ascend, make_ascent
 from service.search.pareto_local_search import bisection_order
 
 Array = NDArray[np.float64]
