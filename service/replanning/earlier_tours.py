@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance, tour_lengths
 from service.jit import compiled
-from service.search.closing import close_routes, open_tours
+from service.search.closing import closed_tours, opened_tours
 from service.search.costs import Costs, make_costs, step_costs
 
 Array = NDArray[np.float64]
@@ -70,11 +70,10 @@ def completed(instance: Instance, earlier: EarlierTours) -> Tours:
     known = np.isin(np.arange(instance.n), routes[0])
     added = np.flatnonzero(~known)
     tours = np.concatenate((routes, np.tile(added, (len(routes), 1))), axis=1).astype(np.int32)
-    if not instance.closed:
-        tours = close_routes(tours)
+    tours = closed_tours(instance, tours)
     scaled = weights / np.ldexp(instance.scale, instance.shifts)
     insert_cheapest(costs, tours, tours.shape[1] - len(added), scaled)
-    return (tours if instance.closed else open_tours(instance, tours)).astype(np.int64)
+    return opened_tours(instance, tours).astype(np.int64)
 
 
 def touched_cities(instance: Instance, earlier: EarlierTours, tours: Tours) -> NDArray[np.int64]:

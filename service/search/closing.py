@@ -37,16 +37,23 @@ def closing_costs(instance: Instance) -> Array:
     return costs
 
 
-def close_routes(routes: NDArray[np.integer]) -> NDArray[np.int32]:
-    """Return open routes, shape (k, n), as closed tours that begin at city 0, shape (k, n + 1)."""
-    tours = np.zeros((len(routes), routes.shape[1] + 1), np.int32)
-    tours[:, 1:] = routes
-    tours[:, 1:] += 1
-    return tours
+def closed_tours(instance: Instance, tours: NDArray[np.integer]) -> NDArray[np.int32]:
+    """Return tours of an instance, shape (k, n), as the closed tours that the search moves.
+
+    Of open routes these begin at city 0, shape (k, n + 1).
+    """
+    if instance.closed:
+        return np.ascontiguousarray(tours, np.int32)
+    through = np.zeros((len(tours), tours.shape[1] + 1), np.int32)
+    through[:, 1:] = tours
+    through[:, 1:] += 1
+    return through
 
 
-def open_tours(instance: Instance, tours: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Return closed tours, shape (k, n + 1), as open routes of an instance, shape (k, n)."""
+def opened_tours(instance: Instance, tours: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return closed tours that the search moves as tours of an instance, shape (k, n)."""
+    if instance.closed:
+        return tours
     routes = rotated(tours, (tours == 0).argmax(axis=1))[:, 1:] - np.int32(1)
     return oriented(instance, routes).astype(np.int32)
 

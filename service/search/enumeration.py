@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from service.instance import Instance
 from service.jit import compiled, inlined
 from service.search.archive import TOLERANCE, Archive, accepts, insert, make_archive
-from service.search.closing import closing_cost, open_tours
+from service.search.closing import closing_cost, opened_tours
 from service.search.costs import Costs, lengths, make_costs, travel_costs
 
 Array = NDArray[np.float64]
@@ -22,8 +22,7 @@ def exact_tours(instance: Instance) -> Cities:
     archive = make_archive(n)
     order = np.arange(n, dtype=np.int32)
     insert_all(costs, archive, order, order.copy(), np.zeros((n, 2)))
-    tours = archive.tours[archive.slots[np.flatnonzero(_distinct(archive))]]
-    return tours if instance.closed else open_tours(instance, tours)
+    return opened_tours(instance, archive.tours[archive.slots[np.flatnonzero(_distinct(archive))]])
 
 
 def _distinct(archive: Archive) -> NDArray[np.bool_]:

@@ -32,7 +32,7 @@ from service.search.candidates import (
     make_candidate_pool,
     rank_candidates,
 )
-from service.search.closing import close_routes, open_tours, with_end_last
+from service.search.closing import closed_tours, opened_tours, with_end_last
 from service.search.costs import lengths, make_costs, scaled_reference
 from service.search.local_search import LEAST_GAIN, nearest_neighbour, offer
 from service.search.pareto_local_search import (
@@ -85,7 +85,7 @@ class Search:
     ) -> None:
         self.instance = instance
         self.large = instance.n >= LARGE
-        self.touched = None if touched is None else self._closed(touched[np.newaxis])[0]
+        self.touched = None if touched is None else closed_tours(instance, touched[np.newaxis])[0]
         self.shifts = instance.shifts
         self.reference_point = reference_point
         self.corner = scaled_reference(instance, reference_point)
@@ -118,7 +118,7 @@ class Search:
         archive = self.state.archive
         slots = archive.slots[: self.size]
         tours = archive.tours[slots if indices is None else slots[indices]]
-        return tours if self.instance.closed else open_tours(self.instance, tours)
+        return opened_tours(self.instance, tours)
 
     def points(self) -> Array:
         """Return the points of the front, shape (p, 2), in the instance's units."""
@@ -130,24 +130,18 @@ class Search:
         Of tours that were added there are some only where a full archive had to drop them.
         """
         costs, archive = self.state.costs, self.state.archive
-        points = [lengths(costs, tour) for tour in self._closed(tours)]
+        points = [lengths(costs, tour) for tour in closed_tours(self.instance, tours)]
         return tours[[k for k in range(len(tours)) if accepts(archive, *points[k])]]
 
     def add(self, tours: NDArray[np.integer]) -> None:
         """Add tours, shape (m, n), to the front."""
-        for tour in self._closed(tours):
+        for tour in closed_tours(self.instance, tours):
             insert(self.state.archive, lengths(self.state.costs, tour), tour)
 
     def construct(self) -> None:
         """Add a nearest-neighbour tour under equal weights, at most O(n^2)."""
         tour = self._construct(self._scalarization(WEIGHTS // 2))
         insert(self.state.archive, lengths(self.state.costs, tour), tour)
-
-    def _closed(self, tours: NDArray[np.integer]) -> NDArray[np.int32]:
-        """Return tours of the instance as the closed tours that the search moves."""
-        if self.instance.closed:
-            return np.ascontiguousarray(tours, np.int32)
-        return close_routes(tours)
 
     def run(self) -> Iterator[int]:
         """Search, and yield about every millisecond the number of iterations done since.
