@@ -102,6 +102,15 @@ def dequeue(working: QueuedTour) -> int:
 
 
 @inlined
+def drop_queued(working: QueuedTour, size: int) -> None:
+    """Remove the cities that were queued last, until the queue holds so many."""
+    while working.ring[1] > size:
+        working.ring[1] -= 1
+        place = wrap(working.ring[0] + working.ring[1], len(working.tour))
+        working.queued[working.queue[place]] = False
+
+
+@inlined
 def wrap(place: int, n: int) -> int:
     """Return a position modulo n, for positions from -n to 2n - 1."""
     if place >= n:

@@ -72,7 +72,7 @@ class TwoOptSearch:
 
 @dataclass(frozen=True)
 class ThreeOptSearch:
-    """A local search by all sequential exchanges of two or three steps, for symmetric costs."""
+    """A local search by sequential exchanges of two to five steps, for symmetric costs."""
 
     state: SearchState
     working: UndoableTour

@@ -14,28 +14,32 @@ from service.search.local_search import (
     random_below,
     removes_kept_step,
 )
+from service.search.three_opt.deepening import deepen
 from service.search.three_opt.exchanges import (
     NONE,
     SWAPPED,
-    best_exchange,
     exchange_of,
     make_exchange,
     wide,
 )
+from service.search.three_opt.finding import find_exchanges, nothing_found
 from service.search.three_opt.undoable_tour import MOST_CHANGES, UndoableTour, save, undo
 from service.search.working_tour import dequeue, enqueue, wrap
 
-MOST_CITIES = (MOST_CHANGES - 2) // 2  # after two swaps, as an exchange is two changes at most
+MOST_CITIES = (MOST_CHANGES - 2) // 4  # after two swaps, as two exchanges are four changes
 
 
 @inlined
 def improve_at(
     working: UndoableTour, scalarization: Scalarization, city: int, threshold: float
 ) -> None:
-    """Make the best exchange at a city if it gains more than a threshold."""
-    exchange = best_exchange(working, scalarization, city, threshold)
-    if exchange[1] != NONE:
-        make_exchange(working, scalarization, exchange)
+    """Make the best exchange at a city, or else a longer one, if it gains more than a threshold."""
+    found = find_exchanges(working, scalarization, city, nothing_found(threshold))
+    _, best, promised, promising = found
+    if best[0] != NONE:
+        make_exchange(working, scalarization, best)
+        enqueue(working, city)
+    elif promising[0] != NONE and deepen(working, scalarization, promised, promising, threshold):
         enqueue(working, city)
 
 
@@ -86,7 +90,7 @@ def swap_adjacent(
     n, tour = len(working.tour), working.tour
     one = tour[start], tour[wrap(start + a - 1, n)]
     other = tour[wrap(start + a, n)], tour[wrap(start + a + b - 1, n)]
-    make_exchange(working, scalarization, exchange_of(0.0, SWAPPED, 1, one, other))
+    make_exchange(working, scalarization, exchange_of(SWAPPED, 1, one, other, 0))
 
 
 @compiled

@@ -63,15 +63,21 @@ def save(working: UndoableTour) -> None:
 
 
 @compiled
-def undo(working: UndoableTour) -> None:
-    """Undo all changes since the tour was saved, the last first; the queue is left as it is."""
-    for k in range(working.changed[0] - 1, -1, -1):
+def undo_from(working: UndoableTour, first: int) -> None:
+    """Undo the changes of the log from one on, the last first, but leave both lengths."""
+    for k in range(working.changed[0] - 1, first - 1, -1):
         start, a, b = working.changes[k, 0], working.changes[k, 1], working.changes[k, 2]
         if b == 0:
             reverse(working, start, a)
         else:
             exchange_blocks(working, start, b, a)
-    working.changed[0] = 0
+    working.changed[0] = first
+
+
+@compiled
+def undo(working: UndoableTour) -> None:
+    """Undo all changes since the tour was saved; the queue is left as it is."""
+    undo_from(working, 0)
     working.length[0], working.length[1] = working.saved_length[0], working.saved_length[1]
 
 

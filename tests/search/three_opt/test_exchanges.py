@@ -8,15 +8,18 @@ import pytest
 from service.search.archive import accepts, make_archive
 from service.search.candidates import Scalarization, weighted_cost
 from service.search.costs import lengths
-from service.search.three_opt.exchanges import NONE, best_exchange, make_exchange
+from service.search.three_opt.deepening import deepen
+from service.search.three_opt.exchanges import NONE, make_exchange
+from service.search.three_opt.finding import find_exchanges, nothing_found
 from service.search.three_opt.local_search import descend, iterated_local_search
 from service.search.three_opt.undoable_tour import (
     UndoableTour,
     load,
     make_undoable_tour,
+    save,
     undo,
 )
-from service.search.working_tour import enqueue_cities
+from service.search.working_tour import dequeue, enqueue, enqueue_cities
 from tests.helpers.instances import opened, random_matrices, scalarization_of
 
 N = 9
@@ -35,6 +38,23 @@ def shuffled(scalarization: Scalarization, seed: int) -> UndoableTour:
 def weighted_length(scalarization: Scalarization, tour: np.ndarray) -> float:
     steps = zip(tour, np.roll(tour, -1), strict=True)
     return sum(weighted_cost(scalarization, i, j) for i, j in steps)
+
+
+def descend_by_three_opt(working: UndoableTour, scalarization: Scalarization) -> bool:
+    """Make the best exchange at one queued city, if any gains; whether the queue holds more."""
+    city = dequeue(working)
+    _, best, *_ = find_exchanges(working, scalarization, city, nothing_found(LEAST))
+    if best[0] != NONE:
+        make_exchange(working, scalarization, best)
+        enqueue(working, city)
+        save(working)
+    return bool(working.ring[1] > 0)
+
+
+def left_to_see(working: UndoableTour) -> list[np.ndarray]:
+    """Copies of the tour, its inverse, its lengths, the size of its log, and of its queue."""
+    seen = (working.tour, working.position, working.length, working.changed)
+    return [array.copy() for array in (*seen, working.queued, working.ring)]
 
 
 def neighbours(tour: np.ndarray) -> set[frozenset[int]]:
@@ -65,14 +85,14 @@ def test_an_exchange_gains_what_it_says_changes_three_steps_and_can_be_undone(se
     working = shuffled(scalarization, seed)
     before, at = working.tour.copy(), working.length.copy()
     for city in range(N):
-        exchange = best_exchange(working, scalarization, city, LEAST)
-        if exchange[1] == NONE:
+        gain, exchange, *_ = find_exchanges(working, scalarization, city, nothing_found(LEAST))
+        if exchange[0] == NONE:
             continue
         make_exchange(working, scalarization, exchange)
         gained = weighted_length(scalarization, before) - weighted_length(
             scalarization, working.tour
         )
-        assert gained == pytest.approx(exchange[0])
+        assert gained == pytest.approx(gain)
         assert working.length == pytest.approx(lengths(scalarization.costs, working.tour))
         assert sorted(working.tour) == list(range(N))
         assert working.position[working.tour].tolist() == list(range(N))
@@ -90,11 +110,42 @@ def test_the_best_exchange_of_a_short_tour_is_the_best_of_all() -> None:
     for seed in range(30):
         scalarization = scalarization_of(random_matrices(7, seed, symmetric=True))
         working = shuffled(scalarization, seed)
-        gain = max(best_exchange(working, scalarization, city, LEAST)[0] for city in range(7))
+        none = nothing_found(LEAST)
+        gain = max(find_exchanges(working, scalarization, city, none)[0] for city in range(7))
         expected = best_of_all(scalarization, working.tour.tolist())
         assert gain <= expected + 1e-9
         found, most = found + (gain > expected - 1e-9), most + 1
     assert found > 0.9 * most
+
+
+def test_two_exchanges_in_sequence_gain_together_or_leave_no_trace() -> None:
+    made = 0
+    for seed in range(60):
+        scalarization = scalarization_of(random_matrices(12, seed, symmetric=True))
+        working = shuffled(scalarization, seed)
+        enqueue_cities(working, working.tour.copy())
+        while descend_by_three_opt(working, scalarization):
+            pass
+        before = left_to_see(working)
+        for city in range(12):
+            _, best, promised, promising = find_exchanges(
+                working, scalarization, city, nothing_found(LEAST)
+            )
+            assert best[0] == NONE
+            if promising[0] == NONE:
+                continue
+            value = weighted_length(scalarization, working.tour)
+            if deepen(working, scalarization, promised, promising, LEAST):
+                made += 1
+                assert weighted_length(scalarization, working.tour) < value - LEAST / 2
+                assert working.length == pytest.approx(lengths(scalarization.costs, working.tour))
+                changed = neighbours(before[0]) - neighbours(working.tour)
+                assert len(changed) <= 5
+                assert all(working.queued[list(step)].all() for step in changed)
+                break
+            now = left_to_see(working)
+            assert all(np.array_equal(one, other) for one, other in zip(now, before, strict=True))
+    assert made > 5
 
 
 @pytest.mark.parametrize("fixed", ["no", "start", "both"])
