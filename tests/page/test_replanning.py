@@ -47,8 +47,10 @@ def test_only_stops_of_which_costs_are_measured_can_be_added_on_the_way(page: Pa
 
 
 def order(page: Page) -> list[str]:
-    """Return the stops of the selected tour by name."""
-    return page.locator("#order p").inner_text().split(" → ")
+    """Return the stops of the selected tour by name, which are written once their list is open."""
+    stops = page.locator("#order p")
+    expect(stops).to_contain_text(" → ")
+    return stops.inner_text().split(" → ")
 
 
 def click_on_both_maps(page: Page, name: str, place: tuple[float, float]) -> None:
