@@ -22,6 +22,7 @@ from tests.helpers.layout_shifts import shifts_after_the_first_front, watch_layo
 
 EXAMPLES = ["Helsinki deliveries", "City deliveries", "Warehouse cleaning"]
 LEGIBLE, SEEN = 4.5, 3.0  # contrasts that WCAG 2.2 demands of text, and of lines
+OF_LINES = ("in straight lines", "along the streets")
 
 pytestmark = needs_chromium
 
@@ -90,6 +91,17 @@ def test_nothing_moves_by_itself_once_a_front_is_drawn(
         assert page.evaluate("firstFront") > 0
         assert shifts_after_the_first_front(page) == []
         page.close()  # what watches would go on in the tests that follow
+
+
+@pytest.mark.parametrize("width", [DESK, PHONE])
+def test_what_is_said_of_the_lines_stays_in_its_place(
+    browser: Browser, released: str, width: int
+) -> None:
+    with open_page(browser, released, width) as page:
+        wait_until_planned(page)
+        place = "text => (lines.textContent = text, lines.getBoundingClientRect().toJSON())"
+        straight, along = (page.evaluate(place, each) for each in OF_LINES)
+        assert straight == along
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
