@@ -90,8 +90,9 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
         deadline: Time to stop, by time.monotonic(); None sets no limit.
         reserve: Called with the number of points found so far: the seconds before the deadline at
             which to stop, because they are needed for what follows the search.
-        iterations: Number of local optima to visit; None sets no limit. Without a deadline, the
-            same seed and the same iterations give the same front.
+        iterations: Number of local optima to visit, of which one by three-opt counts as several;
+            None sets no limit. Without a deadline, the same seed and the same iterations give the
+            same front.
         seed: Of all random choices.
         stop: Called every millisecond or two; True ends the search at once.
         report: Called about ten times a second with the progress, and with a function that copies
@@ -178,9 +179,11 @@ def warm_up_kind(closed: bool, coordinates: bool) -> None:
 
 
 def _warm_up_three_opt(instance: Instance) -> None:
-    """Compile, with a few steps of a search, what only large instances are searched by."""
+    """Compile, with a few steps of a search, what instances of many cities are searched by."""
     search = Search(instance, 0, instance.n * instance.scale)
-    search.local_search = ThreeOptSearch(search.state, make_undoable_tour(search.n))
+    search.descent = search.local_search = ThreeOptSearch(
+        search.state, make_undoable_tour(search.n)
+    )
     for _ in islice(search.run(), 2 * WEIGHTS):  # a descent under each weight takes one or more
         pass
 

@@ -2,11 +2,12 @@
 
 First every weight gets a tour by descent, then each gets iterated local search, twice. From then
 on weights and gaps in the front compete for the time, by the hypervolume that they lately gained.
-Of many cities the gaps are too wide for that: at its turn each weight is first descended to from
-the best tours under both neighbouring weights, what lies between is offered to the archive, and
-the local search is by three-opt. Where there are tours of an earlier front, descents begin at what
-has changed, and gaps are filled after each of two shorter rounds; of many cities there is no round,
-unless most of them are touched.
+From some hundreds of cities on the iterations under a weight are by three-opt, and gaps are filled
+in between as well. Of thousands of cities the gaps are too wide for that: at its turn each weight
+is first descended to from the best tours under both neighbouring weights, what lies between is
+offered to the archive, and descents are by three-opt, too. Where there are tours of an earlier
+front, descents begin at what has changed, and gaps are filled after each of two shorter rounds; of
+thousands of cities there is no round, unless most of them are touched.
 """
 
 from collections.abc import Iterator
@@ -45,7 +46,7 @@ from service.search.pareto_local_search import (
     make_weighted_candidates,
     rounds,
 )
-from service.search.three_opt.choice import choose_local_search
+from service.search.three_opt.choice import LocalSearch, choose_local_searches
 from service.search.working_tour import enqueue_cities, make_working_tour
 
 Array = NDArray[np.float64]
@@ -101,7 +102,7 @@ class Search:
             make_working_tour(self.n),
             np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
         )
-        self.local_search = choose_local_search(self.state)
+        self.descent, self.local_search = choose_local_searches(self.state)
 
     @property
     def hypervolume(self) -> float:
@@ -175,9 +176,11 @@ class Search:
         _, candidates, candidate_costs = self.state.weighted_candidates
         return Scalarization(self.state.costs, candidates[k], candidate_costs[k], w0, w1)
 
-    def _load_start(self, scalarization: Scalarization, construct: bool) -> None:
+    def _load_start(
+        self, local_search: LocalSearch, scalarization: Scalarization, construct: bool = False
+    ) -> None:
         """Load the best tour known for a weighted sum, or a constructed one if that is better."""
-        archive, load = self.state.archive, self.local_search.load
+        archive, load = self.state.archive, local_search.load
         least = np.inf
         if self.size > 0:
             k = best_point(archive, scalarization.w0, scalarization.w1)
@@ -204,8 +207,8 @@ class Search:
         """Rank the candidates of weight k, and descend to a local optimum under it."""
         scalarization = self._scalarization(k)
         rank_candidates(self.pool, scalarization)
-        self._load_start(scalarization, construct)
-        cities = self.local_search.working.tour if self.touched is None else self.touched
+        self._load_start(self.descent, scalarization, construct)
+        cities = self.descent.working.tour if self.touched is None else self.touched
         yield from self._sweep(scalarization, cities, offering=self.large and not construct)
         yield 1
 
@@ -216,11 +219,11 @@ class Search:
 
         With `offering` tours on the way are offered too: from another weight's they lie between.
         """
-        working, archive = self.local_search.working, self.state.archive
+        working, archive = self.descent.working, self.state.archive
         enqueue_cities(working, cities)
         value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
         block = self.n // OFFERS if offering else DESCENT_BLOCK
-        while self.local_search.descend(scalarization, LEAST_GAIN * value, block) == 0:
+        while self.descent.descend(scalarization, LEAST_GAIN * value, block) == 0:
             if offering:
                 offer(working, scalarization, archive)
             yield 0
@@ -231,18 +234,20 @@ class Search:
         scalarization = self._scalarization(k)
         if self.large:
             yield from self._sweep_from_neighbours(k)
-        self._load_start(scalarization, construct=False)
-        block = BLOCK if self.large else self.block
-        for done in range(0, iterations, block):
-            steps = min(iterations - done, block)
+        self._load_start(self.local_search, scalarization)
+        effort = self.local_search.effort
+        own = max(1, iterations // effort)
+        block = BLOCK if self.large else max(1, self.block // effort)
+        for done in range(0, own, block):
+            steps = min(own - done, block)
             self.local_search.iterate(scalarization, steps)
-            yield steps
+            yield steps * effort
 
     def _sweep_from_neighbours(self, k: int) -> Iterator[int]:
         """Descend under weight k from the best tours under the weights before and after it."""
         for neighbour in {max(k - 1, 0), min(k + 1, WEIGHTS - 1)} - {k}:
-            self._load_start(self._scalarization(neighbour), construct=False)
-            cities = self.local_search.working.tour
+            self._load_start(self.descent, self._scalarization(neighbour))
+            cities = self.descent.working.tour
             yield from self._sweep(self._scalarization(k), cities, offering=True)
 
     def _fill_gaps(self) -> Iterator[int]:

@@ -1,1 +1,1 @@
-"""Three-opt: exchanges of two or three steps, and longer ones made of two, for large instances."""
+"""Three-opt: exchanges of two or three steps, and longer ones made of two, for many cities."""

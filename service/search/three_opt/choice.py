@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from service.search import local_search, working_tour
 from service.search.candidates import Scalarization
-from service.search.pareto_local_search import LARGE, SearchState
+from service.search.pareto_local_search import LARGE, THREE_OPT, SearchState
 from service.search.three_opt import local_search as three_opt
 from service.search.three_opt import undoable_tour
 from service.search.three_opt.undoable_tour import UndoableTour, make_undoable_tour
@@ -16,7 +16,7 @@ from service.search.working_tour import QueuedTour, WorkingTour
 
 Cities = NDArray[np.int32]
 
-THREE_OPT = LARGE  # cities from which on three-opt, with sweeps, is the better
+EFFORT = 3  # of an iteration by three-opt, which takes three or four times as long as by two-opt
 OFFERED = 2_000  # cities, of which every local optimum is offered; of more, proportionally fewer
 
 
@@ -26,6 +26,10 @@ class LocalSearch(Protocol):
     @property
     def working(self) -> QueuedTour:
         """The tour that it changes."""
+
+    @property
+    def effort(self) -> int:
+        """As how many iterations of the schedule one of its own counts."""
 
     def load(self, tour: Cities, first: float, second: float) -> None:
         """Replace the working tour by another of known lengths, with an empty queue."""
@@ -37,12 +41,18 @@ class LocalSearch(Protocol):
         """Perturb and descend so many times, returning to the tour before where it was better."""
 
 
-def choose_local_search(state: SearchState) -> LocalSearch:
-    """Return the local search for the instance of a state."""
-    n = len(state.costs.cities)
-    if n >= THREE_OPT and state.costs.symmetric:
-        return ThreeOptSearch(state, make_undoable_tour(n))
-    return TwoOptSearch(state)
+def choose_local_searches(state: SearchState) -> tuple[LocalSearch, LocalSearch]:
+    """Return the local searches for the instance of a state: for descents, and for iterations.
+
+    Up to a thousand cities a descent by two-opt is over sooner, and iterations mend what it left.
+    """
+    n, two_opt = len(state.costs.cities), TwoOptSearch(state)
+    if n < THREE_OPT or not state.costs.symmetric:
+        return two_opt, two_opt
+    if n < LARGE:
+        return two_opt, ThreeOptSearch(state, make_undoable_tour(n), EFFORT)
+    three_opt = ThreeOptSearch(state, make_undoable_tour(n))
+    return three_opt, three_opt
 
 
 @dataclass(frozen=True)
@@ -50,6 +60,7 @@ class TwoOptSearch:
     """A local search by 2-opt and Or-opt, or where costs are asymmetric by swaps of blocks."""
 
     state: SearchState
+    effort: int = 1
 
     @property
     def working(self) -> WorkingTour:
@@ -76,6 +87,7 @@ class ThreeOptSearch:
 
     state: SearchState
     working: UndoableTour
+    effort: int = 1
 
     def load(self, tour: Cities, first: float, second: float) -> None:
         """Replace the working tour."""

@@ -3,21 +3,22 @@
 import numpy as np
 
 from service.instance import Instance
+from service.search.pareto_local_search import LARGE, THREE_OPT
 from service.search.schedule import Search
-from service.search.three_opt.choice import (
-    THREE_OPT,
-    ThreeOptSearch,
-    TwoOptSearch,
-    choose_local_search,
-)
+from service.search.three_opt.choice import ThreeOptSearch, TwoOptSearch, choose_local_searches
 
 FEW = Instance(coordinates=np.random.default_rng(0).random((12, 4)))
 
 
 def test_three_opt_is_for_many_cities_and_symmetric_costs() -> None:
     state = Search(FEW, 0, np.full(2, 12.0)).state
-    many = state.costs._replace(cities=np.zeros((THREE_OPT, 4)))
-    assert isinstance(choose_local_search(state), TwoOptSearch)
-    assert isinstance(choose_local_search(state._replace(costs=many)), ThreeOptSearch)
-    asymmetric = many._replace(symmetric=False)
-    assert isinstance(choose_local_search(state._replace(costs=asymmetric)), TwoOptSearch)
+
+    def chosen(n: int, symmetric: bool = True) -> tuple[type, type]:
+        costs = state.costs._replace(cities=np.zeros((n, 4)), symmetric=symmetric)
+        descent, iterations = choose_local_searches(state._replace(costs=costs))
+        return type(descent), type(iterations)
+
+    assert chosen(THREE_OPT - 1) == (TwoOptSearch, TwoOptSearch)
+    assert chosen(THREE_OPT) == (TwoOptSearch, ThreeOptSearch)
+    assert chosen(LARGE) == (ThreeOptSearch, ThreeOptSearch)
+    assert chosen(LARGE, symmetric=False) == (TwoOptSearch, TwoOptSearch)
