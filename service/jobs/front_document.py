@@ -5,7 +5,7 @@ To add a member to the answer, add a field to `FrontDocument` and fill it in `en
 the documents stored by earlier releases needs a default.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
@@ -189,7 +189,6 @@ def encode_front(
 
     The actor is left out where it built no tours. Arrivals have shape (m, stops, 2).
     """
-    ids = None if labels is None else [stop.id for stop in labels.stops]
     columns = {
         "angle": front.angles,
         "balance": balances(front.points),
@@ -200,7 +199,9 @@ def encode_front(
     }
     given = {name: column.tolist() for name, column in columns.items() if column is not None}
     rows = (dict(zip(given, row, strict=True)) for row in zip(*given.values(), strict=True))
-    encoded = [to_json(_with_stops(row, ids)) for row in rows]
+    encoded = [to_json(row) for row in rows]
+    if labels is not None:
+        encoded = _with_stops(encoded, front.tours, labels)
     if paths is not None:
         encoded = [
             b"".join((tour[:-1], b',"path":', encode_path(path), b"}"))
@@ -227,9 +228,13 @@ def encode_front(
     )
 
 
-def _with_stops(members: dict[str, Any], ids: Sequence[str] | None) -> dict[str, Any]:
-    """Return the members of a tour, with the ids of its stops where they have any."""
-    return members if ids is None else members | {"stops": [ids[i] for i in members["tour"]]}
+def _with_stops(encoded: list[bytes], tours: NDArray[np.integer], labels: Labels) -> list[bytes]:
+    """Return the JSON of each tour with the ids of its stops, each of which is encoded once."""
+    ids = np.array([to_json(stop.id) for stop in labels.stops], object)
+    return [
+        b"".join((tour[:-1], b',"stops":[', b",".join(stops), b"]}"))
+        for tour, stops in zip(encoded, ids[tours].tolist(), strict=True)
+    ]
 
 
 def _named(labels: Labels | None) -> dict[str, Any]:

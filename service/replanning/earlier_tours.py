@@ -65,8 +65,9 @@ def completed(instance: Instance, earlier: EarlierTours) -> Tours:
     for the driven one. O(m n (n - k)).
     """
     costs = make_costs(instance)
-    weights = _weights(instance, earlier.tours)
-    routes = _better_way_round(instance, earlier.tours, weights)
+    lengths = tour_lengths(instance, earlier.tours) / instance.scale
+    weights = _weights(lengths)
+    routes = _better_way_round(instance, earlier.tours, (lengths * weights).sum(axis=1), weights)
     known = np.isin(np.arange(instance.n), routes[0])
     added = np.flatnonzero(~known)
     tours = np.concatenate((routes, np.tile(added, (len(routes), 1))), axis=1).astype(np.int32)
@@ -88,26 +89,22 @@ def touched_cities(instance: Instance, earlier: EarlierTours, tours: Tours) -> N
     return np.union1d(earlier.touched, tours[beside])
 
 
-def _weights(instance: Instance, routes: Tours) -> Array:
+def _weights(lengths: Array) -> Array:
     """Return weights of scaled lengths, shape (m, 2), by the rank of each route in balance."""
-    lengths = tour_lengths(instance, routes) / instance.scale
     rank = (lengths[:, 0] - lengths[:, 1]).argsort(kind="stable").argsort(kind="stable")
-    share = rank / max(1, len(routes) - 1)
+    share = rank / max(1, len(lengths) - 1)
     return np.stack((1 - share, share), axis=1)
 
 
-def _better_way_round(instance: Instance, routes: Tours, weights: Array) -> Tours:
+def _better_way_round(instance: Instance, routes: Tours, sums: Array, weights: Array) -> Tours:
+    """Return the routes, those turned round whose weighted sum of lengths is less then."""
     if instance.closed or not instance.symmetric:
         return routes
     begin = int(instance.start is not None)
     end = routes.shape[1] - int(instance.end is not None)
     turned = routes.copy()
     turned[:, begin:end] = routes[:, begin:end][:, ::-1]
-    lengths, others = (
-        (tour_lengths(instance, each) / instance.scale * weights).sum(axis=1)
-        for each in (routes, turned)
-    )
-    better = others < lengths
+    better = (tour_lengths(instance, turned) / instance.scale * weights).sum(axis=1) < sums
     better[0] = False
     return np.where(better[:, np.newaxis], turned, routes)
 
