@@ -220,7 +220,7 @@ def encode_front(
         actor=actor if front.constructed else None,
         places=places,
         closed=None if front.closed else False,
-        **_named(labels),
+        **({} if labels is None else labels.members),
         tours=tours,
         ends=ends,
         angles=front.angles.tobytes(),
@@ -235,11 +235,6 @@ def _with_stops(encoded: list[bytes], tours: NDArray[np.integer], labels: Labels
         b"".join((tour[:-1], b',"stops":[', b",".join(stops), b"]}"))
         for tour, stops in zip(encoded, ids[tours].tolist(), strict=True)
     ]
-
-
-def _named(labels: Labels | None) -> dict[str, Any]:
-    """Return the members of a document that hold the caller's names."""
-    return {} if labels is None else labels.members
 
 
 def encode_path(path: CoveragePath) -> bytes:
@@ -281,5 +276,5 @@ def empty_front(task: Task) -> FrontDocument:
         actor=None,
         places=places,
         closed=None if subject.ends.closed else False,
-        **_named(task.labels),
+        **({} if task.labels is None else task.labels.members),
     )

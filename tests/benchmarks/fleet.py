@@ -14,6 +14,7 @@ seventy.
 
 import argparse
 import time
+import warnings
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -21,6 +22,7 @@ from typing import Any
 
 import numpy as np
 import pyvrp
+from pyvrp.exceptions import PenaltyBoundWarning
 from pyvrp.stop import MaxRuntime
 
 import service
@@ -132,7 +134,10 @@ def swept(translation: Translation, least: float, seconds: float) -> list[Plan]:
 
 def _solved(translation: Translation, limit: int, seconds: float) -> Plan:
     data = translation.data(Goal(weights=translation.sum_weights, limit=limit))
-    result = pyvrp.solve(data, MaxRuntime(seconds), collect_stats=False, display=False)
+    with warnings.catch_warnings():
+        # That it finds few plans under a tight limit.
+        warnings.simplefilter("ignore", PenaltyBoundWarning)
+        result = pyvrp.solve(data, MaxRuntime(seconds), collect_stats=False, display=False)
     return translation.plan(result.best)
 
 
