@@ -78,9 +78,8 @@ class Solver:
         watcher = _Watcher(self._offer, self._stop, goal.weights, step.iterations)
         small = len(self._translation.fleet.rules.clients) <= _FEW
         settings = IteratedLocalSearchParams(callbacks=watcher, exhaustive_on_best=small)
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(action="ignore", category=PenaltyBoundWarning):
             # A goal that no plan reaches is no news here.
-            warnings.simplefilter("ignore", PenaltyBoundWarning)
             search = IteratedLocalSearch(data, manager, local_search, initial, settings)
             search.run(watcher, collect_stats=False)
         return watcher.iterations

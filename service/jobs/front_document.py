@@ -15,13 +15,13 @@ from pydantic_core import from_json, to_json
 
 from service.coverage.survey import CoveragePath
 from service.instance import OBJECTIVES, Instance
+from service.jobs.json_parts import encode_path, with_member
 from service.pareto import balances
 from service.planner import Front
 from service.requests.stops import Labels, UnmeasuredStops
 from service.requests.task import Task
 from service.search.improve import Termination
 
-PATH_PART = 2**14  # cells of a path that are written at once
 _HEAD = 100  # bytes of a tour in which its first members are
 
 
@@ -204,7 +204,7 @@ def encode_front(
         encoded = _with_stops(encoded, front.tours, labels)
     if paths is not None:
         encoded = [
-            b"".join((tour[:-1], b',"path":', encode_path(path), b"}"))
+            with_member(tour, b"path", encode_path(path))
             for tour, path in zip(encoded, paths, strict=True)
         ]
     tours, ends = joined(encoded)
@@ -220,7 +220,7 @@ def encode_front(
         actor=actor if front.constructed else None,
         places=places,
         closed=None if front.closed else False,
-        **({} if labels is None else labels.members),
+        **_named(labels),
         tours=tours,
         ends=ends,
         angles=front.angles.tobytes(),
@@ -232,23 +232,14 @@ def _with_stops(encoded: list[bytes], tours: NDArray[np.integer], labels: Labels
     """Return the JSON of each tour with the ids of its stops, each of which is encoded once."""
     ids = np.array([to_json(stop.id) for stop in labels.stops], object)
     return [
-        b"".join((tour[:-1], b',"stops":[', b",".join(stops), b"]}"))
+        with_member(tour, b"stops", b"[%b]" % b",".join(stops))
         for tour, stops in zip(encoded, ids[tours].tolist(), strict=True)
     ]
 
 
-def encode_path(path: CoveragePath) -> bytes:
-    """Return a path as JSON, written in parts: a list takes ten times the memory of its text."""
-    parts = [path.cells[i : i + PATH_PART] for i in range(0, len(path.cells), PATH_PART)]
-    members = [b'"cells":', *_encode_rows(parts), b',"metres":', to_json(path.metres)]
-    if path.frame is not None:
-        members += [b',"points":', *_encode_rows(map(path.frame.points, parts))]
-    return b"".join((b"{", *members, b"}"))
-
-
-def _encode_rows(parts: Iterable[NDArray[Any]]) -> tuple[bytes, bytes, bytes]:
-    """Return a list of rows of numbers as JSON, from parts of them."""
-    return b"[", b",".join(to_json(part.tolist())[1:-1] for part in parts), b"]"
+def _named(labels: Labels | None) -> dict[str, Any]:
+    """Return the members of a document that hold the caller's names."""
+    return {} if labels is None else labels.members
 
 
 def empty_front(task: Task) -> FrontDocument:
@@ -276,5 +267,5 @@ def empty_front(task: Task) -> FrontDocument:
         actor=None,
         places=places,
         closed=None if subject.ends.closed else False,
-        **({} if task.labels is None else task.labels.members),
+        **_named(task.labels),
     )

@@ -49,12 +49,10 @@ def most_like_driven(
 
     O(m n + m k) for m tours of n cities and k others, at least one.
     """
+    kept, kept_of_others = (kept_shares(instance, each, driven) for each in (tours, others))
     points, points_of_others = (tour_lengths(instance, each) for each in (tours, others))
     differences = np.abs(points_of_others - points[:, np.newaxis])
     equal = (differences <= _EQUAL * points[:, np.newaxis]).all(axis=2)
-    if not equal.any():
-        return tours
-    kept, kept_of_others = (kept_shares(instance, each, driven) for each in (tours, others))
     kept_of_equal = np.where(equal, kept_of_others, -1.0)
     better = kept_of_equal.max(axis=1) > kept
     chosen = tours.copy()

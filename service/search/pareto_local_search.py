@@ -25,7 +25,6 @@ WEIGHTS = 50  # at 500 cities and 0.3 s better than 100, which get too little ti
 LEAST_SHARE = 1e-3  # of a weight: the other length still counts at the ends, to break ties
 WIDEST_LOGIT = 7.0  # of a weight, where weights are evenly spaced by their logit
 LARGE = 1_200  # cities from which on they are; at 1,000 it is the worse in the first half second
-THREE_OPT = 250  # cities from which on iterations are by it; at 200 clustered ones it is worse
 TOURNAMENT_SIZE = 8  # points drawn, of which one is chosen
 STEPS = 10  # of the iterated local search at each point
 SLOPE_REACH = 5  # points to either side over which the slope of the front is taken

@@ -1,9 +1,9 @@
 """The schedule of a search: under which weight, and for how long, or where to fill the front.
 
-First every weight gets a tour by descent, then each gets iterated local search, twice. From then
-on weights and gaps in the front compete for the time, by the hypervolume that they lately gained.
-From some hundreds of cities on the iterations under a weight are by three-opt, and gaps are filled
-in between as well. Of thousands of cities the gaps are too wide for that: at its turn each weight
+First every weight gets a tour by descent, then each gets iterated local search, twice, and gaps in
+the front are filled in between. From then on weights and gaps compete for the time, by the
+hypervolume that they lately gained. From some hundreds of cities on the iterations under a weight
+are by three-opt. Of thousands of cities the gaps are too wide for that: at its turn each weight
 is first descended to from the best tours under both neighbouring weights, what lies between is
 offered to the archive, and descents are by three-opt, too. Where there are tours of an earlier
 front, descents begin at what has changed, and gaps are filled after each of two shorter rounds; of

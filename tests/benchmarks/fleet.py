@@ -134,9 +134,8 @@ def swept(translation: Translation, least: float, seconds: float) -> list[Plan]:
 
 def _solved(translation: Translation, limit: int, seconds: float) -> Plan:
     data = translation.data(Goal(weights=translation.sum_weights, limit=limit))
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(action="ignore", category=PenaltyBoundWarning):
         # That it finds few plans under a tight limit.
-        warnings.simplefilter("ignore", PenaltyBoundWarning)
         result = pyvrp.solve(data, MaxRuntime(seconds), collect_stats=False, display=False)
     return translation.plan(result.best)
 

@@ -28,7 +28,7 @@ from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve, warm_up
 from tests.benchmarks.instances import check_tours
-from tests.benchmarks.rivals.construction import distances, greedy_edge, spread_weights
+from tests.benchmarks.rivals.construction import Construct, greedy_edge, spread_weights, under_each
 from tests.benchmarks.rows import Points, resume
 
 Way = Callable[[str, float, int], dict[str, Any]]
@@ -96,22 +96,21 @@ def by_fast_tsp(shape: str, limit: float, n: int) -> dict[str, Any]:
     """fast-tsp under each weight, all of them in the limit."""
     from tests.benchmarks.rivals.fast_tsp_weights import solve
 
-    instance = drawn(shape, n)
-    began = time.monotonic()
-    costs, weights = distances(instance.scaled_coordinates), spread_weights(WEIGHTS)
-    tours = [solve(w[0] * costs[0] + w[1] * costs[1], limit / WEIGHTS) for w in weights]
-    return _row(tour_lengths(instance, np.array(tours)), n, time.monotonic() - began)
+    return _under_weights(lambda cost: solve(cost, limit / WEIGHTS), shape, n)
 
 
 def by_or_tools(shape: str, limit: float, n: int) -> dict[str, Any]:
     """OR-Tools' guided local search under each weight, all of them in the limit."""
     from tests.benchmarks.rivals.ortools_routing import guided
 
+    return _under_weights(lambda cost: guided(cost, limit / WEIGHTS), shape, n)
+
+
+def _under_weights(solve: Construct, shape: str, n: int) -> dict[str, Any]:
     instance = drawn(shape, n)
     began = time.monotonic()
-    costs, weights = distances(instance.scaled_coordinates), spread_weights(WEIGHTS)
-    tours = [guided(w[0] * costs[0] + w[1] * costs[1], limit / WEIGHTS) for w in weights]
-    return _row(tour_lengths(instance, np.array(tours)), n, time.monotonic() - began)
+    tours = under_each(spread_weights(WEIGHTS), solve, instance)
+    return _row(tour_lengths(instance, tours), n, time.monotonic() - began)
 
 
 RIVALS = {"greedy edge": by_greedy_edge, "fast-tsp": by_fast_tsp}

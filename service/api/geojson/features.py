@@ -10,6 +10,7 @@ from pydantic_core import from_json, to_json
 
 from service.api.geojson.lines import Line, encode_line
 from service.jobs.fleets.fleet_document import holds_plans
+from service.jobs.json_parts import with_member
 from service.jobs.record import Record
 
 
@@ -100,7 +101,7 @@ class Drawing:
         for tour, line in zip(self.tours, lines, strict=True):
             properties = {name: value for name, value in tour.items() if name != "tour"}
             ends = to_json({"type": "Feature", "properties": {**common, **properties}})
-            yield b"".join((ends[:-1], b',"geometry":', encode_line(line), b"}"))
+            yield with_member(ends, b"geometry", encode_line(line))
 
 
 def _point(stop: dict[str, Any]) -> bytes:

@@ -13,7 +13,8 @@ from service.fleet.evaluation import route_lengths
 from service.fleet.plans import FleetFront, Plan, Route
 from service.jobs.fleets.fleet_document import directions
 from service.jobs.fleets.robot_fleet import RobotFleet
-from service.jobs.front_document import FrontDocument, Timings, empty_front, encode_path, joined
+from service.jobs.front_document import FrontDocument, Timings, empty_front, joined
+from service.jobs.json_parts import encode_path, with_member
 from service.pareto import balances
 from service.requests.maps.robots import SharedCoverage
 from service.requests.task import Task
@@ -72,7 +73,7 @@ class RobotEncoder:
         routes = [
             self._route(robot, route, next(paths)) for robot, route in self.fleet.routes(plan)
         ]
-        return _with_member(to_json(members), b"routes", b"[" + b",".join(routes) + b"]")
+        return with_member(to_json(members), b"routes", b"[" + b",".join(routes) + b"]")
 
     def _route(self, robot: int, route: Route, path: CoveragePath | None) -> bytes:
         members = {
@@ -81,7 +82,7 @@ class RobotEncoder:
             "lengths": list(route_lengths(self.fleet.fleet, route)),
         }
         encoded = to_json(members)
-        return encoded if path is None else _with_member(encoded, b"path", encode_path(path))
+        return encoded if path is None else with_member(encoded, b"path", encode_path(path))
 
 
 def empty_robot_plans(task: Task, subject: SharedCoverage) -> FrontDocument:
@@ -110,8 +111,3 @@ def _second_objective(coverage: Coverage, over: str) -> dict[str, str | None]:
 
 def _returns(coverage: Coverage) -> bool:
     return all(robot.closed for robot in coverage.robots)
-
-
-def _with_member(encoded: bytes, name: bytes, value: bytes) -> bytes:
-    """Return a JSON object with one more member at its end."""
-    return b"".join((encoded[:-1], b',"', name, b'":', value, b"}"))

@@ -1,5 +1,7 @@
 """The plain construction heuristics that the paper leaves out, for many weights of an instance."""
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -7,6 +9,7 @@ from numpy.typing import NDArray
 from service.instance import Instance
 
 Array = NDArray[np.float64]
+Construct = Callable[[Array], Sequence[int] | NDArray[np.int64]]  # a tour from costs, (n, n)
 
 
 def spread_weights(k: int) -> Array:
@@ -17,12 +20,12 @@ def spread_weights(k: int) -> Array:
 
 def nearest_neighbour(instance: Instance, weights: Array) -> NDArray[np.int64]:
     """From city 0 always to the nearest unvisited city; one tour for each pair of weights."""
-    return _each_weight(_nearest_neighbour, instance, weights)
+    return under_each(weights, _nearest_neighbour, instance)
 
 
 def greedy_edge(instance: Instance, weights: Array) -> NDArray[np.int64]:
     """Edges by ascending cost, unless one closes a cycle or gives a city a third edge."""
-    return _each_weight(_greedy_edge, instance, weights)
+    return under_each(weights, _greedy_edge, instance)
 
 
 def distances(coordinates: Array) -> Array:
@@ -31,9 +34,10 @@ def distances(coordinates: Array) -> Array:
     return np.stack([np.hypot(steps[..., m], steps[..., m + 1]) for m in (0, 2)])
 
 
-def _each_weight(construct, instance: Instance, weights: Array) -> NDArray[np.int64]:
+def under_each(weights: Array, construct: Construct, instance: Instance) -> NDArray[np.int64]:
+    """The tour that is constructed for each weighted sum of the distances, shape (k, n)."""
     costs = distances(instance.scaled_coordinates)
-    return np.stack([construct(w[0] * costs[0] + w[1] * costs[1]) for w in weights])
+    return np.array([construct(w[0] * costs[0] + w[1] * costs[1]) for w in weights])
 
 
 @njit(cache=True)
