@@ -1,6 +1,7 @@
 """The steps towards two sums: weights, the normals of the hull's edges (Aneja and Nair, 1979).
 
-They reach supported points alone.
+They reach supported points alone. Points are in PyVRP's units, in which costs of any size have
+products that a double can hold.
 """
 
 from collections.abc import Iterator
@@ -23,7 +24,8 @@ def weight_steps(
         yield _weighted(archive, weights, translation, iterations)
     done: set[tuple[Point, Point]] = set()
     while True:
-        edges = [edge for edge in pairwise(_hull(archive.points)) if edge not in done]
+        points = _in_units(archive.points, translation)
+        edges = [edge for edge in pairwise(_hull(points)) if edge not in done]
         if not edges:
             return
         edge = max(edges, key=_triangle)
@@ -39,14 +41,19 @@ def _weighted(
     iterations: int,
 ) -> Step:
     """Return a search under weights of both objectives, from the solution that is best there."""
-    points = np.array(archive.points)
+    points = np.array(_in_units(archive.points, translation))
     start = archive.solutions[int((points @ np.array(weights)).argmin())]
-    roles = translation.roles
-    of_distance = weights[roles.distance] / translation.distance_scale
-    of_duration = weights[1 - roles.distance] / translation.duration_scale
-    unit = max(of_distance, of_duration) / _STEEPEST
-    whole = (max(1, round(of_distance / unit)), max(1, round(of_duration / unit)))
+    first, second = (max(1, round(_STEEPEST * each / max(weights))) for each in weights)
+    whole = (first, second) if translation.roles.distance == 0 else (second, first)
     return Step(Goal(weights=whole), start, iterations)
+
+
+def _in_units(points: list[Point], translation: Translation) -> list[Point]:
+    """Return lengths in both objectives as PyVRP has them."""
+    first, second = translation.distance_scale, translation.duration_scale
+    if translation.roles.distance == 1:
+        first, second = second, first
+    return [(x * first, y * second) for x, y in points]
 
 
 def _triangle(edge: tuple[Point, Point]) -> float:

@@ -178,14 +178,19 @@ def test_what_was_not_found_in_time_is_said_so() -> None:
         plan_fleet(Fleet(rules=tight, costs=fleet.costs), FleetOptions(time_limit=0.1))
 
 
-@pytest.mark.parametrize("unit", [1e-150, 1e-9, 1.0, 1e9, 1e150])
-def test_costs_of_any_size_are_planned(unit: float) -> None:
-    fleet = deliveries(15)
-    rules = Rules(visits=(Visit(),) * 16, vehicles=(OPEN,))
-    front = plan_fleet(
-        Fleet(rules=rules, costs=fleet.costs * unit), FleetOptions(time_limit=inf, iterations=300)
-    )
-    assert front.plans
+@pytest.mark.parametrize("units", [(1e-200, 1e-200), (1e-150, 1e-9), (1e9, 1e-9), (1e9, 1e150)])
+@pytest.mark.parametrize("over", [("sum", "sum"), ("sum", "max")])
+def test_units_of_any_size_change_no_plan(
+    units: tuple[float, float], over: tuple[Over, Over]
+) -> None:
+    costs = np.random.default_rng(0).integers(1, 50, (2, 14, 14)).astype(float)
+    rules = Rules(visits=(Visit(),) * 14, vehicles=(OPEN,), over=over)
+    options = FleetOptions(time_limit=inf, iterations=2000)
+    scaled = costs * np.array(units)[:, np.newaxis, np.newaxis]
+    expected = plan_fleet(Fleet(rules=rules, costs=costs), options)
+    front = plan_fleet(Fleet(rules=rules, costs=scaled), options)
+    assert front.plans == expected.plans
+    assert len(front.plans) > 2
 
 
 OPEN = VehicleType(start=0, count=3)
