@@ -15,7 +15,7 @@ from models.networks.joining.costs import CANDIDATES, Costs, Problem
 from models.networks.joining.fragments import Fragments, first_steps, next_city
 from models.networks.pa_one import OneActor
 from models.networks.pa_one_matrix import OneMatrixActor
-from models.rollout_repairs import CITIES, least_costs
+from models.rollout_repairs import CITIES, NEAR, least_costs
 
 _ROOM = 10_000_000  # costs of a block, 40 MB; a round takes a few times as much
 
@@ -74,13 +74,13 @@ class _Next(nn.Module):
 
 
 # Sizes to trace at, all different, and different from all that is fixed: cities, rows, ends, those
-# of a contracted problem, cut cities. Three columns of a repair's problem belong to each of the
-# last.
-_N, _R, _E, _F, _M = 17, 37, 13, 15, 7
+# of a contracted problem, cities to choose from in a repair, and cut cities. Three columns of a
+# repair's problem belong to each of the last.
+_N, _R, _E, _F, _L, _M = 17, 37, 13, 15, 11, 7
 _AXES = {
     *(_N, _N + CANDIDATES, 2 * _N + 1, _R, _E),
     *(_F, _F + CANDIDATES, 2 * _F + 1),
-    *(_M, 3 * _M, 3 * _M + CANDIDATES, 6 * _M + 1),
+    *(_L, _M, 3 * _M, 3 * _M + CANDIDATES, 6 * _M + 1),
 }
 
 
@@ -96,7 +96,7 @@ def to_onnx(actor: OneActor) -> ModelProto:
         for name, part in _parts(actor, names).items()
     ]
     room = _ROOM // len(names.tables)
-    model = inlined(parser.parse_model(graph(names, OPSET, room, CITIES)), functions)
+    model = inlined(parser.parse_model(graph(names, OPSET, room, (NEAR, CITIES))), functions)
     onnx.checker.check_model(model, full_check=True)
     return model
 
@@ -118,7 +118,7 @@ def _parts(actor: OneActor, names: Names) -> dict[str, Part]:
     return {
         **building,
         "Next": (_Next(), (ring.links, *first_steps(ring)), ["links", "before", "now"], ["next"]),
-        **repair_parts(actor, names, problem, _M, _E),
+        **repair_parts(actor, names, problem, (_L, _M), _E),
     }
 
 

@@ -66,8 +66,11 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
             least_longer = Concat <axis = 0> (least_so_far, least_edges)
         }>
 
+    most_near = Constant <value_ints = [$near]> ()
     most_cut = Constant <value_ints = [$cities_cut]> ()
+    to_look_at = Min (most_near, n)
     to_cut = Min (most_cut, n)
+    near = ConstantOfShape (to_look_at)
     count = ConstantOfShape (to_cut)
     built_points, built_freshness = paretour.Unrepaired ($tables, built)
     tours, points, visited, visited_points, freshness = Loop
@@ -79,7 +82,7 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
         {
             repair_on = Identity (repairing)
             cut_cities, turned, places, gaps, $between, $cut, is_cut = paretour.Cut
-                ($problem, least, tours_in, freshness_in, count)
+                ($problem, least, tours_in, freshness_in, number, near, count)
             $rejoining
             tours_out, points_out, visited_out, visited_points_out, freshness_out = paretour.Keep
                 ($tables, weights, tours_in, points_in, visited_in, visited_points_in,
@@ -182,14 +185,22 @@ MATRICES = Names(
 )
 
 
-def graph(names: Names, opset: int, room: int, cities_cut: int) -> str:
-    """Return the text of the graph; room is for costs of a block, in entries of one table."""
+def graph(names: Names, opset: int, room: int, sizes: tuple[int, int]) -> str:
+    """Return the text of the graph.
+
+    Args:
+        names: What its parts pass on.
+        opset: The version of ONNX's operators.
+        room: For the costs of a block, in entries of one table.
+        sizes: How many cities a repair looks at, and how many of them it cuts out, at most.
+    """
     by_row = ("weights", *names.prices)
     is_matrices = names is MATRICES
     return _GRAPH.substitute(
         opset=opset,
         room=room,
-        cities_cut=cities_cut,
+        near=sizes[0],
+        cities_cut=sizes[1],
         given=names.instance,
         instance="float[2, n, n]" if is_matrices else "float[n, 4]",
         cities_axis="start = 1, end = 2" if is_matrices else "start = 0, end = 1",

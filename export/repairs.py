@@ -12,7 +12,8 @@ from models.networks.joining.repairs import Cuts, cut, laid_out, last_two_joined
 from models.networks.pa_one import OneActor
 from models.rollout_repairs import (
     RepairState,
-    cities_to_cut,
+    cities_near,
+    ranks_to_cut,
     state_after_repair,
     unrepaired,
 )
@@ -38,14 +39,17 @@ class Cut(nn.Module):
         least: Tensor,
         tours: Tensor,
         freshness: Tensor,
-        count: Tensor,
+        number: Tensor,
+        sizes: tuple[Tensor, Tensor],
     ) -> tuple[Tensor, ...]:
         """Return the cities, the cuts, the costs, the fragments, and whether to join them.
 
-        There are as many cities as the count has entries.
+        There are as many cities near, and of them to cut, as the sizes have entries.
         """
         problem = as_problem(given)
-        cities = cities_to_cut(problem, least, tours, freshness, count.shape[0])
+        near, count = (size.shape[0] for size in sizes)
+        close = cities_near(problem, least, tours, freshness, near)
+        cities = close.index_select(1, ranks_to_cut(number, near, count))
         cuts = cut(tours, cities)
         between, fragments = repair_problem(problem, cuts)
         return cities, *cuts, *present(between), *left_of(fragments)
@@ -109,9 +113,12 @@ def as_tensors(problem: Problem) -> tuple[Tensor, ...]:
 
 
 def repair_parts(
-    actor: OneActor, names: Names, problem: Problem, cut_cities: int, open_ends: int
+    actor: OneActor, names: Names, problem: Problem, cities_cut: tuple[int, int], open_ends: int
 ) -> dict[str, Part]:
-    """Return the parts that repair, by name, to be traced at these sizes."""
+    """Return the parts that repair, by name, to be traced at these sizes.
+
+    So many cities are looked at by a repair, and so many of them cut out.
+    """
     costs, rows, _ = problem
     tables = present(costs)
     r, n = len(rows), costs.means.shape[1]
@@ -119,7 +126,8 @@ def repair_parts(
     points, freshness = torch.rand(r, 2), torch.rand(r, n)
     # All different tensors: one that is given twice would be one input.
     state = (tours, points, tours.clone(), points.clone(), freshness)
-    least, cities = torch.rand(r, n), torch.arange(cut_cities).repeat(r, 1)
+    sizes = tuple(torch.zeros(count) for count in cities_cut)
+    least, cities = torch.rand(r, n), torch.arange(cities_cut[1]).repeat(r, 1)
     cuts = cut(tours, cities)
     between, fragments = repair_problem(problem, cuts)
     joined = nearly_solved(actor, between, fragments, open_ends)
@@ -132,8 +140,8 @@ def repair_parts(
         ),
         "Cut": (
             Cut(),
-            (as_tensors(problem), least, tours, freshness, torch.zeros(cut_cities)),
-            [*names.problem, "least", "tours", "freshness", "count"],
+            (as_tensors(problem), least, tours, freshness, torch.tensor(0), sizes),
+            [*names.problem, "least", "tours", "freshness", "number", "near", "count"],
             ["cities", *CUTS, *names.costs, *names.after_round],
         ),
         "Rejoin": (

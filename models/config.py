@@ -8,6 +8,7 @@ from models.networks.build import ACTORS
 from models.options import setting
 
 NAMES = tuple(ACTORS)
+OBJECTIVES = ("lagrangian", "weighted-sum", "imitation", "repairs")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,12 +22,17 @@ class NetworkConfig(Architecture):
             raise ValueError(f"name must be one of {', '.join(NAMES)}, got {self.name}")
         if self.width % self.heads:
             raise ValueError(f"width {self.width} must be a multiple of heads {self.heads}")
-        least = 1 if self.name.startswith("pa-one") else 0
+        least = 1 if self.repairs else 0
         if not least <= self.preference_layers <= 1:
             raise ValueError(
                 f"preference_layers of {self.name} must be from {least} to 1, "
                 f"got {self.preference_layers}"
             )
+
+    @property
+    def repairs(self) -> bool:
+        """Whether the actor repairs what it built."""
+        return self.name.startswith("pa-one")
 
     @property
     def label(self) -> str:
@@ -40,7 +46,9 @@ class TrainingConfig:
     """The settings of Algorithm 1 of the paper, and of the other ways to train."""
 
     network: NetworkConfig = NetworkConfig()
-    objective: str = setting("weighted-sum", "lagrangian (the paper's), weighted-sum or imitation")
+    objective: str = setting(
+        "weighted-sum", "lagrangian (the paper's), weighted-sum, imitation or repairs"
+    )
     baseline: str = setting("shared", "critic (the paper's) or shared: the mean over starts")
     steps: int = setting(10_000, "gradient steps in all; the learning rate ends at their end")
     instances: int = setting(8, "instances a step")
@@ -60,10 +68,7 @@ class TrainingConfig:
     seed: int = setting(1, "of weights, instances, preferences and sampling")
 
     def __post_init__(self) -> None:
-        if self.objective not in ("lagrangian", "weighted-sum", "imitation"):
-            raise ValueError(
-                f"objective must be lagrangian, weighted-sum or imitation, got {self.objective}"
-            )
+        self._check_objective()
         if self.baseline not in ("critic", "shared"):
             raise ValueError(f"baseline must be critic or shared, got {self.baseline}")
         if self.baseline == "shared" and self.starts < 2:
@@ -78,6 +83,14 @@ class TrainingConfig:
         for name in ("steps", "instances", "preferences", "validate_every"):
             if getattr(self, name) < 1:
                 raise ValueError(f"{name} must be at least 1, got {getattr(self, name)}")
+
+    def _check_objective(self) -> None:
+        if self.objective not in OBJECTIVES:
+            raise ValueError(
+                f"objective must be one of {', '.join(OBJECTIVES)}, got {self.objective}"
+            )
+        if self.objective == "repairs" and not self.network.repairs:
+            raise ValueError(f"{self.network.name} makes no repairs to learn from")
 
 
 def as_plain(config: TrainingConfig) -> dict[str, Any]:

@@ -36,9 +36,23 @@ def sampled_tours(
     is drawn from their softmax). The log-likelihood takes each fragment's choice among its own
     edges for a draw of its own, which it is but for edges that two fragments share.
     """
-    fragments = single_cities(costs)
+    fragments, likelihoods = joined_by_chance(
+        edge_logits, costs, single_cities(costs), joinings, generator
+    )
+    return toured(costs, fragments), likelihoods
+
+
+def joined_by_chance(
+    edge_logits: EdgeLogits,
+    costs: Costs,
+    fragments: Fragments,
+    joinings: int,
+    generator: Generator,
+    enough: int = 1,
+) -> tuple[Fragments, Float[Tensor, " r"]]:
+    """Join fragments of each row until so many are left, and return the log-likelihoods."""
     likelihoods = torch.zeros_like(costs.means[:, 0, 0])
-    while bool((fragments.left > 1).any()):
+    while bool((fragments.left > enough).any()):
         candidates = cheapest_candidates(costs, fragments)
         positions = candidates.positions
         logits = edge_logits(costs, fragments, candidates) / _TEMPERATURE
@@ -52,7 +66,7 @@ def sampled_tours(
             likelihoods = likelihoods + _log_likelihoods(fragments, positions, logits, mates)
             fragments = joined_at_cost(costs, fragments, mates)
         fragments = fragments.trimmed()
-    return toured(costs, fragments), likelihoods
+    return fragments, likelihoods
 
 
 def imitation_loss(

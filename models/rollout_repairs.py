@@ -4,13 +4,16 @@ All tours of a front are repaired at once, each at a place of its own, where its
 for what the edges to its cities' nearest neighbours would cost. PA-One joins what the cuts have
 left, and the new tour replaces the old one if it is shorter under its row's weights. Of the other
 tours that it visits, each row remembers one that no tour of the front dominates.
+
+PA-One joins the same cities in the same way each time. So every repair has a pattern of its own,
+by which it takes some of the cities near its place and leaves others.
 """
 
 from typing import NamedTuple, cast
 
 import torch
 from jaxtyping import Bool, Float, Int
-from torch import Tensor, nn
+from torch import Generator, Tensor, nn
 
 from models.data.preferences import turned_outwards, weights
 from models.networks.joining.candidates import Candidates
@@ -20,8 +23,25 @@ from models.networks.joining.repairs import along, cut, laid_out, repair_problem
 from models.networks.pa_one import OneActor
 
 CITIES = 8  # that a repair cuts out of a tour
-_AFTER_A_CUT = 0.6  # of a city's freshness
+NEAR = 16  # that it chooses them from
+_REPEATED = 64  # repairs, after which the first pattern comes again
+_NEARNESS = 0.15  # by how much less a place in the order of nearness counts than the one before
+_AFTER_A_CUT = 0.5  # of a city's freshness
 _ROUNDING = 2e-6  # of a length: what sums of float32 may be wrong by
+
+
+def _patterns() -> Float[Tensor, "p near"]:
+    """Return keys for each pattern, of which the greatest are the ranks that it takes.
+
+    Ranks are drawn without replacement (Gumbel-top-k), nearer ones rather than others.
+    """
+    drawn = torch.empty(_REPEATED, NEAR).exponential_(generator=Generator().manual_seed(5))
+    keys = -drawn.log() - _NEARNESS * torch.arange(NEAR)
+    keys[:, 0] = torch.inf
+    return keys
+
+
+_PATTERNS = _patterns()
 
 
 class RepairState(NamedTuple):
@@ -63,10 +83,12 @@ def _repaired(
     repairs: int,
 ) -> RepairState:
     least = least_costs(actor.first_candidates(problem))
-    count = min(CITIES, tours.shape[1])
     state = unrepaired(problem.costs, tours)
-    for _ in range(repairs):
-        cities = cities_to_cut(problem, least, state.tours, state.freshness, count)
+    n = tours.shape[1]
+    sizes = min(NEAR, n), min(CITIES, n)
+    for number in torch.arange(repairs):
+        near = cities_near(problem, least, state.tours, state.freshness, sizes[0])
+        cities = near.index_select(1, ranks_to_cut(number, *sizes))
         cuts = cut(state.tours, cities)
         between, fragments = repair_problem(problem, cuts)
         new = laid_out(cuts, actor.joined_to_one(between, fragments.trimmed()))
@@ -91,18 +113,26 @@ def edge_lengths(costs: Costs, tours: Int[Tensor, "r n"]) -> Float[Tensor, "2 r 
     return means if costs.leans is None else means + along(costs.leans, tours)
 
 
-def cities_to_cut(
+def ranks_to_cut(number: Int[Tensor, ""], near: int | Tensor, count: int | Tensor) -> Tensor:
+    """Return the ranks of the cities to cut, by nearness, among those near: 0 is always one.
+
+    The repairs are numbered from 0. Sizes are tensors while the graph is traced for its export.
+    """
+    pattern = _PATTERNS.index_select(0, number[None] % _REPEATED)  # exported as it is written
+    return pattern[0, : cast(int, near)].topk(cast(int, count)).indices
+
+
+def cities_near(
     problem: Problem,
     least: Float[Tensor, "r n"],
     tours: Int[Tensor, "r n"],
     freshness: Float[Tensor, "r n"],
     count: int | Tensor,
-) -> Int[Tensor, "r m"]:
-    """Return the city of most regret in each row, and those nearest to it.
+) -> Int[Tensor, "r near"]:
+    """Return the city of most regret in each row, and those nearest to it, in this order.
 
     The regret of a city is what its edges cost above the least possible, times its freshness;
-    costs are less the prices, where there are any. The count is a tensor while the graph is
-    traced for its export.
+    costs are less the prices, where there are any.
     """
     costs, weights, prices = problem
     onwards = weighted_sums(edge_lengths(costs, tours), weights)
@@ -135,7 +165,7 @@ def state_after_repair(
     tours: Int[Tensor, "r n"],
 ) -> RepairState:
     """Return the state with the shorter tour of each row, after these cities were cut out."""
-    tours, points = _cheaper_way(costs, weights, tours)
+    tours, points = cheaper_way(costs, weights, tours)
     before = (state.points * weights).sum(dim=1)
     shorter = (before - (points * weights).sum(dim=1) > _ROUNDING * before)[:, None]
     best = torch.where(shorter, points, state.points)
@@ -152,7 +182,7 @@ def state_after_repair(
     )
 
 
-def _cheaper_way(
+def cheaper_way(
     costs: Costs, weights: Float[Tensor, "r 2"], tours: Int[Tensor, "r n"]
 ) -> tuple[Int[Tensor, "r n"], Float[Tensor, "r 2"]]:
     """Return each tour in the direction that costs its row less, and its two lengths."""

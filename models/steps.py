@@ -1,4 +1,4 @@
-"""Training steps: policy gradient, as in Algorithm 1 of the paper, and imitation of an expert.
+"""Training steps on tours: policy gradient, as in Algorithm 1 of the paper, and imitation.
 
 Mehta, Taghipour and Saeedi (2022), arXiv:2203.01298.
 """
@@ -34,10 +34,16 @@ class StepMeans:
 
 def policy_gradient_step(run: Run) -> StepMeans:
     """Take one step of Algorithm 1, for all instances and preferences at once."""
+    means = learn_to_build(run)
+    run.step += 1
+    return means
+
+
+def learn_to_build(run: Run) -> StepMeans:
+    """Descend once by the policy gradient of tours that the actor builds."""
     config = run.config
     run.actor.train()
-    instances = _sample_instances(run)
-    preferences = _preferences(run)
+    instances, preferences = drawn_instances(run), drawn_preferences(run)
     with _precision(run):
         tours, likelihoods = run.actor.sampled_tours_with_log_likelihoods(
             instances, preferences, config.starts, run.instance_generator, run.sampling_generator
@@ -52,7 +58,7 @@ def policy_gradient_step(run: Run) -> StepMeans:
 
     advantages = objectives - _baseline(run, instances, preferences, objectives)
     loss = (advantages * likelihoods).mean()
-    _update(run, loss)
+    update(run, loss)
 
     violations = violation(points, by_tour)
     run.multipliers = ascended(
@@ -78,7 +84,8 @@ def imitation_step(run: Run, labels: Labels) -> StepMeans:
     instances, preferences, tours = Batch(*(part.to(run.device) for part in drawn))
     with _precision(run):
         loss = run.actor.imitation_loss(instances, preferences, tours)
-    _update(run, loss)
+    update(run, loss)
+    run.step += 1
     points = tour_lengths(instances, tours)
     by_tour = preferences.repeat_interleave(starts, dim=0)
     return StepMeans(
@@ -97,7 +104,8 @@ def descend(optimizer: Optimizer, network: nn.Module, loss: Tensor, clip_gradien
     optimizer.step()
 
 
-def _sample_instances(run: Run) -> Tensor:
+def drawn_instances(run: Run) -> Tensor:
+    """Draw instances of the kind that the actor reads, all with as many cities."""
     config, generator = run.config, run.instance_generator
     n = city_count(config.least_cities, config.most_cities, generator)
     if run.actor.reads == "coordinates":
@@ -113,7 +121,7 @@ def _numpy_generator(generator: Generator) -> np.random.Generator:
     return np.random.default_rng(int(torch.randint(2**62, (), generator=generator)))
 
 
-def _preferences(run: Run) -> Tensor:
+def drawn_preferences(run: Run) -> Tensor:
     """Return the paper's fixed fan where each preference has a multiplier; else draw anew."""
     if run.config.objective == "lagrangian":
         return fan_of_preferences(run.config.preferences, run.device)
@@ -131,11 +139,10 @@ def _baseline(run: Run, instances: Tensor, preferences: Tensor, objectives: Tens
     return predicted.detach()
 
 
-def _update(run: Run, loss: Tensor) -> None:
+def update(run: Run, loss: Tensor) -> None:
     """Move the actor down its loss, and the average of its weights after it."""
     _descend_at_schedule(run, run.optimizer, run.actor, loss)
     run.averaged.update_parameters(run.actor)
-    run.step += 1
 
 
 def _descend_at_schedule(run: Run, optimizer: Optimizer, network: nn.Module, loss: Tensor) -> None:

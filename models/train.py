@@ -1,8 +1,8 @@
 """Training: `python -m models.train --out runs/one` begins a run, or resumes the one there.
 
 Beside the checkpoint it writes the configuration, a log (CSV) and a curve (PNG). The actor learns
-by policy gradient, or with `--objective imitation --labels FOLDER` from the tours of
-`models.expert`.
+by policy gradient, with `--objective repairs` on repairs, or with `--objective imitation --labels
+FOLDER` from the tours of `models.expert`.
 """
 
 import argparse
@@ -24,7 +24,8 @@ from models.checkpoint import (
 from models.config import NetworkConfig, TrainingConfig
 from models.data.dataset import Labels
 from models.options import add_options, from_options
-from models.steps import imitation_step, policy_gradient_step
+from models.repair_steps import repair_step
+from models.steps import StepMeans, imitation_step, policy_gradient_step
 from models.training_log import TrainingLog
 from models.validation import COUNTS, ValidationSet, mean_hypervolume, validation_sets
 
@@ -46,14 +47,19 @@ def train(
     with TrainingLog(out, run, steps) as log:
         while run.step < steps:
             began = time.perf_counter()
-            step = policy_gradient_step(run) if labels is None else imitation_step(run, labels)
-            log.stepped(step)
+            log.stepped(_step(run, labels))
             run.seconds += time.perf_counter() - began
             if run.step % run.config.validate_every == 0 or run.step == steps:
                 build = averaged_actor(run).eval().tours
                 log.validated({v.cities: mean_hypervolume(build, v) for v in validation})
                 save(run, out / "run.pt")
                 save_weights(run, out / "weights.pt")
+
+
+def _step(run: Run, labels: Labels | None) -> StepMeans:
+    if labels is not None:
+        return imitation_step(run, labels)
+    return repair_step(run) if run.config.objective == "repairs" else policy_gradient_step(run)
 
 
 def main(arguments: list[str] | None = None, counts: dict[int, int] = COUNTS) -> None:
