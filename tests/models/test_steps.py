@@ -8,6 +8,8 @@ import torch
 from models.checkpoint import new_run
 from models.config import NAMES, NetworkConfig, TrainingConfig
 from models.data.dataset import Labels
+from models.networks.pa_one import OneActor
+from models.repair_steps import repair_step
 from models.steps import imitation_step, policy_gradient_step
 from tests.helpers.small_runs import small_config
 
@@ -49,6 +51,32 @@ def test_training_lowers_the_objective(
     # PA-One begins near where the others end.
     most = 0.99 if name.startswith("pa-one") else 0.97
     assert sum(objectives[-15:]) < most * sum(objectives[:15])
+
+
+@pytest.mark.parametrize("name", ["pa-one", "pa-one-matrix"])
+def test_learning_from_repairs_makes_repaired_tours_shorter(name: str) -> None:
+    config = small_config(
+        network=NetworkConfig(name=name, width=16, heads=2, layers=1, feedforward=16),
+        objective="repairs",
+        steps=8,
+        instances=1,
+        least_cities=12,
+        most_cities=12,
+        preferences=4,
+        learning_rate=3e-3,
+        warmup=1,
+    )
+    run = new_run(config, CPU)
+    assert isinstance(run.actor, OneActor)
+    with torch.no_grad():  # it begins near the best: let it prefer long edges
+        run.actor.project_edge.weight.fill_(1.0)
+        run.actor.judge.weight.fill_(0.5)
+    objectives = []
+    for _ in range(2):
+        run.instance_generator.manual_seed(1)
+        objectives.append(repair_step(run).objective)
+    assert run.step == 2
+    assert objectives[-1] < 0.97 * objectives[0]
 
 
 def test_multipliers_rise_while_tours_miss_their_preference() -> None:
