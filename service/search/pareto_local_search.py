@@ -40,7 +40,7 @@ class WeightedCandidates(NamedTuple):
 
 def make_weighted_candidates(instance: Instance, n: int) -> WeightedCandidates:
     """Return weights, for scaled lengths, and empty candidate lists of n cities under each."""
-    if instance.n < LARGE:
+    if n < LARGE:
         share = np.linspace(0.0, 1.0, WEIGHTS).clip(LEAST_SHARE, 1 - LEAST_SHARE)
     else:
         share = 1 / (1 + np.exp(np.linspace(WIDEST_LOGIT, -WIDEST_LOGIT, WEIGHTS)))

@@ -85,13 +85,13 @@ class Search:
         touched: NDArray[np.integer] | None = None,
     ) -> None:
         self.instance = instance
-        self.large = instance.n >= LARGE
         self.touched = None if touched is None else closed_tours(instance, touched[np.newaxis])[0]
         self.shifts = instance.shifts
         self.reference_point = reference_point
         self.corner = scaled_reference(instance, reference_point)
         costs = make_costs(instance)
         self.n = len(costs.cities)
+        self.large = self.n >= LARGE
         self.block = max(STEPS, BLOCK * FULL_BLOCK // max(FULL_BLOCK, self.n))
         weighted_candidates = make_weighted_candidates(instance, self.n)
         self.weights = weighted_candidates.weights
