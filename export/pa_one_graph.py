@@ -1,17 +1,20 @@
 """The ONNX graph of PA-One as text, with its loops, and the names of what its parts pass on.
 
-A block has as many preferences as there is room for their costs. It begins with a round of all
-cities; further rounds work on the ends that are still open, of which there are fewer each time. A
-loop goes along the links of the finished tours. When all tours are there, a last loop repairs
-them. The functions of the domain `paretour` are the parts that `export.pa_one` puts in.
+A block has as many preferences as there is room for their lists, and for the costs between the
+ends of a contracted problem. It begins with a round of all cities; further rounds work on the ends
+that are still open, of which there are fewer each time. A loop goes along the links of the finished
+tours. When all tours are there, a last loop repairs them. The functions of the domain `paretour`
+are the parts that `export.pa_one` puts in.
 
 There is one text for coordinates and for matrices. Where costs have directions, the tables of
-costs and the fragments have a tensor of leans more, and there are prices, of which a block takes
-its rows, and shortlists. There the last fragments of a block are joined as in a repair.
+costs, the shortlists and the fragments have tensors of leans more, and there are prices, of which
+a block takes its rows.
 """
 
 from string import Template
 from typing import NamedTuple
+
+from models.networks.joining.shortlists import Sizes
 
 _GRAPH = Template("""
 <ir_version: 10, opset_import: ["": $opset, "paretour": 1]>
@@ -21,14 +24,28 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
     zero = Constant <value_ints = [0]> ()
     one = Constant <value_ints = [1]> ()
     two = Constant <value_ints = [2]> ()
+    nought = Constant <value_int = 0> ()
+    unit = Constant <value_int = 1> ()
     room = Constant <value_ints = [$room]> ()
     n = Shape <$cities_axis> ($given)
     k = Shape <start = 0, end = 1> (preferences)
     cities_in_all = Squeeze (n)
     steps_in_all = Sub (n, two)
     steps = Squeeze (steps_in_all)
-    squared = Mul (n, n)
-    fitting = Div (room, squared)
+    long = Constant <value_ints = [$length]> ()
+    short = Constant <value_ints = [$short]> ()
+    few = Constant <value_ints = [$few]> ()
+    share = Constant <value_ints = [$share]> ()
+    are_many = Greater (n, few)
+    length = Where (are_many, long, short)
+    on_a_list = ConstantOfShape (length)
+    listed = Mul (n, length)
+    most_few = Min (n, few)
+    share_of_all = Div (n, share)
+    ends_in_all = Max (most_few, share_of_all)
+    pairs = Mul (ends_in_all, ends_in_all)
+    entries = Add (listed, pairs)
+    fitting = Div (room, entries)
     one_at_least = Max (fitting, one)
     size = Min (one_at_least, k)
     more = Add (k, size)
@@ -38,6 +55,31 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
     shape_of_nothing = Concat <axis = 0> (zero, n)
     nothing = ConstantOfShape <value = int64[1] {0}> (shape_of_nothing)
     $prepared = paretour.Prepare ($given, preferences)
+
+    all_cities = Range (nought, cities_in_all, unit)
+    knots = Constant <value_ints = [$knots]> ()
+    costs_of_a_city = Mul (n, knots)
+    fitting_cities = Div (room, costs_of_a_city)
+    some_at_least = Max (fitting_cities, one)
+    at_a_time = Min (some_at_least, n)
+    more_cities = Add (n, at_a_time)
+    filled_cities = Sub (more_cities, one)
+    times_in_all = Div (filled_cities, at_a_time)
+    times = Squeeze (times_in_all)
+    intervals = Sub (knots, one)
+    shape_of_no_lists = Concat <axis = 0> (intervals, zero, length)
+    no_cities = ConstantOfShape <value = int64[1] {0}> (shape_of_no_lists)
+    no_costs = ConstantOfShape <value = float[1] {0}> (shape_of_no_lists)
+    $lists = Loop (times, , $no_lists) <body = add_lists
+        (int64 time, bool before_lists, $lists_so_far) => (bool after_lists, $more_lists)
+        {
+            after_lists = Identity (before_lists)
+            first_city = Mul (time, at_a_time)
+            beyond_city = Add (first_city, at_a_time)
+            some_cities = Slice (all_cities, first_city, beyond_city, zero)
+            $new_lists = paretour.List ($tables_and_known, some_cities, on_a_list)
+            $lists_appended
+        }>
 
     least_of_nothing = CastLike (nothing, weights)
     built, least = Loop (blocks, , nothing, least_of_nothing) <body = add_block
@@ -55,7 +97,7 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
                 {
                     walk_on = Identity (walking_on)
                     new_before = Identity (city_now)
-                    new_now = paretour.Next ($walked, city_before, city_now)
+                    new_now = paretour.Next (links_of_tours, city_before, city_now)
                     visited = Identity (new_now)
                 }>
             first_of_all = Unsqueeze (first, zero)
@@ -67,7 +109,7 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
         }>
 
     most_near = Constant <value_ints = [$near]> ()
-    most_cut = Constant <value_ints = [$cities_cut]> ()
+    most_cut = Constant <value_ints = [$cut]> ()
     to_look_at = Min (most_near, n)
     to_cut = Min (most_cut, n)
     near = ConstantOfShape (to_look_at)
@@ -81,7 +123,7 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
             int64[k, n] visited_out, float[k, 2] visited_points_out, float[k, n] freshness_out)
         {
             repair_on = Identity (repairing)
-            cut_cities, turned, places, gaps, $between, $cut, is_cut = paretour.Cut
+            cut_cities, turned, places, gaps, $between, $after_cut, is_cut = paretour.Cut
                 ($problem, least, tours_in, freshness_in, number, near, count)
             $rejoining
             tours_out, points_out, visited_out, visited_points_out, freshness_out = paretour.Keep
@@ -91,21 +133,8 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
 }
 """)
 
-# Of cities, until each row has one fragment: candidates are among all open ends.
+# Of cities, with candidates from lists while many ends are open; then the problem is contracted.
 _JOINING = Template("""
-            $costs, least_edges, $begun, unfinished = paretour.Begin ($problem_of_block)
-            $last = Loop (cities_in_all, unfinished, $begun) <body = join
-                (int64 round, bool going_on, $given_to_join)
-                => (bool go_on, $joined)
-                {
-                    $slices
-                    $names_joined, go_on = paretour.Round ($costs, $sliced)
-                }>
-            first, second = paretour.Start ($last_fragments)
-""")
-
-# The same with candidates from lists, while many ends are open; then the problem is contracted.
-_LISTED_JOINING = Template("""
             $row_lists, least_edges, $begun, unfinished = paretour.Begin
                 ($problem_of_block, $lists)
             $last = Loop (cities_in_all, unfinished, $begun) <body = join
@@ -129,14 +158,12 @@ _REJOINING = Template("""
                 => (bool ${prefix}go_on, $rejoined)
                 {
                     $slices
-                    $names, ${prefix}go_on = paretour.Rejoin ($costs, $sliced)
+                    $names, ${prefix}go_on = paretour.$join ($costs, $sliced)
                 }>
 """)
 
 CUTS = ("turned", "places", "gaps")
 STATE = ("tours", "points", "visited", "visited_points", "freshness")
-LISTS = ("cities", "means", "leans", "rise_of_means", "rise_of_leans")
-ROW_LISTS = LISTS[:3]
 _TYPES = {
     "ends": "int64[r, {e}]",
     "partners": "int64[r, {e}]",
@@ -155,18 +182,16 @@ class Names(NamedTuple):
     instance: str
     tables: tuple[str, ...]
     prices: tuple[str, ...]
+    known: tuple[str, ...]
     costs: tuple[str, ...]
     fragments: tuple[str, ...]
+    lists: tuple[str, ...]
+    row_lists: tuple[str, ...]
 
     @property
     def problem(self) -> tuple[str, ...]:
         """The tables, the weights of each row, its prices."""
         return *self.tables, "weights", *self.prices
-
-    @property
-    def lists(self) -> tuple[str, ...]:
-        """The shortlists, of matrices only."""
-        return tuple(f"listed_{name}" for name in LISTS) if self.prices else ()
 
     @property
     def after_round(self) -> list[str]:
@@ -175,61 +200,95 @@ class Names(NamedTuple):
 
 
 _FRAGMENTS = ("ends", "partners", "open", "links", "left")
-COORDINATES = Names("cities", ("distances",), (), ("costs",), _FRAGMENTS)
+_LISTS = ("listed_cities", "listed_means", "rise_of_means")
+_ROW_LISTS = ("row_cities", "row_means")
+COORDINATES = Names("cities", ("planes",), (), (), ("costs",), _FRAGMENTS, _LISTS, _ROW_LISTS)
 MATRICES = Names(
     "matrices",
     ("means", "mean_leans"),
     ("fees", "tilts"),
+    ("known_fees", "known_tilts"),
     ("costs", "cost_leans"),
     (*_FRAGMENTS, "leans"),
+    (*_LISTS, "listed_leans", "rise_of_leans"),
+    (*_ROW_LISTS, "row_leans"),
 )
 
 
-def graph(names: Names, opset: int, room: int, sizes: tuple[int, int]) -> str:
-    """Return the text of the graph.
+class GraphSizes(NamedTuple):
+    """The numbers in the text of the graph.
 
     Args:
-        names: What its parts pass on.
-        opset: The version of ONNX's operators.
-        room: For the costs of a block, in entries of one table.
-        sizes: How many cities a repair looks at, and how many of them it cuts out, at most.
+        room: Entries of lists and of costs in a block.
+        lists: Of the shortlists.
+        near: The cities that a repair looks at, at most.
+        cut: The cities of these that it cuts out, at most.
     """
+
+    room: int
+    lists: Sizes
+    near: int
+    cut: int
+
+
+def graph(names: Names, opset: int, sizes: GraphSizes) -> str:
+    """Return the text of the graph."""
     by_row = ("weights", *names.prices)
     is_matrices = names is MATRICES
     return _GRAPH.substitute(
         opset=opset,
-        room=room,
-        near=sizes[0],
-        cities_cut=sizes[1],
+        room=sizes.room,
+        length=sizes.lists.length,
+        short=sizes.lists.short,
+        few=sizes.lists.ends,
+        share=sizes.lists.share,
+        near=sizes.near,
+        cut=sizes.cut,
         given=names.instance,
         instance="float[2, n, n]" if is_matrices else "float[n, 4]",
         cities_axis="start = 1, end = 2" if is_matrices else "start = 0, end = 1",
-        prepared=_listed((*names.problem, *names.lists)),
+        prepared=_listed((*names.problem, *names.known)),
+        knots=sizes.lists.knots,
+        no_lists=_listed(("no_cities",) + ("no_costs",) * (len(names.lists) - 1)),
+        lists=_listed(names.lists),
+        lists_so_far=_types_of_lists(names, "so_far_", "done"),
+        more_lists=_types_of_lists(names, "longer_", "grown"),
+        new_lists=_listed(names.lists, "new_"),
+        tables_and_known=_listed((*names.tables, *names.known)),
+        lists_appended="\n".join(
+            f"longer_{name} = Concat <axis = 1> (so_far_{name}, new_{name})" for name in names.lists
+        ),
         problem=_listed(names.problem),
         tables=_listed(names.tables),
         rows_of_block="\n".join(
             f"block_{name} = Slice ({name}, first_row, beyond_row, zero)" for name in by_row
         ),
         joining=_joining(names),
-        walked="links_of_tours" if names.lists else "last_links",
         between=_listed(names.costs, "between_"),
-        cut=_listed((*names.fragments, "kept"), "cut_"),
-        rejoining=_rejoining(names, "is_cut", ("cut_", "new_"), "between_"),
+        after_cut=_listed((*names.fragments, "kept"), "cut_"),
+        rejoining=_rejoining(names, "Rejoin", "is_cut", ("cut_", "new_"), "between_"),
         new_fragments=_listed(names.fragments, "new_"),
+    )
+
+
+def _types_of_lists(names: Names, prefix: str, cities: str) -> str:
+    kinds = ("int64", *("float",) * (len(names.lists) - 1))
+    return ", ".join(
+        f"{kind}[g, {cities}, l] {prefix}{name}"
+        for kind, name in zip(kinds, names.lists, strict=True)
     )
 
 
 def _joining(names: Names) -> str:
     """Return the lines that build the tours of a block."""
     kept = (*names.fragments, "kept")
-    template = _LISTED_JOINING if names.lists else _JOINING
-    return template.safe_substitute(
+    return _JOINING.safe_substitute(
         problem_of_block=_listed(
             (*names.tables, *(f"block_{name}" for name in ("weights", *names.prices)))
         ),
         costs=_listed(names.costs),
         lists=_listed(names.lists),
-        row_lists=_listed(ROW_LISTS, "row_"),
+        row_lists=_listed(names.row_lists),
         begun=_listed(kept),
         last=_listed(kept, "last_"),
         last_fragments=_listed(names.fragments, "last_"),
@@ -241,17 +300,20 @@ def _joining(names: Names) -> str:
         slices_of_last=_slices(names.fragments, "last_", "whole_"),
         sliced_last=_listed(names.fragments, "whole_"),
         few=_listed(kept, "few_"),
-        rejoining_of_few=_rejoining(names, "is_open", ("few_", "solved_"), ""),
+        rejoining_of_few=_rejoining(names, "JoinFew", "is_open", ("few_", "solved_"), ""),
         solved=_listed(names.fragments, "solved_"),
     )
 
 
-def _rejoining(names: Names, unfinished: str, prefixes: tuple[str, str], costs: str) -> str:
-    """Return the lines that join fragments; prefixes are of the names before and after."""
+def _rejoining(
+    names: Names, part: str, unfinished: str, prefixes: tuple[str, str], costs: str
+) -> str:
+    """Return the lines that join fragments by a part; prefixes are of names before and after."""
     kept = (*names.fragments, "kept")
     before, after = prefixes
     return _REJOINING.substitute(
         prefix=before,
+        join=part,
         unfinished=unfinished,
         before=_listed(kept, before),
         after=_listed(kept, after),

@@ -4,57 +4,80 @@ import torch
 from torch import Tensor, nn
 
 from export.onnx_parts import Part
-from export.pa_one_graph import ROW_LISTS, Names
-from export.repairs import as_problem, as_tensors, left_of, nearly_solved, present
+from export.pa_one_graph import Names
+from export.repairs import Rejoin, as_costs, as_problem, as_tensors, left_of, nearly_solved, present
 from models.data.preferences import turned_outwards, weights
 from models.networks.joining.candidates import cheaper_starts
 from models.networks.joining.contraction import contracted, expanded
-from models.networks.joining.costs import Costs, Problem
+from models.networks.joining.costs import Costs, Prices, Problem
 from models.networks.joining.fragments import Fragments, all_alone, cleared, first_steps
+from models.networks.joining.prices import priced_problem
 from models.networks.joining.repairs import last_two_joined
 from models.networks.joining.shortlists import (
     RowLists,
     Shortlists,
     first_of,
-    listed_candidates,
     lists_of_rows,
+    shortlists,
+    shortlists_of,
 )
-from models.networks.pa_one_matrix import OneMatrixActor, are_listed
+from models.networks.pa_one import OneActor
 from models.rollout_repairs import least_costs
 
 
 class _Prepare(nn.Module):
-    """The costs in each objective, the weights of each preference, its prices, and shortlists."""
+    """The costs in each objective, the weights of each preference, its prices and those known."""
 
-    def __init__(self, actor: OneMatrixActor) -> None:
+    def __init__(self, actor: OneActor) -> None:
         super().__init__()
         self.actor = actor
 
     def forward(self, instance: Tensor, preferences: Tensor) -> tuple[Tensor, ...]:
+        costs = self.actor.costs(instance)
+        known = self.actor.known_prices(costs)
         rows = weights(turned_outwards(preferences))
-        problem, lists = self.actor.listed_problem(instance, rows)
-        return *as_tensors(problem), *lists
+        return *as_tensors(priced_problem(costs, rows, known)), *(known or ())
+
+
+class _List(nn.Module):
+    """The shortlists of some cities."""
+
+    def __init__(self, actor: OneActor) -> None:
+        super().__init__()
+        self.knots = actor.list_sizes.knots
+
+    def forward(
+        self,
+        tables: tuple[Tensor, ...],
+        known: tuple[Tensor, ...],
+        some: Tensor,
+        listed: Tensor,
+    ) -> tuple[Tensor, ...]:
+        prices = Prices(*known) if known else None
+        costs = as_costs(tables)
+        return present(shortlists_of(some, costs, self.knots, listed.shape[0], prices))
 
 
 class _Begin(nn.Module):
     """The lists of the rows, the least cost of each city, and the fragments after one round."""
 
-    def __init__(self, actor: OneMatrixActor) -> None:
+    def __init__(self, actor: OneActor) -> None:
         super().__init__()
         self.actor = actor
 
     def forward(self, given: tuple[Tensor, ...], lists: tuple[Tensor, ...]) -> tuple[Tensor, ...]:
         problem = as_problem(given)
         of_rows = lists_of_rows(Shortlists(*lists), problem.weights)
-        before, candidates = all_alone(of_rows.means[..., 0], leaning=True), first_of(of_rows)
+        before = all_alone(of_rows.means[..., 0], leaning=self.actor.has_directions)
+        candidates = first_of(of_rows)
         after = self.actor.round(problem, before, candidates, self.actor.joinings)
-        return *of_rows, least_costs(candidates), *_listed(before, after)
+        return *present(of_rows), least_costs(candidates), *_listed(self.actor, before, after)
 
 
 class _Round(nn.Module):
     """The fragments after one more round."""
 
-    def __init__(self, actor: OneMatrixActor) -> None:
+    def __init__(self, actor: OneActor) -> None:
         super().__init__()
         self.actor = actor
 
@@ -62,9 +85,9 @@ class _Round(nn.Module):
         self, given: tuple[Tensor, ...], lists: tuple[Tensor, ...], fragments: tuple[Tensor, ...]
     ) -> tuple[Tensor, ...]:
         problem, before = as_problem(given), Fragments(*fragments)
-        candidates = listed_candidates(RowLists(*lists), before)
+        candidates = self.actor.candidates_from(RowLists(*lists), before)
         after = self.actor.round(problem, before, candidates, self.actor.joinings)
-        return _listed(before, after)
+        return _listed(self.actor, before, after)
 
 
 class _Contract(nn.Module):
@@ -92,46 +115,57 @@ class _Finish(nn.Module):
         return tours.links, *first_steps(tours, cheaper_starts(as_problem(given), tours))
 
 
-def _listed(before: Fragments, after: Fragments) -> tuple[Tensor, ...]:
+def _listed(actor: OneActor, before: Fragments, after: Fragments) -> tuple[Tensor, ...]:
     """Return the cleared fragments, how many ends to keep, and whether lists go on being used."""
     moved, kept = cleared(after)
-    return *present(moved), kept[None], are_listed(before, after)
+    return *present(moved), kept[None], actor.are_listed(before, after)
 
 
 def parts(
-    actor: OneMatrixActor,
+    actor: OneActor,
     names: Names,
     given: tuple[Tensor, Tensor],
+    listed: tuple[Tensor, Tensor],
     state: tuple[Problem, Fragments, Fragments],
 ) -> dict[str, Part]:
     """Return the parts that build tours, by name.
 
-    The state is a problem with fragments that have some ends, and others that have more.
+    Given are an instance and preferences; listed are some cities to make lists of, and as many
+    entries as a list has. The state is a problem with fragments that have some ends, and others
+    that have more.
     """
     problem, some, more = state
     with torch.no_grad():
-        _, lists = actor.listed_problem(given[0], problem.weights)
+        known = actor.known_prices(problem.costs)
+        sizes = actor.list_sizes.knots, len(listed[1])
+        lists = shortlists(problem.costs, *sizes, known)
         row_lists = lists_of_rows(lists, problem.weights)
         between, few = contracted(problem, more)
     solved = nearly_solved(actor, between, few, some.ends.shape[1])
-    tensors, in_rows = as_tensors(problem), [f"row_{name}" for name in ROW_LISTS]
+    tensors, in_rows = as_tensors(problem), names.row_lists
     fragments, after = list(names.fragments), names.after_round
     return {
         "Prepare": (
             _Prepare(actor),
             given,
             [names.instance, "preferences"],
-            [*names.problem, *names.lists],
+            [*names.problem, *names.known],
+        ),
+        "List": (
+            _List(actor),
+            (tuple(problem.costs), tuple(known or ()), *listed),
+            [*names.tables, *names.known, "some_cities", "on_a_list"],
+            list(names.lists),
         ),
         "Begin": (
             _Begin(actor),
-            (tensors, tuple(lists)),
+            (tensors, present(lists)),
             [*names.problem, *names.lists],
             [*in_rows, "least", *after],
         ),
         "Round": (
             _Round(actor),
-            (tensors, tuple(row_lists), present(some)),
+            (tensors, present(row_lists), present(some)),
             [*names.problem, *in_rows, *fragments],
             after,
         ),
@@ -140,6 +174,12 @@ def parts(
             (tensors, present(more)),
             [*names.problem, *fragments],
             [*names.costs, *after],
+        ),
+        "JoinFew": (
+            Rejoin(actor, actor.joinings),
+            (present(between), present(solved)),
+            [*names.costs, *fragments],
+            after,
         ),
         "Finish": (
             _Finish(),

@@ -6,9 +6,10 @@ from torch import Tensor, nn
 from export.onnx_parts import Part
 from export.pa_one_graph import CUTS, STATE, Names
 from models.networks.joining.candidates import cheapest_candidates
-from models.networks.joining.costs import Costs, Prices, Problem
+from models.networks.joining.costs import Costs, Matrices, Planes, Prices, Problem
 from models.networks.joining.fragments import Fragments, cleared
 from models.networks.joining.repairs import Cuts, cut, laid_out, last_two_joined, repair_problem
+from models.networks.joining.shortlists import RowLists, Shortlists
 from models.networks.pa_one import OneActor
 from models.rollout_repairs import (
     RepairState,
@@ -18,7 +19,8 @@ from models.rollout_repairs import (
     unrepaired,
 )
 
-_WITHOUT_DIRECTIONS = 2  # tensors that a problem is given by: of costs, and of weights
+_ENOUGH = 2  # fragments, which are joined the cheaper way
+_OF_PLANES = 2  # tensors that a problem is given by: cities, and weights
 
 
 class Unrepaired(nn.Module):
@@ -26,7 +28,7 @@ class Unrepaired(nn.Module):
 
     def forward(self, tables: tuple[Tensor, ...], tours: Tensor) -> tuple[Tensor, Tensor]:
         """Return the points of tours and the freshness of their cities."""
-        state = unrepaired(Costs(*tables), tours)
+        state = unrepaired(as_costs(tables), tours)
         return state.points, state.freshness
 
 
@@ -58,15 +60,14 @@ class Cut(nn.Module):
 class Rejoin(nn.Module):
     """The fragments after one evaluation of the network; two of them at most are to be left."""
 
-    def __init__(self, actor: OneActor) -> None:
+    def __init__(self, actor: OneActor, joinings: int) -> None:
         super().__init__()
-        self.actor = actor
+        self.actor, self.joinings = actor, joinings
 
     def forward(self, tables: tuple[Tensor, ...], given: tuple[Tensor, ...]) -> tuple[Tensor, ...]:
         """Return the fragments, how many ends to keep, and whether to go on."""
         costs, fragments = Costs(*tables), Fragments(*given)
-        candidates = cheapest_candidates(costs, fragments)
-        return left_of(self.actor.round(costs, fragments, candidates, self.actor.repair_joinings))
+        return left_of(self.actor.round_of_few(costs, fragments, self.joinings))
 
 
 class Keep(nn.Module):
@@ -84,32 +85,37 @@ class Keep(nn.Module):
         """Return the state after this repair; the cut cities come before the cuts."""
         whole = last_two_joined(Costs(*between), Fragments(*joined))
         tours = laid_out(Cuts(*cuts[1:]), whole)
-        return state_after_repair(Costs(*tables), rows, RepairState(*state), cuts[0], tours)
+        return state_after_repair(as_costs(tables), rows, RepairState(*state), cuts[0], tours)
 
 
-def left_of(fragments: Fragments, enough: int = 2) -> tuple[Tensor, ...]:
+def left_of(fragments: Fragments) -> tuple[Tensor, ...]:
     """Return the cleared fragments, how many ends to keep, and whether too many are left."""
     after, kept = cleared(fragments)
-    return *present(after), kept[None], (after.left > enough).any()
+    return *present(after), kept[None], (after.left > _ENOUGH).any()
 
 
-def present(tensors: Costs | Fragments) -> tuple[Tensor, ...]:
+def present(tensors: Costs | Fragments | Shortlists | RowLists) -> tuple[Tensor, ...]:
     """Return those tensors of a kind that there are."""
     return tuple(tensor for tensor in tensors if tensor is not None)
 
 
+def as_costs(given: tuple[Tensor, ...]) -> Planes | Matrices:
+    """Return the costs in each objective that these tensors are."""
+    return Planes(*given) if len(given) == 1 else Matrices(*given)
+
+
 def as_problem(given: tuple[Tensor, ...]) -> Problem:
     """Return the problem that these tensors are, in the order of `Names.problem`."""
-    if len(given) == _WITHOUT_DIRECTIONS:
-        distances, rows = given
-        return Problem(Costs(distances), rows)
+    if len(given) == _OF_PLANES:
+        cities, rows = given
+        return Problem(Planes(cities), rows)
     means, leans, rows, fees, tilts = given
-    return Problem(Costs(means, leans), rows, Prices(fees, tilts))
+    return Problem(Matrices(means, leans), rows, Prices(fees, tilts))
 
 
 def as_tensors(problem: Problem) -> tuple[Tensor, ...]:
     """Return the tensors of a problem, in the order of `Names.problem`."""
-    return *present(problem.costs), problem.weights, *(problem.prices or ())
+    return *problem.costs, problem.weights, *(problem.prices or ())
 
 
 def repair_parts(
@@ -120,8 +126,8 @@ def repair_parts(
     So many cities are looked at by a repair, and so many of them cut out.
     """
     costs, rows, _ = problem
-    tables = present(costs)
-    r, n = len(rows), costs.means.shape[1]
+    tables = tuple(costs)
+    r, n = len(rows), problem.tables.means.shape[1]
     tours = torch.arange(n).repeat(r, 1)
     points, freshness = torch.rand(r, 2), torch.rand(r, n)
     # All different tensors: one that is given twice would be one input.
@@ -145,7 +151,7 @@ def repair_parts(
             ["cities", *CUTS, *names.costs, *names.after_round],
         ),
         "Rejoin": (
-            Rejoin(actor),
+            Rejoin(actor, actor.repair_joinings),
             (present(between), present(joined)),
             [*names.costs, *names.fragments],
             names.after_round,

@@ -13,13 +13,13 @@ from typing import NamedTuple, cast
 
 import torch
 from jaxtyping import Bool, Float, Int
-from torch import Generator, Tensor, nn
+from torch import Generator, Tensor
 
 from models.data.preferences import turned_outwards, weights
 from models.networks.joining.candidates import Candidates
-from models.networks.joining.costs import CANDIDATES, Costs, Problem, weighted_sums
+from models.networks.joining.costs import Matrices, Planes, Problem, along, weighted_sums
 from models.networks.joining.fragments import NEVER
-from models.networks.joining.repairs import along, cut, laid_out, repair_problem
+from models.networks.joining.repairs import cut, laid_out, repair_problem
 from models.networks.pa_one import OneActor
 
 CITIES = 8  # that a repair cuts out of a tour
@@ -91,7 +91,9 @@ def _repaired(
         cities = near.index_select(1, ranks_to_cut(number, *sizes))
         cuts = cut(state.tours, cities)
         between, fragments = repair_problem(problem, cuts)
-        new = laid_out(cuts, actor.joined_to_one(between, fragments.trimmed()))
+        new = laid_out(
+            cuts, actor.joined_to_one(between, fragments.trimmed(), actor.repair_joinings)
+        )
         state = state_after_repair(problem.costs, problem.weights, state, cities, new)
     return state
 
@@ -101,16 +103,16 @@ def least_costs(candidates: Candidates) -> Float[Tensor, "r n"]:
     return candidates.costs[..., :2].sum(dim=-1)
 
 
-def unrepaired(costs: Costs, tours: Int[Tensor, "r n"]) -> RepairState:
+def unrepaired(costs: Planes | Matrices, tours: Int[Tensor, "r n"]) -> RepairState:
     """Return the state before the first repair, of tours as they were built."""
     points = edge_lengths(costs, tours).sum(dim=2).T
     return RepairState(tours, points, tours, points, torch.ones_like(tours, dtype=points.dtype))
 
 
-def edge_lengths(costs: Costs, tours: Int[Tensor, "r n"]) -> Float[Tensor, "2 r n"]:
+def edge_lengths(costs: Planes | Matrices, tours: Int[Tensor, "r n"]) -> Float[Tensor, "2 r n"]:
     """Return the cost in each objective from each place of a tour to the next."""
-    means = along(costs.means, tours)
-    return means if costs.leans is None else means + along(costs.leans, tours)
+    means, leans = along(costs, tours)
+    return means if leans is None else means + leans
 
 
 def ranks_to_cut(number: Int[Tensor, ""], near: int | Tensor, count: int | Tensor) -> Tensor:
@@ -145,20 +147,20 @@ def cities_near(
     return away.topk(cast(int, count), largest=False).indices
 
 
-def _costs_from(problem: Problem, cities: Int[Tensor, " r"]) -> Float[Tensor, "r w"]:
+def _costs_from(problem: Problem, cities: Int[Tensor, " r"]) -> Float[Tensor, "r n"]:
     """Return what the edges at one city of each row cost at least, but for its own price."""
     costs, weights, prices = problem
-    means = weighted_sums(costs.means.index_select(1, cities), weights)
-    if costs.leans is None or prices is None:
+    in_each = costs.beginning_at(cities)
+    means = weighted_sums(in_each.means, weights)
+    if in_each.leans is None or prices is None:
         return means
-    leans = weighted_sums(costs.leans.index_select(1, cities), weights)
-    leans = leans - prices.tilts.gather(1, cities[:, None])
-    fees, tilts = (nn.functional.pad(part, (0, CANDIDATES)) for part in prices)
+    fees, tilts = prices
+    leans = weighted_sums(in_each.leans, weights) - tilts.gather(1, cities[:, None])
     return means - fees - (leans + tilts).abs()
 
 
 def state_after_repair(
-    costs: Costs,
+    costs: Planes | Matrices,
     weights: Float[Tensor, "r 2"],
     state: RepairState,
     cities: Int[Tensor, "r m"],
@@ -183,16 +185,16 @@ def state_after_repair(
 
 
 def cheaper_way(
-    costs: Costs, weights: Float[Tensor, "r 2"], tours: Int[Tensor, "r n"]
+    costs: Planes | Matrices, weights: Float[Tensor, "r 2"], tours: Int[Tensor, "r n"]
 ) -> tuple[Int[Tensor, "r n"], Float[Tensor, "r 2"]]:
     """Return each tour in the direction that costs its row less, and its two lengths."""
-    means = along(costs.means, tours).sum(dim=2).T
-    if costs.leans is None:
-        return tours, means
-    leans = along(costs.leans, tours).sum(dim=2).T
-    back = (leans * weights).sum(dim=1, keepdim=True) > 0
-    points = means + torch.where(back, -leans, leans)
-    return torch.where(back, tours.flip(1), tours), points
+    means, leans = along(costs, tours)
+    if leans is None:
+        return tours, means.sum(dim=2).T
+    # Both are added for each edge before the sum: they may be far longer than their sum.
+    there, back = ((means + part).sum(dim=2).T for part in (leans, -leans))
+    is_back = ((there - back) * weights).sum(dim=1, keepdim=True) > 0
+    return torch.where(is_back, tours.flip(1), tours), torch.where(is_back, back, there)
 
 
 def _worth_remembering(

@@ -13,7 +13,7 @@ learned from.
 from typing import ClassVar, Literal
 
 import torch
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 from torch import Generator, Tensor, nn
 
 from models import rollout_pa_one
@@ -22,17 +22,25 @@ from models.networks.actor import Actor, Architecture
 from models.networks.joining.candidates import (
     Candidates,
     cheapest_candidates,
-    first_candidates,
     joined_at_cost,
     partner_costs,
-    single_cities,
     still_possible,
     toured,
 )
-from models.networks.joining.costs import CANDIDATES, Costs, Problem, padded_distances
-from models.networks.joining.fragments import NEVER, Fragments, mutual_best
+from models.networks.joining.contraction import contracted, expanded
+from models.networks.joining.costs import CANDIDATES, Costs, Matrices, Planes, Prices, Problem
+from models.networks.joining.fragments import NEVER, Fragments, all_alone, mutual_best
 from models.networks.joining.neighbours import EDGE, Neighbours, of_both_ends
+from models.networks.joining.prices import priced_problem
 from models.networks.joining.repairs import last_two_joined
+from models.networks.joining.shortlists import (
+    RowLists,
+    Sizes,
+    first_of,
+    listed_candidates,
+    lists_of_rows,
+    shortlists,
+)
 from models.networks.layers import SilenceableLayer, feedforward
 
 _MESSAGE = 4  # features that an end sends its neighbours
@@ -54,6 +62,7 @@ class OneActor(Actor):
     # Of fragments, for one evaluation of the network: in building tours, and in repairing them.
     joinings: ClassVar[int] = 2
     repair_joinings: ClassVar[int] = 4  # two evaluations do for nearly every repair
+    list_sizes: ClassVar[Sizes] = Sizes(5, length=48, short=16, ends=256, share=32)
 
     def __init__(self, config: Architecture) -> None:
         super().__init__()
@@ -71,9 +80,9 @@ class OneActor(Actor):
         """The layers in which ends send each other messages."""
         return self.layers
 
-    def costs(self, instance: Tensor) -> Costs:
-        """Return the costs of the steps of one instance, a row for each objective."""
-        return padded_distances(instance)
+    def costs(self, instance: Tensor) -> Planes | Matrices:
+        """Return the costs of one instance in each objective."""
+        return Planes(instance)
 
     def edge_logits(
         self, costs: Costs | Problem, fragments: Fragments, candidates: Candidates
@@ -126,28 +135,69 @@ class OneActor(Actor):
 
     def problem(self, instance: Tensor, weights: Float[Tensor, "r 2"]) -> Problem:
         """Return the problem that one instance is under the weights of each row."""
-        return Problem(self.costs(instance), weights)
+        costs = self.costs(instance)
+        return priced_problem(costs, weights, self.known_prices(costs))
+
+    def known_prices(self, costs: Planes | Matrices) -> Prices | None:  # noqa: ARG002
+        """Return the prices of the cities at each knot, if there are any."""
+        return None
 
     def first_candidates(self, problem: Problem) -> Candidates:
         """Return the candidates while all cities are alone."""
-        return first_candidates(problem.tables)
+        return first_of(self.lists(problem))
+
+    def lists(self, problem: Problem) -> RowLists:
+        """Return the shortlists of each row."""
+        costs, sizes = problem.costs, self.list_sizes
+        length = sizes.length_of(costs.n)
+        lists = shortlists(costs, sizes.knots, length, self.known_prices(costs))
+        return lists_of_rows(lists, problem.weights)
 
     def built(self, problem: Problem) -> Int[Tensor, "r n"]:
         """Return the tours that are built for the rows of a problem."""
-        costs = problem.tables
-        candidates = first_candidates(costs)
-        fragments = self.round(costs, single_cities(costs), candidates, self.joinings).trimmed()
-        while bool((fragments.left > 1).any()):
-            candidates = cheapest_candidates(costs, fragments)
-            fragments = self.round(costs, fragments, candidates, self.joinings).trimmed()
-        return toured(costs, fragments)
+        lists = self.lists(problem)
+        fragments = all_alone(lists.means[..., 0], leaning=self.has_directions)
+        after = self.round(problem, fragments, first_of(lists), self.joinings)
+        while bool(self.are_listed(fragments, after)):
+            fragments = after.trimmed()
+            candidates = self.candidates_from(lists, fragments)
+            after = self.round(problem, fragments, candidates, self.joinings)
+        fragments = after.trimmed()
+        solved = self.joined_to_one(*contracted(problem, fragments), self.joinings)
+        return toured(problem, expanded(fragments, solved))
 
-    def joined_to_one(self, costs: Costs, fragments: Fragments) -> Fragments:
-        """Return one fragment for each row, of a few: the last two are joined the cheaper way."""
+    def are_listed(self, before: Fragments, after: Fragments) -> Bool[Tensor, ""]:
+        """Return whether the candidates of the next look are to come from lists.
+
+        They are while the last look joined some fragments in a row in which many ends are open.
+        Then the problem is contracted to the open ends, of which all pairs are looked at.
+        """
+        return (self._many_open(after) & (after.left < before.left)).any()
+
+    def candidates_from(self, lists: RowLists, fragments: Fragments) -> Candidates:
+        """Return the candidates of ends from lists, in rows in which many are open."""
+        return listed_candidates(lists, fragments, self._many_open(fragments))
+
+    def _many_open(self, fragments: Fragments) -> Bool[Tensor, " r"]:
+        n = (fragments.links.shape[1] - 1) // 2
+        count = fragments.open.sum(dim=1)
+        return (count > self.list_sizes.ends) & (self.list_sizes.share * count > n)
+
+    def joined_to_one(self, costs: Costs, fragments: Fragments, joinings: int) -> Fragments:
+        """Return one fragment for each row, of a few: the last two are joined the cheaper way.
+
+        There are so many joinings for one evaluation of the network.
+        """
         while bool((fragments.left > 2).any()):
-            candidates = cheapest_candidates(costs, fragments)
-            fragments = self.round(costs, fragments, candidates, self.repair_joinings).trimmed()
+            fragments = self.round_of_few(costs, fragments, joinings).trimmed()
         return last_two_joined(costs, fragments)
+
+    def round_of_few(self, costs: Costs, fragments: Fragments, joinings: int) -> Fragments:
+        """Return the fragments after a round in rows in which more than two are left."""
+        candidates = cheapest_candidates(costs, fragments)
+        more = (fragments.left > 2)[:, None, None]
+        few = candidates._replace(costs=torch.where(more, candidates.costs, NEVER))
+        return self.round(costs, fragments, few, joinings)
 
     def round(
         self,

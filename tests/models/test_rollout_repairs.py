@@ -13,7 +13,7 @@ from torch import Generator, Tensor
 from models.checkpoint import load_weights
 from models.data.instances import tour_lengths, uniform_cities
 from models.data.preferences import fan_of_preferences, turned_outwards, weights
-from models.networks.joining.costs import padded_distances
+from models.networks.joining.costs import Planes
 from models.networks.pa_one import OneActor
 from models.rollout_repairs import edge_lengths, repaired_tours
 from service.pareto import nondominated
@@ -90,5 +90,5 @@ def test_visited_tours_add_points_to_the_front() -> None:
 def test_the_lengths_of_a_tour_are_those_of_its_edges() -> None:
     cities = uniform_cities(1, 12, Generator().manual_seed(4), CPU)
     tours = torch.arange(12)[None].expand(2, -1)
-    lengths = edge_lengths(padded_distances(cities[0]), tours).sum(dim=2).T
+    lengths = edge_lengths(Planes(cities[0]), tours).sum(dim=2).T
     assert torch.allclose(lengths, tour_lengths(cities, tours[None])[0])

@@ -47,15 +47,6 @@ def single_cities(costs: Costs) -> Fragments:
     return all_alone(costs.means[:, :, 0], leaning=costs.leans is not None)
 
 
-def first_candidates(costs: Costs) -> Candidates:
-    """Return the candidates while all cities are alone, for less than `cheapest_candidates`."""
-    means, leans = costs
-    least = means if leans is None else means - leans.abs()
-    cheapest, cities = least.topk(CANDIDATES, largest=False)
-    positions = torch.where(cheapest < NEVER / 2, cities, 0)
-    return Candidates(cheapest, positions, None if leans is None else leans.gather(2, cities))
-
-
 def cheapest_candidates(costs: Costs, fragments: Fragments) -> Candidates:
     """Return the candidates of each end: the open ends to which an edge costs least."""
     ends, partners, open_ = fragments[:3]

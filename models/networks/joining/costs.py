@@ -46,50 +46,127 @@ class Prices(NamedTuple):
     tilts: Float[Tensor, "r n"]
 
 
+class Planes(NamedTuple):
+    """Costs in each objective that are distances between cities in a plane."""
+
+    cities: Float[Tensor, "n 4"]
+
+    @property
+    def n(self) -> int:
+        """The number of cities."""
+        return self.cities.shape[0]
+
+    @property
+    def tables(self) -> Costs:
+        """The costs of all steps, (2, n, m)."""
+        return Costs(_padded(distance_matrices(self.cities[None])[0]))
+
+    def steps(self, starts: Int[Tensor, "r e"], stops: Int[Tensor, "r e"]) -> Costs:
+        """Return the costs of steps, (2, r, e)."""
+        return Costs(_distances(self._of(starts), self._of(stops)))
+
+    def between(self, cities: Int[Tensor, "r e"]) -> Costs:
+        """Return the costs of the steps between these cities of each row, (2, r, e, e)."""
+        places = self._of(cities)
+        return Costs(_distances(places[..., None], places[..., None, :]))
+
+    def beginning_at(self, cities: Int[Tensor, " r"]) -> Costs:
+        """Return the costs of the steps from one city in each row to all, (2, r, n)."""
+        return Costs(_distances(self._of(cities[:, None]), self.cities.T[:, None]))
+
+    def _of(self, cities: Int[Tensor, "r e"]) -> Float[Tensor, "4 r e"]:
+        coordinates = self.cities.T
+        return coordinates.index_select(1, cities.flatten()).unflatten(1, cities.shape)
+
+
+class Matrices(NamedTuple):
+    """Costs in each objective that are the entries of a matrix, as means and leans."""
+
+    means: Float[Tensor, "2 n m"]
+    leans: Float[Tensor, "2 n m"]
+
+    @property
+    def n(self) -> int:
+        """The number of cities."""
+        return self.means.shape[1]
+
+    @property
+    def tables(self) -> Costs:
+        """The costs of all steps, (2, n, m)."""
+        return Costs(self.means, self.leans)
+
+    def steps(self, starts: Int[Tensor, "r e"], stops: Int[Tensor, "r e"]) -> Costs:
+        """Return the costs of steps, (2, r, e)."""
+        return self._at(starts * self.means.shape[2] + stops)
+
+    def between(self, cities: Int[Tensor, "r e"]) -> Costs:
+        """Return the costs of the steps between these cities of each row, (2, r, e, e)."""
+        pairs = cities[:, :, None] * self.means.shape[2] + cities[:, None, :]
+        return self._at(pairs)
+
+    def beginning_at(self, cities: Int[Tensor, " r"]) -> Costs:
+        """Return the costs of the steps from one city in each row to all, (2, r, n)."""
+        n = self.means.shape[1]
+        return Costs(*(table.index_select(1, cities)[..., :n] for table in self))
+
+    def _at(self, entries: Int[Tensor, "..."]) -> Costs:
+        shape = entries.shape
+        return Costs(
+            *(
+                table.flatten(1).index_select(1, entries.flatten()).unflatten(1, shape)
+                for table in self
+            )
+        )
+
+
+def _distances(
+    starts: Float[Tensor, "4 ..."], stops: Float[Tensor, "4 ..."]
+) -> Float[Tensor, "2 ..."]:
+    """Return the distances in both planes, computed as `distance_matrices` does."""
+    squares = (starts - stops) ** 2
+    return (squares[0::2] + squares[1::2]).sqrt()
+
+
 class Problem(NamedTuple):
     """The costs in each objective, the weights of each row, and its prices, if there are any.
 
     It gives the same costs of steps as a table for each row would, but no such table is made.
     """
 
-    costs: Costs
+    costs: Planes | Matrices
     weights: Float[Tensor, "r 2"]
     prices: Prices | None = None
 
     @property
     def tables(self) -> Costs:
         """The costs of all steps in each row."""
-        return weighted_costs(self.costs, self.weights, self.prices)
+        return weighted_costs(self.costs.tables, self.weights, self.prices)
 
     def steps(
         self, starts: Int[Tensor, "r e"], stops: Int[Tensor, "r e"]
     ) -> tuple[Float[Tensor, "r e"], Float[Tensor, "r e"] | None]:
         """Return the means of the costs of steps in each row, and their leans, if there are any."""
-        pairs = starts * self.costs.means.shape[2] + stops
-
-        def entries(table: Float[Tensor, "2 n m"]) -> Float[Tensor, "r e"]:
-            found = table.flatten(1).index_select(1, pairs.flatten()).view(2, -1, pairs.shape[1])
-            return weighted_sums(found, self.weights)
-
-        means, leans = entries(self.costs.means), None
+        in_each = self.costs.steps(starts, stops)
+        means, leans = weighted_sums(in_each.means, self.weights), None
         if self.prices is not None:
             fees, tilts = self.prices
             means = means - fees.gather(1, starts) - fees.gather(1, stops)
-            if self.costs.leans is not None:
-                leans = entries(self.costs.leans) - tilts.gather(1, starts) + tilts.gather(1, stops)
+            if in_each.leans is not None:
+                leans = weighted_sums(in_each.leans, self.weights)
+                leans = leans - tilts.gather(1, starts) + tilts.gather(1, stops)
         return means, leans
 
 
-def padded_distances(cities: Float[Tensor, "n 4"]) -> Costs:
-    """Return the distances in each plane, a row each; no city has itself for a neighbour."""
-    return Costs(_padded(distance_matrices(cities[None])[0]))
+def along(costs: Planes | Matrices, tours: Int[Tensor, "r n"]) -> Costs:
+    """Return the costs in each objective from each place of a tour to the next, (2, r, n)."""
+    return costs.steps(tours, tours.roll(-1, dims=1))
 
 
-def padded_matrices(matrices: Float[Tensor, "2 n n"]) -> Costs:
+def padded_matrices(matrices: Float[Tensor, "2 n n"]) -> Matrices:
     """Return the costs in each objective, a row each; no city has itself for a neighbour."""
     back = matrices.transpose(1, 2)
     leans = nn.functional.pad((matrices - back) / 2, (0, CANDIDATES))
-    return Costs(_padded((matrices + back) / 2), leans)
+    return Matrices(_padded((matrices + back) / 2), leans)
 
 
 def _padded(costs: Float[Tensor, "2 n n"]) -> Float[Tensor, "2 n m"]:
@@ -125,19 +202,17 @@ def without(costs: Costs, prices: Prices) -> Costs:
 def costs_between(problem: Problem, cities: Int[Tensor, "r e"]) -> Costs:
     """Return the costs of the steps between these cities of each row, numbered as they come."""
     costs, weights, prices = problem
-    e = cities.shape[1]
-    pairs = cities[:, :, None] * costs.means.shape[2] + cities[:, None, :]
+    in_each, e = costs.between(cities), cities.shape[1]
 
-    def between(table: Float[Tensor, "2 n w"]) -> Float[Tensor, "r e e"]:
-        entries = table.flatten(1).index_select(1, pairs.flatten()).view(2, -1, e * e)
-        return weighted_sums(entries, weights).unflatten(1, (e, e))
+    def weighted(table: Float[Tensor, "2 r e e"]) -> Float[Tensor, "r e e"]:
+        return weighted_sums(table.flatten(2), weights).unflatten(1, (e, e))
 
     index = torch.arange(e, device=cities.device)
     own = torch.where(index == index[:, None], NEVER, 0.0)
-    means = nn.functional.pad(between(costs.means) + own, (0, CANDIDATES), value=NEVER)
-    if costs.leans is None:
+    means = nn.functional.pad(weighted(in_each.means) + own, (0, CANDIDATES), value=NEVER)
+    if in_each.leans is None:
         return Costs(means)
-    found = Costs(means, nn.functional.pad(between(costs.leans), (0, CANDIDATES)))
+    found = Costs(means, nn.functional.pad(weighted(in_each.leans), (0, CANDIDATES)))
     if prices is None:
         return found
     return without(found, Prices(*(part.gather(1, cities) for part in prices)))

@@ -13,10 +13,10 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from models.networks.joining.costs import Costs, Prices, weighted_costs
+from models.networks.joining.costs import Costs, Matrices, Planes, Prices, Problem, weighted_costs
 from models.networks.joining.fragments import NEVER
 
-_KNOTS = 9  # weights for which prices are found
+KNOTS = 9  # weights for which prices are found
 _CHEAPEST = 4  # steps of each city, whose mean is the unit of the temperature
 _TEMPERATURE = 0.5
 _ITERATIONS = 10
@@ -24,27 +24,36 @@ _LEAST_UNIT = 1e-6
 _LEAST = 1e-30  # entry of a kernel: a city so far from all others gets no higher price
 
 
-def knots(like: Tensor) -> Float[Tensor, "g 2"]:
-    """Return the weights for which prices are found, by ascending first weight."""
-    first = torch.arange(_KNOTS, device=like.device).to(like) / (_KNOTS - 1)
+def knots(like: Tensor, count: int = KNOTS) -> Float[Tensor, "g 2"]:
+    """Return so many weights, spread evenly, by ascending first weight."""
+    first = torch.arange(count, device=like.device).to(like) / (count - 1)
     return torch.stack((first, 1 - first), dim=1)
 
 
-def places_among_knots(weights: Float[Tensor, "r 2"]) -> Float[Tensor, " r"]:
-    """Return where the weights of each row lie, from 0 at the first knot on."""
-    return weights[:, 0] * (_KNOTS - 1)
+def places_among_knots(
+    weights: Float[Tensor, "r 2"], count: int | Tensor = KNOTS
+) -> Float[Tensor, " r"]:
+    """Return where the weights of each row lie, from 0 at the first of so many knots on."""
+    return weights[:, 0] * (count - 1)
 
 
 def prices_between(weights: Float[Tensor, "r 2"], known: Prices) -> Prices:
     """Return the prices under the weights of each row, from those at the knots."""
-    index = torch.arange(_KNOTS, device=weights.device).to(weights)
+    index = torch.arange(KNOTS, device=weights.device).to(weights)
     shares = (1 - (places_among_knots(weights)[:, None] - index).abs()).clamp(min=0)  # (r, knots)
     return Prices(shares @ known.fees, shares @ known.tilts)
 
 
-def prices_at_knots(costs: Costs) -> Prices:
+def priced_problem(
+    costs: Planes | Matrices, weights: Float[Tensor, "r 2"], known: Prices | None
+) -> Problem:
+    """Return the problem under these weights, with prices where those at the knots are known."""
+    return Problem(costs, weights, None if known is None else prices_between(weights, known))
+
+
+def prices_at_knots(costs: Matrices) -> Prices:
     """Return the prices of the cities at each knot, from the costs in each objective."""
-    return _prices(weighted_costs(costs, knots(costs.means)))
+    return _prices(weighted_costs(costs.tables, knots(costs.means)))
 
 
 def _prices(costs: Costs) -> Prices:

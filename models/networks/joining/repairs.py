@@ -12,7 +12,7 @@ from jaxtyping import Float, Int
 from torch import Tensor
 
 from models.networks.joining.candidates import joined_at_cost
-from models.networks.joining.costs import Costs, Problem, costs_between, weighted_sums
+from models.networks.joining.costs import Costs, Problem, along, costs_between, weighted_sums
 from models.networks.joining.fragments import Fragments, cleared
 
 _DOUBLINGS = 6  # of the edges that an end sees ahead: enough for 64 ends
@@ -27,12 +27,6 @@ class Cuts(NamedTuple):
     tours: Int[Tensor, "r n"]
     places: Int[Tensor, "r m"]
     gaps: Int[Tensor, "r m"]
-
-
-def along(table: Float[Tensor, "2 n w"], tours: Int[Tensor, "r n"]) -> Float[Tensor, "2 r n"]:
-    """Return the entries of the table from each place of a tour to the next."""
-    pairs = tours * table.shape[2] + tours.roll(-1, dims=1)
-    return table.flatten(1).index_select(1, pairs.flatten()).unflatten(1, tours.shape)
 
 
 def cut(tours: Int[Tensor, "r n"], cities: Int[Tensor, "r m"]) -> Cuts:
@@ -76,9 +70,10 @@ def _leans(
 ) -> Float[Tensor, "r e"] | None:
     """Return the leans of the ends that cuts have left, if costs have any."""
     costs, weights, prices = problem
-    if costs.leans is None or prices is None:
+    leans = along(costs, cuts.tours).leans
+    if leans is None or prices is None:
         return None
-    onwards = weighted_sums(along(costs.leans, cuts.tours), weights)
+    onwards = weighted_sums(leans, weights)
     until = (onwards.cumsum(dim=1) - onwards).gather(1, columns) + prices.tilts.gather(1, cities)
     alone, first, last = until.tensor_split(3, dim=1)
     return torch.cat((torch.zeros_like(alone), last - first, first - last), dim=1)

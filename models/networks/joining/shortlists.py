@@ -1,39 +1,66 @@
 """Shortlists: for each city the few others to which a step may cost least, found once.
 
-They are found for intervals of weights, not for each row. Under the weights of a knot a step and
-the step back cost S + A and S - A. Between two knots S, prices included, goes in a straight line,
-and so does A; hence the cheaper of both ways, S - |A|, is never below the lower one of its values
-at both knots, and cities are listed by that. The costs of a row are then exact, those of its own
-weights. Ends of paths choose their candidates among the open ends on the lists of their cities.
+They are found for intervals of weights between knots, not for each row. Under the weights of a
+knot a step and the step back cost S + A and S - A, where A is 0 in planes. Between two knots S,
+prices included, goes in a straight line, and so does A; hence the cheaper of both ways, S - |A|,
+is never below the lower one of its values at both knots, and cities are listed by that. The costs
+of a row are then exact, those of its own weights. Ends of paths choose their candidates among the
+open ends on the lists of their cities.
 """
 
-from typing import NamedTuple
+from collections.abc import Iterable
+from typing import Any, NamedTuple, cast
 
 import torch
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 
 from models.networks.joining.candidates import Candidates
-from models.networks.joining.costs import CANDIDATES, Costs, Prices, weighted_costs
+from models.networks.joining.costs import (
+    CANDIDATES,
+    Costs,
+    Matrices,
+    Planes,
+    Prices,
+    weighted_costs,
+)
 from models.networks.joining.fragments import NEVER, Fragments
 from models.networks.joining.prices import knots, places_among_knots
 
-_LENGTH = 24  # of a list
-LEAST = 16  # open ends of a row; among fewer, candidates are looked for among all pairs
+_AT_A_TIME = 1000  # cities
+
+
+class Sizes(NamedTuple):
+    """How many knots there are, how long each list is, and for how long lists are used.
+
+    They are while more than so many ends are open in some row, and more than one in so many cities.
+    Of no more cities only the first look is at lists, which may then be short.
+    """
+
+    knots: int
+    length: int
+    short: int
+    ends: int
+    share: int
+
+    def length_of(self, n: int) -> int:
+        """Return how long each list of n cities is."""
+        return self.length if n > self.ends else self.short
 
 
 class Shortlists(NamedTuple):
     """The cities listed for each city in each interval, and the costs of the steps to them.
 
     Costs are those at the knot where an interval begins, and what is added on the way to the next.
-    A place on a list that no city takes costs NEVER.
+    A place on a list that no city takes costs NEVER. There are no leans where steps back cost the
+    same.
     """
 
     cities: Int[Tensor, "g n l"]
     means: Float[Tensor, "g n l"]
-    leans: Float[Tensor, "g n l"]
     rise_of_means: Float[Tensor, "g n l"]
-    rise_of_leans: Float[Tensor, "g n l"]
+    leans: Float[Tensor, "g n l"] | None = None
+    rise_of_leans: Float[Tensor, "g n l"] | None = None
 
 
 class RowLists(NamedTuple):
@@ -41,78 +68,128 @@ class RowLists(NamedTuple):
 
     cities: Int[Tensor, "r n l"]
     means: Float[Tensor, "r n l"]
-    leans: Float[Tensor, "r n l"]
+    leans: Float[Tensor, "r n l"] | None = None
 
 
-def shortlists(costs: Costs, known: Prices) -> Shortlists:
-    """Return the lists of all intervals, from costs in each objective and prices at the knots."""
-    means, leans = weighted_costs(costs, knots(costs.means), known)
-    assert leans is not None
-    more = _LENGTH - CANDIDATES  # columns of cities that are never reached
-    means, leans = (
-        nn.functional.pad(means, (0, more), value=NEVER),
-        nn.functional.pad(leans, (0, more)),
-    )
-    cheaper = means - leans.abs()
+def shortlists(
+    costs: Planes | Matrices, count: int, length: int, known: Prices | None = None
+) -> Shortlists:
+    """Return the lists of all cities, as `shortlists_of` does, made for some cities at a time."""
+    cities = torch.arange(costs.n, device=costs[0].device)
+    parts = [shortlists_of(some, costs, count, length, known) for some in cities.split(_AT_A_TIME)]
+    by_member: Iterable[Any] = zip(*parts, strict=True)
+    lists: list[Any] = [each[0] if each[0] is None else torch.cat(each, 1) for each in by_member]
+    return Shortlists(*lists)
+
+
+def shortlists_of(
+    some: Int[Tensor, " b"],
+    costs: Planes | Matrices,
+    count: int,
+    length: int | Tensor,
+    known: Prices | None = None,
+) -> Shortlists:
+    """Return lists of some cities, for the intervals between so many knots.
+
+    Known are the prices at the knots, if there are any. The length is a tensor while the graph is
+    traced for its export.
+    """
+    most = cast(int, length)
+    means, leans = _at_knots(some, costs, count, known)
+    cheaper = means if leans is None else means - leans.abs()
     least = torch.minimum(cheaper[:-1], cheaper[1:])
-    cheapest, cities = least.topk(_LENGTH, largest=False)
-    first_means, first_leans = means[:-1].gather(2, cities), leans[:-1].gather(2, cities)
-    return Shortlists(
-        torch.where(cheapest < NEVER / 2, cities, 0),
-        first_means,
-        first_leans,
-        means[1:].gather(2, cities) - first_means,
-        leans[1:].gather(2, cities) - first_leans,
-    )
+    least = nn.functional.pad(least, (0, most), value=NEVER)  # cities that are never reached
+    cheapest, cities = least.topk(most, largest=False)
+    is_city = cheapest < NEVER / 2
+    cities = torch.where(is_city, cities, 0)
+
+    def from_knots(table: Tensor, otherwise: float) -> tuple[Tensor, Tensor]:
+        first = table[:-1].gather(2, cities)
+        rise = table[1:].gather(2, cities) - first
+        return torch.where(is_city, first, otherwise), torch.where(is_city, rise, 0.0)
+
+    lists = Shortlists(cities, *from_knots(means, NEVER))
+    if leans is None:
+        return lists
+    leans, rise_of_leans = from_knots(leans, 0.0)
+    return lists._replace(leans=leans, rise_of_leans=rise_of_leans)
+
+
+def _at_knots(
+    some: Int[Tensor, " b"], costs: Planes | Matrices, count: int, known: Prices | None
+) -> Costs:
+    """Return the costs of the steps from some cities to all at each knot, less the prices."""
+    in_each = costs.beginning_at(some)
+    means, leans = weighted_costs(in_each, knots(in_each.means, count))
+    if known is not None:
+        fees, tilts = known
+        means = means - fees.index_select(1, some)[..., None] - fees[:, None]
+        if leans is not None:
+            leans = leans - tilts.index_select(1, some)[..., None] + tilts[:, None]
+    is_own = some[:, None] == torch.arange(means.shape[2], device=some.device)
+    return Costs(torch.where(is_own, NEVER, means), leans)
 
 
 def lists_of_rows(lists: Shortlists, weights: Float[Tensor, "r 2"]) -> RowLists:
     """Return the lists of each row: those of its interval, at the costs of its weights."""
-    places = places_among_knots(weights)
-    intervals = places.long().clamp(max=lists.cities.shape[0] - 1)
+    intervals_in_all = lists.cities.shape[0]
+    places = places_among_knots(weights, intervals_in_all + 1)
+    intervals = places.long().clamp(max=intervals_in_all - 1)
     share = (places - intervals)[:, None, None]
 
     def between(begin: Tensor, rise: Tensor) -> Float[Tensor, "r n l"]:
         return begin.index_select(0, intervals) + share * rise.index_select(0, intervals)
 
-    return RowLists(
-        lists.cities.index_select(0, intervals),
-        between(lists.means, lists.rise_of_means),
-        between(lists.leans, lists.rise_of_leans),
-    )
+    cities, means, rise_of_means, leans, rise_of_leans = lists
+    of_rows = RowLists(cities.index_select(0, intervals), between(means, rise_of_means))
+    if leans is None or rise_of_leans is None:
+        return of_rows
+    return of_rows._replace(leans=between(leans, rise_of_leans))
 
 
 def first_of(lists: RowLists) -> Candidates:
     """Return the candidates while all cities are alone."""
-    return _cheapest(lists.means - lists.leans.abs(), lists.cities, lists.leans)
+    cities, means, leans = lists
+    return _cheapest(means if leans is None else means - leans.abs(), cities, leans)
 
 
-def listed_candidates(lists: RowLists, fragments: Fragments) -> Candidates:
-    """Return the candidates of each end: the open ends on its list to which an edge costs least."""
+def listed_candidates(
+    lists: RowLists, fragments: Fragments, rows_in_use: Bool[Tensor, " r"]
+) -> Candidates:
+    """Return the candidates of each end: the open ends on its list to which an edge costs least.
+
+    In a row that is not in use no edge is possible.
+    """
     ends, partners, open_ = fragments[:3]
     r, n = lists.cities.shape[0], lists.cities.shape[1]
     rows = torch.arange(r, device=ends.device)[:, None]
     lines = (n * rows + ends).flatten()
-    cities, means, leans = (
-        part.flatten(0, 1).index_select(0, lines).view(r, ends.shape[1], -1) for part in lists
-    )
+
+    def of_ends(listed: Tensor) -> Tensor:
+        return listed.flatten(0, 1).index_select(0, lines).view(r, ends.shape[1], -1)
+
+    cities, costs, leans = of_ends(lists.cities), of_ends(lists.means), None
     index = torch.arange(ends.shape[1], device=ends.device).expand_as(ends)
     nowhere = torch.zeros_like(lists.cities[:, :, 0]) - 1
     nowhere = torch.cat((nowhere, nowhere[:, :1]), dim=1)
     by_city = nowhere.scatter(1, torch.where(open_, ends, n), torch.where(open_, index, -1))
     found = by_city.gather(1, cities.flatten(1)).view_as(cities)
     positions = found.clamp(min=0)
-    own = fragments.leans
-    assert own is not None
-    theirs = own.gather(1, positions.flatten(1)).view_as(means)
-    through = leans + theirs - own[..., None]
-    costs = means + own.abs()[..., None] + theirs.abs() - through.abs()
-    impossible = (found < 0) | (found == partners[..., None]) | ~open_[..., None]
-    return _cheapest(torch.where(impossible, NEVER, costs), positions, through)
+    if lists.leans is not None and fragments.leans is not None:
+        own = fragments.leans
+        theirs = own.gather(1, positions.flatten(1)).view_as(costs)
+        leans = of_ends(lists.leans) + theirs - own[..., None]
+        costs = costs + own.abs()[..., None] + theirs.abs() - leans.abs()
+    is_end = open_ & rows_in_use[:, None]
+    impossible = (found < 0) | (found == partners[..., None]) | ~is_end[..., None]
+    return _cheapest(torch.where(impossible, NEVER, costs), positions, leans)
 
 
 def _cheapest(
-    costs: Float[Tensor, "r e l"], positions: Int[Tensor, "r e l"], leans: Float[Tensor, "r e l"]
+    costs: Float[Tensor, "r e l"],
+    positions: Int[Tensor, "r e l"],
+    leans: Float[Tensor, "r e l"] | None,
 ) -> Candidates:
     cheapest, which = costs.topk(CANDIDATES, largest=False)
-    return Candidates(cheapest, positions.gather(2, which), leans.gather(2, which))
+    chosen = None if leans is None else leans.gather(2, which)
+    return Candidates(cheapest, positions.gather(2, which), chosen)

@@ -18,7 +18,7 @@ from models.networks.joining.candidates import (
     single_cities,
     toured,
 )
-from models.networks.joining.costs import Costs, Prices, padded_matrices, weighted_costs
+from models.networks.joining.costs import Costs, Matrices, Prices, padded_matrices, weighted_costs
 from models.networks.joining.fragments import NEVER, Fragments, mutual_best
 from models.networks.joining.prices import prices_at_knots, prices_between
 from models.networks.joining.repairs import cut, repair_problem
@@ -75,7 +75,7 @@ def test_edges_cost_what_the_cheaper_way_through_both_paths_does(
     n: int, seed: int, trims: bool
 ) -> None:
     drawn, row = matrices(n, seed), torch.tensor([[0.25, 0.75]], dtype=torch.float64)
-    costs = weighted_costs(padded_matrices(drawn), row)
+    costs = weighted_costs(padded_matrices(drawn).tables, row)
     length = length_in(0.25 * drawn[0] + 0.75 * drawn[1])
     fragments, paths = single_cities(costs), [[city] for city in range(n)]
     while int(fragments.left) > 1:
@@ -91,7 +91,7 @@ def test_edges_cost_what_the_cheaper_way_through_both_paths_does(
     assert length([*tour, tour[0]]) <= length([tour[0], *tour[::-1]]) + 1e-9
 
 
-def priced(costs: Costs, rows: Tensor) -> Prices:
+def priced(costs: Matrices, rows: Tensor) -> Prices:
     return prices_between(rows, prices_at_knots(costs))
 
 
@@ -107,8 +107,8 @@ def test_prices_change_the_cost_of_all_tours_of_a_row_by_the_same(n: int, seed: 
     costs, rows = padded_matrices(matrices(n, seed)), weights(fan_of_preferences(4, CPU)).double()
     tours = torch.stack([torch.randperm(n) for _ in range(5)])
     plain, less = (
-        whole(weighted_costs(costs, rows)),
-        whole(weighted_costs(costs, rows, priced(costs, rows))),
+        whole(weighted_costs(costs.tables, rows)),
+        whole(weighted_costs(costs.tables, rows, priced(costs, rows))),
     )
     differences = torch.stack(
         [(plain - less)[:, tour, tour.roll(-1)].sum(dim=1) for tour in tours], dim=1

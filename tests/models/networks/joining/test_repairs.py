@@ -8,7 +8,7 @@ from torch import Generator, Tensor
 from models.data.instances import uniform_cities
 from models.data.preferences import fan_of_preferences, weights
 from models.networks.joining.candidates import single_cities
-from models.networks.joining.costs import Costs, Problem, padded_distances, weighted_costs
+from models.networks.joining.costs import Planes, Problem
 from models.networks.joining.fragments import joined, walked
 from models.networks.joining.repairs import cut, laid_out, last_two_joined, repair_problem
 from models.networks.pa_one import OneActor
@@ -19,14 +19,14 @@ def steps_of(tour: Tensor) -> set[frozenset[int]]:
     return {frozenset(pair) for pair in zip(tour.tolist(), tour.roll(1).tolist(), strict=True)}
 
 
-def rejoined(tours: Tensor, cities: Tensor, distances: Costs) -> Tensor:
+def rejoined(tours: Tensor, cities: Tensor, planes: Planes) -> Tensor:
     """The tours after a repair that cuts out the cities, by a small actor."""
     actor = small_actor("pa-one")
     assert isinstance(actor, OneActor)
     cuts = cut(tours, cities)
-    problem = Problem(distances, weights(fan_of_preferences(3, CPU)))
+    problem = Problem(planes, weights(fan_of_preferences(3, CPU)))
     costs, fragments = repair_problem(problem, cuts)
-    return laid_out(cuts, actor.joined_to_one(costs, fragments))
+    return laid_out(cuts, actor.joined_to_one(costs, fragments, actor.repair_joinings))
 
 
 @given(seed=st.integers(0, 1000), n=st.integers(3, 30), m=st.integers(1, 21))
@@ -35,10 +35,10 @@ def test_a_repaired_tour_has_every_city_once_and_all_edges_that_were_not_cut(
     seed: int, n: int, m: int
 ) -> None:
     generator = Generator().manual_seed(seed)
-    distances = padded_distances(uniform_cities(1, n, generator, CPU)[0])
+    planes = Planes(uniform_cities(1, n, generator, CPU)[0])
     tours = torch.stack([torch.randperm(n, generator=generator) for _ in range(3)])
     cities = torch.stack([torch.randperm(n, generator=generator)[:m] for _ in range(3)])
-    new = rejoined(tours, cities, distances)
+    new = rejoined(tours, cities, planes)
     for row in range(3):
         uncut = {edge for edge in steps_of(tours[row]) if not edge & set(cities[row].tolist())}
         assert uncut <= steps_of(new[row])
@@ -48,9 +48,7 @@ def test_a_repaired_tour_has_every_city_once_and_all_edges_that_were_not_cut(
 def test_two_fragments_are_joined_the_cheaper_way() -> None:
     # Two sides of a square, 0-2 and 1-3: the diagonals would be longer than the other sides.
     plane = torch.tensor([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
-    distances = padded_distances(plane.repeat(1, 2))
-    rows = torch.tensor([[0.5, 0.5]])
-    costs = weighted_costs(distances, rows)
+    costs = Problem(Planes(plane.repeat(1, 2)), torch.tensor([[0.5, 0.5]])).tables
     sides = joined(single_cities(costs), torch.tensor([[2, 3, 0, 1]]))
     whole = last_two_joined(costs, sides)
     assert steps_of(walked(whole)[0]) == {frozenset(e) for e in ((0, 1), (1, 3), (3, 2), (2, 0))}
