@@ -7,7 +7,8 @@ from torch import Tensor, nn
 
 from export import pa_one_lists
 from export.onnx_parts import OPSET, Part, as_function, inlined, traced
-from export.pa_one_graph import COORDINATES, MATRICES, GraphSizes, Names, graph
+from export.pa_one_graph import GraphSizes, graph
+from export.pa_one_names import COORDINATES, MATRICES, Names
 from export.repairs import first_ends, repair_parts
 from models.data.preferences import weights
 from models.networks.joining.candidates import single_cities

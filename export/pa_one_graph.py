@@ -1,169 +1,11 @@
-"""The ONNX graph of PA-One as text, with its loops, and the names of what its parts pass on.
+"""The ONNX graph of PA-One for coordinates or for matrices: its text, filled in."""
 
-A block has as many preferences as there is room for their lists, and for the costs between the
-ends of a contracted problem. It begins with a round of all cities; further rounds work on the ends
-that are still open, of which there are fewer each time. A loop goes along the links of the finished
-tours. When all tours are there, a last loop repairs them. The functions of the domain `paretour`
-are the parts that `export.pa_one` puts in.
-
-There is one text for coordinates and for matrices. Where costs have directions, the tables of
-costs, the shortlists and the fragments have tensors of leans more, and there are prices, of which
-a block takes its rows.
-"""
-
-from string import Template
 from typing import NamedTuple
 
+from export.pa_one_names import MATRICES, Names
+from export.pa_one_text import GRAPH, JOINING, REJOINING
 from models.networks.joining.shortlists import Sizes
 
-_GRAPH = Template("""
-<ir_version: 10, opset_import: ["": $opset, "paretour": 1]>
-actor ($instance $given, float[k, 2] preferences, int64 repairs)
-    => (int64[k, n] tours, int64[k, n] visited)
-{
-    zero = Constant <value_ints = [0]> ()
-    one = Constant <value_ints = [1]> ()
-    two = Constant <value_ints = [2]> ()
-    nought = Constant <value_int = 0> ()
-    unit = Constant <value_int = 1> ()
-    room = Constant <value_ints = [$room]> ()
-    n = Shape <$cities_axis> ($given)
-    k = Shape <start = 0, end = 1> (preferences)
-    cities_in_all = Squeeze (n)
-    steps_in_all = Sub (n, two)
-    steps = Squeeze (steps_in_all)
-    long = Constant <value_ints = [$length]> ()
-    short = Constant <value_ints = [$short]> ()
-    few = Constant <value_ints = [$few]> ()
-    share = Constant <value_ints = [$share]> ()
-    are_many = Greater (n, few)
-    length = Where (are_many, long, short)
-    on_a_list = ConstantOfShape (length)
-    listed = Mul (n, length)
-    most_few = Min (n, few)
-    share_of_all = Div (n, share)
-    ends_in_all = Max (most_few, share_of_all)
-    pairs = Mul (ends_in_all, ends_in_all)
-    entries = Add (listed, pairs)
-    fitting = Div (room, entries)
-    one_at_least = Max (fitting, one)
-    size = Min (one_at_least, k)
-    more = Add (k, size)
-    filled = Sub (more, one)
-    blocks_in_all = Div (filled, size)
-    blocks = Squeeze (blocks_in_all)
-    shape_of_nothing = Concat <axis = 0> (zero, n)
-    nothing = ConstantOfShape <value = int64[1] {0}> (shape_of_nothing)
-    $prepared = paretour.Prepare ($given, preferences)
-
-    all_cities = Range (nought, cities_in_all, unit)
-    knots = Constant <value_ints = [$knots]> ()
-    costs_of_a_city = Mul (n, knots)
-    fitting_cities = Div (room, costs_of_a_city)
-    some_at_least = Max (fitting_cities, one)
-    at_a_time = Min (some_at_least, n)
-    more_cities = Add (n, at_a_time)
-    filled_cities = Sub (more_cities, one)
-    times_in_all = Div (filled_cities, at_a_time)
-    times = Squeeze (times_in_all)
-    intervals = Sub (knots, one)
-    shape_of_no_lists = Concat <axis = 0> (intervals, zero, length)
-    no_cities = ConstantOfShape <value = int64[1] {0}> (shape_of_no_lists)
-    no_costs = ConstantOfShape <value = float[1] {0}> (shape_of_no_lists)
-    $lists = Loop (times, , $no_lists) <body = add_lists
-        (int64 time, bool before_lists, $lists_so_far) => (bool after_lists, $more_lists)
-        {
-            after_lists = Identity (before_lists)
-            first_city = Mul (time, at_a_time)
-            beyond_city = Add (first_city, at_a_time)
-            some_cities = Slice (all_cities, first_city, beyond_city, zero)
-            $new_lists = paretour.List ($tables_and_known, some_cities, on_a_list)
-            $lists_appended
-        }>
-
-    least_of_nothing = CastLike (nothing, weights)
-    built, least = Loop (blocks, , nothing, least_of_nothing) <body = add_block
-        (int64 block, bool before, int64[done, n] so_far, float[done, n] least_so_far)
-        => (bool after, int64[grown, n] longer, float[grown, n] least_longer)
-        {
-            after = Identity (before)
-            first_row = Mul (block, size)
-            beyond_row = Add (first_row, size)
-            $rows_of_block
-            $joining
-            last_before, last_now, others = Loop (steps, , first, second) <body = walk
-                (int64 step, bool walking_on, int64[r] city_before, int64[r] city_now)
-                => (bool walk_on, int64[r] new_before, int64[r] new_now, int64[r] visited)
-                {
-                    walk_on = Identity (walking_on)
-                    new_before = Identity (city_now)
-                    new_now = paretour.Next (links_of_tours, city_before, city_now)
-                    visited = Identity (new_now)
-                }>
-            first_of_all = Unsqueeze (first, zero)
-            second_of_all = Unsqueeze (second, zero)
-            by_step = Concat <axis = 0> (first_of_all, second_of_all, others)
-            found = Transpose <perm = [1, 0]> (by_step)
-            longer = Concat <axis = 0> (so_far, found)
-            least_longer = Concat <axis = 0> (least_so_far, least_edges)
-        }>
-
-    most_near = Constant <value_ints = [$near]> ()
-    most_cut = Constant <value_ints = [$cut]> ()
-    to_look_at = Min (most_near, n)
-    to_cut = Min (most_cut, n)
-    near = ConstantOfShape (to_look_at)
-    count = ConstantOfShape (to_cut)
-    built_points, built_freshness = paretour.Unrepaired ($tables, built)
-    tours, points, visited, visited_points, freshness = Loop
-        (repairs, , built, built_points, built, built_points, built_freshness) <body = repair
-        (int64 number, bool repairing, int64[k, n] tours_in, float[k, 2] points_in,
-         int64[k, n] visited_in, float[k, 2] visited_points_in, float[k, n] freshness_in)
-        => (bool repair_on, int64[k, n] tours_out, float[k, 2] points_out,
-            int64[k, n] visited_out, float[k, 2] visited_points_out, float[k, n] freshness_out)
-        {
-            repair_on = Identity (repairing)
-            cut_cities, turned, places, gaps, $between, $after_cut, is_cut = paretour.Cut
-                ($problem, least, tours_in, freshness_in, number, near, count)
-            $rejoining
-            tours_out, points_out, visited_out, visited_points_out, freshness_out = paretour.Keep
-                ($tables, weights, tours_in, points_in, visited_in, visited_points_in,
-                 freshness_in, cut_cities, turned, places, gaps, $between, $new_fragments)
-        }>
-}
-""")
-
-# Of cities, with candidates from lists while many ends are open; then the problem is contracted.
-_JOINING = Template("""
-            $row_lists, least_edges, $begun, unfinished = paretour.Begin
-                ($problem_of_block, $lists)
-            $last = Loop (cities_in_all, unfinished, $begun) <body = join
-                (int64 round, bool going_on, $given_to_join)
-                => (bool go_on, $joined)
-                {
-                    $slices
-                    $names_joined, go_on = paretour.Round ($problem_of_block, $row_lists, $sliced)
-                }>
-            $slices_of_last
-            $costs, $few, is_open = paretour.Contract ($problem_of_block, $sliced_last)
-            $rejoining_of_few
-            links_of_tours, first, second = paretour.Finish
-                ($problem_of_block, $sliced_last, $costs, $solved)
-""")
-
-# Of a few fragments, until two are left at most.
-_REJOINING = Template("""
-            $after = Loop (cities_in_all, $unfinished, $before) <body = rejoin
-                (int64 ${prefix}round, bool ${prefix}going_on, $given)
-                => (bool ${prefix}go_on, $rejoined)
-                {
-                    $slices
-                    $names, ${prefix}go_on = paretour.$join ($costs, $sliced)
-                }>
-""")
-
-CUTS = ("turned", "places", "gaps")
-STATE = ("tours", "points", "visited", "visited_points", "freshness")
 _TYPES = {
     "ends": "int64[r, {e}]",
     "partners": "int64[r, {e}]",
@@ -174,45 +16,6 @@ _TYPES = {
     "kept": "int64[1]",
 }
 _BY_END = ("ends", "partners", "open", "leans")  # of which those that are kept are sliced off
-
-
-class Names(NamedTuple):
-    """The names of what parts pass on, for coordinates or for matrices."""
-
-    instance: str
-    tables: tuple[str, ...]
-    prices: tuple[str, ...]
-    known: tuple[str, ...]
-    costs: tuple[str, ...]
-    fragments: tuple[str, ...]
-    lists: tuple[str, ...]
-    row_lists: tuple[str, ...]
-
-    @property
-    def problem(self) -> tuple[str, ...]:
-        """The tables, the weights of each row, its prices."""
-        return *self.tables, "weights", *self.prices
-
-    @property
-    def after_round(self) -> list[str]:
-        """The fragments, how many ends to keep, and whether more are to be joined."""
-        return [f"new_{name}" for name in (*self.fragments, "kept", "go_on")]
-
-
-_FRAGMENTS = ("ends", "partners", "open", "links", "left")
-_LISTS = ("listed_cities", "listed_means", "rise_of_means")
-_ROW_LISTS = ("row_cities", "row_means")
-COORDINATES = Names("cities", ("planes",), (), (), ("costs",), _FRAGMENTS, _LISTS, _ROW_LISTS)
-MATRICES = Names(
-    "matrices",
-    ("means", "mean_leans"),
-    ("fees", "tilts"),
-    ("known_fees", "known_tilts"),
-    ("costs", "cost_leans"),
-    (*_FRAGMENTS, "leans"),
-    (*_LISTS, "listed_leans", "rise_of_leans"),
-    (*_ROW_LISTS, "row_leans"),
-)
 
 
 class GraphSizes(NamedTuple):
@@ -235,7 +38,7 @@ def graph(names: Names, opset: int, sizes: GraphSizes) -> str:
     """Return the text of the graph."""
     by_row = ("weights", *names.prices)
     is_matrices = names is MATRICES
-    return _GRAPH.substitute(
+    return GRAPH.substitute(
         opset=opset,
         room=sizes.room,
         length=sizes.lists.length,
@@ -282,7 +85,7 @@ def _types_of_lists(names: Names, prefix: str, cities: str) -> str:
 def _joining(names: Names) -> str:
     """Return the lines that build the tours of a block."""
     kept = (*names.fragments, "kept")
-    return _JOINING.safe_substitute(
+    return JOINING.safe_substitute(
         problem_of_block=_listed(
             (*names.tables, *(f"block_{name}" for name in ("weights", *names.prices)))
         ),
@@ -311,7 +114,7 @@ def _rejoining(
     """Return the lines that join fragments by a part; prefixes are of names before and after."""
     kept = (*names.fragments, "kept")
     before, after = prefixes
-    return _REJOINING.substitute(
+    return REJOINING.substitute(
         prefix=before,
         join=part,
         unfinished=unfinished,

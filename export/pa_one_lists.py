@@ -4,7 +4,7 @@ import torch
 from torch import Tensor, nn
 
 from export.onnx_parts import Part
-from export.pa_one_graph import Names
+from export.pa_one_names import Names
 from export.repairs import Rejoin, as_costs, as_problem, as_tensors, left_of, nearly_solved, present
 from models.data.preferences import turned_outwards, weights
 from models.networks.joining.candidates import cheaper_starts

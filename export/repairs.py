@@ -4,7 +4,7 @@ import torch
 from torch import Tensor, nn
 
 from export.onnx_parts import Part
-from export.pa_one_graph import CUTS, STATE, Names
+from export.pa_one_names import CUTS, STATE, Names
 from models.networks.joining.candidates import cheapest_candidates
 from models.networks.joining.costs import Costs, Matrices, Planes, Prices, Problem
 from models.networks.joining.fragments import Fragments, cleared

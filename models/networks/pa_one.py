@@ -30,6 +30,7 @@ from models.networks.joining.candidates import (
 from models.networks.joining.contraction import contracted, expanded
 from models.networks.joining.costs import CANDIDATES, Costs, Matrices, Planes, Prices, Problem
 from models.networks.joining.fragments import NEVER, Fragments, all_alone, mutual_best
+from models.networks.joining.messages import MessagePassingLayer
 from models.networks.joining.neighbours import EDGE, Neighbours, of_both_ends
 from models.networks.joining.prices import priced_problem
 from models.networks.joining.repairs import last_two_joined
@@ -41,9 +42,7 @@ from models.networks.joining.shortlists import (
     lists_of_rows,
     shortlists,
 )
-from models.networks.layers import SilenceableLayer, feedforward
-
-_MESSAGE = 4  # features that an end sends its neighbours
+from models.networks.layers import feedforward
 
 # Bounds on the network's inputs. Costs are in units of their mean over the candidates of a row.
 _MOST = 5.0  # of a cost against the mean of the candidates of an end
@@ -260,30 +259,3 @@ def _leans_in_units(
         return None
     edges = torch.where(candidates.real, candidates.leans, 0.0)
     return torch.cat((edges, fragments.leans[..., None]), dim=-1) / unit[..., None]
-
-
-class MessagePassingLayer(SilenceableLayer):
-    """A layer in which each end reads a message of its partner and of each of its candidates.
-
-    Candidates come by ascending cost, so that one product over all of them side by side treats
-    the nearest, the second and so on each in a way of its own.
-    """
-
-    def __init__(self, width: int, hidden: int) -> None:
-        super().__init__()
-        self.tell = nn.Linear(width, _MESSAGE)
-        self.think = feedforward(width + (CANDIDATES + 1) * _MESSAGE, width, hidden)
-        self.silence()
-
-    def silence(self) -> None:
-        """Make the layer give back the features as they came, until it is trained."""
-        for last in self.think[-1].parameters():
-            nn.init.zeros_(last)
-
-    def forward(self, features: Float[Tensor, "x d"], near: Neighbours) -> Float[Tensor, "x d"]:
-        """Return the features of the ends, each after the messages of its neighbours."""
-        messages = self.tell(features).relu()
-        received = near.candidates_of(messages).flatten(1)
-        inputs = torch.cat((features, near.partners_of(messages), received), dim=-1)
-        change: Tensor = self.think(inputs)
-        return features + change
