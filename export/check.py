@@ -23,7 +23,7 @@ _MANY_CITIES = 200  # above which torch takes minutes for more than one repair
 # Logits this close are a tie: float32 sums of two orders differ by less, and either city may win.
 _TIE = 1e-3
 # PA-One joins by many comparisons at once; small changes to the cities show which were close.
-_ROUNDING, _ROUNDINGS = 3e-6, 8  # what sums of a thousand floats may be wrong by; how often
+_ROUNDING, _ROUNDINGS = 1e-5, 8  # what sums of a thousand floats may be wrong by; how often
 
 
 class TourMismatch(Exception):
