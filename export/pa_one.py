@@ -3,7 +3,6 @@
 import onnx
 import torch
 from onnx import ModelProto, parser
-from torch import Tensor, nn
 
 from export import pa_one_lists
 from export.onnx_parts import OPSET, Part, as_function, inlined, traced
@@ -13,27 +12,19 @@ from export.repairs import first_ends, repair_parts
 from models.data.preferences import weights
 from models.networks.joining.candidates import single_cities
 from models.networks.joining.costs import CANDIDATES
-from models.networks.joining.fragments import first_steps, next_city
-from models.networks.pa_one import OneActor
+from models.networks.pa_one import MANY, OneActor
 from models.networks.pa_one_matrix import OneMatrixActor
 from models.rollout_repairs import CITIES, NEAR
 
-_ROOM = 10_000_000  # costs of a block, 40 MB; a round takes a few times as much
-
-
-class _Next(nn.Module):
-    """The next city of each finished tour."""
-
-    def forward(self, links: Tensor, before: Tensor, now: Tensor) -> Tensor:
-        return next_city(links, before, now)
+_ROOM = 3_000_000  # costs of a block, 12 MB; a round takes a few times as much
 
 
 # Sizes to trace at, all different, and different from all that is fixed: cities, rows, ends, those
 # of a contracted problem, cities to make lists of, cities on a list, cities to choose from in a
 # repair, and cut cities. Three columns of a repair's problem belong to each of the last.
-_N, _R, _E, _F, _B, _K, _L, _M = 17, 37, 13, 15, 14, 19, 11, 7
+_N, _R, _E, _F, _B, _K, _L, _M = 17, 37, 13, 15, 14, 48, 11, 7
 _AXES = {
-    *(_N, _N + CANDIDATES, 2 * _N + 1, _R, _E),
+    *(_N, _N + CANDIDATES, 2 * _N, 2 * _N + 1, _R, _E),
     *(_F, _F + CANDIDATES, 2 * _F + 1),
     *(_B, _K, _L, _M, 3 * _M, 3 * _M + CANDIDATES, 6 * _M + 1),
 }
@@ -51,7 +42,7 @@ def to_onnx(actor: OneActor) -> ModelProto:
         for name, part in _parts(actor, names).items()
     ]
     room = _ROOM // len(names.tables)
-    sizes = GraphSizes(room, actor.list_sizes, NEAR, CITIES)
+    sizes = GraphSizes(room, actor.list_sizes, MANY, NEAR, CITIES)
     model = inlined(parser.parse_model(graph(names, OPSET, sizes)), functions)
     onnx.checker.check_model(model, full_check=True)
     return model
@@ -63,13 +54,11 @@ def _parts(actor: OneActor, names: Names) -> dict[str, Part]:
     preferences = torch.rand(_R, 2)
     with torch.no_grad():
         problem = actor.problem(instance, weights(preferences))
-    some = first_ends(single_cities(problem.tables), _E)
-    more = first_ends(single_cities(problem.tables), _F)
+    alone = single_cities(problem.tables)
+    some, more = (first_ends(alone, count) for count in (_E, _F))
     more = more._replace(left=torch.full_like(more.left, _F))  # the other cities are nowhere
-    ring = some._replace(links=some.links.clamp(min=0))  # any cities
     given, listed = (instance, preferences), (torch.arange(_B), torch.zeros(_K))
     return {
         **pa_one_lists.parts(actor, names, given, listed, (problem, some, more)),
-        "Next": (_Next(), (ring.links, *first_steps(ring)), ["links", "before", "now"], ["next"]),
         **repair_parts(actor, names, problem, (_L, _M), _E),
     }

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from export.pa_one_names import MATRICES, Names
-from export.pa_one_text import GRAPH, JOINING, REJOINING
+from export.pa_one_text import BLOCKS, GRAPH, JOINING, REJOINING
 from models.networks.joining.shortlists import Sizes
 
 _TYPES = {
@@ -24,12 +24,14 @@ class GraphSizes(NamedTuple):
     Args:
         room: Entries of lists and of costs in a block.
         lists: Of the shortlists.
+        many: The cities, more than which are joined more often a round.
         near: The cities that a repair looks at, at most.
         cut: The cities of these that it cuts out, at most.
     """
 
     room: int
     lists: Sizes
+    many: int
     near: int
     cut: int
 
@@ -45,6 +47,7 @@ def graph(names: Names, opset: int, sizes: GraphSizes) -> str:
         short=sizes.lists.short,
         few=sizes.lists.ends,
         share=sizes.lists.share,
+        many=sizes.many,
         near=sizes.near,
         cut=sizes.cut,
         given=names.instance,
@@ -60,6 +63,10 @@ def graph(names: Names, opset: int, sizes: GraphSizes) -> str:
         tables_and_known=_listed((*names.tables, *names.known)),
         lists_appended="\n".join(
             f"longer_{name} = Concat <axis = 1> (so_far_{name}, new_{name})" for name in names.lists
+        ),
+        blocks_of_rows=BLOCKS.substitute(times="blocks", size="size", entries="entries", count="k"),
+        blocks_of_cities=BLOCKS.substitute(
+            times="times", size="at_a_time", entries="costs_of_a_city", count="n"
         ),
         problem=_listed(names.problem),
         tables=_listed(names.tables),
@@ -85,7 +92,7 @@ def _types_of_lists(names: Names, prefix: str, cities: str) -> str:
 def _joining(names: Names) -> str:
     """Return the lines that build the tours of a block."""
     kept = (*names.fragments, "kept")
-    return JOINING.safe_substitute(
+    return JOINING.substitute(
         problem_of_block=_listed(
             (*names.tables, *(f"block_{name}" for name in ("weights", *names.prices)))
         ),
@@ -94,9 +101,12 @@ def _joining(names: Names) -> str:
         row_lists=_listed(names.row_lists),
         begun=_listed(kept),
         last=_listed(kept, "last_"),
-        last_fragments=_listed(names.fragments, "last_"),
         given_to_join=_typed(kept, "all_", "e"),
         joined=_typed(kept, "out_", "f"),
+        many_joined=_typed(kept, "many_", "f"),
+        names_many_joined=_listed(kept, "many_"),
+        few_joined=_typed(kept, "few_joined_", "f"),
+        names_few_joined=_listed(kept, "few_joined_"),
         slices=_slices(names.fragments, "all_", "in_"),
         sliced=_listed(names.fragments, "in_"),
         names_joined=_listed(kept, "out_"),

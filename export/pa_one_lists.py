@@ -10,7 +10,7 @@ from models.data.preferences import turned_outwards, weights
 from models.networks.joining.candidates import cheaper_starts
 from models.networks.joining.contraction import contracted, expanded
 from models.networks.joining.costs import Costs, Prices, Problem
-from models.networks.joining.fragments import Fragments, all_alone, cleared, first_steps
+from models.networks.joining.fragments import Fragments, all_alone, cleared
 from models.networks.joining.prices import priced_problem
 from models.networks.joining.repairs import last_two_joined
 from models.networks.joining.shortlists import (
@@ -21,8 +21,17 @@ from models.networks.joining.shortlists import (
     shortlists,
     shortlists_of,
 )
+from models.networks.joining.walks import (
+    Walks,
+    begun_at,
+    doubled,
+    end_out_of_sight,
+    walked,
+)
 from models.networks.pa_one import OneActor
 from models.rollout_repairs import least_costs
+
+_WALKS = ["onwards", "steps", "begin", "last"]
 
 
 class _Prepare(nn.Module):
@@ -75,18 +84,18 @@ class _Begin(nn.Module):
 
 
 class _Round(nn.Module):
-    """The fragments after one more round."""
+    """The fragments after one more round, of so many joinings."""
 
-    def __init__(self, actor: OneActor) -> None:
+    def __init__(self, actor: OneActor, joinings: int) -> None:
         super().__init__()
-        self.actor = actor
+        self.actor, self.joinings = actor, joinings
 
     def forward(
         self, given: tuple[Tensor, ...], lists: tuple[Tensor, ...], fragments: tuple[Tensor, ...]
     ) -> tuple[Tensor, ...]:
         problem, before = as_problem(given), Fragments(*fragments)
         candidates = self.actor.candidates_from(RowLists(*lists), before)
-        after = self.actor.round(problem, before, candidates, self.actor.joinings)
+        after = self.actor.round(problem, before, candidates, self.joinings)
         return _listed(self.actor, before, after)
 
 
@@ -101,7 +110,7 @@ class _Contract(nn.Module):
 
 
 class _Finish(nn.Module):
-    """The links of the tours, and the first two cities of each."""
+    """The walks along the tours, and whether some end is not seen yet."""
 
     def forward(
         self,
@@ -112,7 +121,25 @@ class _Finish(nn.Module):
     ) -> tuple[Tensor, ...]:
         whole = last_two_joined(Costs(*between), Fragments(*solved))
         tours = expanded(Fragments(*fragments), whole)
-        return tours.links, *first_steps(tours, cheaper_starts(as_problem(given), tours))
+        walks = begun_at(tours, cheaper_starts(as_problem(given), tours))
+        return *walks, end_out_of_sight(walks)
+
+
+class _Double(nn.Module):
+    """The walks, each departure seeing twice as far, and whether some end is not seen yet."""
+
+    def forward(
+        self, onwards: Tensor, steps: Tensor, begin: Tensor, last: Tensor
+    ) -> tuple[Tensor, ...]:
+        walks = doubled(Walks(onwards, steps, begin, last))
+        return walks.onwards, walks.steps, end_out_of_sight(walks)
+
+
+class _Walk(nn.Module):
+    """The tours of walks whose end is seen."""
+
+    def forward(self, onwards: Tensor, steps: Tensor, begin: Tensor, last: Tensor) -> Tensor:
+        return walked(Walks(onwards, steps, begin, last))
 
 
 def _listed(actor: OneActor, before: Fragments, after: Fragments) -> tuple[Tensor, ...]:
@@ -142,8 +169,14 @@ def parts(
         row_lists = lists_of_rows(lists, problem.weights)
         between, few = contracted(problem, more)
     solved = nearly_solved(actor, between, few, some.ends.shape[1])
+    walks = begun_at(some._replace(links=some.links.clamp(min=0)), some.partners[:, :1])
     tensors, in_rows = as_tensors(problem), names.row_lists
     fragments, after = list(names.fragments), names.after_round
+    a_round = (
+        (tensors, present(row_lists), present(some)),
+        [*names.problem, *in_rows, *fragments],
+        after,
+    )
     return {
         "Prepare": (
             _Prepare(actor),
@@ -163,12 +196,8 @@ def parts(
             [*names.problem, *names.lists],
             [*in_rows, "least", *after],
         ),
-        "Round": (
-            _Round(actor),
-            (tensors, present(row_lists), present(some)),
-            [*names.problem, *in_rows, *fragments],
-            after,
-        ),
+        "Round": (_Round(actor, actor.joinings), *a_round),
+        "RoundOfMany": (_Round(actor, actor.joinings_of_many), *a_round),
         "Contract": (
             _Contract(),
             (tensors, present(more)),
@@ -188,6 +217,8 @@ def parts(
                 *(*names.problem, *fragments, *names.costs),
                 *(f"solved_{name}" for name in fragments),
             ],
-            ["tour_links", "first", "second"],
+            [*_WALKS, "is_unseen"],
         ),
+        "Double": (_Double(), tuple(walks), _WALKS, ["new_onwards", "new_steps", "is_unseen"]),
+        "Walk": (_Walk(), tuple(walks), _WALKS, ["tours"]),
     }

@@ -2,9 +2,9 @@
 
 A block has as many preferences as there is room for their lists, and for the costs between the
 ends of a contracted problem. It begins with a round of all cities; further rounds work on the ends
-that are still open, of which there are fewer each time. A loop goes along the links of the finished
-tours. When all tours are there, a last loop repairs them. The functions of the domain `paretour`
-are the parts that `export.pa_one` puts in.
+that are still open, of which there are fewer each time. A loop of a few passes finds where on its
+tour each city comes. When all tours are there, a last loop repairs them. The functions of the
+domain `paretour` are the parts that `export.pa_one` puts in.
 
 There is one text for coordinates and for matrices. Where costs have directions, the tables of
 costs, the shortlists and the fragments have tensors of leans more, and there are prices, of which
@@ -20,20 +20,20 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
 {
     zero = Constant <value_ints = [0]> ()
     one = Constant <value_ints = [1]> ()
-    two = Constant <value_ints = [2]> ()
     nought = Constant <value_int = 0> ()
     unit = Constant <value_int = 1> ()
     room = Constant <value_ints = [$room]> ()
     n = Shape <$cities_axis> ($given)
     k = Shape <start = 0, end = 1> (preferences)
     cities_in_all = Squeeze (n)
-    steps_in_all = Sub (n, two)
-    steps = Squeeze (steps_in_all)
     long = Constant <value_ints = [$length]> ()
     short = Constant <value_ints = [$short]> ()
     few = Constant <value_ints = [$few]> ()
     share = Constant <value_ints = [$share]> ()
     are_many = Greater (n, few)
+    many = Constant <value_ints = [$many]> ()
+    exceeds_many = Greater (n, many)
+    are_many_to_join = Squeeze (exceeds_many)
     length = Where (are_many, long, short)
     on_a_list = ConstantOfShape (length)
     listed = Mul (n, length)
@@ -42,13 +42,7 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
     ends_in_all = Max (most_few, share_of_all)
     pairs = Mul (ends_in_all, ends_in_all)
     entries = Add (listed, pairs)
-    fitting = Div (room, entries)
-    one_at_least = Max (fitting, one)
-    size = Min (one_at_least, k)
-    more = Add (k, size)
-    filled = Sub (more, one)
-    blocks_in_all = Div (filled, size)
-    blocks = Squeeze (blocks_in_all)
+    $blocks_of_rows
     shape_of_nothing = Concat <axis = 0> (zero, n)
     nothing = ConstantOfShape <value = int64[1] {0}> (shape_of_nothing)
     $prepared = paretour.Prepare ($given, preferences)
@@ -56,13 +50,7 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
     all_cities = Range (nought, cities_in_all, unit)
     knots = Constant <value_ints = [$knots]> ()
     costs_of_a_city = Mul (n, knots)
-    fitting_cities = Div (room, costs_of_a_city)
-    some_at_least = Max (fitting_cities, one)
-    at_a_time = Min (some_at_least, n)
-    more_cities = Add (n, at_a_time)
-    filled_cities = Sub (more_cities, one)
-    times_in_all = Div (filled_cities, at_a_time)
-    times = Squeeze (times_in_all)
+    $blocks_of_cities
     intervals = Sub (knots, one)
     shape_of_no_lists = Concat <axis = 0> (intervals, zero, length)
     no_cities = ConstantOfShape <value = int64[1] {0}> (shape_of_no_lists)
@@ -88,19 +76,14 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
             beyond_row = Add (first_row, size)
             $rows_of_block
             $joining
-            last_before, last_now, others = Loop (steps, , first, second) <body = walk
-                (int64 step, bool walking_on, int64[r] city_before, int64[r] city_now)
-                => (bool walk_on, int64[r] new_before, int64[r] new_now, int64[r] visited)
+            seen, steps_to_there = Loop (cities_in_all, is_unseen, onwards, ahead) <body = walk
+                (int64 pass, bool walking_on, int64[r, d] departures_seen, int64[r, d] steps_seen)
+                => (bool walk_on, int64[r, d] seen_further, int64[r, d] steps_further)
                 {
-                    walk_on = Identity (walking_on)
-                    new_before = Identity (city_now)
-                    new_now = paretour.Next (links_of_tours, city_before, city_now)
-                    visited = Identity (new_now)
+                    seen_further, steps_further, walk_on = paretour.Double
+                        (departures_seen, steps_seen, begin, last_departure)
                 }>
-            first_of_all = Unsqueeze (first, zero)
-            second_of_all = Unsqueeze (second, zero)
-            by_step = Concat <axis = 0> (first_of_all, second_of_all, others)
-            found = Transpose <perm = [1, 0]> (by_step)
+            found = paretour.Walk (seen, steps_to_there, begin, last_departure)
             longer = Concat <axis = 0> (so_far, found)
             least_longer = Concat <axis = 0> (least_so_far, least_edges)
         }>
@@ -139,12 +122,22 @@ JOINING = Template("""
                 => (bool go_on, $joined)
                 {
                     $slices
-                    $names_joined, go_on = paretour.Round ($problem_of_block, $row_lists, $sliced)
+                    $names_joined, go_on = If (are_many_to_join) <
+                        then_branch = many_joined () => ($many_joined, bool go_on_with_many)
+                        {
+                            $names_many_joined, go_on_with_many = paretour.RoundOfMany
+                                ($problem_of_block, $row_lists, $sliced)
+                        },
+                        else_branch = few_joined () => ($few_joined, bool go_on_with_few)
+                        {
+                            $names_few_joined, go_on_with_few = paretour.Round
+                                ($problem_of_block, $row_lists, $sliced)
+                        }>
                 }>
             $slices_of_last
             $costs, $few, is_open = paretour.Contract ($problem_of_block, $sliced_last)
             $rejoining_of_few
-            links_of_tours, first, second = paretour.Finish
+            onwards, ahead, begin, last_departure, is_unseen = paretour.Finish
                 ($problem_of_block, $sliced_last, $costs, $solved)
 """)
 
@@ -157,4 +150,15 @@ REJOINING = Template("""
                     $slices
                     $names, ${prefix}go_on = paretour.$join ($costs, $sliced)
                 }>
+""")
+
+# Of so many things, as many at a time as there is room for; none of them takes more than all.
+BLOCKS = Template("""
+    ${times}_fitting = Div (room, $entries)
+    ${times}_at_least = Max (${times}_fitting, one)
+    $size = Min (${times}_at_least, $count)
+    ${times}_with_last = Add ($count, $size)
+    ${times}_filled = Sub (${times}_with_last, one)
+    ${times}_in_all = Div (${times}_filled, $size)
+    $times = Squeeze (${times}_in_all)
 """)

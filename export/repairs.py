@@ -5,21 +5,25 @@ from torch import Tensor, nn
 
 from export.onnx_parts import Part
 from export.pa_one_names import CUTS, STATE, Names
-from models.networks.joining.candidates import cheapest_candidates
 from models.networks.joining.costs import Costs, Matrices, Planes, Prices, Problem
 from models.networks.joining.fragments import Fragments, cleared
-from models.networks.joining.repairs import Cuts, cut, laid_out, last_two_joined, repair_problem
+from models.networks.joining.repairs import (
+    ENOUGH,
+    Cuts,
+    cut,
+    laid_out,
+    last_two_joined,
+    repair_problem,
+)
 from models.networks.joining.shortlists import RowLists, Shortlists
 from models.networks.pa_one import OneActor
 from models.rollout_repairs import (
     RepairState,
-    cities_near,
-    ranks_to_cut,
+    cities_to_cut,
     state_after_repair,
     unrepaired,
 )
 
-_ENOUGH = 2  # fragments, which are joined the cheaper way
 _OF_PLANES = 2  # tensors that a problem is given by: cities, and weights
 
 
@@ -50,8 +54,7 @@ class Cut(nn.Module):
         """
         problem = as_problem(given)
         near, count = (size.shape[0] for size in sizes)
-        close = cities_near(problem, least, tours, freshness, near)
-        cities = close.index_select(1, ranks_to_cut(number, near, count))
+        cities = cities_to_cut(problem, least, (tours, freshness), number, (near, count))
         cuts = cut(tours, cities)
         between, fragments = repair_problem(problem, cuts)
         return cities, *cuts, *present(between), *left_of(fragments)
@@ -91,7 +94,7 @@ class Keep(nn.Module):
 def left_of(fragments: Fragments) -> tuple[Tensor, ...]:
     """Return the cleared fragments, how many ends to keep, and whether too many are left."""
     after, kept = cleared(fragments)
-    return *present(after), kept[None], (after.left > _ENOUGH).any()
+    return *present(after), kept[None], (after.left > ENOUGH).any()
 
 
 def present(tensors: Costs | Fragments | Shortlists | RowLists) -> tuple[Tensor, ...]:
@@ -127,7 +130,7 @@ def repair_parts(
     """
     costs, rows, _ = problem
     tables = tuple(costs)
-    r, n = len(rows), problem.tables.means.shape[1]
+    r, n = len(rows), costs.n
     tours = torch.arange(n).repeat(r, 1)
     points, freshness = torch.rand(r, 2), torch.rand(r, n)
     # All different tensors: one that is given twice would be one input.
@@ -170,10 +173,9 @@ def repair_parts(
 
 def nearly_solved(actor: OneActor, costs: Costs, fragments: Fragments, count: int) -> Fragments:
     """Return the fragments when two at most are left in each row, with that many ends."""
-    while bool((fragments.left > 2).any()):
-        candidates = cheapest_candidates(costs, fragments)
+    while bool((fragments.left > ENOUGH).any()):
         with torch.no_grad():
-            fragments = cleared(actor.round(costs, fragments, candidates, 1))[0]
+            fragments = cleared(actor.round_of_few(costs, fragments, 1))[0]
     return first_ends(fragments, count)
 
 

@@ -50,7 +50,7 @@ class TrainingConfig:
         "weighted-sum", "lagrangian (the paper's), weighted-sum, imitation or repairs"
     )
     baseline: str = setting("shared", "critic (the paper's) or shared: the mean over starts")
-    steps: int = setting(10_000, "gradient steps in all; the learning rate ends at their end")
+    steps: int = setting(10_000, "steps in all, at whose end the learning rate ends")
     instances: int = setting(8, "instances a step")
     least_cities: int = setting(40, "least cities of an instance; all of a step have as many")
     most_cities: int = setting(40, "most cities of an instance")

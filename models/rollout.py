@@ -10,6 +10,7 @@ import torch
 from jaxtyping import Float, Int
 from torch import Generator, Tensor
 
+from models.networks.rows import repeated
 from models.networks.stepwise import Conditioning, Decoder, Memory, Moment
 
 # From logits, (b, r, n), to the next cities, (b, r).
@@ -87,11 +88,6 @@ def log_likelihoods_by_city(
     logits = decoder.logits(memory, repeated(rows, targets.shape[-1]), moments)
     chosen = logits.float().log_softmax(dim=-1).gather(-1, targets.reshape(b, -1, 1))
     return chosen.view(b, r, -1)
-
-
-def repeated(rows: Conditioning, times: int) -> Conditioning:
-    """Return each row several times, one copy after the other."""
-    return type(rows)(*(part.repeat_interleave(times, dim=0) for part in rows))
 
 
 def _moments(

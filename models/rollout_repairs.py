@@ -84,11 +84,9 @@ def _repaired(
 ) -> RepairState:
     least = least_costs(actor.first_candidates(problem))
     state = unrepaired(problem.costs, tours)
-    n = tours.shape[1]
-    sizes = min(NEAR, n), min(CITIES, n)
     for number in torch.arange(repairs):
-        near = cities_near(problem, least, state.tours, state.freshness, sizes[0])
-        cities = near.index_select(1, ranks_to_cut(number, *sizes))
+        places = state.tours, state.freshness
+        cities = cities_to_cut(problem, least, places, number, sizes_of_cut(tours.shape[1]))
         cuts = cut(state.tours, cities)
         between, fragments = repair_problem(problem, cuts)
         new = laid_out(
@@ -115,20 +113,33 @@ def edge_lengths(costs: Planes | Matrices, tours: Int[Tensor, "r n"]) -> Float[T
     return means if leans is None else means + leans
 
 
-def ranks_to_cut(number: Int[Tensor, ""], near: int | Tensor, count: int | Tensor) -> Tensor:
-    """Return the ranks of the cities to cut, by nearness, among those near: 0 is always one.
-
-    The repairs are numbered from 0. Sizes are tensors while the graph is traced for its export.
-    """
-    pattern = _PATTERNS.index_select(0, number[None] % _REPEATED)  # exported as it is written
-    return pattern[0, : cast(int, near)].topk(cast(int, count)).indices
+def sizes_of_cut(n: int) -> tuple[int, int]:
+    """Return how many of n cities a repair looks at, and how many of these it cuts out."""
+    return min(NEAR, n), min(CITIES, n)
 
 
-def cities_near(
+def cities_to_cut(
     problem: Problem,
     least: Float[Tensor, "r n"],
-    tours: Int[Tensor, "r n"],
-    freshness: Float[Tensor, "r n"],
+    places: tuple[Int[Tensor, "r n"], Float[Tensor, "r n"]],
+    number: Int[Tensor, ""],
+    sizes: tuple[int | Tensor, int | Tensor],
+) -> Int[Tensor, "r m"]:
+    """Return the cities that a repair cuts out: of those near to a place, by its pattern.
+
+    Repairs are numbered from 0. Places are the tours, and the freshness of their cities. Sizes are
+    as of `sizes_of_cut`, or tensors while the graph is traced for its export.
+    """
+    near, count = sizes
+    pattern = _PATTERNS.index_select(0, number[None] % _REPEATED)  # exported as it is written
+    ranks = pattern[0, : cast(int, near)].topk(cast(int, count)).indices
+    return _cities_near(problem, least, places, near).index_select(1, ranks)
+
+
+def _cities_near(
+    problem: Problem,
+    least: Float[Tensor, "r n"],
+    places: tuple[Int[Tensor, "r n"], Float[Tensor, "r n"]],
     count: int | Tensor,
 ) -> Int[Tensor, "r near"]:
     """Return the city of most regret in each row, and those nearest to it, in this order.
@@ -137,6 +148,7 @@ def cities_near(
     costs are less the prices, where there are any.
     """
     costs, weights, prices = problem
+    tours, freshness = places
     onwards = weighted_sums(edge_lengths(costs, tours), weights)
     if prices is not None:
         leaving, entering = prices.fees + prices.tilts, prices.fees - prices.tilts

@@ -11,13 +11,13 @@ from torch import Generator, Tensor, nn
 from models.data.instances import distinct_starts
 from models.data.preferences import Groups, grouped
 from models.networks.layers import SilenceableLayer
+from models.networks.rows import repeated
 from models.networks.stepwise import Conditioning, Decoder, Memory
 from models.options import setting
 from models.rollout import (
     greedily,
     log_likelihoods,
     log_likelihoods_by_city,
-    repeated,
     roll_out,
     sampling,
     starts_in_turn,

@@ -93,19 +93,14 @@ class SolutionArchive:
         """Return both lengths of a solution."""
         first, second = (self._length(solution, objective) for objective in (0, 1))
         weight = weights[0 if self._roles.distance == 0 else 1]
-        scale = self._scale(0)
+        scale = self._translation.scale(0)
         extras = solution.fixed_vehicle_cost() + solution.uncollected_prizes()
         return first + extras / (weight * scale) if extras else first, second
 
     def _length(self, solution: pyvrp.Solution, objective: int) -> float:
         is_duration = self._roles.duration == objective
-        scale = self._scale(objective)
+        scale = self._translation.scale(objective)
         if self._roles.limited != objective:
             return (solution.duration() if is_duration else solution.distance()) / scale
         length = pyvrp.Route.duration if is_duration else pyvrp.Route.distance
         return max(map(length, solution.routes()), default=0) / scale
-
-    def _scale(self, objective: int) -> float:
-        translation = self._translation
-        is_duration = self._roles.duration == objective
-        return translation.duration_scale if is_duration else translation.distance_scale

@@ -90,6 +90,10 @@ class Translation:
     def _locations(self) -> list[pyvrp.Location]:
         return [pyvrp.Location(0, 0) for _ in range(self.anywhere + 1)]
 
+    def scale(self, objective: int) -> float:
+        """Return what a length in this objective is multiplied by."""
+        return self.duration_scale if objective == self.roles.duration else self.distance_scale
+
     @property
     def limit_scale(self) -> float:
         """What a length in the limited objective is multiplied by."""

@@ -50,9 +50,7 @@ def _weighted(
 
 def _in_units(points: list[Point], translation: Translation) -> list[Point]:
     """Return lengths in both objectives as PyVRP has them."""
-    first, second = translation.distance_scale, translation.duration_scale
-    if translation.roles.distance == 1:
-        first, second = second, first
+    first, second = (translation.scale(objective) for objective in range(2))
     return [(x * first, y * second) for x, y in points]
 
 

@@ -8,7 +8,8 @@ from torch import Generator
 
 from models.data.preferences import fan_of_preferences
 from models.networks.actor import StepwiseActor
-from models.rollout import greedily, log_likelihoods, repeated, roll_out, sampling
+from models.networks.rows import repeated
+from models.rollout import greedily, log_likelihoods, roll_out, sampling
 from tests.helpers.small_actors import CPU, random_instances, small_actor
 
 NAMES = ("pa-at", "pa-ean", "pa-ad")

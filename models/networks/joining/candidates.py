@@ -19,8 +19,8 @@ from models.networks.joining.fragments import (
     first_open,
     joined,
     possible,
-    walked,
 )
+from models.networks.joining.walks import tours_from
 
 _ROUNDING = 1e-5  # of a cost, by which it may seem to have risen
 
@@ -135,7 +135,7 @@ def joined_at_cost(
 
 def toured(costs: Costs | Problem, fragments: Fragments) -> Int[Tensor, "r n"]:
     """Return the tours of rows that have one fragment left, in the direction that costs less."""
-    return walked(fragments, cheaper_starts(costs, fragments))
+    return tours_from(fragments, cheaper_starts(costs, fragments))
 
 
 def cheaper_starts(costs: Costs | Problem, fragments: Fragments) -> Int[Tensor, "r 1"]:

@@ -25,6 +25,11 @@ class Costs(NamedTuple):
     means: Float[Tensor, "r n m"]
     leans: Float[Tensor, "r n m"] | None = None
 
+    @property
+    def cheaper_way(self) -> Tensor:
+        """The cost of each step or of the step back, whichever costs less."""
+        return self.means if self.leans is None else self.means - self.leans.abs()
+
     def steps(
         self, starts: Int[Tensor, "r e"], stops: Int[Tensor, "r e"]
     ) -> tuple[Float[Tensor, "r e"], Float[Tensor, "r e"] | None]:
@@ -59,7 +64,8 @@ class Planes(NamedTuple):
     @property
     def tables(self) -> Costs:
         """The costs of all steps, (2, n, m)."""
-        return Costs(_padded(distance_matrices(self.cities[None])[0]))
+        index = torch.arange(self.cities.shape[0], device=self.cities.device)
+        return Costs(_padded(distance_matrices(self.cities[None])[0], index))
 
     def steps(self, starts: Int[Tensor, "r e"], stops: Int[Tensor, "r e"]) -> Costs:
         """Return the costs of steps, (2, r, e)."""
@@ -123,7 +129,8 @@ def _distances(
     starts: Float[Tensor, "4 ..."], stops: Float[Tensor, "4 ..."]
 ) -> Float[Tensor, "2 ..."]:
     """Return the distances in both planes, computed as `distance_matrices` does."""
-    squares = (starts - stops) ** 2
+    apart = starts - stops
+    squares = apart * apart
     return (squares[0::2] + squares[1::2]).sqrt()
 
 
@@ -146,15 +153,18 @@ class Problem(NamedTuple):
         self, starts: Int[Tensor, "r e"], stops: Int[Tensor, "r e"]
     ) -> tuple[Float[Tensor, "r e"], Float[Tensor, "r e"] | None]:
         """Return the means of the costs of steps in each row, and their leans, if there are any."""
-        in_each = self.costs.steps(starts, stops)
-        means, leans = weighted_sums(in_each.means, self.weights), None
-        if self.prices is not None:
-            fees, tilts = self.prices
-            means = means - fees.gather(1, starts) - fees.gather(1, stops)
-            if in_each.leans is not None:
-                leans = weighted_sums(in_each.leans, self.weights)
-                leans = leans - tilts.gather(1, starts) + tilts.gather(1, stops)
-        return means, leans
+        means, leans = self.costs.steps(starts, stops)
+        costs = Costs(
+            weighted_sums(means, self.weights),
+            None if leans is None else weighted_sums(leans, self.weights),
+        )
+        if self.prices is None:
+            return costs
+        return without_prices(
+            costs,
+            Prices(*(part.gather(1, starts) for part in self.prices)),
+            Prices(*(part.gather(1, stops) for part in self.prices)),
+        )
 
 
 def along(costs: Planes | Matrices, tours: Int[Tensor, "r n"]) -> Costs:
@@ -166,11 +176,12 @@ def padded_matrices(matrices: Float[Tensor, "2 n n"]) -> Matrices:
     """Return the costs in each objective, a row each; no city has itself for a neighbour."""
     back = matrices.transpose(1, 2)
     leans = nn.functional.pad((matrices - back) / 2, (0, CANDIDATES))
-    return Matrices(_padded((matrices + back) / 2), leans)
+    index = torch.arange(matrices.shape[1], device=matrices.device)
+    return Matrices(_padded((matrices + back) / 2, index), leans)
 
 
-def _padded(costs: Float[Tensor, "2 n n"]) -> Float[Tensor, "2 n m"]:
-    index = torch.arange(costs.shape[-1], device=costs.device)
+def _padded(costs: Float[Tensor, "x n n"], index: Int[Tensor, " n"]) -> Float[Tensor, "x n m"]:
+    """Return the costs with NEVER for steps to the same city, and in columns more."""
     own = torch.where(index == index[:, None], NEVER, 0.0)
     return nn.functional.pad(costs + own, (0, CANDIDATES), value=NEVER)
 
@@ -191,28 +202,36 @@ def weighted_costs(
 
 def without(costs: Costs, prices: Prices) -> Costs:
     """Return the costs without the prices of both cities of each step."""
-    fees, tilts = (nn.functional.pad(part, (0, CANDIDATES)) for part in prices)
-    n = costs.means.shape[1]
-    means = costs.means - fees[:, :n, None] - fees[:, None]
+    padded = Prices(*(nn.functional.pad(part, (0, CANDIDATES)) for part in prices))
+    return without_prices(
+        costs,
+        Prices(*(part[..., None] for part in prices)),
+        Prices(*(part[:, None] for part in padded)),
+    )
+
+
+def without_prices(costs: Costs, of_starts: Prices, of_stops: Prices) -> Costs:
+    """Return the costs of steps without these prices, which spread over them."""
+    means = costs.means - of_starts.fees - of_stops.fees
     if costs.leans is None:
         return Costs(means)
-    return Costs(means, costs.leans - tilts[:, :n, None] + tilts[:, None])
+    return Costs(means, costs.leans - of_starts.tilts + of_stops.tilts)
 
 
 def costs_between(problem: Problem, cities: Int[Tensor, "r e"]) -> Costs:
     """Return the costs of the steps between these cities of each row, numbered as they come."""
     costs, weights, prices = problem
     in_each, e = costs.between(cities), cities.shape[1]
+    index = torch.arange(e, device=cities.device)
 
     def weighted(table: Float[Tensor, "2 r e e"]) -> Float[Tensor, "r e e"]:
         return weighted_sums(table.flatten(2), weights).unflatten(1, (e, e))
 
-    index = torch.arange(e, device=cities.device)
-    own = torch.where(index == index[:, None], NEVER, 0.0)
-    means = nn.functional.pad(weighted(in_each.means) + own, (0, CANDIDATES), value=NEVER)
-    if in_each.leans is None:
-        return Costs(means)
-    found = Costs(means, nn.functional.pad(weighted(in_each.leans), (0, CANDIDATES)))
+    leans = in_each.leans
+    found = Costs(
+        _padded(weighted(in_each.means), index),
+        None if leans is None else nn.functional.pad(weighted(leans), (0, CANDIDATES)),
+    )
     if prices is None:
         return found
     return without(found, Prices(*(part.gather(1, cities) for part in prices)))

@@ -148,39 +148,6 @@ def joined(
     return Fragments(ends, partners, open_, links, left - at.sum(dim=1) // 2, leans)
 
 
-def walked(fragments: Fragments, starts: Int[Tensor, "r 1"] | None = None) -> Int[Tensor, "r n"]:
-    """Return the tours of rows that have one fragment left, from one of its ends to the other.
-
-    Starts are positions of the ends to begin at; otherwise these are the first that are open.
-    """
-    links = fragments.links
-    n = (links.shape[1] - 1) // 2
-    before, now = first_steps(fragments, starts)
-    tour = [before, now]
-    for _ in range(n - 2):
-        before, now = now, next_city(links, before, now)
-        tour.append(now)
-    return torch.stack(tour, dim=1)
-
-
 def first_open(fragments: Fragments) -> Int[Tensor, "r 1"]:
     """Return the position of the first end of each row that is open."""
     return fragments.open.long().argmax(dim=1, keepdim=True)
-
-
-def first_steps(
-    fragments: Fragments, starts: Int[Tensor, "r 1"] | None = None
-) -> tuple[Int[Tensor, " r"], Int[Tensor, " r"]]:
-    """Return one end of each row's last fragment, and the city after it."""
-    one = fragments.ends.gather(1, first_open(fragments) if starts is None else starts)
-    return one[:, 0], fragments.links.gather(1, one).squeeze(1)
-
-
-def next_city(
-    links: Int[Tensor, "r l"], before: Int[Tensor, " r"], now: Int[Tensor, " r"]
-) -> Int[Tensor, " r"]:
-    """Return the neighbour of the city now that is not the one before."""
-    n = (links.shape[1] - 1) // 2
-    first = links.gather(1, now[:, None])[:, 0]
-    second = links.gather(1, now[:, None] + n)[:, 0]
-    return torch.where(first == before, second, first)

@@ -14,7 +14,9 @@ from torch import Tensor
 from models.networks.joining.candidates import joined_at_cost
 from models.networks.joining.costs import Costs, Problem, along, costs_between, weighted_sums
 from models.networks.joining.fragments import Fragments, cleared
+from models.networks.joining.walks import begun, closed_neighbours, doubled, places_on_tours
 
+ENOUGH = 2  # fragments, which are joined the cheaper way
 _DOUBLINGS = 6  # of the edges that an end sees ahead: enough for 64 ends
 
 
@@ -70,9 +72,10 @@ def _leans(
 ) -> Float[Tensor, "r e"] | None:
     """Return the leans of the ends that cuts have left, if costs have any."""
     costs, weights, prices = problem
-    leans = along(costs, cuts.tours).leans
-    if leans is None or prices is None:
+    if prices is None:
         return None
+    leans = along(costs, cuts.tours).leans
+    assert leans is not None
     onwards = weighted_sums(leans, weights)
     until = (onwards.cumsum(dim=1) - onwards).gather(1, columns) + prices.tilts.gather(1, cities)
     alone, first, last = until.tensor_split(3, dim=1)
@@ -125,12 +128,9 @@ def _costs_of_joining(
 
 
 def laid_out(cuts: Cuts, fragments: Fragments) -> Int[Tensor, "r n"]:
-    """Return the tours, of three cities or more, of which each row has one fragment left.
-
-    Open ends must come first.
-    """
+    """Return the tours of which each row has one fragment left."""
     tours, places = cuts.tours, cuts.places
-    alone, first, last = _places(cuts, _neighbours(fragments)).tensor_split(3, dim=1)
+    alone, first, last = _places(cuts, fragments).tensor_split(3, dim=1)
     turns = torch.where(last < first, -1, 1)
     starts = torch.stack((alone - places, first - turns * (places + 1)), dim=2).flatten(1)
     turns = torch.stack((torch.ones_like(turns), turns), dim=2).flatten(1)
@@ -143,36 +143,12 @@ def laid_out(cuts: Cuts, fragments: Fragments) -> Int[Tensor, "r n"]:
     return torch.zeros_like(tours).scatter(1, new_places, tours)
 
 
-def _neighbours(fragments: Fragments) -> Int[Tensor, "r e 2"]:
-    """Return both neighbours of each end, once the last two ends are joined to each other."""
-    links, last = fragments.links[:, :-1], fragments.ends[:, :2]
-    e = links.shape[1] // 2
-    links = links.scatter(1, last + e, last.flip(1))
-    index = torch.arange(e, device=links.device).expand_as(links[:, :e])
-    alone = torch.cat((index, index), dim=1)
-    return torch.where(links < 0, alone, links).view(-1, 2, e).transpose(1, 2)
-
-
-def _places(cuts: Cuts, neighbours: Int[Tensor, "r e 2"]) -> Int[Tensor, "r e"]:
-    """Return the place of each end in the new tour, which begins at the first cut city.
-
-    An end is left by its first neighbour or by its second. For each of these departures the
-    number of cities to the last one of the tour is found by pointer jumping: in every pass the
-    steps are twice as long.
-    """
-    r, e, _ = neighbours.shape
-    index = torch.arange(e, device=neighbours.device)[:, None].expand_as(neighbours)
-    is_first = neighbours[:, :, 0].gather(1, neighbours.flatten(1)).view_as(index) == index
-    onwards = (2 * neighbours + is_first.long()).flatten(1)  # departures
+def _places(cuts: Cuts, fragments: Fragments) -> Int[Tensor, "r e"]:
+    """Return the place of each end in the new tour, which begins at the first cut city."""
     # The first neighbour of a path's end is its other end.
     across = torch.cat((torch.ones_like(cuts.gaps), cuts.gaps - 1, cuts.gaps - 1), dim=1)
-    steps = torch.stack((across.clamp(min=1), torch.ones_like(across)), dim=2).flatten(1)
-    departures = torch.arange(2 * e, device=neighbours.device).expand_as(onwards)
-    is_last = onwards == 0
-    onwards = torch.where(is_last, departures, onwards)
-    steps = torch.where(is_last, 0, steps)
+    first_city = torch.zeros_like(cuts.places[:, :1])
+    walks = begun(closed_neighbours(fragments), first_city, across.clamp(min=1))
     for _ in range(_DOUBLINGS):
-        steps = steps + steps.gather(1, onwards)
-        onwards = onwards.gather(1, onwards)
-    ahead = torch.where(is_last.gather(1, onwards), steps, 0)
-    return cuts.tours.shape[1] - 1 - ahead.view(r, e, 2).amax(dim=2)
+        walks = doubled(walks)
+    return places_on_tours(walks, cuts.tours.shape[1])

@@ -8,8 +8,7 @@ of a row are then exact, those of its own weights. Ends of paths choose their ca
 open ends on the lists of their cities.
 """
 
-from collections.abc import Iterable
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple, cast
 
 import torch
 from jaxtyping import Bool, Float, Int
@@ -23,9 +22,11 @@ from models.networks.joining.costs import (
     Planes,
     Prices,
     weighted_costs,
+    without_prices,
 )
 from models.networks.joining.fragments import NEVER, Fragments
 from models.networks.joining.prices import knots, places_among_knots
+from models.networks.rows import stacked
 
 _AT_A_TIME = 1000  # cities
 
@@ -77,9 +78,7 @@ def shortlists(
     """Return the lists of all cities, as `shortlists_of` does, made for some cities at a time."""
     cities = torch.arange(costs.n, device=costs[0].device)
     parts = [shortlists_of(some, costs, count, length, known) for some in cities.split(_AT_A_TIME)]
-    by_member: Iterable[Any] = zip(*parts, strict=True)
-    lists: list[Any] = [each[0] if each[0] is None else torch.cat(each, 1) for each in by_member]
-    return Shortlists(*lists)
+    return stacked(parts, dim=1)
 
 
 def shortlists_of(
@@ -94,40 +93,55 @@ def shortlists_of(
     Known are the prices at the knots, if there are any. The length is a tensor while the graph is
     traced for its export.
     """
-    most = cast(int, length)
-    means, leans = _at_knots(some, costs, count, known)
-    cheaper = means if leans is None else means - leans.abs()
-    least = torch.minimum(cheaper[:-1], cheaper[1:])
-    least = nn.functional.pad(least, (0, most), value=NEVER)  # cities that are never reached
-    cheapest, cities = least.topk(most, largest=False)
+    in_each = _beginning_at(some, costs, length)
+    begin, end = (
+        _at_knots(in_each, count, which, known, some) for which in (slice(None, -1), slice(1, None))
+    )
+    cheapest, cities = torch.minimum(begin.cheaper_way, end.cheaper_way).topk(
+        cast(int, length), largest=False
+    )
     is_city = cheapest < NEVER / 2
     cities = torch.where(is_city, cities, 0)
 
-    def from_knots(table: Tensor, otherwise: float) -> tuple[Tensor, Tensor]:
-        first = table[:-1].gather(2, cities)
-        rise = table[1:].gather(2, cities) - first
+    def of_listed(at_begin: Tensor, at_end: Tensor, otherwise: float) -> tuple[Tensor, Tensor]:
+        first = at_begin.gather(2, cities)
+        rise = at_end.gather(2, cities) - first
         return torch.where(is_city, first, otherwise), torch.where(is_city, rise, 0.0)
 
-    lists = Shortlists(cities, *from_knots(means, NEVER))
-    if leans is None:
+    lists = Shortlists(cities, *of_listed(begin.means, end.means, NEVER))
+    if begin.leans is None or end.leans is None:
         return lists
-    leans, rise_of_leans = from_knots(leans, 0.0)
+    leans, rise_of_leans = of_listed(begin.leans, end.leans, 0.0)
     return lists._replace(leans=leans, rise_of_leans=rise_of_leans)
 
 
+def _beginning_at(some: Int[Tensor, " b"], costs: Planes | Matrices, fill: int | Tensor) -> Costs:
+    """Return the costs in each objective from some cities to all, and to as many more that fill up.
+
+    No city has itself or one of these for a neighbour.
+    """
+    means, leans = costs.beginning_at(some)
+    own = some[None, :, None].expand(2, -1, -1)
+    means = means.scatter(2, own, torch.full_like(means[:, :, :1], NEVER))
+    more = (0, cast(int, fill))
+    means = nn.functional.pad(means, more, value=NEVER)
+    return Costs(means, None if leans is None else nn.functional.pad(leans, more))
+
+
 def _at_knots(
-    some: Int[Tensor, " b"], costs: Planes | Matrices, count: int, known: Prices | None
+    in_each: Costs, count: int, which: slice, known: Prices | None, some: Int[Tensor, " b"]
 ) -> Costs:
-    """Return the costs of the steps from some cities to all at each knot, less the prices."""
-    in_each = costs.beginning_at(some)
-    means, leans = weighted_costs(in_each, knots(in_each.means, count))
-    if known is not None:
-        fees, tilts = known
-        means = means - fees.index_select(1, some)[..., None] - fees[:, None]
-        if leans is not None:
-            leans = leans - tilts.index_select(1, some)[..., None] + tilts[:, None]
-    is_own = some[:, None] == torch.arange(means.shape[2], device=some.device)
-    return Costs(torch.where(is_own, NEVER, means), leans)
+    """Return the costs of the steps from some cities at which of the knots, less the prices."""
+    found = weighted_costs(in_each, knots(in_each.means, count)[which])
+    if known is None:
+        return found
+    there = Prices(*(part[which] for part in known))
+    fill = found.means.shape[2] - there.fees.shape[1]
+    return without_prices(
+        found,
+        Prices(*(part.index_select(1, some)[..., None] for part in there)),
+        Prices(*(nn.functional.pad(part, (0, fill))[:, None] for part in there)),
+    )
 
 
 def lists_of_rows(lists: Shortlists, weights: Float[Tensor, "r 2"]) -> RowLists:
@@ -150,7 +164,7 @@ def lists_of_rows(lists: Shortlists, weights: Float[Tensor, "r 2"]) -> RowLists:
 def first_of(lists: RowLists) -> Candidates:
     """Return the candidates while all cities are alone."""
     cities, means, leans = lists
-    return _cheapest(means if leans is None else means - leans.abs(), cities, leans)
+    return _cheapest(Costs(means, leans).cheaper_way, cities, leans)
 
 
 def listed_candidates(
@@ -170,8 +184,7 @@ def listed_candidates(
 
     cities, costs, leans = of_ends(lists.cities), of_ends(lists.means), None
     index = torch.arange(ends.shape[1], device=ends.device).expand_as(ends)
-    nowhere = torch.zeros_like(lists.cities[:, :, 0]) - 1
-    nowhere = torch.cat((nowhere, nowhere[:, :1]), dim=1)
+    nowhere = torch.full_like(fragments.links[:, : n + 1], -1)
     by_city = nowhere.scatter(1, torch.where(open_, ends, n), torch.where(open_, index, -1))
     found = by_city.gather(1, cities.flatten(1)).view_as(cities)
     positions = found.clamp(min=0)

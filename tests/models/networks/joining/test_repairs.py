@@ -9,8 +9,9 @@ from models.data.instances import uniform_cities
 from models.data.preferences import fan_of_preferences, weights
 from models.networks.joining.candidates import single_cities
 from models.networks.joining.costs import Planes, Problem
-from models.networks.joining.fragments import joined, walked
+from models.networks.joining.fragments import first_open, joined
 from models.networks.joining.repairs import cut, laid_out, last_two_joined, repair_problem
+from models.networks.joining.walks import tours_from
 from models.networks.pa_one import OneActor
 from tests.helpers.small_actors import CPU, small_actor
 
@@ -51,4 +52,5 @@ def test_two_fragments_are_joined_the_cheaper_way() -> None:
     costs = Problem(Planes(plane.repeat(1, 2)), torch.tensor([[0.5, 0.5]])).tables
     sides = joined(single_cities(costs), torch.tensor([[2, 3, 0, 1]]))
     whole = last_two_joined(costs, sides)
-    assert steps_of(walked(whole)[0]) == {frozenset(e) for e in ((0, 1), (1, 3), (3, 2), (2, 0))}
+    tour = tours_from(whole, first_open(whole))[0]
+    assert steps_of(tour) == {frozenset(e) for e in ((0, 1), (1, 3), (3, 2), (2, 0))}

@@ -1,0 +1,40 @@
+"""Rows: what is done to every tensor of a tuple of them that has the rows of a problem in common.
+
+A member of the tuple may be None, and stays so.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from operator import itemgetter
+from typing import Any, TypeVar
+
+import torch
+from torch import Tensor
+
+Rows = TypeVar("Rows", bound=tuple[Any, ...])  # a NamedTuple
+
+
+def stacked(parts: Sequence[Rows], dim: int = 0) -> Rows:
+    """Return the rows of all parts, one part after the other."""
+    members = zip(*parts, strict=True)
+    return _made(
+        type(parts[0]), (each[0] if each[0] is None else torch.cat(each, dim) for each in members)
+    )
+
+
+def repeated(rows: Rows, times: int) -> Rows:
+    """Return each row several times, one copy after the other."""
+    return _changed(rows, lambda member: member.repeat_interleave(times, dim=0))
+
+
+def split(rows: Rows, count: int) -> list[Rows]:
+    """Return as many parts of equally many rows."""
+    size = len(rows[0]) // count
+    return [_changed(rows, itemgetter(slice(i * size, (i + 1) * size))) for i in range(count)]
+
+
+def _changed(rows: Rows, change: Callable[[Tensor], Tensor]) -> Rows:
+    return _made(type(rows), (member if member is None else change(member) for member in rows))
+
+
+def _made(kind: Callable[..., Rows], members: Iterable[Any]) -> Rows:
+    return kind(*members)
