@@ -128,7 +128,7 @@ class Settings(BaseSettings):
     )
     max_cities: int = Field(10_000, ge=1, description="the most cities of an instance")
     max_matrix_cities: int = Field(1000, ge=1, description="the most where costs are matrices")
-    max_network_cities: int = Field(2000, ge=1, description="the most in tours of a network")
+    max_network_cities: int = Field(5000, ge=1, description="the most in tours of a network")
     max_fleet_stops: int = Field(
         500, ge=1, description="the most stops of a fleet, and places that robots share"
     )

@@ -24,10 +24,10 @@ class _Formula(NamedTuple):
     repair_city: float
 
 
-# Of pa-one and pa-one-matrix: one thread of a 2.5 GHz Xeon, 100 preferences, up to 5000 cities with
-# coordinates and 1000 with matrices.
+# Of pa-one and pa-one-matrix: one thread of a 2.5 GHz Xeon, 100 preferences, up to 10,000 cities
+# with coordinates and 1000 with matrices.
 _FORMULAS: dict[Kind, _Formula] = {
-    "coordinates": _Formula(0.001, 3.4e-6, 1.12, 4.0, 0.0015, 1.2e-4, 4e-7),
+    "coordinates": _Formula(0.001, 8.5e-6, 1.0, 4.0, 0.002, 8e-5, 2.2e-7),
     "matrices": _Formula(0.004, 3.0e-8, 2.0, 60.0, 0.004, 2.2e-4, 6e-7),
 }
 

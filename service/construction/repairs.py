@@ -4,9 +4,12 @@ from service.instance import Kind
 
 TOURS_REPAIRED = 2  # for each preference: the tour, and one that was visited on the way
 
-# The least number, and the cities for each one more. So a call takes two to three times as long as
-# without, and has most of what repairs gain: `python -m tests.benchmarks literature`, `asymmetric`.
-_WORTH: dict[Kind, tuple[int, int]] = {"coordinates": (3, 8), "matrices": (2, 16)}
+# So a call takes two to three times as long as without repairs, and has most of what they gain:
+# `python -m tests.benchmarks literature`, `actors`, `asymmetric`. A repair lays out whole tours, so
+# of many cities it takes longer.
+_LEAST: dict[Kind, int] = {"coordinates": 3, "matrices": 2}
+_CITIES: dict[Kind, int] = {"coordinates": 8, "matrices": 16}  # for each repair, where they are few
+_FEW, _CITIES_OF_MANY, _MOST = 20, 40, 75  # few for nothing, and one more for each 40; at most
 
 
 def repairs_worth(inputs: Kind, n: int) -> int:
@@ -15,6 +18,9 @@ def repairs_worth(inputs: Kind, n: int) -> int:
     Args:
         inputs: The kind of instance that the network reads.
         n: The number of cities.
+
+    >>> [repairs_worth("coordinates", n) for n in (20, 200, 1000, 5000)]
+    [3, 25, 45, 75]
     """
-    least, cities = _WORTH[inputs]
-    return max(least, n // cities)
+    of_few, of_many = n // _CITIES[inputs], _FEW + n // _CITIES_OF_MANY
+    return max(_LEAST[inputs], min(of_few, of_many, _MOST))

@@ -44,7 +44,7 @@ class Limits:
     size: int
     seconds: float
     matrix_cities: int = 1000
-    network_cities: int = 2000
+    network_cities: int = 5000
     path_cells: int = 2**21
     fleet_stops: int = 500
     repairs: int = 200
