@@ -24,7 +24,7 @@ _MANY_CITIES = 200  # above which torch takes minutes for more than one repair
 _TIE = 1e-3
 # PA-One joins by many comparisons at once; small changes to the cities show which were close.
 _LEAST_ROUNDING, _ROUNDING_OF_A_CITY = 1e-6, 1e-8  # sums of more floats are less exact
-_ROUNDINGS = 8
+_ROUNDINGS = 8  # times that cities are moved so
 
 
 class TourMismatch(Exception):

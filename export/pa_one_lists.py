@@ -169,7 +169,8 @@ def parts(
         row_lists = lists_of_rows(lists, problem.weights)
         between, few = contracted(problem, more)
     solved = nearly_solved(actor, between, few, some.ends.shape[1])
-    walks = begun_at(some._replace(links=some.links.clamp(min=0)), some.partners[:, :1])
+    linked = some._replace(links=some.links.clamp(min=0))  # to any cities
+    walks = begun_at(linked, linked.partners[:, :1])
     tensors, in_rows = as_tensors(problem), names.row_lists
     fragments, after = list(names.fragments), names.after_round
     a_round = (

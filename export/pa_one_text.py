@@ -152,7 +152,7 @@ REJOINING = Template("""
                 }>
 """)
 
-# Of so many things, as many at a time as there is room for; none of them takes more than all.
+# Blocks of rows or of cities: as many at a time as their entries have room, one at least.
 BLOCKS = Template("""
     ${times}_fitting = Div (room, $entries)
     ${times}_at_least = Max (${times}_fitting, one)

@@ -14,7 +14,7 @@ Rows = TypeVar("Rows", bound=tuple[Any, ...])  # a NamedTuple
 
 
 def stacked(parts: Sequence[Rows], dim: int = 0) -> Rows:
-    """Return the rows of all parts, one part after the other."""
+    """Return the rows of all parts, or what is along another dimension, one after the other."""
     members = zip(*parts, strict=True)
     return _made(
         type(parts[0]), (each[0] if each[0] is None else torch.cat(each, dim) for each in members)
@@ -27,7 +27,7 @@ def repeated(rows: Rows, times: int) -> Rows:
 
 
 def split(rows: Rows, count: int) -> list[Rows]:
-    """Return as many parts of equally many rows."""
+    """Return as many parts of equally many rows, into which the rows must divide."""
     size = len(rows[0]) // count
     return [_changed(rows, itemgetter(slice(i * size, (i + 1) * size))) for i in range(count)]
 
@@ -36,5 +36,6 @@ def _changed(rows: Rows, change: Callable[[Tensor], Tensor]) -> Rows:
     return _made(type(rows), (member if member is None else change(member) for member in rows))
 
 
+# A NamedTuple takes its members one by one, of which the bound on its type knows nothing.
 def _made(kind: Callable[..., Rows], members: Iterable[Any]) -> Rows:
     return kind(*members)

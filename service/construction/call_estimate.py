@@ -24,7 +24,7 @@ class _Formula(NamedTuple):
     repair_city: float
 
 
-# Of pa-one and pa-one-matrix: one thread of a 2.5 GHz Xeon, 100 preferences, up to 10,000 cities
+# Of pa-one and pa-one-matrix: one thread of an AMD EPYC, 100 preferences, up to 10,000 cities
 # with coordinates and 1000 with matrices.
 _FORMULAS: dict[Kind, _Formula] = {
     "coordinates": _Formula(0.001, 8.5e-6, 1.0, 4.0, 0.002, 8e-5, 2.2e-7),

@@ -4,12 +4,13 @@ from service.instance import Kind
 
 TOURS_REPAIRED = 2  # for each preference: the tour, and one that was visited on the way
 
-# So a call takes two to three times as long as without repairs, and has most of what they gain:
-# `python -m tests.benchmarks literature`, `actors`, `asymmetric`. A repair lays out whole tours, so
-# of many cities it takes longer.
+# With so many, a call takes two to three times as long as without, and has most of what repairs
+# gain: `python -m tests.benchmarks literature`, `actors`, `asymmetric`. A repair lays out whole
+# tours, so it takes longer where there are many cities, and fewer of them are worth it.
 _LEAST: dict[Kind, int] = {"coordinates": 3, "matrices": 2}
-_CITIES: dict[Kind, int] = {"coordinates": 8, "matrices": 16}  # for each repair, where they are few
-_FEW, _CITIES_OF_MANY, _MOST = 20, 40, 75  # few for nothing, and one more for each 40; at most
+_CITIES: dict[Kind, int] = {"coordinates": 8, "matrices": 16}  # for each repair of few
+_FIRST, _CITIES_OF_MANY = 20, 40  # of many: these, and cities for each one more
+_MOST = 75
 
 
 def repairs_worth(inputs: Kind, n: int) -> int:
@@ -22,5 +23,5 @@ def repairs_worth(inputs: Kind, n: int) -> int:
     >>> [repairs_worth("coordinates", n) for n in (20, 200, 1000, 5000)]
     [3, 25, 45, 75]
     """
-    of_few, of_many = n // _CITIES[inputs], _FEW + n // _CITIES_OF_MANY
+    of_few, of_many = n // _CITIES[inputs], _FIRST + n // _CITIES_OF_MANY
     return max(_LEAST[inputs], min(of_few, of_many, _MOST))

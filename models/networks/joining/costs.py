@@ -18,8 +18,8 @@ CANDIDATES = 8  # of an end of a path
 class Costs(NamedTuple):
     """The mean cost of each step and of the step back, and how much of it the way there is above.
 
-    There is no lean where both cost the same. There are as many columns more as an end has
-    candidates, of cities that are never reached.
+    There is no lean where both cost the same. A table of all steps has as many columns more as an
+    end has candidates, of cities that are never reached; costs of single steps may have any shape.
     """
 
     means: Float[Tensor, "r n m"]
@@ -128,14 +128,14 @@ class Matrices(NamedTuple):
 def _distances(
     starts: Float[Tensor, "4 ..."], stops: Float[Tensor, "4 ..."]
 ) -> Float[Tensor, "2 ..."]:
-    """Return the distances in both planes, computed as `distance_matrices` does."""
-    apart = starts - stops
+    """Return the distances in both planes, the same floats as `distance_matrices` has."""
+    apart = starts - stops  # exported, a product takes less time than a power
     squares = apart * apart
     return (squares[0::2] + squares[1::2]).sqrt()
 
 
 class Problem(NamedTuple):
-    """The costs in each objective, the weights of each row, and its prices, if there are any.
+    """The costs in each objective, the weights of each row, and its prices where costs lean.
 
     It gives the same costs of steps as a table for each row would, but no such table is made.
     """

@@ -95,7 +95,7 @@ def shortlists_of(
     """
     in_each = _beginning_at(some, costs, length)
     begin, end = (
-        _at_knots(in_each, count, which, known, some) for which in (slice(None, -1), slice(1, None))
+        _at_knots(some, in_each, count, which, known) for which in (slice(None, -1), slice(1, None))
     )
     cheapest, cities = torch.minimum(begin.cheaper_way, end.cheaper_way).topk(
         cast(int, length), largest=False
@@ -118,7 +118,8 @@ def shortlists_of(
 def _beginning_at(some: Int[Tensor, " b"], costs: Planes | Matrices, fill: int | Tensor) -> Costs:
     """Return the costs in each objective from some cities to all, and to as many more that fill up.
 
-    No city has itself or one of these for a neighbour.
+    No city has itself or one of these for a neighbour. Their number is a tensor while the graph is
+    traced for its export.
     """
     means, leans = costs.beginning_at(some)
     own = some[None, :, None].expand(2, -1, -1)
@@ -129,9 +130,9 @@ def _beginning_at(some: Int[Tensor, " b"], costs: Planes | Matrices, fill: int |
 
 
 def _at_knots(
-    in_each: Costs, count: int, which: slice, known: Prices | None, some: Int[Tensor, " b"]
+    some: Int[Tensor, " b"], in_each: Costs, count: int, which: slice, known: Prices | None
 ) -> Costs:
-    """Return the costs of the steps from some cities at which of the knots, less the prices."""
+    """Return the costs of the steps from some cities at a part of the knots, less the prices."""
     found = weighted_costs(in_each, knots(in_each.means, count)[which])
     if known is None:
         return found
@@ -184,7 +185,7 @@ def listed_candidates(
 
     cities, costs, leans = of_ends(lists.cities), of_ends(lists.means), None
     index = torch.arange(ends.shape[1], device=ends.device).expand_as(ends)
-    nowhere = torch.full_like(fragments.links[:, : n + 1], -1)
+    nowhere = torch.full_like(fragments.links[:, : n + 1], -1)  # a column for each city, and more
     by_city = nowhere.scatter(1, torch.where(open_, ends, n), torch.where(open_, index, -1))
     found = by_city.gather(1, cities.flatten(1)).view_as(cities)
     positions = found.clamp(min=0)

@@ -66,7 +66,10 @@ def end_out_of_sight(walks: Walks) -> Bool[Tensor, ""]:
 
 
 def places_on_tours(walks: Walks, n: int | Tensor) -> Int[Tensor, "r e"]:
-    """Return the place of each end in the walk of n cities on which it lies."""
+    """Return the place of each end in the walk of n cities, whose end must be in sight.
+
+    One that is on no tour has the last place, too.
+    """
     ahead = torch.where(walks.onwards == walks.last, walks.steps, 0)
     return n - 1 - torch.maximum(*ahead.chunk(2, dim=1))
 
@@ -103,7 +106,10 @@ def walked(walks: Walks) -> Int[Tensor, "r n"]:
 
 
 def tours_from(fragments: Fragments, ends: Int[Tensor, "r 1"]) -> Int[Tensor, "r n"]:
-    """Return the tours of rows that have one fragment left, from these of its ends to the other."""
+    """Return the tours of rows that have one fragment left, from these of its ends to the other.
+
+    The ends are given by position.
+    """
     walks = begun_at(fragments, ends)
     while bool(end_out_of_sight(walks)):
         walks = doubled(walks)
