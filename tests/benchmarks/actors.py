@@ -23,6 +23,7 @@ from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.planner import PlanOptions, plan
 from service.preferences import fan, from_angles
+from service.search.improve import warm_up
 from tests.benchmarks.instances import COUNT, SIZES, check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import provenance, store
 from tests.benchmarks.rivals.construction import greedy_edge, nearest_neighbour, spread_weights
@@ -40,6 +41,7 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--threads", type=int, default=2, help="of the inference session")
     parser.add_argument("--count", type=int, default=COUNT, help="instances of each size")
     options = parser.parse_args(arguments)
+    warm_up()
     names = options.names or sorted(path.stem for path in ACTORS.glob("*.onnx"))
     rows: dict[str, dict[str, Any]] = {}
     for name in names:
