@@ -18,7 +18,6 @@ from models.rollout_repairs import CITIES, NEAR
 
 _ROOM = 3_000_000  # costs of a block, 12 MB; a round takes a few times as much
 
-
 # Sizes to trace at, all different, and different from all that is fixed: cities, rows, ends, those
 # of a contracted problem, cities to make lists of, cities on a list, cities to choose from in a
 # repair, and cut cities. Three columns of a repair's problem belong to each of the last.

@@ -23,16 +23,17 @@ def stacked(parts: Sequence[Rows], dim: int = 0) -> Rows:
 
 def repeated(rows: Rows, times: int) -> Rows:
     """Return each row several times, one copy after the other."""
-    return _changed(rows, lambda member: member.repeat_interleave(times, dim=0))
+    return changed(rows, lambda member: member.repeat_interleave(times, dim=0))
 
 
 def split(rows: Rows, count: int) -> list[Rows]:
     """Return as many parts of equally many rows, into which the rows must divide."""
     size = len(rows[0]) // count
-    return [_changed(rows, itemgetter(slice(i * size, (i + 1) * size))) for i in range(count)]
+    return [changed(rows, itemgetter(slice(i * size, (i + 1) * size))) for i in range(count)]
 
 
-def _changed(rows: Rows, change: Callable[[Tensor], Tensor]) -> Rows:
+def changed(rows: Rows, change: Callable[[Tensor], Tensor]) -> Rows:
+    """Return the tuple with every member that there is changed."""
     return _made(type(rows), (member if member is None else change(member) for member in rows))
 
 

@@ -11,6 +11,7 @@ from torch import Tensor, nn
 
 from models.data.instances import distance_matrices
 from models.networks.joining.fragments import NEVER
+from models.networks.rows import changed
 
 CANDIDATES = 8  # of an end of a path
 
@@ -153,17 +154,14 @@ class Problem(NamedTuple):
         self, starts: Int[Tensor, "r e"], stops: Int[Tensor, "r e"]
     ) -> tuple[Float[Tensor, "r e"], Float[Tensor, "r e"] | None]:
         """Return the means of the costs of steps in each row, and their leans, if there are any."""
-        means, leans = self.costs.steps(starts, stops)
-        costs = Costs(
-            weighted_sums(means, self.weights),
-            None if leans is None else weighted_sums(leans, self.weights),
-        )
+        in_each = self.costs.steps(starts, stops)
+        costs = changed(in_each, lambda lengths: weighted_sums(lengths, self.weights))
         if self.prices is None:
             return costs
         return without_prices(
             costs,
-            Prices(*(part.gather(1, starts) for part in self.prices)),
-            Prices(*(part.gather(1, stops) for part in self.prices)),
+            changed(self.prices, lambda part: part.gather(1, starts)),
+            changed(self.prices, lambda part: part.gather(1, stops)),
         )
 
 
@@ -193,20 +191,16 @@ def weighted_costs(
 
     Where there are prices, what a tour costs in all falls by as much for every tour of a row.
     """
-    means, leans = costs
-    weighted = Costs(
-        _weighted(means, weights), None if leans is None else _weighted(leans, weights)
-    )
+    weighted = changed(costs, lambda table: _weighted(table, weights))
     return weighted if prices is None else without(weighted, prices)
 
 
 def without(costs: Costs, prices: Prices) -> Costs:
     """Return the costs without the prices of both cities of each step."""
-    padded = Prices(*(nn.functional.pad(part, (0, CANDIDATES)) for part in prices))
     return without_prices(
         costs,
-        Prices(*(part[..., None] for part in prices)),
-        Prices(*(part[:, None] for part in padded)),
+        changed(prices, lambda part: part[..., None]),
+        changed(prices, lambda part: nn.functional.pad(part, (0, CANDIDATES))[:, None]),
     )
 
 
@@ -234,7 +228,7 @@ def costs_between(problem: Problem, cities: Int[Tensor, "r e"]) -> Costs:
     )
     if prices is None:
         return found
-    return without(found, Prices(*(part.gather(1, cities) for part in prices)))
+    return without(found, changed(prices, lambda part: part.gather(1, cities)))
 
 
 def weighted_sums(

@@ -26,7 +26,7 @@ from models.networks.joining.costs import (
 )
 from models.networks.joining.fragments import NEVER, Fragments
 from models.networks.joining.prices import knots, places_among_knots
-from models.networks.rows import stacked
+from models.networks.rows import changed, stacked
 
 _AT_A_TIME = 1000  # cities
 
@@ -136,12 +136,12 @@ def _at_knots(
     found = weighted_costs(in_each, knots(in_each.means, count)[which])
     if known is None:
         return found
-    there = Prices(*(part[which] for part in known))
+    there = changed(known, lambda part: part[which])
     fill = found.means.shape[2] - there.fees.shape[1]
     return without_prices(
         found,
-        Prices(*(part.index_select(1, some)[..., None] for part in there)),
-        Prices(*(nn.functional.pad(part, (0, fill))[:, None] for part in there)),
+        changed(there, lambda part: part.index_select(1, some)[..., None]),
+        changed(there, lambda part: nn.functional.pad(part, (0, fill))[:, None]),
     )
 
 

@@ -39,10 +39,10 @@ def begun(
     e = across.shape[1]
     departures = torch.arange(neighbours.shape[1], device=neighbours.device).expand_as(neighbours)
     cities = departures[:, :e]
-    came_by_first = first.gather(1, neighbours) == torch.cat((cities, cities), dim=1)
-    # Of two cities each is the other's first neighbour and its second.
-    is_other_way = torch.cat((torch.zeros_like(first, dtype=torch.bool), first == second), dim=1)
-    onwards = torch.where(came_by_first & ~is_other_way, neighbours + e, neighbours)
+    # Of two cities each is the other's first neighbour and its second, and is come to as either.
+    by_second = torch.where(first == second, -1, cities)
+    came_by_first = first.gather(1, neighbours) == torch.cat((cities, by_second), dim=1)
+    onwards = torch.where(came_by_first, neighbours + e, neighbours)
     is_last = onwards == begin
     steps = torch.cat((across, torch.ones_like(across)), dim=1)
     return Walks(
