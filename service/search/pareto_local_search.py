@@ -24,7 +24,9 @@ Array = NDArray[np.float64]
 WEIGHTS = 50  # at 500 cities and 0.3 s better than 100, which get too little time each, and than 35
 LEAST_SHARE = 1e-3  # of a weight: the other length still counts at the ends, to break ties
 WIDEST_LOGIT = 7.0  # of a weight, where weights are evenly spaced by their logit
-LARGE = 1_200  # cities from which on they are; at 1,000 it is the worse in the first half second
+LARGE = 500  # cities from which on they are; at 400 that is the worse in the first second
+MANY = 1_200  # cities from which on a round is too long for a rest that is mostly as before
+VAST = 7_000  # cities from which on a round of descents alone comes first; at 5,000 it is no better
 TOURNAMENT_SIZE = 8  # points drawn, of which one is chosen
 STEPS = 10  # of the iterated local search at each point
 SLOPE_REACH = 5  # points to either side over which the slope of the front is taken
@@ -66,7 +68,7 @@ def bisection_order(count: int) -> list[int]:
 
 
 class Round(NamedTuple):
-    """A round of iterated local search under all weights."""
+    """A round of iterated local search under all weights; of a large instance, after descents."""
 
     divisor: int  # of n, which gives the iterations under each weight
     fills: int  # how many times n iterations fill gaps after it
@@ -77,14 +79,15 @@ def rounds(n: int, touched: NDArray[np.integer] | None) -> tuple[Round, ...]:
 
     Tours of an earlier front, which have touched cities, are good enough for gaps to be filled
     between them at once. But to fill gaps alone brings more tours than a front is answered with,
-    and none of them as short as after a round. Of a large instance a round takes too long for that,
-    unless the tours may have become worse at most of their cities.
+    and none of them as short as after a round. Of thousands of cities a round takes too long for
+    that, unless the tours may have become worse at most of them.
     """
     if touched is None:
-        return Round(4, 4 if n < LARGE else 0), Round(1, 0)
+        by_iterations = Round(4, 4 if n < LARGE else 0), Round(1, 0)
+        return by_iterations if n < VAST else (Round(n, 0), *by_iterations)
     if n < LARGE:
         return Round(2, 8), Round(4, 8)
-    return (Round(4, 0),) if 2 * len(touched) > n else ()
+    return (Round(4, 0),) if n < MANY or 2 * len(touched) > n else ()
 
 
 class SearchState(NamedTuple):

@@ -3,11 +3,12 @@
 First every weight gets a tour by descent, then each gets iterated local search, twice, and gaps in
 the front are filled in between. From then on weights and gaps compete for the time, by the
 hypervolume that they lately gained. From some hundreds of cities on the iterations under a weight
-are by three-opt. Of thousands of cities the gaps are too wide for that: at its turn each weight
-is first descended to from the best tours under both neighbouring weights, what lies between is
-offered to the archive, and descents are by three-opt, too. Where there are tours of an earlier
-front, descents begin at what has changed, and gaps are filled after each of two shorter rounds; of
-thousands of cities there is no round, unless most of them are touched.
+are by three-opt. Of half a thousand and more the gaps are too wide for that: when half of the
+weights have a tour, each other one, and then at its turn each of all, is first descended to from
+the best tours under both neighbouring weights, what lies between is offered to the archive, and
+descents are by three-opt, too. Where there are tours of an earlier front, descents begin at what
+has changed, and gaps are filled after each of two shorter rounds; of half a thousand cities and
+more there is one round, and of thousands none, unless most of them are touched.
 """
 
 from collections.abc import Iterator
@@ -35,7 +36,7 @@ from service.search.candidates import (
 )
 from service.search.closing import closed_tours, opened_tours, with_end_last
 from service.search.costs import lengths, make_costs, scaled_reference
-from service.search.local_search import LEAST_GAIN, nearest_neighbour, offer
+from service.search.local_search import LEAST_GAIN, nearest_neighbour, offer, offer_as_updated
 from service.search.pareto_local_search import (
     LARGE,
     STEPS,
@@ -53,6 +54,7 @@ Array = NDArray[np.float64]
 
 CONSTRUCTIONS = 17  # weights for which a tour is constructed as well
 LARGE_CONSTRUCTIONS = 5  # the same, of a large instance
+LARGE_DESCENTS = 25  # of a large instance: weights descended to before others from their neighbours
 OFFERS = 50  # of a large tour on the way of a descent, in each sweep along it
 BLOCK = 300  # iterations between two checks of the deadline, some milliseconds
 FULL_BLOCK = 1_000  # cities beyond which iterations take longer, and fewer are a block
@@ -150,15 +152,25 @@ class Search:
         Ends when the search has converged.
         """
         yield from self.pool_candidates()
-        constructions = LARGE_CONSTRUCTIONS if self.large else CONSTRUCTIONS
-        for rank, k in enumerate(bisection_order(WEIGHTS)):
-            yield from self._descend(k, construct=rank < constructions and self.touched is None)
-        for divisor, fills in rounds(self.n, self.touched):
+        ahead = rounds(self.n, self.touched)
+        yield from self._reach_weights(LARGE_DESCENTS if self.large and ahead else WEIGHTS)
+        for divisor, fills in ahead:
             for k in bisection_order(WEIGHTS):
                 yield from self._iterate(k, self.n // divisor)
             for _ in range(fills):
                 yield from self._fill_gaps()
         yield from self._compete()
+
+    def _reach_weights(self, descents: int) -> Iterator[int]:
+        """Find a tour under each weight: under so many by descent, then from their neighbours'."""
+        order = bisection_order(WEIGHTS)
+        constructions = LARGE_CONSTRUCTIONS if self.large else CONSTRUCTIONS
+        for rank, k in enumerate(order[:descents]):
+            yield from self._descend(k, construct=rank < constructions and self.touched is None)
+        for k in order[descents:]:
+            rank_candidates(self.pool, self._scalarization(k))
+            yield from self._sweep_from_neighbours(k)
+            yield 1
 
     def pool_candidates(self) -> Iterator[int]:
         """Fill the pool from which the candidates under each weight are ranked."""
@@ -184,9 +196,12 @@ class Search:
         least = np.inf
         if self.size > 0:
             k = best_point(archive, scalarization.w0, scalarization.w1)
+            tour = archive.tours[archive.slots[k]]
             first, second = archive.points[k].tolist()
+            if self.large:  # may have been offered on the way, with lengths as updated
+                first, second = lengths(scalarization.costs, tour)
             least = scalarization.w0 * first + scalarization.w1 * second
-            load(archive.tours[archive.slots[k]], first, second)
+            load(tour, first, second)
         if construct or self.size == 0:
             tour = self._construct(scalarization)
             first, second = lengths(scalarization.costs, tour)
@@ -225,7 +240,7 @@ class Search:
         block = self.n // OFFERS if offering else DESCENT_BLOCK
         while self.descent.descend(scalarization, LEAST_GAIN * value, block) == 0:
             if offering:
-                offer(working, scalarization, archive)
+                offer_as_updated(working, archive)
             yield 0
         offer(working, scalarization, archive)
 

@@ -8,7 +8,7 @@ import pytest
 from service.instance import tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve
-from service.search.pareto_local_search import LARGE, LEAST_SHARE, rounds
+from service.search.pareto_local_search import LARGE, LEAST_SHARE, MANY, rounds
 from service.search.schedule import Search
 from tests.helpers.instances import ENDS, opened, random_tours, small_integers, uniform
 
@@ -70,11 +70,19 @@ def test_gaps_between_earlier_tours_are_filled_after_each_of_two_rounds() -> Non
         assert list(islice(done, fills)) == [search.block] * fills
 
 
-def test_large_earlier_tours_get_a_round_only_where_most_of_their_cities_are_touched() -> None:
-    few, most = (np.arange(size, dtype=np.int32) for size in (LARGE // 2, LARGE // 2 + 1))
-    assert rounds(LARGE, few) == ()
-    assert len(rounds(LARGE, most)) == 1
-    assert len(rounds(LARGE - 1, few)) == len(rounds(LARGE, None)) == 2
+def test_many_earlier_cities_get_a_round_only_where_most_of_them_are_touched() -> None:
+    few, most = (np.arange(size, dtype=np.int32) for size in (MANY // 2, MANY // 2 + 1))
+    assert rounds(MANY, few) == ()
+    assert len(rounds(MANY, most)) == len(rounds(MANY - 1, few)) == 1
+    assert len(rounds(LARGE - 1, few)) == len(rounds(MANY, None)) == 2
+
+
+def test_of_a_large_instance_every_weight_has_candidates_before_iterations_begin() -> None:
+    search = Search(uniform(LARGE), 0, np.full(2, float(LARGE)))
+    count = len(search.weights)
+    found = islice((iterations for iterations in search.run() if iterations), 2 * count)
+    assert list(found) == [1] * count + [LARGE // 4] * count
+    assert (search.state.weighted_candidates.candidate_costs[:, :, 0] > 0).all()
 
 
 def test_little_hypervolume_is_missing_between_the_best_of_many_cities() -> None:
