@@ -1,11 +1,11 @@
-"""Local search under one weighted sum: construction, descent, and iterated local search."""
+"""Local search under one weighted sum: descent, and iterated local search."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.jit import allocating, compiled, inlined
+from service.jit import compiled, inlined
 from service.search.archive import Archive, accepts, insert
-from service.search.candidates import Scalarization, weighted_cost
+from service.search.candidates import Scalarization
 from service.search.closing import is_kept
 from service.search.costs import lengths
 from service.search.moves import apply_move, block_swap, length_change, or_opt, two_opt
@@ -26,37 +26,6 @@ LONGEST_BLOCK = 50  # cities that a perturbation moves at once
 KICKS_PER_END = 8  # kicks of an open route, of which one is at an end of it
 UNLIMITED = 1 << 60
 LEAST_GAIN = 1e-12  # as a share of the weighted length, far above what rounding adds
-
-
-@allocating
-def nearest_neighbour(scalarization: Scalarization, begun: int, tour: Cities) -> None:
-    """Fill `tour` after its first `begun` cities, always going to the nearest unvisited city.
-
-    Candidates are looked up first, and all unvisited cities only where no candidate is left.
-    """
-    n = len(tour)
-    unvisited = np.arange(n).astype(np.int32)  # in the first n - k places
-    place = unvisited.copy()
-    for k in range(n - 1):
-        city = tour[k]
-        last = unvisited[n - 1 - k]
-        unvisited[place[city]] = last
-        place[last] = place[city]
-        place[city] = -1
-        if k < begun - 1:
-            continue
-        following = -1
-        for other in scalarization.candidates[city]:
-            if place[other] >= 0:
-                following = other
-                break
-        if following < 0:
-            least = np.inf
-            for j in range(n - 1 - k):
-                value = weighted_cost(scalarization, city, unvisited[j])
-                if value < least:
-                    least, following = value, unvisited[j]
-        tour[k + 1] = following
 
 
 @inlined

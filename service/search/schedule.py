@@ -2,16 +2,15 @@
 
 First every weight gets a tour by descent, then each gets iterated local search, twice, and gaps in
 the front are filled in between. From then on weights and gaps compete for the time, by the
-hypervolume that they lately gained. From some hundreds of cities on the iterations under a weight
-are by three-opt. Of half a thousand and more the gaps are too wide for that: when half of the
-weights have a tour, each other one, and then at its turn each of all, is first descended to from
-the best tours under both neighbouring weights, what lies between is offered to the archive, and
-descents are by three-opt, too. Where there are tours of an earlier front, descents begin at what
-has changed, and gaps are filled after each of two shorter rounds; of half a thousand cities and
-more there is one round, and of thousands none, unless most of them are touched.
+hypervolume that they lately gained. Half a thousand cities leave gaps too wide for that: when half
+of the weights have a tour, each other one, and then at its turn each of all, is first descended to
+from the best tours under both neighbouring weights, and what lies between is offered as well.
+Where there are tours of an earlier front, descents begin at what has changed, and the rounds are
+others, or none.
 """
 
 from collections.abc import Iterator
+from functools import partial
 from itertools import cycle
 
 import numpy as np
@@ -34,9 +33,10 @@ from service.search.candidates import (
     make_candidate_pool,
     rank_candidates,
 )
-from service.search.closing import closed_tours, opened_tours, with_end_last
+from service.search.closing import closed_tours, opened_tours
 from service.search.costs import lengths, make_costs, scaled_reference
-from service.search.local_search import LEAST_GAIN, nearest_neighbour, offer, offer_as_updated
+from service.search.local_search import LEAST_GAIN, offer, offer_as_updated
+from service.search.nearest_neighbour import constructed_tour
 from service.search.pareto_local_search import (
     LARGE,
     STEPS,
@@ -143,7 +143,7 @@ class Search:
 
     def construct(self) -> None:
         """Add a nearest-neighbour tour under equal weights, at most O(n^2)."""
-        tour = self._construct(self._scalarization(WEIGHTS // 2))
+        tour = constructed_tour(self.instance, self._scalarization(WEIGHTS // 2))
         insert(self.state.archive, lengths(self.state.costs, tour), tour)
 
     def run(self) -> Iterator[int]:
@@ -179,10 +179,6 @@ class Search:
         for _ in fill_in_blocks(self.pool, self.state.costs, pooled):
             yield 0
 
-    @property
-    def _area(self) -> float:
-        return dominated_area(self.state.archive, self.corner[0], self.corner[1])
-
     def _scalarization(self, k: int) -> Scalarization:
         w0, w1 = self.weights[k].tolist()
         _, candidates, candidate_costs = self.state.weighted_candidates
@@ -203,20 +199,10 @@ class Search:
             least = scalarization.w0 * first + scalarization.w1 * second
             load(tour, first, second)
         if construct or self.size == 0:
-            tour = self._construct(scalarization)
+            tour = constructed_tour(self.instance, scalarization)
             first, second = lengths(scalarization.costs, tour)
             if scalarization.w0 * first + scalarization.w1 * second < least:
                 load(tour, first, second)
-
-    def _construct(self, scalarization: Scalarization) -> NDArray[np.int32]:
-        """Return a tour by nearest neighbours."""
-        tour = np.zeros(self.n, np.int32)
-        if self.instance.closed:
-            nearest_neighbour(scalarization, 1, tour)
-            return tour
-        tour[1] = 1 + (self.instance.start or 0)
-        nearest_neighbour(scalarization, 2, tour)
-        return with_end_last(self.instance, tour)
 
     def _descend(self, k: int, construct: bool) -> Iterator[int]:
         """Rank the candidates of weight k, and descend to a local optimum under it."""
@@ -277,17 +263,18 @@ class Search:
         Gain is hypervolume per iteration, as a moving average.
         """
         next_weight = cycle(bisection_order(WEIGHTS))
+        area = partial(dominated_area, self.state.archive, self.corner[0], self.corner[1])
         rates = [np.inf, np.inf]
         quiet, turn = 0, 0
         while quiet < PATIENCE * self.n:
             turn += 1
             slower = int(rates[0] > rates[1])
             kind = slower if turn % EXPLORE_EVERY == 0 else 1 - slower
-            area, inserted = self._area, self.state.archive.counts[2]
+            before, inserted = area(), self.state.archive.counts[2]
             spent = 0
             for done in self._fill_gaps() if kind else self._iterate(next(next_weight), self.n):
                 spent += done
                 yield done
-            rate = (self._area - area) / spent
+            rate = (area() - before) / spent
             rates[kind] = rate if rates[kind] == np.inf else 0.9 * rates[kind] + 0.1 * rate
             quiet = quiet + spent if self.state.archive.counts[2] == inserted else 0

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from service.search.costs import lengths
-from service.search.local_search import improve_at, nearest_neighbour
+from service.search.local_search import improve_at
+from service.search.nearest_neighbour import nearest_neighbour
 from service.search.working_tour import dequeue, enqueue_cities, load, make_working_tour
 from tests.helpers.instances import random_matrices, scalarization_of
 
