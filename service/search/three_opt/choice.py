@@ -45,7 +45,7 @@ class LocalSearch(Protocol):
 def choose_local_searches(state: SearchState) -> tuple[LocalSearch, LocalSearch]:
     """Return the local searches for the instance of a state: for descents, and for iterations.
 
-    Up to a thousand cities a descent by two-opt is over sooner, and iterations mend what it left.
+    Of fewer cities than LARGE a descent by two-opt is over sooner; iterations mend what it left.
     """
     n, two_opt = len(state.costs.cities), TwoOptSearch(state)
     if n < THREE_OPT or not state.costs.symmetric:
