@@ -20,7 +20,6 @@ from service.search import candidates
 from service.search.archive import MAX_POINTS
 from service.search.bound.hypervolume import hypervolume_bound
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
-from service.search.local_search import offer_as_updated
 from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import Search
 from service.search.three_opt.choice import ThreeOptSearch
@@ -187,9 +186,6 @@ def _warm_up_three_opt(instance: Instance) -> None:
     )
     for _ in islice(search.run(), 2 * WEIGHTS):  # a descent under each weight takes one or more
         pass
-    # On the way of a descent tours are offered only where cities are many.
-    for working in (search.state.working, search.descent.working):
-        offer_as_updated(working, search.state.archive)
 
 
 def _instance(n: int, closed: bool, coordinates: bool) -> Instance:

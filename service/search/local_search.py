@@ -159,15 +159,6 @@ def offer(working: QueuedTour, scalarization: Scalarization, archive: Archive) -
 
 
 @compiled
-def offer_as_updated(working: QueuedTour, archive: Archive) -> bool:
-    """Offer the tour with its lengths as updates left them, and return whether it was inserted.
-
-    To sum them afresh takes longer than all else where a tour has thousands of cities.
-    """
-    return insert(archive, (working.length[0], working.length[1]), working.tour)
-
-
-@compiled
 def descend_and_offer(
     working: WorkingTour, scalarization: Scalarization, archive: Archive, threshold: float
 ) -> None:

@@ -35,7 +35,7 @@ from service.search.candidates import (
 )
 from service.search.closing import closed_tours, opened_tours
 from service.search.costs import lengths, make_costs, scaled_reference
-from service.search.local_search import LEAST_GAIN, offer, offer_as_updated
+from service.search.local_search import LEAST_GAIN, offer
 from service.search.nearest_neighbour import constructed_tour
 from service.search.pareto_local_search import (
     LARGE,
@@ -225,8 +225,8 @@ class Search:
         value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
         block = self.n // OFFERS if offering else DESCENT_BLOCK
         while self.descent.descend(scalarization, LEAST_GAIN * value, block) == 0:
-            if offering:
-                offer_as_updated(working, archive)
+            if offering:  # with lengths as updated: to sum them afresh takes as long as the rest
+                insert(archive, (working.length[0], working.length[1]), working.tour)
             yield 0
         offer(working, scalarization, archive)
 
