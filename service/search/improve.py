@@ -181,10 +181,11 @@ def warm_up_kind(closed: bool, coordinates: bool) -> None:
 def _warm_up_three_opt(instance: Instance) -> None:
     """Compile, with a few steps of a search, what instances of many cities are searched by."""
     search = Search(instance, 0, instance.n * instance.scale)
-    search.descent = search.local_search = ThreeOptSearch(
-        search.state, make_undoable_tour(search.n)
-    )
+    three_opt = ThreeOptSearch(search.state, make_undoable_tour(search.n))
+    search.local_search = search.descents.local_search = three_opt
     for _ in islice(search.run(), 2 * WEIGHTS):  # a descent under each weight takes one or more
+        pass
+    for _ in search.descents.descend_from_neighbours(WEIGHTS // 2, assembling=True):
         pass
 
 

@@ -4,7 +4,8 @@ First every weight gets a tour by descent, then each gets iterated local search,
 the front are filled in between. From then on weights and gaps compete for the time, by the
 hypervolume that they lately gained. Half a thousand cities leave gaps too wide for that: when half
 of the weights have a tour, each other one, and then at its turn each of all, is first descended to
-from the best tours under both neighbouring weights, and what lies between is offered as well.
+from the best tours under both neighbouring weights, what lies between is offered as well, and what
+is best in all of these is put together.
 Where there are tours of an earlier front, descents begin at what has changed, and the rounds are
 others, or none.
 """
@@ -21,25 +22,24 @@ from service.pareto import hypervolume
 from service.search.archive import (
     MAX_POINTS,
     accepts,
-    best_point,
     dominated_area,
     insert,
     make_archive,
 )
 from service.search.candidates import (
     POOL_WEIGHTS,
-    Scalarization,
     fill_in_blocks,
     make_candidate_pool,
     rank_candidates,
 )
 from service.search.closing import closed_tours, opened_tours
 from service.search.costs import lengths, make_costs, scaled_reference
-from service.search.local_search import LEAST_GAIN, offer
+from service.search.descents import Descents
 from service.search.nearest_neighbour import constructed_tour
 from service.search.pareto_local_search import (
     LARGE,
     STEPS,
+    VAST,
     WEIGHTS,
     SearchState,
     bisection_order,
@@ -47,18 +47,16 @@ from service.search.pareto_local_search import (
     make_weighted_candidates,
     rounds,
 )
-from service.search.three_opt.choice import LocalSearch, choose_local_searches
-from service.search.working_tour import enqueue_cities, make_working_tour
+from service.search.three_opt.choice import choose_local_searches
+from service.search.working_tour import make_working_tour
 
 Array = NDArray[np.float64]
 
 CONSTRUCTIONS = 17  # weights for which a tour is constructed as well
 LARGE_CONSTRUCTIONS = 5  # the same, of a large instance
 LARGE_DESCENTS = 25  # of a large instance: weights descended to before others from their neighbours
-OFFERS = 50  # of a large tour on the way of a descent, in each sweep along it
 BLOCK = 300  # iterations between two checks of the deadline, some milliseconds
 FULL_BLOCK = 1_000  # cities beyond which iterations take longer, and fewer are a block
-DESCENT_BLOCK = 2_000  # cities from the queue between two checks of the deadline
 EXPLORE_EVERY = 10  # turns, of which one goes to what has lately gained less
 PATIENCE = 1_000  # iterations per city without a new tour, after which the search has converged
 
@@ -104,7 +102,8 @@ class Search:
             make_working_tour(self.n),
             np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
         )
-        self.descent, self.local_search = choose_local_searches(self.state)
+        descent, self.local_search = choose_local_searches(self.state)
+        self.descents = Descents(instance, self.state, descent, self.touched)
 
     @property
     def hypervolume(self) -> float:
@@ -143,7 +142,7 @@ class Search:
 
     def construct(self) -> None:
         """Add a nearest-neighbour tour under equal weights, at most O(n^2)."""
-        tour = constructed_tour(self.instance, self._scalarization(WEIGHTS // 2))
+        tour = constructed_tour(self.instance, self.descents.scalarization(WEIGHTS // 2))
         insert(self.state.archive, lengths(self.state.costs, tour), tour)
 
     def run(self) -> Iterator[int]:
@@ -166,10 +165,12 @@ class Search:
         order = bisection_order(WEIGHTS)
         constructions = LARGE_CONSTRUCTIONS if self.large else CONSTRUCTIONS
         for rank, k in enumerate(order[:descents]):
-            yield from self._descend(k, construct=rank < constructions and self.touched is None)
+            rank_candidates(self.pool, self.descents.scalarization(k))
+            construct = rank < constructions and self.touched is None
+            yield from self.descents.descend(k, construct)
         for k in order[descents:]:
-            rank_candidates(self.pool, self._scalarization(k))
-            yield from self._sweep_from_neighbours(k)
+            rank_candidates(self.pool, self.descents.scalarization(k))
+            yield from self.descents.descend_from_neighbours(k, assembling=self.n < VAST)
             yield 1
 
     def pool_candidates(self) -> Iterator[int]:
@@ -179,63 +180,12 @@ class Search:
         for _ in fill_in_blocks(self.pool, self.state.costs, pooled):
             yield 0
 
-    def _scalarization(self, k: int) -> Scalarization:
-        w0, w1 = self.weights[k].tolist()
-        _, candidates, candidate_costs = self.state.weighted_candidates
-        return Scalarization(self.state.costs, candidates[k], candidate_costs[k], w0, w1)
-
-    def _load_start(
-        self, local_search: LocalSearch, scalarization: Scalarization, construct: bool = False
-    ) -> None:
-        """Load the best tour known for a weighted sum, or a constructed one if that is better."""
-        archive, load = self.state.archive, local_search.load
-        least = np.inf
-        if self.size > 0:
-            k = best_point(archive, scalarization.w0, scalarization.w1)
-            tour = archive.tours[archive.slots[k]]
-            first, second = archive.points[k].tolist()
-            if self.large:  # may have been offered on the way, with lengths as updated
-                first, second = lengths(scalarization.costs, tour)
-            least = scalarization.w0 * first + scalarization.w1 * second
-            load(tour, first, second)
-        if construct or self.size == 0:
-            tour = constructed_tour(self.instance, scalarization)
-            first, second = lengths(scalarization.costs, tour)
-            if scalarization.w0 * first + scalarization.w1 * second < least:
-                load(tour, first, second)
-
-    def _descend(self, k: int, construct: bool) -> Iterator[int]:
-        """Rank the candidates of weight k, and descend to a local optimum under it."""
-        scalarization = self._scalarization(k)
-        rank_candidates(self.pool, scalarization)
-        self._load_start(self.descent, scalarization, construct)
-        cities = self.descent.working.tour if self.touched is None else self.touched
-        yield from self._sweep(scalarization, cities, offering=self.large and not construct)
-        yield 1
-
-    def _sweep(
-        self, scalarization: Scalarization, cities: NDArray[np.int32], offering: bool
-    ) -> Iterator[int]:
-        """Descend from the working tour, beginning at these cities, and offer the local optimum.
-
-        With `offering` tours on the way are offered too: from another weight's they lie between.
-        """
-        working, archive = self.descent.working, self.state.archive
-        enqueue_cities(working, cities)
-        value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
-        block = self.n // OFFERS if offering else DESCENT_BLOCK
-        while self.descent.descend(scalarization, LEAST_GAIN * value, block) == 0:
-            if offering:  # with lengths as updated: to sum them afresh takes as long as the rest
-                insert(archive, (working.length[0], working.length[1]), working.tour)
-            yield 0
-        offer(working, scalarization, archive)
-
     def _iterate(self, k: int, iterations: int) -> Iterator[int]:
         """Run so many iterations of iterated local search under weight k."""
-        scalarization = self._scalarization(k)
+        scalarization = self.descents.scalarization(k)
         if self.large:
-            yield from self._sweep_from_neighbours(k)
-        self._load_start(self.local_search, scalarization)
+            yield from self.descents.descend_from_neighbours(k, assembling=True)
+        self.descents.load_start(self.local_search, scalarization)
         effort = self.local_search.effort
         own = max(1, iterations // effort)
         block = BLOCK if self.large else max(1, self.block // effort)
@@ -243,13 +193,6 @@ class Search:
             steps = min(own - done, block)
             self.local_search.iterate(scalarization, steps)
             yield steps * effort
-
-    def _sweep_from_neighbours(self, k: int) -> Iterator[int]:
-        """Descend under weight k from the best tours under the weights before and after it."""
-        for neighbour in {max(k - 1, 0), min(k + 1, WEIGHTS - 1)} - {k}:
-            self._load_start(self.descent, self._scalarization(neighbour))
-            cities = self.descent.working.tour
-            yield from self._sweep(self._scalarization(k), cities, offering=True)
 
     def _fill_gaps(self) -> Iterator[int]:
         """Run about n iterations of Pareto local search."""

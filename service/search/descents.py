@@ -1,0 +1,139 @@
+"""Descents to a local optimum under one weight: from the best tour known, or from its neighbours'.
+
+Of a large instance the tours under the weights before and after are descended from as well, and of
+all that these and the best one have the better parts are put together in one.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.instance import Instance
+from service.search.archive import best_point, insert
+from service.search.candidates import Scalarization
+from service.search.costs import lengths
+from service.search.edge_assembly.assembly import assemble
+from service.search.local_search import LEAST_GAIN, offer
+from service.search.nearest_neighbour import constructed_tour
+from service.search.pareto_local_search import LARGE, WEIGHTS, SearchState
+from service.search.three_opt.choice import LocalSearch
+from service.search.working_tour import enqueue_cities
+
+Cities = NDArray[np.int32]
+
+OFFERS = 50  # of a large tour on the way of a descent, in each sweep along it
+DESCENT_BLOCK = 2_000  # cities from the queue between two checks of the deadline
+ASSEMBLIES = 2  # times that each tour is assembled from: what there is to choose at random differs
+
+
+class Descents:
+    """The descents of a search, which offer what they find to its archive.
+
+    Args:
+        instance: The instance.
+        state: Of the search.
+        local_search: What descends.
+        touched: The cities at which a descent begins where they are not all.
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        state: SearchState,
+        local_search: LocalSearch,
+        touched: Cities | None,
+    ) -> None:
+        self.instance, self.state, self.touched = instance, state, touched
+        self.local_search = local_search
+        self.n = len(state.costs.cities)
+        self.large = self.n >= LARGE
+
+    def scalarization(self, k: int) -> Scalarization:
+        """Return the weighted sum of weight k, and the candidates under it."""
+        weights, candidates, candidate_costs = self.state.weighted_candidates
+        w0, w1 = weights[k].tolist()
+        return Scalarization(self.state.costs, candidates[k], candidate_costs[k], w0, w1)
+
+    def load_start(
+        self, local_search: LocalSearch, scalarization: Scalarization, construct: bool = False
+    ) -> None:
+        """Load the best tour known for a weighted sum, or a constructed one if that is better."""
+        load, known = local_search.load, self._best_tour(scalarization)
+        least = np.inf
+        if known is not None:
+            tour, first, second = known
+            least = scalarization.w0 * first + scalarization.w1 * second
+            load(tour, first, second)
+        if construct or known is None:
+            tour = constructed_tour(self.instance, scalarization)
+            first, second = lengths(scalarization.costs, tour)
+            if scalarization.w0 * first + scalarization.w1 * second < least:
+                load(tour, first, second)
+
+    def _best_tour(self, scalarization: Scalarization) -> tuple[Cities, float, float] | None:
+        """Return the best tour known for a weighted sum and its lengths, if there is any."""
+        archive = self.state.archive
+        if archive.counts[0] == 0:
+            return None
+        k = best_point(archive, scalarization.w0, scalarization.w1)
+        tour: Cities = archive.tours[archive.slots[k]]
+        first, second = archive.points[k].tolist()
+        if self.large:  # may have been offered on the way, with lengths as updated
+            first, second = lengths(scalarization.costs, tour)
+        return tour, first, second
+
+    def descend(self, k: int, construct: bool) -> Iterator[int]:
+        """Descend to a local optimum under weight k, whose candidates are ranked."""
+        scalarization = self.scalarization(k)
+        self.load_start(self.local_search, scalarization, construct)
+        cities = self.local_search.working.tour if self.touched is None else self.touched
+        yield from self._sweep(scalarization, cities, offering=self.large and not construct)
+        yield 1
+
+    def descend_from_neighbours(self, k: int, assembling: bool) -> Iterator[int]:
+        """Descend under weight k from the best tours under the weights before and after it.
+
+        With `assembling` then put together what is best in these and in the best one before, where
+        costs are symmetric.
+        """
+        scalarization, tours = self.scalarization(k), []
+        if (known := self._best_tour(scalarization)) is not None:
+            tours.append(known[0].copy())
+        for neighbour in {max(k - 1, 0), min(k + 1, WEIGHTS - 1)} - {k}:
+            self.load_start(self.local_search, self.scalarization(neighbour))
+            cities = self.local_search.working.tour
+            yield from self._sweep(scalarization, cities, offering=True)
+            tours.append(cities.copy())
+        if assembling and scalarization.costs.symmetric:
+            yield from self._assemble(scalarization, tours)
+
+    def _assemble(self, scalarization: Scalarization, tours: Sequence[Cities]) -> Iterator[int]:
+        """Put what is better in these tours into the best one, and descend from there."""
+        working = self.local_search.working
+        self.load_start(self.local_search, scalarization)
+        value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
+        tour, position = working.tour.copy(), working.position.copy()
+        gained = 0.0
+        for other in ASSEMBLIES * [*tours]:
+            given = tour, position, other
+            gained += assemble(given, scalarization, LEAST_GAIN * value, self.state.random)
+            yield 0
+        if gained > 0.0:
+            self.local_search.load(tour, *lengths(scalarization.costs, tour))
+            yield from self._sweep(scalarization, tour, offering=False)
+
+    def _sweep(self, scalarization: Scalarization, cities: Cities, offering: bool) -> Iterator[int]:
+        """Descend from the working tour, beginning at these cities, and offer the local optimum.
+
+        With `offering` tours on the way are offered too: from another weight's they lie between.
+        """
+        working, archive = self.local_search.working, self.state.archive
+        enqueue_cities(working, cities)
+        value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
+        block = 1 + self.n // OFFERS if offering else DESCENT_BLOCK
+        while self.local_search.descend(scalarization, LEAST_GAIN * value, block) == 0:
+            if offering:  # with lengths as updated: to sum them afresh takes as long as the rest
+                insert(archive, (working.length[0], working.length[1]), working.tour)
+            yield 0
+        offer(working, scalarization, archive)

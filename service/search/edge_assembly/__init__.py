@@ -1,0 +1,1 @@
+"""Edge assembly: what is better in one tour put into another (Nagata and Kobayashi, 2013)."""
