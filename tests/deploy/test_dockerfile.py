@@ -2,6 +2,7 @@
 
 import json
 import os
+import random
 import re
 import shutil
 import signal
@@ -11,6 +12,7 @@ import sys
 import sysconfig
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import httpx
@@ -115,6 +117,17 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return prefix
 
 
+def free_port() -> int:
+    """A free port of those that no other test's connection takes before the server listens.
+
+    Connections have ports from 32768 on, as have servers that ask for any.
+    """
+    while True:
+        port = random.randrange(20_000, 32_768)
+        with suppress(OSError), socket.create_server(("127.0.0.1", port)):
+            return port
+
+
 @pytest.fixture
 def environment(installed: Path) -> dict[str, str]:
     """As in the image: its variables, no home, and nothing of the working tree.
@@ -123,8 +136,6 @@ def environment(installed: Path) -> dict[str, str]:
     """
     [packages] = installed.glob("lib/*/site-packages")
     given = dict(re.findall(r"(\w+)=(\S+)", only("ENV")))
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
     return {
         **given,
         "PATH": f"{installed}/bin:{Path(sys.executable).parent}:{os.environ['PATH']}",
@@ -132,7 +143,7 @@ def environment(installed: Path) -> dict[str, str]:
         "NUMBA_CACHE_DIR": str(installed / "cache"),
         "NUMBA_DISABLE_JIT": "1",
         "PARETOUR_WORKERS": "1",
-        "PARETOUR_PORT": str(port),
+        "PARETOUR_PORT": str(free_port()),
         "HOME": "/nowhere",
     }
 
