@@ -97,31 +97,33 @@ class Descents:
         With `assembling` then put together what is best in these and in the best one before, where
         costs are symmetric.
         """
-        scalarization, tours = self.scalarization(k), []
-        if (known := self._best_tour(scalarization)) is not None:
+        scalarization = self.scalarization(k)
+        assembling = assembling and scalarization.costs.symmetric
+        tours = []
+        if assembling and (known := self._best_tour(scalarization)) is not None:
             tours.append(known[0].copy())
         for neighbour in {max(k - 1, 0), min(k + 1, WEIGHTS - 1)} - {k}:
             self.load_start(self.local_search, self.scalarization(neighbour))
             cities = self.local_search.working.tour
             yield from self._sweep(scalarization, cities, offering=True)
-            tours.append(cities.copy())
-        if assembling and scalarization.costs.symmetric:
+            if assembling:
+                tours.append(cities.copy())
+        if assembling:
             yield from self._assemble(scalarization, tours)
 
     def _assemble(self, scalarization: Scalarization, tours: Sequence[Cities]) -> Iterator[int]:
         """Put what is better in these tours into the best one, and descend from there."""
-        working = self.local_search.working
-        self.load_start(self.local_search, scalarization)
+        local_search, working = self.local_search, self.local_search.working
+        self.load_start(local_search, scalarization)
         value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
-        tour, position = working.tour.copy(), working.position.copy()
         gained = 0.0
         for other in ASSEMBLIES * [*tours]:
-            given = tour, position, other
+            given = working.tour, working.position, other
             gained += assemble(given, scalarization, LEAST_GAIN * value, self.state.random)
             yield 0
         if gained > 0.0:
-            self.local_search.load(tour, *lengths(scalarization.costs, tour))
-            yield from self._sweep(scalarization, tour, offering=False)
+            local_search.load(working.tour, *lengths(scalarization.costs, working.tour))
+            yield from self._sweep(scalarization, working.tour, offering=False)
 
     def _sweep(self, scalarization: Scalarization, cities: Cities, offering: bool) -> Iterator[int]:
         """Descend from the working tour, beginning at these cities, and offer the local optimum.

@@ -5,9 +5,8 @@ the front are filled in between. From then on weights and gaps compete for the t
 hypervolume that they lately gained. Half a thousand cities leave gaps too wide for that: when half
 of the weights have a tour, each other one, and then at its turn each of all, is first descended to
 from the best tours under both neighbouring weights, what lies between is offered as well, and what
-is best in all of these is put together.
-Where there are tours of an earlier front, descents begin at what has changed, and the rounds are
-others, or none.
+is best in all of these is put together. Where there are tours of an earlier front, descents begin
+at what has changed, and the rounds are others, or none.
 """
 
 from collections.abc import Iterator

@@ -2,21 +2,20 @@
 
 import json
 import os
-import random
 import re
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import sysconfig
 import time
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 
 import httpx
 import pytest
+
+from tests.helpers.ports import free_port
 
 ROOT = Path(__file__).parents[2]
 DOCKERFILE = (ROOT / "Dockerfile").read_text().replace("\\\n", " ")
@@ -115,17 +114,6 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     options = ["--no-deps", "--ignore-installed", "--no-build-isolation", "--prefix", prefix]
     subprocess.run([*pip, *options, ROOT], check=True)
     return prefix
-
-
-def free_port() -> int:
-    """A free port of those that no other test's connection takes before the server listens.
-
-    Connections have ports from 32768 on, as have servers that ask for any.
-    """
-    while True:
-        port = random.randrange(20_000, 32_768)
-        with suppress(OSError), socket.create_server(("127.0.0.1", port)):
-            return port
 
 
 @pytest.fixture

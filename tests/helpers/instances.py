@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
-from service.search.candidates import Scalarization
+from service.search.candidates import Scalarization, weighted_cost
 from service.search.costs import make_costs
 from service.search.open_routes import moved_ends
 
@@ -98,3 +98,15 @@ def scalarization_of(instance: Instance) -> Scalarization:
     return Scalarization(
         costs, np.ascontiguousarray(candidates, np.int32), candidate_costs, 0.5, 0.5
     )
+
+
+def weighted_length(scalarization: Scalarization, tour: NDArray[np.integer]) -> float:
+    """The length of a closed tour under one weighted sum, step by step."""
+    steps = zip(tour, np.roll(tour, -1), strict=True)
+    return sum(weighted_cost(scalarization, i, j) for i, j in steps)
+
+
+def steps_of(tour: NDArray[np.integer]) -> set[frozenset[int]]:
+    """The steps of a closed tour, in either direction."""
+    steps = zip(tour.tolist(), np.roll(tour, -1).tolist(), strict=True)
+    return {frozenset(step) for step in steps}

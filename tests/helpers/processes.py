@@ -3,7 +3,6 @@
 import json
 import os
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -14,6 +13,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
 import httpx
+
+from tests.helpers.ports import free_port
 
 UNLIMITED = "1000000/second"  # for tests and benchmarks, which all call from one address
 
@@ -45,8 +46,7 @@ def serve_process(
             the search is interpreted, because compiled code would not be used.
         descriptors: how many files and sockets it may have open, as by `ulimit -n`.
     """
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
+    port = free_port()
     command = [sys.executable, "-m", "service", "serve", "--port", str(port)]
     if descriptors is not None:
         command = ["bash", "-c", f'ulimit -n {descriptors}; exec "$@"', "bash", *command]

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.helpers.ports import free_port
+
 FORGETFUL = ("redis-server", "--save", "", "--appendonly", "no")
 LASTING = ("redis-server", "--save", "", "--appendonly", "yes")
 
@@ -49,8 +51,7 @@ def redis_server(folder: Path, command: Sequence[str] = FORGETFUL) -> Iterator[R
     """Run redis-server with these options until the block ends; skip where it is not installed."""
     if shutil.which("redis-server") is None:
         pytest.skip("redis-server is not installed")
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
+    port = free_port()
     redis = Redis(port, folder, command)
     try:
         redis.begin()

