@@ -11,6 +11,7 @@ Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
 Indices = NDArray[np.intp]
 _MOST_COMPARED = 100  # tours of about one balance, some milliseconds at thousands of cities
+_LONGER = 0.5  # of a mean leg, by which a tour that keeps more may be longer
 _EQUAL = 1e-12  # lengths whose relative difference is less count as equal, as in the search
 
 
@@ -69,8 +70,9 @@ def with_most_kept_at(
 ) -> Indices:
     """Return tours chosen of a front, that at a balance replaced by one that keeps more legs.
 
-    Of the tours nearer to the balance than those chosen on either side, that is the one that keeps
-    most of the driven tour's legs. The ends of the front stay.
+    Of the tours nearer to the balance than those chosen on either side, and longer than the
+    shortest of them by no more than half a leg of mean length, that is the one that keeps most of
+    the driven tour's legs. The ends of the front stay.
 
     Args:
         instance: The instance.
@@ -88,7 +90,19 @@ def with_most_kept_at(
     between = np.arange(before + 1, after)
     nearest = between[np.argsort(away[between - begin], kind="stable")][:_MOST_COMPARED]
     nearer = nearest[away[nearest - begin] <= away[[before - begin, after - begin]].min()]
-    kept = kept_shares(instance, found.tours_at(nearer), driven)
+    short = nearer[_above_shortest(found.points, before, after, nearer) <= _LONGER / instance.n]
+    kept = kept_shares(instance, found.tours_at(short), driven)
     instead = chosen.copy()
-    instead[at] = nearer[kept.argmax()]
+    instead[at] = short[kept.argmax()]
     return instead
+
+
+def _above_shortest(points: Array, before: int, after: int, between: Indices) -> Array:
+    """Return by what share of it points between two others exceed the shortest of them.
+
+    Lengths are added by the weights under which the two others are equal.
+    """
+    shares = points / points[[before, after]].max(axis=0)
+    weights = np.abs(shares[after] - shares[before])[::-1]
+    sums: Array = shares[between] @ weights
+    return sums / sums.min() - 1

@@ -40,7 +40,8 @@ def replan(
     The search sets out from the earlier tours. Where it has time, the network builds tours only if
     preferences are asked for: from tours that are nearly right the search gains nothing by more.
     Of tours of equal lengths an earlier one that keeps more of the driven tour's legs is returned,
-    and at the driven tour's balance, of tours about equally near to it, the one that keeps most.
+    and at the driven tour's balance, of tours about as near to it and as short, the one that keeps
+    most.
 
     Args:
         constructor: Builds further tours.

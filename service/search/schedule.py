@@ -101,7 +101,7 @@ class Search:
             make_working_tour(self.n),
             np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
         )
-        descent, self.local_search = choose_local_searches(self.state)
+        descent, self.local_search = choose_local_searches(self.state, mending=touched is not None)
         self.descents = Descents(instance, self.state, descent, self.touched)
 
     @property

@@ -216,13 +216,13 @@ def test_a_driven_tour_that_was_not_in_the_earlier_front_has_no_balance() -> Non
     assert earlier.balance is None
 
 
-def test_of_tours_about_equally_balanced_the_one_that_keeps_most_is_chosen() -> None:
+def test_of_tours_about_as_balanced_and_as_short_the_one_that_keeps_most_is_chosen() -> None:
     rng = np.random.default_rng(4)
     instance = Instance(coordinates=rng.random((9, 4)))
     tours = np.array([rng.permutation(9) for _ in range(4000)])
     tours = tours[nondominated(tour_lengths(instance, tours))]
     found = SearchResult(tour_lengths(instance, tours), tours.__getitem__, None)
-    more = 0
+    more, longer = 0, 0
     for driven in rng.permuted(np.tile(np.arange(9), (40, 1)), axis=1):
         balance = float(rng.random())
         chosen = np.sort(rng.permutation(len(tours))[: len(tours) // 3])
@@ -233,11 +233,18 @@ def test_of_tours_about_equally_balanced_the_one_that_keeps_most_is_chosen() -> 
         others = np.delete(chosen, at)
         assert np.delete(instead, at).tolist() == others.tolist()
         kept = kept_shares(instance, tours, driven)
+        if not 0 < at < len(chosen) - 1:
+            assert instead[at] == chosen[at]
+            continue
         nearer = [k for k in away if away[k] < min(away[other] for other in others)]
-        inner = 0 < at < len(chosen) - 1
-        assert kept[instead[at]] == max(kept[nearer]) if inner else instead[at] == chosen[at]
+        width, height = found.points[chosen[at + 1]] - found.points[chosen[at - 1]]
+        sums = found.points @ (-height, width)
+        short = [k for k in nearer if sums[k] <= (1 + 0.5 / 9) * min(sums[nearer])]
+        assert kept[instead[at]] == max(kept[short])
         more += kept[instead[at]] > kept[chosen[at]]
+        longer += len(short) < len(nearer)
     assert more > 0
+    assert longer > 0
 
 
 def test_of_equal_lengths_the_tour_most_like_the_driven_one_is_returned() -> None:

@@ -17,6 +17,7 @@ from service.search.working_tour import QueuedTour, WorkingTour
 Cities = NDArray[np.int32]
 
 THREE_OPT = 250  # cities from which on iterations are by it; at 200 clustered ones it is worse
+MENDING = 100  # the same where tours of an earlier front are mended: these are too good for two-opt
 EFFORT = 3  # of an iteration by three-opt, which takes three or four times as long as by two-opt
 OFFERED = 2_000  # cities, of which every local optimum is offered; of more, proportionally fewer
 
@@ -42,13 +43,15 @@ class LocalSearch(Protocol):
         """Perturb and descend so many times, returning to the tour before where it was better."""
 
 
-def choose_local_searches(state: SearchState) -> tuple[LocalSearch, LocalSearch]:
+def choose_local_searches(state: SearchState, mending: bool) -> tuple[LocalSearch, LocalSearch]:
     """Return the local searches for the instance of a state: for descents, and for iterations.
+
+    With `mending` they set out from the tours of an earlier front.
 
     Of fewer cities than LARGE a descent by two-opt is over sooner; iterations mend what it left.
     """
     n, two_opt = len(state.costs.cities), TwoOptSearch(state)
-    if n < THREE_OPT or not state.costs.symmetric:
+    if n < (MENDING if mending else THREE_OPT) or not state.costs.symmetric:
         return two_opt, two_opt
     if n < LARGE:
         return two_opt, ThreeOptSearch(state, make_undoable_tour(n), EFFORT)
