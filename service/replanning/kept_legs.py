@@ -44,16 +44,17 @@ def kept_shares(instance: Instance, tours: Tours, driven: NDArray[np.int64]) -> 
 
 
 def most_like_driven(
-    instance: Instance, tours: Tours, others: Tours, driven: NDArray[np.int64]
+    instance: Instance, tours: Tours, points: Array, others: Tours, driven: NDArray[np.int64]
 ) -> Tours:
     """Return tours, each replaced by that of equal lengths among others which keeps more legs.
 
-    O(m n + m k) for m tours of n cities and k others, at least one.
+    O(m n + m k) for m tours of n cities, whose lengths are points, and k others, at least one.
     """
-    kept, kept_of_others = (kept_shares(instance, each, driven) for each in (tours, others))
-    points, points_of_others = (tour_lengths(instance, each) for each in (tours, others))
-    differences = np.abs(points_of_others - points[:, np.newaxis])
+    differences = np.abs(tour_lengths(instance, others) - points[:, np.newaxis])
     equal = (differences <= _EQUAL * points[:, np.newaxis]).all(axis=2)
+    if not equal.any():
+        return tours
+    kept, kept_of_others = (kept_shares(instance, each, driven) for each in (tours, others))
     kept_of_equal = np.where(equal, kept_of_others, -1.0)
     better = kept_of_equal.max(axis=1) > kept
     chosen = tours.copy()

@@ -77,7 +77,7 @@ def replan(
     if earlier.min_kept > 0:
         front = _keeping(instance, front, first, earlier, options.size)
     elif len(first):
-        tours = most_like_driven(instance, front.tours, first, earlier.driven)
+        tours = most_like_driven(instance, front.tours, front.points, first, earlier.driven)
         front = replace(front, tours=tours)
     return _with_kept(instance, front, earlier)
 
