@@ -15,8 +15,8 @@ from service.search.candidates import Scalarization
 from service.search.costs import lengths
 from service.search.edge_assembly.assembly import assemble
 from service.search.local_search import LEAST_GAIN, offer
-from service.search.nearest_neighbour import constructed_tour
 from service.search.pareto_local_search import LARGE, WEIGHTS, SearchState
+from service.search.starts.constructed_tour import GREEDY, constructed_tour
 from service.search.three_opt.choice import LocalSearch
 from service.search.working_tour import enqueue_cities
 
@@ -66,7 +66,8 @@ class Descents:
             least = scalarization.w0 * first + scalarization.w1 * second
             load(tour, first, second)
         if construct or known is None:
-            tour = constructed_tour(self.instance, scalarization)
+            greedy = self.n >= GREEDY and scalarization.costs.symmetric
+            tour = constructed_tour(self.instance, scalarization, greedy)
             first, second = lengths(scalarization.costs, tour)
             if scalarization.w0 * first + scalarization.w1 * second < least:
                 load(tour, first, second)

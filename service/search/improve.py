@@ -22,6 +22,7 @@ from service.search.bound.hypervolume import hypervolume_bound
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
 from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import Search
+from service.search.starts.constructed_tour import constructed_tour
 from service.search.three_opt.choice import ThreeOptSearch
 from service.search.three_opt.undoable_tour import make_undoable_tour
 
@@ -187,6 +188,7 @@ def _warm_up_three_opt(instance: Instance) -> None:
         pass
     for _ in search.descents.descend_from_neighbours(WEIGHTS // 2, assembling=True):
         pass
+    constructed_tour(instance, search.descents.scalarization(WEIGHTS // 2), greedy=True)
 
 
 def _instance(n: int, closed: bool, coordinates: bool) -> Instance:

@@ -34,7 +34,6 @@ from service.search.candidates import (
 from service.search.closing import closed_tours, opened_tours
 from service.search.costs import lengths, make_costs, scaled_reference
 from service.search.descents import Descents
-from service.search.nearest_neighbour import constructed_tour
 from service.search.pareto_local_search import (
     LARGE,
     STEPS,
@@ -46,6 +45,7 @@ from service.search.pareto_local_search import (
     make_weighted_candidates,
     rounds,
 )
+from service.search.starts.constructed_tour import constructed_tour
 from service.search.three_opt.choice import choose_local_searches
 from service.search.working_tour import make_working_tour
 

@@ -1,4 +1,4 @@
-"""Moves gain what is said, and a constructed tour visits all cities."""
+"""Moves gain what is said."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from service.search.costs import lengths
 from service.search.local_search import improve_at
-from service.search.nearest_neighbour import nearest_neighbour
 from service.search.working_tour import dequeue, enqueue_cities, load, make_working_tour
 from tests.helpers.instances import random_matrices, scalarization_of
 
@@ -27,12 +26,3 @@ def test_every_improving_move_gains_what_it_says(seed: int, symmetric: bool, n: 
                 tuple(working.length)
             )
     assert np.array_equal(np.sort(working.tour), np.arange(n))
-
-
-@pytest.mark.parametrize("symmetric", [True, False])
-def test_the_nearest_neighbour_tour_visits_all(symmetric: bool) -> None:
-    scalarization = scalarization_of(random_matrices(30, 1, symmetric))
-    tour = np.array([5, 2] + [0] * 28, np.int32)
-    nearest_neighbour(scalarization, 2, tour)
-    assert tour[:2].tolist() == [5, 2]
-    assert np.array_equal(np.sort(tour), np.arange(30))

@@ -1,25 +1,12 @@
-"""Tours by nearest neighbours, from which descents set out where nothing better is known."""
+"""Tours by nearest neighbours."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance
 from service.jit import allocating
 from service.search.candidates import Scalarization, weighted_cost
-from service.search.closing import with_end_last
 
 Cities = NDArray[np.int32]
-
-
-def constructed_tour(instance: Instance, scalarization: Scalarization) -> Cities:
-    """Return a tour of an instance by nearest neighbours, as the closed one that is searched."""
-    tour = np.zeros(len(scalarization.costs.cities), np.int32)
-    if instance.closed:
-        nearest_neighbour(scalarization, 1, tour)
-        return tour
-    tour[1] = 1 + (instance.start or 0)
-    nearest_neighbour(scalarization, 2, tour)
-    return with_end_last(instance, tour)
 
 
 @allocating

@@ -1,0 +1,1 @@
+"""Constructed tours, from which descents set out where nothing better is known."""
