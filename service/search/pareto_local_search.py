@@ -78,7 +78,8 @@ def rounds(n: int, touched: NDArray[np.integer] | None) -> tuple[Round, ...]:
     """Return the rounds of a search for n cities, before weights and gaps compete.
 
     Tours of an earlier front, which have touched cities, are good enough for gaps to be filled
-    between them at once, and for short rounds, in which one weight's gain soon serves the others.
+    between them at once, and for short rounds, in which one weight's gain soon serves the others:
+    at once those beside it, as weights come in their order there.
     But to fill gaps alone brings more tours than a front is answered with, and none of them as
     short as after a round. Of thousands of cities a round takes too long for that, unless the tours
     may have become worse at most of them.
@@ -87,7 +88,7 @@ def rounds(n: int, touched: NDArray[np.integer] | None) -> tuple[Round, ...]:
         by_iterations = Round(4, 4 if n < LARGE else 0), Round(1, 0)
         return by_iterations if n < VAST else (Round(n, 0), *by_iterations)
     if n < LARGE:
-        return Round(8, 8), Round(4, 8), Round(4, 8)
+        return (Round(4, 8),) * 4
     return (Round(8, 0), Round(4, 0)) if n < MANY or 2 * len(touched) > n else ()
 
 

@@ -152,12 +152,19 @@ class Search:
         yield from self.pool_candidates()
         ahead = rounds(self.n, self.touched)
         yield from self._reach_weights(LARGE_DESCENTS if self.large and ahead else WEIGHTS)
-        for divisor, fills in ahead:
-            for k in bisection_order(WEIGHTS):
+        for number, (divisor, fills) in enumerate(ahead):
+            for k in self._order_in_round(number):
                 yield from self._iterate(k, self.n // divisor)
             for _ in range(fills):
                 yield from self._fill_gaps()
         yield from self._compete()
+
+    def _order_in_round(self, number: int) -> list[int]:
+        """Return the order of the weights in a round: from earlier tours, to and fro."""
+        if self.touched is None or self.large:
+            return bisection_order(WEIGHTS)
+        order = list(range(WEIGHTS))
+        return order[::-1] if number % 2 else order
 
     def _reach_weights(self, descents: int) -> Iterator[int]:
         """Find a tour under each weight: under so many by descent, then from their neighbours'."""
