@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic_core import from_json
 
 from service.errors import Refusal
-from service.instance import PLANE, RouteEnds
+from service.instance import OBJECTIVES, PLANE, RouteEnds
 from service.pareto import balances, knee
 from service.requests.front import FrontRequest
 from service.requests.front_parser import parse_front_request
@@ -23,7 +22,7 @@ Array = NDArray[np.float64]
 MOST_TOURS = 50  # of an earlier front, from which the search sets out, as many as it has weights
 _NAMES = ("first", "second")  # of objectives that the front's request did not name
 # What is read of a tour: not its path, whose millions of cells take seconds and half a gigabyte.
-_LENGTHS = re.compile(rb'"lengths":\s*\[[^]]*],\s*"tour":\s*\[[^]]*]')
+_READ = re.compile(rb'"lengths":\s*\[([^]]*)],\s*"tour":\s*\[([^]]*)]')
 _MODELS: Mapping[str, type[FrontRequest]] = {"front": FrontRequest, "replan": RestRequest}
 
 
@@ -150,15 +149,15 @@ def not_replannable(front: str, reason: str) -> Refusal:
 
 def _read_tours(stored: StoredFront, n: int) -> tuple[NDArray[np.int64], Array]:
     """Return the stops of all tours, shape (m, n), and their lengths, shape (m, 2)."""
-    items = from_json(
-        b"[%b]" % b",".join(b"{%b}" % each for each in _LENGTHS.findall(stored.tours))
-    )
-    if not items:
+    read = _READ.findall(stored.tours)
+    if not read:
         raise not_replannable(stored.id, "it has no tour")
-    tours = np.array([item["tour"] for item in items], np.int64)
-    if tours.shape[1] != n:
+    lengths, tours = (b",".join(texts) for texts in zip(*read, strict=True))
+    # Numbers of one kind are read so in a fifth of the time that lists of them take.
+    stops = np.fromstring(tours, np.int64, sep=",")
+    if len(stops) != len(read) * n:
         raise not_replannable(stored.id, "its tours are not of its stops")
-    return tours, np.array([item["lengths"] for item in items], np.float64)
+    return stops.reshape(-1, n), np.fromstring(lengths, sep=",").reshape(-1, OBJECTIVES)
 
 
 def _numbered(n: int) -> Labels:

@@ -1,5 +1,6 @@
 """The members that the rest of a way has beside those of a new request: the earlier tours."""
 
+from itertools import chain
 from typing import Annotated
 
 import numpy as np
@@ -37,7 +38,8 @@ class EarlierMembers(BaseModel):
         """
         if len({len(tour) for tour in self.earlier_tours}) != 1:
             raise invalid("earlier_tours", "must be of one length")
-        tours = np.array(self.earlier_tours, np.int64).reshape(len(self.earlier_tours), -1)
+        stops = np.fromiter(chain.from_iterable(self.earlier_tours), np.int64)
+        tours = stops.reshape(len(self.earlier_tours), -1)
         if not _are_tours(tours, n, ends):
             raise invalid("earlier_tours", "must be of the same stops, between the ends")
         if self.touched is None:
