@@ -94,10 +94,9 @@ def _learned(
         fragments = stacked([left for _, left in problems])
     costs_of_drawn = repeated(costs, times)
     drawn, likelihoods = joined_by_chance(
-        actor.edge_logits,
+        actor.judgement(actor.repair_joinings),
         costs_of_drawn,
         repeated(fragments, times),
-        actor.repair_joinings,
         run.sampling_generator,
         enough=ENOUGH,
     )

@@ -44,6 +44,7 @@ from models.networks.joining.shortlists import (
 )
 from models.networks.layers import feedforward
 from models.networks.rows import stacked
+from models.rollout_pa_one import Judgement
 
 MANY = 1000  # cities, more than which are joined three times a look
 
@@ -61,6 +62,7 @@ class OneActor(Actor):
     precisions = ("float32",)
     imitates_starts = False  # it learns edges
     has_directions: ClassVar[bool] = False  # or all steps cost as much as the step back
+    candidates: ClassVar[int] = CANDIDATES  # of each end
     # Of fragments, for one evaluation of the network: in building tours, in building those of many
     # cities after the first evaluation, and in repairing tours.
     joinings: ClassVar[int] = 2
@@ -70,10 +72,11 @@ class OneActor(Actor):
 
     def __init__(self, config: Architecture) -> None:
         super().__init__()
-        inputs = 5 * CANDIDATES + 6 + self.has_directions * (CANDIDATES + 1)
+        inputs = 5 * self.candidates + 6 + self.has_directions * (self.candidates + 1)
         self.embed = feedforward(inputs, config.width, config.feedforward)
         self.layers = nn.ModuleList(
-            MessagePassingLayer(config.width, config.feedforward) for _ in range(config.layers)
+            MessagePassingLayer(config.width, config.feedforward, self.candidates)
+            for _ in range(config.layers)
         )
         self.project_end = nn.Linear(config.width, (1 + self.has_directions) * EDGE)
         self.project_edge = nn.Linear(2 + self.has_directions, EDGE, bias=False)
@@ -113,7 +116,7 @@ class OneActor(Actor):
             (on_paths * across / scale).log1p(),
             fragments.left[:, None].to(unit).rsqrt().expand_as(scale),
             nearest,
-            count.to(unit) / CANDIDATES,
+            count.to(unit) / self.candidates,
         )
         inputs = [own, theirs, received.flatten(2), torch.stack(ends, dim=-1)]
         relative_costs = own + theirs
@@ -121,7 +124,7 @@ class OneActor(Actor):
         directions, leans = None, _leans_in_units(candidates, fragments, unit)
         if leans is not None:
             inputs.append((leans / scale[..., None]).clamp(-_MOST, _MOST))
-            directions = leans[..., :CANDIDATES].clamp(-1, 1)
+            directions = leans[..., : self.candidates].clamp(-1, 1)
             of_edges.append(directions.abs())
         features = self.embed(torch.cat(inputs, dim=-1).flatten(0, 1))
         for layer in self.layers:
@@ -148,7 +151,7 @@ class OneActor(Actor):
 
     def first_candidates(self, problem: Problem) -> Candidates:
         """Return the candidates while all cities are alone."""
-        return first_of(self.lists(problem))
+        return first_of(self.lists(problem), self.candidates)
 
     def lists(self, problem: Problem) -> RowLists:
         """Return the shortlists of each row."""
@@ -162,7 +165,7 @@ class OneActor(Actor):
         lists = self.lists(problem)
         joinings = self.joinings_of_many if problem.costs.n > MANY else self.joinings
         fragments = all_alone(lists.means[..., 0], leaning=self.has_directions)
-        after = self.round(problem, fragments, first_of(lists), self.joinings)
+        after = self.round(problem, fragments, first_of(lists, self.candidates), self.joinings)
         while bool(self.are_listed(fragments, after)):
             fragments = after.trimmed()
             candidates = self.candidates_from(lists, fragments)
@@ -181,7 +184,7 @@ class OneActor(Actor):
 
     def candidates_from(self, lists: RowLists, fragments: Fragments) -> Candidates:
         """Return the candidates of ends from lists, in rows in which many are open."""
-        return listed_candidates(lists, fragments, self._many_open(fragments))
+        return listed_candidates(lists, fragments, self._many_open(fragments), self.candidates)
 
     def _many_open(self, fragments: Fragments) -> Bool[Tensor, " r"]:
         n = (fragments.links.shape[1] - 1) // 2
@@ -199,7 +202,7 @@ class OneActor(Actor):
 
     def round_of_few(self, costs: Costs, fragments: Fragments, joinings: int) -> Fragments:
         """Return the fragments after a round in rows in which more than two are left."""
-        candidates = cheapest_candidates(costs, fragments)
+        candidates = cheapest_candidates(costs, fragments, self.candidates)
         more = (fragments.left > ENOUGH)[:, None, None]
         few = candidates._replace(costs=torch.where(more, candidates.costs, NEVER))
         return self.round(costs, fragments, few, joinings)
@@ -221,6 +224,10 @@ class OneActor(Actor):
             after = joined_at_cost(costs, after, mates)
         return after
 
+    def judgement(self, joinings: int) -> Judgement:
+        """Return how this actor judges edges, for so many joinings each time."""
+        return Judgement(self.edge_logits, self.candidates, joinings)
+
     def _weighted_one_by_one(self, instances: Tensor, weights: Float[Tensor, "k 2"]) -> Costs:
         """Return the costs under the weights of each row of each instance, one after the other."""
         return stacked([self.problem(instance, weights).tables for instance in instances])
@@ -237,7 +244,7 @@ class OneActor(Actor):
         rows = weights(preferences).repeat_interleave(times, dim=0)
         costs = self._weighted_one_by_one(instances, rows)
         tours, likelihoods = rollout_pa_one.sampled_tours(
-            self.edge_logits, costs, self.joinings, generator
+            self.judgement(self.joinings), costs, generator
         )
         by_instance = (len(instances), -1)
         return tours.unflatten(0, by_instance), likelihoods.unflatten(0, by_instance)
@@ -250,7 +257,9 @@ class OneActor(Actor):
     ) -> Float[Tensor, ""]:
         """Return the binary cross-entropy of each edge to a candidate, summed, for each end."""
         costs = self._weighted_one_by_one(instances, weights(preferences))
-        return rollout_pa_one.imitation_loss(self.edge_logits, costs, tours.flatten(0, 1))
+        return rollout_pa_one.imitation_loss(
+            self.judgement(self.joinings), costs, tours.flatten(0, 1)
+        )
 
 
 def _leans_in_units(

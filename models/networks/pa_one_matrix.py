@@ -20,6 +20,8 @@ class OneMatrixActor(OneActor):
 
     reads = "matrices"
     has_directions = True
+    candidates = 5
+    joinings = 3
     repair_joinings = 2
     list_sizes = Sizes(KNOTS, length=24, short=24, ends=16, share=2)
 

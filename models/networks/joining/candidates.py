@@ -47,8 +47,8 @@ def single_cities(costs: Costs) -> Fragments:
     return all_alone(costs.means[:, :, 0], leaning=costs.leans is not None)
 
 
-def cheapest_candidates(costs: Costs, fragments: Fragments) -> Candidates:
-    """Return the candidates of each end: the open ends to which an edge costs least."""
+def cheapest_candidates(costs: Costs, fragments: Fragments, count: int = CANDIDATES) -> Candidates:
+    """Return so many candidates of each end: the open ends to which an edge costs least."""
     ends, partners, open_ = fragments[:3]
     r, n = costs.means.shape[0], costs.means.shape[1]
     zeros = torch.zeros_like(costs.means[:, 0])
@@ -67,7 +67,7 @@ def cheapest_candidates(costs: Costs, fragments: Fragments) -> Candidates:
         theirs = zeros.scatter(1, place, own)
         leans = from_ends(costs.leans) + theirs[:, None] - own[..., None]
         open_costs = open_costs + own.abs()[..., None] + theirs.abs()[:, None] - leans.abs()
-    cheapest, cities = open_costs.topk(CANDIDATES, largest=False)
+    cheapest, cities = open_costs.topk(count, largest=False)
     index = torch.arange(ends.shape[1], device=zeros.device).expand_as(ends)
     position = zeros.long().scatter(1, place, index)
     positions = position.gather(1, cities.flatten(1)).view_as(cities)

@@ -13,14 +13,15 @@ from models.data.instances import distance_matrices
 from models.networks.joining.fragments import NEVER
 from models.networks.rows import changed
 
-CANDIDATES = 8  # of an end of a path
+CANDIDATES = 8  # of an end of a path, at most
 
 
 class Costs(NamedTuple):
     """The mean cost of each step and of the step back, and how much of it the way there is above.
 
     There is no lean where both cost the same. A table of all steps has as many columns more as an
-    end has candidates, of cities that are never reached; costs of single steps may have any shape.
+    end may have candidates, of cities that are never reached; those of single steps may have any
+    shape.
     """
 
     means: Float[Tensor, "r n m"]

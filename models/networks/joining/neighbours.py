@@ -5,7 +5,6 @@ from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from models.networks.joining.candidates import Candidates
-from models.networks.joining.costs import CANDIDATES
 
 EDGE = 4  # hidden features of an edge
 
@@ -33,6 +32,13 @@ class Neighbours:
         """Return the features of each end's partner."""
         return features.index_select(0, self._partners)
 
+    def for_each_candidate(self, features: Float[Tensor, "x d"]) -> Float[Tensor, "x c d"]:
+        """Return the features of each end once for each of its candidates.
+
+        ONNX Runtime adds tables of one shape ten times as fast as it repeats rows so short.
+        """
+        return features[:, None].repeat(1, self._count, 1)
+
 
 def of_both_ends(
     of_ends: Float[Tensor, "x d"], near: Neighbours, directions: Float[Tensor, "r e c"] | None
@@ -42,16 +48,8 @@ def of_both_ends(
     Where edges have directions, ends say another thing as well, that they start it or end it.
     """
     if directions is None:
-        return near.candidates_of(of_ends) + _for_each_candidate(of_ends)
-    own, start = (_for_each_candidate(part) for part in of_ends.chunk(2, dim=-1))
+        return near.candidates_of(of_ends) + near.for_each_candidate(of_ends)
+    own, start = (near.for_each_candidate(part) for part in of_ends.chunk(2, dim=-1))
     their_own, their_start = near.candidates_of(of_ends).chunk(2, dim=-1)
     towards = torch.cat([directions.flatten(0, 1)[..., None]] * EDGE, dim=-1)
     return their_own + own + towards * (their_start - start)
-
-
-def _for_each_candidate(of_ends: Float[Tensor, "x d"]) -> Float[Tensor, "x c d"]:
-    """Return the features of each end once for each of its candidates.
-
-    ONNX Runtime adds tables of one shape ten times as fast as it repeats rows so short.
-    """
-    return of_ends[:, None].repeat(1, CANDIDATES, 1)

@@ -162,16 +162,19 @@ def lists_of_rows(lists: Shortlists, weights: Float[Tensor, "r 2"]) -> RowLists:
     return of_rows._replace(leans=between(leans, rise_of_leans))
 
 
-def first_of(lists: RowLists) -> Candidates:
-    """Return the candidates while all cities are alone."""
+def first_of(lists: RowLists, count: int = CANDIDATES) -> Candidates:
+    """Return so many candidates of each city, while all are alone."""
     cities, means, leans = lists
-    return _cheapest(Costs(means, leans).cheaper_way, cities, leans)
+    return _cheapest(Costs(means, leans).cheaper_way, cities, leans, count)
 
 
 def listed_candidates(
-    lists: RowLists, fragments: Fragments, rows_in_use: Bool[Tensor, " r"]
+    lists: RowLists,
+    fragments: Fragments,
+    rows_in_use: Bool[Tensor, " r"],
+    count: int = CANDIDATES,
 ) -> Candidates:
-    """Return the candidates of each end: the open ends on its list to which an edge costs least.
+    """Return so many candidates of each end: the open ends on its list to which edges cost least.
 
     In a row that is not in use no edge is possible.
     """
@@ -196,14 +199,15 @@ def listed_candidates(
         costs = costs + own.abs()[..., None] + theirs.abs() - leans.abs()
     is_end = open_ & rows_in_use[:, None]
     impossible = (found < 0) | (found == partners[..., None]) | ~is_end[..., None]
-    return _cheapest(torch.where(impossible, NEVER, costs), positions, leans)
+    return _cheapest(torch.where(impossible, NEVER, costs), positions, leans, count)
 
 
 def _cheapest(
     costs: Float[Tensor, "r e l"],
     positions: Int[Tensor, "r e l"],
     leans: Float[Tensor, "r e l"] | None,
+    count: int,
 ) -> Candidates:
-    cheapest, which = costs.topk(CANDIDATES, largest=False)
+    cheapest, which = costs.topk(count, largest=False)
     chosen = None if leans is None else leans.gather(2, which)
     return Candidates(cheapest, positions.gather(2, which), chosen)
