@@ -12,12 +12,12 @@ from models.networks.joining.candidates import (
     Candidates,
     cheapest_candidates,
     joined_at_cost,
+    no_more_possible,
     single_cities,
-    still_possible,
     toured,
 )
 from models.networks.joining.costs import Costs
-from models.networks.joining.fragments import NEVER, Fragments, mutual_best, possible
+from models.networks.joining.fragments import NEVER, Fragments, impossible, mutual_best
 
 _TEMPERATURE = 0.5  # of the distribution that is drawn from, against log-odds
 
@@ -62,9 +62,10 @@ def joined_by_chance(
         noisy = logits.detach() + _noise(positions, generator)
         before = fragments
         for _ in range(judgement.joinings):
-            allowed = still_possible(candidates, before, fragments)
-            noisy = torch.where(allowed, noisy, -NEVER)
-            logits = torch.where(allowed, logits, -NEVER)
+            forbidden = no_more_possible(candidates, before, fragments)
+            forbidden = forbidden | ~fragments.open[..., None]
+            noisy = torch.where(forbidden, -NEVER, noisy)
+            logits = torch.where(forbidden, -NEVER, logits)
             mates = mutual_best(fragments, positions, noisy)
             likelihoods = likelihoods + _log_likelihoods(fragments, positions, logits, mates)
             fragments = joined_at_cost(costs, fragments, mates)
@@ -94,7 +95,7 @@ def imitation_loss(
         allowed = torch.where(expected, logits.detach(), -NEVER)
         before = fragments.left.sum()
         for _ in range(judgement.joinings):
-            allowed = torch.where(possible(fragments, positions), allowed, -NEVER)
+            allowed = torch.where(impossible(fragments, positions), -NEVER, allowed)
             mates = mutual_best(fragments, positions, allowed)
             fragments = joined_at_cost(costs, fragments, mates)
         if bool(fragments.left.sum() == before):

@@ -23,8 +23,8 @@ from models.networks.joining.candidates import (
     Candidates,
     cheapest_candidates,
     joined_at_cost,
+    no_more_possible,
     partner_costs,
-    still_possible,
     toured,
 )
 from models.networks.joining.contraction import contracted, expanded
@@ -219,7 +219,7 @@ class OneActor(Actor):
         mates = mutual_best(fragments, candidates.positions, logits)
         after = joined_at_cost(costs, fragments, mates)
         for _ in range(joinings - 1):
-            logits = torch.where(still_possible(candidates, fragments, after), logits, -NEVER)
+            logits = torch.where(no_more_possible(candidates, fragments, after), -NEVER, logits)
             mates = mutual_best(after, candidates.positions, logits)
             after = joined_at_cost(costs, after, mates)
         return after

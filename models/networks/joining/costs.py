@@ -36,9 +36,9 @@ class Costs(NamedTuple):
         self, starts: Int[Tensor, "r e"], stops: Int[Tensor, "r e"]
     ) -> tuple[Float[Tensor, "r e"], Float[Tensor, "r e"] | None]:
         """Return the means of the costs of steps in each row, and their leans, if there are any."""
-        rows = torch.arange(self.means.shape[0], device=starts.device)[:, None]
-        leans = None if self.leans is None else self.leans[rows, starts, stops]
-        return self.means[rows, starts, stops], leans
+        entries = starts * self.means.shape[2] + stops
+        means, leans = changed(self, lambda table: table.flatten(1).gather(1, entries))
+        return means, leans
 
 
 class Prices(NamedTuple):
