@@ -29,6 +29,7 @@ from models.networks.joining.candidates import (
 )
 from models.networks.joining.contraction import contracted, expanded
 from models.networks.joining.costs import CANDIDATES, Costs, Matrices, Planes, Prices, Problem
+from models.networks.joining.features import features_seen
 from models.networks.joining.fragments import NEVER, Fragments, all_alone, mutual_best
 from models.networks.joining.messages import MessagePassingLayer
 from models.networks.joining.neighbours import EDGE, Neighbours, of_both_ends
@@ -48,9 +49,6 @@ from models.rollout_pa_one import Judgement
 
 MANY = 1000  # cities, more than which are joined three times a look
 
-# Bounds on the network's inputs. Costs are in units of their mean over the candidates of a row.
-_MOST = 5.0  # of a cost against the mean of the candidates of an end
-_LEAST_SCALE = 1e-3
 _STEEPNESS = 1.5  # how fast logits fall with such a cost, at first
 
 
@@ -95,44 +93,16 @@ class OneActor(Actor):
         self, costs: Costs | Problem, fragments: Fragments, candidates: Candidates
     ) -> Float[Tensor, "r e c"]:
         """Return the log-odds of each edge to a candidate; -NEVER where it is impossible."""
-        real, near = candidates.real, Neighbours(candidates, fragments.partners)
-        of_candidates = candidates.costs.clamp(min=0.0)  # prices may be a little too high
-        total = torch.where(real, of_candidates, 0.0).sum(dim=-1)
-        count = real.sum(dim=-1)
-        unit = total.sum(dim=-1, keepdim=True) / count.sum(dim=-1, keepdim=True).clamp(min=1)
-        unit = unit.clamp(min=1 / NEVER)  # (r, 1)
-        scale = total / unit / count.clamp(min=1) + _LEAST_SCALE
-        in_units = of_candidates / unit[..., None]
-        own = (in_units / scale[..., None]).clamp(max=_MOST)
-        nearest = own[..., 0]
-        on_paths = fragments.on_paths.to(unit)
-        known = torch.stack((1 / scale, nearest, on_paths), dim=-1).flatten(0, 1)
-        received = near.candidates_of(known).unflatten(0, scale.shape)
-        theirs = torch.where(real, in_units * received[..., 0], _MOST).clamp(max=_MOST)
-        across = partner_costs(costs, fragments) / unit
-        ends = (
-            scale.log(),
-            on_paths,
-            (on_paths * across / scale).log1p(),
-            fragments.left[:, None].to(unit).rsqrt().expand_as(scale),
-            nearest,
-            count.to(unit) / self.candidates,
-        )
-        inputs = [own, theirs, received.flatten(2), torch.stack(ends, dim=-1)]
-        relative_costs = own + theirs
-        of_edges = [relative_costs, in_units.clamp(max=_MOST)]
-        directions, leans = None, _leans_in_units(candidates, fragments, unit)
-        if leans is not None:
-            inputs.append((leans / scale[..., None]).clamp(-_MOST, _MOST))
-            directions = leans[..., : self.candidates].clamp(-1, 1)
-            of_edges.append(directions.abs())
-        features = self.embed(torch.cat(inputs, dim=-1).flatten(0, 1))
+        near = Neighbours(candidates, fragments.partners)
+        seen = features_seen(partner_costs(costs, fragments), fragments, candidates, near)
+        features = self.embed(seen.of_ends.flatten(0, 1))
         for layer in self.layers:
             features = layer(features, near)
-        hidden = of_both_ends(self.project_end(features), near, directions)
-        hidden = hidden + self.project_edge(torch.stack(of_edges, dim=-1).flatten(0, 1))
-        logits = self.judge(hidden.relu()).view_as(relative_costs) - _STEEPNESS * relative_costs
-        return torch.where(real, logits, -NEVER)
+        hidden = of_both_ends(self.project_end(features), near, seen.directions)
+        hidden = hidden + self.project_edge(seen.of_edges.flatten(0, 1))
+        relative = seen.relative_costs
+        logits = self.judge(hidden.relu()).view_as(relative) - _STEEPNESS * relative
+        return torch.where(candidates.real, logits, -NEVER)
 
     @torch.no_grad()
     def tours(self, instances: Tensor, preferences: Float[Tensor, "k 2"]) -> Int[Tensor, "b k n"]:
@@ -202,10 +172,10 @@ class OneActor(Actor):
 
     def round_of_few(self, costs: Costs, fragments: Fragments, joinings: int) -> Fragments:
         """Return the fragments after a round in rows in which more than two are left."""
-        candidates = cheapest_candidates(costs, fragments, self.candidates)
-        more = (fragments.left > ENOUGH)[:, None, None]
-        few = candidates._replace(costs=torch.where(more, candidates.costs, NEVER))
-        return self.round(costs, fragments, few, joinings)
+        more = (fragments.left > ENOUGH)[:, None]
+        to_join = fragments._replace(open=fragments.open & more)
+        candidates = cheapest_candidates(costs, to_join, self.candidates)
+        return self.round(costs, fragments, candidates, joinings)
 
     def round(
         self,
@@ -260,13 +230,3 @@ class OneActor(Actor):
         return rollout_pa_one.imitation_loss(
             self.judgement(self.joinings), costs, tours.flatten(0, 1)
         )
-
-
-def _leans_in_units(
-    candidates: Candidates, fragments: Fragments, unit: Float[Tensor, "r 1"]
-) -> Float[Tensor, "r e c_and_one"] | None:
-    """Return the lean of each edge to a candidate, and then of the end, if there are any."""
-    if candidates.leans is None or fragments.leans is None:
-        return None
-    edges = torch.where(candidates.real, candidates.leans, 0.0)
-    return torch.cat((edges, fragments.leans[..., None]), dim=-1) / unit[..., None]

@@ -28,8 +28,8 @@ _ROUNDING = 1e-5  # of a cost, by which it may seem to have risen
 class Candidates(NamedTuple):
     """The candidates of each end by ascending cost: positions of other ends, and costs of edges.
 
-    An impossible edge costs NEVER. The lean of an edge is positive where the way from the end
-    along its edge is the dearer one, by twice as much; none where costs have no direction.
+    An impossible edge costs NEVER or more. The lean of an edge is positive where the way from the
+    end along its edge is the dearer one, by twice as much; none where costs have no direction.
     """
 
     costs: Float[Tensor, "r e c"]
@@ -40,6 +40,10 @@ class Candidates(NamedTuple):
     def real(self) -> Bool[Tensor, "r e c"]:
         """Which of the edges are possible."""
         return self.costs < NEVER / 2
+
+    def theirs(self, of_ends: Float[Tensor, "r e"]) -> Float[Tensor, "r e c"]:
+        """Return what is known of ends for each of their candidates."""
+        return of_ends.gather(1, self.positions.flatten(1)).view_as(self.costs)
 
 
 def single_cities(costs: Costs) -> Fragments:
@@ -53,7 +57,8 @@ def cheapest_candidates(costs: Costs, fragments: Fragments, count: int = CANDIDA
     r, n = costs.means.shape[0], costs.means.shape[1]
     zeros = torch.zeros_like(costs.means[:, 0])
     place = torch.where(open_, ends, n)
-    of_stops = (zeros + NEVER).scatter(1, place, torch.where(open_, 0.0, NEVER))
+    closed = torch.where(open_, 0.0, NEVER)
+    of_stops = (zeros + NEVER).scatter(1, place, closed)
     rows = torch.arange(r, device=zeros.device)[:, None]
     lines = (n * rows + ends).flatten()
 
@@ -69,12 +74,11 @@ def cheapest_candidates(costs: Costs, fragments: Fragments, count: int = CANDIDA
         leans = from_ends(costs.leans) + theirs[:, None] - own
         through = from_ends(costs.means) + (of_stops + theirs.abs())[:, None] - leans.abs()
         cheapest, cities = through.topk(count, largest=False)
-        cheapest = cheapest + own.abs()
+        closed = closed + fragments.leans.abs()
     index = torch.arange(ends.shape[1], device=zeros.device).expand_as(ends)
     position = zeros.long().scatter(1, place, index)
     positions = position.gather(1, cities.flatten(1)).view_as(cities)
-    impossible = (positions == partners[..., None]) | ~open_[..., None] | (cheapest >= NEVER / 2)
-    cheapest = torch.where(impossible, NEVER, cheapest)
+    cheapest = torch.where(positions == partners[..., None], NEVER, cheapest + closed[..., None])
     return Candidates(cheapest, positions, None if leans is None else leans.gather(2, cities))
 
 
@@ -93,18 +97,13 @@ def no_more_possible(
     most = (1 + _ROUNDING) * paths - (1 - _ROUNDING) * through
     paths = _of_both((1 - _ROUNDING) * after.leans.abs(), candidates)
     change = before.leans - after.leans
-    through = (candidates.leans + change[..., None] - _theirs(change, candidates)).abs()
+    through = (candidates.leans + change[..., None] - candidates.theirs(change)).abs()
     return forbidden | (paths - through > most)
-
-
-def _theirs(of_ends: Float[Tensor, "r e"], candidates: Candidates) -> Float[Tensor, "r e c"]:
-    """Return what is known of ends for each of their candidates."""
-    return of_ends.gather(1, candidates.positions.flatten(1)).view_as(candidates.costs)
 
 
 def _of_both(of_ends: Float[Tensor, "r e"], candidates: Candidates) -> Float[Tensor, "r e c"]:
     """Return the sum of what is known of each end and of each of its candidates."""
-    return of_ends[..., None] + _theirs(of_ends, candidates)
+    return of_ends[..., None] + candidates.theirs(of_ends)
 
 
 def partner_costs(costs: Costs | Problem, fragments: Fragments) -> Float[Tensor, "r e"]:

@@ -31,7 +31,7 @@ class MessagePassingLayer(SilenceableLayer):
     def forward(self, features: Float[Tensor, "x d"], near: Neighbours) -> Float[Tensor, "x d"]:
         """Return the features of the ends, each after the messages of its neighbours."""
         messages = self.tell(features).relu()
-        received = near.candidates_of(messages).flatten(1)
+        received = near.side_by_side(messages)
         inputs = torch.cat((features, near.partners_of(messages), received), dim=-1)
         change: Tensor = self.think(inputs)
         return features + change

@@ -196,10 +196,13 @@ def listed_candidates(
         own = fragments.leans
         theirs = own.gather(1, positions.flatten(1)).view_as(costs)
         leans = of_ends(lists.leans) + theirs - own[..., None]
-        costs = costs + own.abs()[..., None] + theirs.abs() - leans.abs()
-    is_end = open_ & rows_in_use[:, None]
-    impossible = (found < 0) | (found == partners[..., None]) | ~is_end[..., None]
-    return _cheapest(torch.where(impossible, NEVER, costs), positions, leans, count)
+        costs = costs + theirs.abs() - leans.abs()
+    impossible = (found < 0) | (found == partners[..., None])
+    candidates = _cheapest(torch.where(impossible, NEVER, costs), positions, leans, count)
+    of_starts = torch.where(open_ & rows_in_use[:, None], 0.0, NEVER)
+    if fragments.leans is not None:
+        of_starts = of_starts + fragments.leans.abs()
+    return candidates._replace(costs=candidates.costs + of_starts[..., None])
 
 
 def _cheapest(
