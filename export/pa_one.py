@@ -17,7 +17,7 @@ from models.networks.joining.candidates import single_cities
 from models.networks.joining.costs import CANDIDATES
 from models.networks.pa_one import MANY, OneActor
 from models.networks.pa_one_matrix import OneMatrixActor
-from models.rollout_repairs import CITIES, NEAR
+from models.rollout_repairs import EARLY, LATE, LATE_FROM
 
 _ROOM = 3_000_000  # costs of a block, 12 MB; a round takes a few times as much
 
@@ -60,7 +60,7 @@ def to_onnx(actor: OneActor) -> ModelProto:
         as_function(name, _traced(part, again[name]), part[2]) for name, part in first.items()
     ]
     room = _ROOM // len(names.tables)
-    sizes = GraphSizes(room, actor.list_sizes, MANY, NEAR, CITIES)
+    sizes = GraphSizes(room, actor.list_sizes, MANY, EARLY, LATE, LATE_FROM)
     model = inlined(parser.parse_model(graph(names, OPSET, sizes)), functions)
     onnx.checker.check_model(model, full_check=True)
     return model
