@@ -57,7 +57,7 @@ def cheapest_candidates(costs: Costs, fragments: Fragments, count: int = CANDIDA
     r, n = costs.means.shape[0], costs.means.shape[1]
     zeros = torch.zeros_like(costs.means[:, 0])
     place = torch.where(open_, ends, n)
-    closed = torch.where(open_, 0.0, NEVER)
+    closed = torch.where(open_, 0.0, NEVER).to(zeros)
     of_stops = (zeros + NEVER).scatter(1, place, closed)
     rows = torch.arange(r, device=zeros.device)[:, None]
     lines = (n * rows + ends).flatten()
