@@ -109,27 +109,22 @@ def with_shared_sizes(
     It has been traced with the first inputs, and can be run on the second, whose sizes all differ.
     """
     runs = Runs(model, first, second)
-    sharing = _Sharing(runs)
-    of_sizes = _made_of_shapes(model, runs)
-    nodes = [node for node in model.graph.node if not of_sizes.issuperset(node.output)]
-    outputs = {value.name for value in model.graph.output}
-    kept = []
-    for node in nodes:
-        if _changes_nothing(node, runs) and node.output[0] not in outputs:
-            sharing.names[node.output[0]] = sharing.names.get(node.input[0], node.input[0])
-        else:
-            kept.append(node)
-    for node in kept:
-        before = runs.shapes(node.input[0]) if node.op_type == "Reshape" else None
-        for place, name in enumerate(node.input):
-            shapes = before if place > 0 else None
-            known = sharing.shared(name, shapes) if name in of_sizes else None
-            node.input[place] = known or sharing.names.get(name, name)
     changed = ModelProto()
     changed.CopyFrom(model)
+    nodes, outputs = list(changed.graph.node), {value.name for value in model.graph.output}
+    of_sizes, sharing = _made_of_shapes(changed, runs), _Sharing(runs)
+    unshared = [node for node in nodes if of_sizes.issuperset(node.output)]
+    kept = []
+    for node in nodes:
+        if _changes_nothing(node, runs) and node.output[0] not in outputs | of_sizes:
+            sharing.names[node.output[0]] = sharing.names.get(node.input[0], node.input[0])
+        elif not of_sizes.issuperset(node.output):
+            kept.append(node)
+    for node in kept:
+        sharing.share(node, of_sizes)
+    needed = list(_needed([*sharing.nodes, *_in_order(unshared, kept)], outputs))
     del changed.graph.node[:]
-    unshared = [node for node in model.graph.node if of_sizes.issuperset(node.output)]
-    changed.graph.node.extend(_needed([*sharing.nodes, *_in_order(unshared, kept)], outputs))
+    changed.graph.node.extend(needed)
     return changed
 
 
@@ -182,8 +177,8 @@ def _made_of_shapes(model: ModelProto, runs: Runs) -> set[str]:
 
 def _changes_nothing(node: NodeProto, runs: Runs) -> bool:
     if node.op_type == "Cast":
-        before, after = (runs.values[0][name].dtype for name in (node.input[0], node.output[0]))
-        return before == after
+        given, made = (runs.values[0][name].dtype for name in (node.input[0], node.output[0]))
+        return bool(given == made)
     if node.op_type not in _UNCHANGING:
         return False
     before, after = (runs.shapes(name) for name in (node.input[0], node.output[0]))
@@ -199,7 +194,15 @@ class _Sharing:
         self.names: dict[str, str] = {}  # of tensors that are others under a new name
         self._made: dict[Any, str] = {}
 
-    def shared(self, name: str, before: Sequence[Both] | None) -> str | None:
+    def share(self, node: NodeProto, of_sizes: set[str]) -> None:
+        """Have a node take what stands for its inputs."""
+        before = self.runs.shapes(node.input[0]) if node.op_type == "Reshape" else None
+        for place, name in enumerate(node.input):
+            changing = before if place > 0 else None
+            shared = self._shared(name, changing) if name in of_sizes else None
+            node.input[place] = shared or self.names.get(name, name)
+
+    def _shared(self, name: str, before: Sequence[Both] | None) -> str | None:
         """Return what stands for a tensor of sizes; before is the shape that it changes, if any."""
         numbers = self.runs.numbers(name)
         assert numbers is not None

@@ -36,7 +36,7 @@ class _Scales(NamedTuple):
 
     unit: Float[Tensor, "r 1"]
     scale: Float[Tensor, "r e"]
-    count: Float[Tensor, "r e"]
+    counts: Float[Tensor, "r e"]
     in_units: Float[Tensor, "r e c"]
 
 
