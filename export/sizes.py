@@ -118,7 +118,7 @@ def with_shared_sizes(
     for node in nodes:
         if _changes_nothing(node, runs) and node.output[0] not in outputs | of_sizes:
             sharing.names[node.output[0]] = sharing.names.get(node.input[0], node.input[0])
-        elif not of_sizes.issuperset(node.output):
+        elif not of_sizes.issuperset(node.output) or not outputs.isdisjoint(node.output):
             kept.append(node)
     for node in kept:
         sharing.share(node, of_sizes)

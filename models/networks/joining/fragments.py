@@ -15,7 +15,8 @@ from torch import Tensor
 
 # The cost of an impossible edge, and minus its logit. Twice this is a finite float.
 NEVER = 1e9
-_MOST_LOGIT, _PARTS_OF_ONE = 2.0**10, 2.0**20  # so that logits and numbers of edges are one integer
+# Logits and numbers of edges make one integer, of up to 2**15 ends.
+_MOST_LOGIT, _PARTS_OF_ONE = 2.0**10, 2.0**20
 _LEAST = -(2**62)
 
 
