@@ -1,4 +1,4 @@
-"""What the network sees of ends and of edges: costs, against each other.
+"""Features of ends and of edges, as the network sees them: costs, against each other.
 
 Costs are in units of their mean over the candidates of a row, so that no scale is left of them. An
 end's scale is the mean cost of the edges to its candidates.
