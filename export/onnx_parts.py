@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import onnx
 import torch
+from numpy.typing import NDArray
 from onnx import (
     AttributeProto,
     FunctionProto,
@@ -111,6 +112,12 @@ def _check_sizes(graph: GraphProto, axes: Collection[int]) -> None:
             values = numpy_helper.to_array(node.attribute[0].t)
             if values.dtype == np.int64 and not set(values.flatten().tolist()).isdisjoint(axes):
                 raise ValueError(f"a size must not be frozen, got {node.name}: {values}")
+
+
+def inputs_of(model: ModelProto, part: Part) -> list[NDArray[Any]]:
+    """Return the arrays with which a part is traced: of its inputs those that its graph has."""
+    by_name = dict(zip(part[2], _flat(part[1]), strict=True))
+    return [by_name[value.name].numpy() for value in model.graph.input]
 
 
 def _flat(argument: Any) -> list[Tensor]:

@@ -1,32 +1,51 @@
 """One ONNX graph from PA-One: its parts, exported each on its own and put into the graph's text."""
 
+from typing import NamedTuple
+
 import onnx
 import torch
 from onnx import ModelProto, parser
 
 from export import pa_one_lists
-from export.onnx_parts import OPSET, Part, as_function, inlined, traced
+from export.onnx_parts import OPSET, Part, as_function, inlined, inputs_of, traced
 from export.pa_one_graph import GraphSizes, graph
 from export.pa_one_names import COORDINATES, MATRICES, Names
 from export.repairs import first_ends, repair_parts
+from export.sizes import with_shared_sizes
 from models.data.preferences import weights
 from models.networks.joining.candidates import single_cities
 from models.networks.joining.costs import CANDIDATES
 from models.networks.pa_one import MANY, OneActor
 from models.networks.pa_one_matrix import OneMatrixActor
-from models.rollout_repairs import CITIES, NEAR
+from models.rollout_repairs import EARLY, LATE, LATE_FROM
 
 _ROOM = 3_000_000  # costs of a block, 12 MB; a round takes a few times as much
 
-# Sizes to trace at, all different, and different from all that is fixed: cities, rows, ends, those
-# of a contracted problem, cities to make lists of, cities on a list, cities to choose from in a
-# repair, and cut cities. Three columns of a repair's problem belong to each of the last.
-_N, _R, _E, _F, _B, _K, _L, _M = 17, 37, 13, 15, 14, 48, 11, 7
-_AXES = {
-    *(_N, _N + CANDIDATES, 2 * _N, 2 * _N + 1, _R, _E),
-    *(_F, _F + CANDIDATES, 2 * _F + 1),
-    *(_B, _K, _L, _M, 3 * _M, 3 * _M + CANDIDATES, 6 * _M + 1),
-}
+
+class _Traced(NamedTuple):
+    """Sizes to trace at: all different, and different from all that is fixed."""
+
+    cities: int
+    rows: int
+    ends: int
+    ends_before: int  # of a contracted problem
+    some_cities: int  # to make lists of
+    length: int  # of a list
+    near: int  # cities to choose from in a repair
+    cut: int  # of these
+
+    @property
+    def axes(self) -> set[int]:
+        """The sizes of the axes of all tensors that parts are given."""
+        problems = (self.cities, self.ends_before, 3 * self.cut)  # three columns for a cut
+        return {
+            *self,
+            *(size for n in problems for size in (n, n + CANDIDATES, 2 * n, 2 * n + 1)),
+        }
+
+
+_TRACED = _Traced(17, 37, 13, 15, 14, 48, 11, 7)
+_AGAIN = _Traced(23, 41, 10, 19, 12, 53, 9, 6)  # to see which numbers are sizes
 
 
 def to_onnx(actor: OneActor) -> ModelProto:
@@ -36,28 +55,37 @@ def to_onnx(actor: OneActor) -> ModelProto:
     visited (k, n), has for each preference another tour that repairs visited.
     """
     names = MATRICES if isinstance(actor, OneMatrixActor) else COORDINATES
+    first, again = (_parts(actor, names, sizes) for sizes in (_TRACED, _AGAIN))
     functions = [
-        as_function(name, traced(*part, _AXES), part[2])
-        for name, part in _parts(actor, names).items()
+        as_function(name, _traced(part, again[name]), part[2]) for name, part in first.items()
     ]
     room = _ROOM // len(names.tables)
-    sizes = GraphSizes(room, actor.list_sizes, MANY, NEAR, CITIES)
+    sizes = GraphSizes(room, actor.list_sizes, MANY, EARLY, LATE, LATE_FROM)
     model = inlined(parser.parse_model(graph(names, OPSET, sizes)), functions)
     onnx.checker.check_model(model, full_check=True)
     return model
 
 
-def _parts(actor: OneActor, names: Names) -> dict[str, Part]:
-    """Return the functions that the text calls, by name."""
-    instance = torch.rand(2, _N, _N) if names is MATRICES else torch.rand(_N, 4)
-    preferences = torch.rand(_R, 2)
+def _traced(part: Part, again: Part) -> ModelProto:
+    """Return the graph of a part, given with other inputs again, with each size computed once."""
+    model = traced(*part, _TRACED.axes)
+    return with_shared_sizes(model, *(inputs_of(model, each) for each in (part, again)))
+
+
+def _parts(actor: OneActor, names: Names, sizes: _Traced) -> dict[str, Part]:
+    """Return the functions that the text calls, by name, to be traced at these sizes."""
+    n = sizes.cities
+    instance = torch.rand(2, n, n) if names is MATRICES else torch.rand(n, 4)
+    preferences = torch.rand(sizes.rows, 2)
     with torch.no_grad():
         problem = actor.problem(instance, weights(preferences))
     alone = single_cities(problem.tables)
-    some, more = (first_ends(alone, count) for count in (_E, _F))
-    more = more._replace(left=torch.full_like(more.left, _F))  # the other cities are nowhere
-    given, listed = (instance, preferences), (torch.arange(_B), torch.zeros(_K))
+    some, more = (first_ends(alone, count) for count in (sizes.ends, sizes.ends_before))
+    # The other cities are nowhere.
+    more = more._replace(left=torch.full_like(more.left, sizes.ends_before))
+    given = instance, preferences
+    listed = torch.arange(sizes.some_cities), torch.zeros(sizes.length)
     return {
         **pa_one_lists.parts(actor, names, given, listed, (problem, some, more)),
-        **repair_parts(actor, names, problem, (_L, _M), _E),
+        **repair_parts(actor, names, problem, (sizes.near, sizes.cut), sizes.ends),
     }

@@ -5,6 +5,7 @@ from typing import NamedTuple
 from export.pa_one_names import MATRICES, Names
 from export.pa_one_text import BLOCKS, GRAPH, JOINING, REJOINING
 from models.networks.joining.shortlists import Sizes
+from models.rollout_repairs import Cut
 
 _TYPES = {
     "ends": "int64[r, {e}]",
@@ -25,15 +26,17 @@ class GraphSizes(NamedTuple):
         room: Entries of lists and of costs in a block.
         lists: Of the shortlists.
         many: The cities, more than which are joined more often a round.
-        near: The cities that a repair looks at, at most.
-        cut: The cities of these that it cuts out, at most.
+        early: The cities that a repair looks at, and of these cuts out, at most.
+        late: The same of late repairs.
+        late_from: Repairs, after which they are late.
     """
 
     room: int
     lists: Sizes
     many: int
-    near: int
-    cut: int
+    early: Cut
+    late: Cut
+    late_from: int
 
 
 def graph(names: Names, opset: int, sizes: GraphSizes) -> str:
@@ -48,8 +51,11 @@ def graph(names: Names, opset: int, sizes: GraphSizes) -> str:
         few=sizes.lists.ends,
         share=sizes.lists.share,
         many=sizes.many,
-        near=sizes.near,
-        cut=sizes.cut,
+        near=sizes.early.near,
+        cut=sizes.early.cities,
+        late_near=sizes.late.near,
+        late_cut=sizes.late.cities,
+        late_from=sizes.late_from,
         given=names.instance,
         instance="float[2, n, n]" if is_matrices else "float[n, 4]",
         cities_axis="start = 1, end = 2" if is_matrices else "start = 0, end = 1",

@@ -78,7 +78,7 @@ class _Begin(nn.Module):
         problem = as_problem(given)
         of_rows = lists_of_rows(Shortlists(*lists), problem.weights)
         before = all_alone(of_rows.means[..., 0], leaning=self.actor.has_directions)
-        candidates = first_of(of_rows)
+        candidates = first_of(of_rows, self.actor.candidates)
         after = self.actor.round(problem, before, candidates, self.actor.joinings)
         return *present(of_rows), least_costs(candidates), *_listed(self.actor, before, after)
 

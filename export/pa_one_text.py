@@ -88,12 +88,11 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
             least_longer = Concat <axis = 0> (least_so_far, least_edges)
         }>
 
-    most_near = Constant <value_ints = [$near]> ()
-    most_cut = Constant <value_ints = [$cut]> ()
-    to_look_at = Min (most_near, n)
-    to_cut = Min (most_cut, n)
-    near = ConstantOfShape (to_look_at)
-    count = ConstantOfShape (to_cut)
+    late_from = Constant <value_int = $late_from> ()
+    early_near = Constant <value_ints = [$near]> ()
+    early_cut = Constant <value_ints = [$cut]> ()
+    late_near = Constant <value_ints = [$late_near]> ()
+    late_cut = Constant <value_ints = [$late_cut]> ()
     built_points, built_freshness = paretour.Unrepaired ($tables, built)
     tours, points, visited, visited_points, freshness = Loop
         (repairs, , built, built_points, built, built_points, built_freshness) <body = repair
@@ -103,6 +102,13 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
             int64[k, n] visited_out, float[k, 2] visited_points_out, float[k, n] freshness_out)
         {
             repair_on = Identity (repairing)
+            is_late = GreaterOrEqual (number, late_from)
+            most_near = Where (is_late, late_near, early_near)
+            most_cut = Where (is_late, late_cut, early_cut)
+            to_look_at = Min (most_near, n)
+            to_cut = Min (most_cut, n)
+            near = ConstantOfShape (to_look_at)
+            count = ConstantOfShape (to_cut)
             cut_cities, turned, places, gaps, $between, $after_cut, is_cut = paretour.Cut
                 ($problem, least, tours_in, freshness_in, number, near, count)
             $rejoining

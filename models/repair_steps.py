@@ -80,7 +80,7 @@ def _learned(
 ) -> tuple[list[_Chain], float]:
     """Descend by repairs drawn for each tour; return the chains after the greedy repair."""
     actor, times = cast(OneActor, run.actor), run.config.starts
-    sizes = sizes_of_cut(chains[0].least.shape[1])
+    sizes = sizes_of_cut(chains[0].least.shape[1], int(number))
     with torch.no_grad():
         cities = [
             cities_to_cut(problem, least, (state.tours, state.freshness), number, sizes)
@@ -94,10 +94,9 @@ def _learned(
         fragments = stacked([left for _, left in problems])
     costs_of_drawn = repeated(costs, times)
     drawn, likelihoods = joined_by_chance(
-        actor.edge_logits,
+        actor.judgement(actor.repair_joinings),
         costs_of_drawn,
         repeated(fragments, times),
-        actor.repair_joinings,
         run.sampling_generator,
         enough=ENOUGH,
     )

@@ -1,6 +1,7 @@
 """Tours drawn from PA-One with their likelihoods, and the loss of imitating an expert's tours."""
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import torch
 from jaxtyping import Bool, Float, Int
@@ -11,57 +12,60 @@ from models.networks.joining.candidates import (
     Candidates,
     cheapest_candidates,
     joined_at_cost,
+    no_more_possible,
     single_cities,
-    still_possible,
     toured,
 )
 from models.networks.joining.costs import Costs
-from models.networks.joining.fragments import NEVER, Fragments, mutual_best, possible
+from models.networks.joining.fragments import NEVER, Fragments, impossible, mutual_best
 
-_JOININGS = 2  # of fragments of an expert's tour, for one evaluation of the network
 _TEMPERATURE = 0.5  # of the distribution that is drawn from, against log-odds
 
 # From costs, fragments and candidates to the log-odds of each edge, (r, e, c).
 EdgeLogits = Callable[[Costs, Fragments, Candidates], Tensor]
 
 
+class Judgement(NamedTuple):
+    """How a network judges edges: those to so many candidates, for so many joinings each time."""
+
+    edge_logits: EdgeLogits
+    candidates: int
+    joinings: int
+
+
 def sampled_tours(
-    edge_logits: EdgeLogits, costs: Costs, joinings: int, generator: Generator
+    judgement: Judgement, costs: Costs, generator: Generator
 ) -> tuple[Int[Tensor, "r n"], Float[Tensor, " r"]]:
     """Draw a tour for each row of costs, and return their log-likelihoods.
-
-    There are so many joinings for one evaluation of the network.
 
     The logits of each edge are moved by chance (Gumbel's distribution, so that the best of several
     is drawn from their softmax). The log-likelihood takes each fragment's choice among its own
     edges for a draw of its own, which it is but for edges that two fragments share.
     """
-    fragments, likelihoods = joined_by_chance(
-        edge_logits, costs, single_cities(costs), joinings, generator
-    )
+    fragments, likelihoods = joined_by_chance(judgement, costs, single_cities(costs), generator)
     return toured(costs, fragments), likelihoods
 
 
 def joined_by_chance(
-    edge_logits: EdgeLogits,
+    judgement: Judgement,
     costs: Costs,
     fragments: Fragments,
-    joinings: int,
     generator: Generator,
     enough: int = 1,
 ) -> tuple[Fragments, Float[Tensor, " r"]]:
     """Join fragments of each row until so many are left, and return the log-likelihoods."""
     likelihoods = torch.zeros_like(costs.means[:, 0, 0])
     while bool((fragments.left > enough).any()):
-        candidates = cheapest_candidates(costs, fragments)
+        candidates = cheapest_candidates(costs, fragments, judgement.candidates)
         positions = candidates.positions
-        logits = edge_logits(costs, fragments, candidates) / _TEMPERATURE
+        logits = judgement.edge_logits(costs, fragments, candidates) / _TEMPERATURE
         noisy = logits.detach() + _noise(positions, generator)
         before = fragments
-        for _ in range(joinings):
-            allowed = still_possible(candidates, before, fragments)
-            noisy = torch.where(allowed, noisy, -NEVER)
-            logits = torch.where(allowed, logits, -NEVER)
+        for _ in range(judgement.joinings):
+            forbidden = no_more_possible(candidates, before, fragments)
+            forbidden = forbidden | ~fragments.open[..., None]
+            noisy = torch.where(forbidden, -NEVER, noisy)
+            logits = torch.where(forbidden, -NEVER, logits)
             mates = mutual_best(fragments, positions, noisy)
             likelihoods = likelihoods + _log_likelihoods(fragments, positions, logits, mates)
             fragments = joined_at_cost(costs, fragments, mates)
@@ -70,7 +74,7 @@ def joined_by_chance(
 
 
 def imitation_loss(
-    edge_logits: EdgeLogits, costs: Costs, tours: Int[Tensor, "r n"]
+    judgement: Judgement, costs: Costs, tours: Int[Tensor, "r n"]
 ) -> Float[Tensor, ""]:
     """Return the binary cross-entropy of each edge to a candidate, summed, for each end.
 
@@ -81,17 +85,17 @@ def imitation_loss(
     fragments = single_cities(costs)
     loss, ends = costs.means.new_zeros(()), costs.means.new_zeros(())
     while bool((fragments.left > 2).any()):
-        candidates = cheapest_candidates(costs, fragments)
+        candidates = cheapest_candidates(costs, fragments, judgement.candidates)
         positions, real = candidates.positions, candidates.real
-        logits = edge_logits(costs, fragments, candidates)
+        logits = judgement.edge_logits(costs, fragments, candidates)
         expected = _in_tours(tours, fragments.ends, positions) & real
         entropies = binary_cross_entropy_with_logits(logits, expected.float(), reduction="none")
         loss = loss + torch.where(real, entropies, 0.0).sum()
         ends = ends + fragments.open.sum()
         allowed = torch.where(expected, logits.detach(), -NEVER)
         before = fragments.left.sum()
-        for _ in range(_JOININGS):
-            allowed = torch.where(possible(fragments, positions), allowed, -NEVER)
+        for _ in range(judgement.joinings):
+            allowed = torch.where(impossible(fragments, positions), -NEVER, allowed)
             mates = mutual_best(fragments, positions, allowed)
             fragments = joined_at_cost(costs, fragments, mates)
         if bool(fragments.left.sum() == before):

@@ -6,14 +6,15 @@ left, and the new tour replaces the old one if it is shorter under its row's wei
 tours that it visits, each row remembers one that no tour of the front dominates.
 
 PA-One joins the same cities in the same way each time. So every repair has a pattern of its own,
-by which it takes some of the cities near its place and leaves others.
+by which it takes some of the cities near its place and leaves others. Late repairs, when those of
+few cities hardly gain any more, cut out more.
 """
 
 from typing import NamedTuple, cast
 
 import torch
 from jaxtyping import Bool, Float, Int
-from torch import Generator, Tensor
+from torch import Generator, Tensor, nn
 
 from models.data.preferences import turned_outwards, weights
 from models.networks.joining.candidates import Candidates
@@ -22,26 +23,33 @@ from models.networks.joining.fragments import NEVER
 from models.networks.joining.repairs import cut, laid_out, repair_problem
 from models.networks.pa_one import OneActor
 
-CITIES = 8  # that a repair cuts out of a tour
-NEAR = 16  # that it chooses them from
-_REPEATED = 64  # repairs, after which the first pattern comes again
+
+class Cut(NamedTuple):
+    """How many cities a repair looks at, and how many of these it cuts out of a tour."""
+
+    near: int
+    cities: int
+
+
+EARLY, LATE = Cut(16, 8), Cut(24, 12)
+LATE_FROM = 64  # repairs, after which they are late; each as many late ones have the same patterns
 _NEARNESS = 0.15  # by how much less a place in the order of nearness counts than the one before
 _AFTER_A_CUT = 0.5  # of a city's freshness
 _ROUNDING = 2e-6  # of a length: what sums of float32 may be wrong by
 
 
-def _patterns() -> Float[Tensor, "p near"]:
+def _patterns(near: int, seed: int) -> Float[Tensor, "p near"]:
     """Return keys for each pattern, of which the greatest are the ranks that it takes.
 
     Ranks are drawn without replacement (Gumbel-top-k), nearer ones rather than others.
     """
-    drawn = torch.empty(_REPEATED, NEAR).exponential_(generator=Generator().manual_seed(5))
-    keys = -drawn.log() - _NEARNESS * torch.arange(NEAR)
+    drawn = torch.empty(LATE_FROM, near).exponential_(generator=Generator().manual_seed(seed))
+    keys = -drawn.log() - _NEARNESS * torch.arange(near)
     keys[:, 0] = torch.inf
-    return keys
+    return nn.functional.pad(keys, (0, LATE.near - near))
 
 
-_PATTERNS = _patterns()
+_PATTERNS = torch.cat((_patterns(EARLY.near, seed=5), _patterns(LATE.near, seed=6)))
 
 
 class RepairState(NamedTuple):
@@ -86,7 +94,8 @@ def _repaired(
     state = unrepaired(problem.costs, tours)
     for number in torch.arange(repairs):
         places = state.tours, state.freshness
-        cities = cities_to_cut(problem, least, places, number, sizes_of_cut(tours.shape[1]))
+        sizes = sizes_of_cut(tours.shape[1], int(number))
+        cities = cities_to_cut(problem, least, places, number, sizes)
         cuts = cut(state.tours, cities)
         between, fragments = repair_problem(problem, cuts)
         new = laid_out(
@@ -113,9 +122,10 @@ def edge_lengths(costs: Planes | Matrices, tours: Int[Tensor, "r n"]) -> Float[T
     return means if leans is None else means + leans
 
 
-def sizes_of_cut(n: int) -> tuple[int, int]:
-    """Return how many of n cities a repair looks at, and how many of these it cuts out."""
-    return min(NEAR, n), min(CITIES, n)
+def sizes_of_cut(n: int, number: int) -> Cut:
+    """Return how many of n cities the repair of this number looks at and cuts out."""
+    near, cities = LATE if number >= LATE_FROM else EARLY
+    return Cut(min(near, n), min(cities, n))
 
 
 def cities_to_cut(
@@ -131,7 +141,8 @@ def cities_to_cut(
     as of `sizes_of_cut`, or tensors while the graph is traced for its export.
     """
     near, count = sizes
-    pattern = _PATTERNS.index_select(0, number[None] % _REPEATED)  # exported as it is written
+    early_or_late = torch.minimum(number, LATE_FROM + number % LATE_FROM)
+    pattern = _PATTERNS.index_select(0, early_or_late[None])  # exported as it is written
     ranks = pattern[0, : cast(int, near)].topk(cast(int, count)).indices
     return _cities_near(problem, least, places, near).index_select(1, ranks)
 

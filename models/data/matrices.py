@@ -105,7 +105,7 @@ MATRICES: dict[str, Callable[[int, Generator], Array]] = {
     draw.__name__: draw for draw in (entries, closed_entries, planes, rounded_planes, maps, roads)
 }
 # How often each kind is drawn.
-SHARES = (0.2, 0.2, 0.1, 0.1, 0.15, 0.25)
+SHARES = (0.25, 0.3, 0.1, 0.05, 0.1, 0.2)
 
 
 def any_matrices(n: int, generator: Generator) -> Array:

@@ -23,12 +23,13 @@ from models.networks.joining.candidates import (
     Candidates,
     cheapest_candidates,
     joined_at_cost,
+    no_more_possible,
     partner_costs,
-    still_possible,
     toured,
 )
 from models.networks.joining.contraction import contracted, expanded
 from models.networks.joining.costs import CANDIDATES, Costs, Matrices, Planes, Prices, Problem
+from models.networks.joining.features import features_seen
 from models.networks.joining.fragments import NEVER, Fragments, all_alone, mutual_best
 from models.networks.joining.messages import MessagePassingLayer
 from models.networks.joining.neighbours import EDGE, Neighbours, of_both_ends
@@ -44,12 +45,10 @@ from models.networks.joining.shortlists import (
 )
 from models.networks.layers import feedforward
 from models.networks.rows import stacked
+from models.rollout_pa_one import Judgement
 
 MANY = 1000  # cities, more than which are joined three times a look
 
-# Bounds on the network's inputs. Costs are in units of their mean over the candidates of a row.
-_MOST = 5.0  # of a cost against the mean of the candidates of an end
-_LEAST_SCALE = 1e-3
 _STEEPNESS = 1.5  # how fast logits fall with such a cost, at first
 
 
@@ -61,6 +60,7 @@ class OneActor(Actor):
     precisions = ("float32",)
     imitates_starts = False  # it learns edges
     has_directions: ClassVar[bool] = False  # or all steps cost as much as the step back
+    candidates: ClassVar[int] = CANDIDATES  # of each end
     # Of fragments, for one evaluation of the network: in building tours, in building those of many
     # cities after the first evaluation, and in repairing tours.
     joinings: ClassVar[int] = 2
@@ -70,10 +70,11 @@ class OneActor(Actor):
 
     def __init__(self, config: Architecture) -> None:
         super().__init__()
-        inputs = 5 * CANDIDATES + 6 + self.has_directions * (CANDIDATES + 1)
+        inputs = 5 * self.candidates + 6 + self.has_directions * (self.candidates + 1)
         self.embed = feedforward(inputs, config.width, config.feedforward)
         self.layers = nn.ModuleList(
-            MessagePassingLayer(config.width, config.feedforward) for _ in range(config.layers)
+            MessagePassingLayer(config.width, config.feedforward, self.candidates)
+            for _ in range(config.layers)
         )
         self.project_end = nn.Linear(config.width, (1 + self.has_directions) * EDGE)
         self.project_edge = nn.Linear(2 + self.has_directions, EDGE, bias=False)
@@ -92,44 +93,16 @@ class OneActor(Actor):
         self, costs: Costs | Problem, fragments: Fragments, candidates: Candidates
     ) -> Float[Tensor, "r e c"]:
         """Return the log-odds of each edge to a candidate; -NEVER where it is impossible."""
-        real, near = candidates.real, Neighbours(candidates, fragments.partners)
-        of_candidates = candidates.costs.clamp(min=0.0)  # prices may be a little too high
-        total = torch.where(real, of_candidates, 0.0).sum(dim=-1)
-        count = real.sum(dim=-1)
-        unit = total.sum(dim=-1, keepdim=True) / count.sum(dim=-1, keepdim=True).clamp(min=1)
-        unit = unit.clamp(min=1 / NEVER)  # (r, 1)
-        scale = total / unit / count.clamp(min=1) + _LEAST_SCALE
-        in_units = of_candidates / unit[..., None]
-        own = (in_units / scale[..., None]).clamp(max=_MOST)
-        nearest = own[..., 0]
-        on_paths = fragments.on_paths.to(unit)
-        known = torch.stack((1 / scale, nearest, on_paths), dim=-1).flatten(0, 1)
-        received = near.candidates_of(known).unflatten(0, scale.shape)
-        theirs = torch.where(real, in_units * received[..., 0], _MOST).clamp(max=_MOST)
-        across = partner_costs(costs, fragments) / unit
-        ends = (
-            scale.log(),
-            on_paths,
-            (on_paths * across / scale).log1p(),
-            fragments.left[:, None].to(unit).rsqrt().expand_as(scale),
-            nearest,
-            count.to(unit) / CANDIDATES,
-        )
-        inputs = [own, theirs, received.flatten(2), torch.stack(ends, dim=-1)]
-        relative_costs = own + theirs
-        of_edges = [relative_costs, in_units.clamp(max=_MOST)]
-        directions, leans = None, _leans_in_units(candidates, fragments, unit)
-        if leans is not None:
-            inputs.append((leans / scale[..., None]).clamp(-_MOST, _MOST))
-            directions = leans[..., :CANDIDATES].clamp(-1, 1)
-            of_edges.append(directions.abs())
-        features = self.embed(torch.cat(inputs, dim=-1).flatten(0, 1))
+        near = Neighbours(candidates, fragments.partners)
+        seen = features_seen(partner_costs(costs, fragments), fragments, candidates, near)
+        features = self.embed(seen.of_ends.flatten(0, 1))
         for layer in self.layers:
             features = layer(features, near)
-        hidden = of_both_ends(self.project_end(features), near, directions)
-        hidden = hidden + self.project_edge(torch.stack(of_edges, dim=-1).flatten(0, 1))
-        logits = self.judge(hidden.relu()).view_as(relative_costs) - _STEEPNESS * relative_costs
-        return torch.where(real, logits, -NEVER)
+        hidden = of_both_ends(self.project_end(features), near, seen.directions)
+        hidden = hidden + self.project_edge(seen.of_edges.flatten(0, 1))
+        relative = seen.relative_costs
+        logits = self.judge(hidden.relu()).view_as(relative) - _STEEPNESS * relative
+        return torch.where(candidates.real, logits, -NEVER)
 
     @torch.no_grad()
     def tours(self, instances: Tensor, preferences: Float[Tensor, "k 2"]) -> Int[Tensor, "b k n"]:
@@ -148,7 +121,7 @@ class OneActor(Actor):
 
     def first_candidates(self, problem: Problem) -> Candidates:
         """Return the candidates while all cities are alone."""
-        return first_of(self.lists(problem))
+        return first_of(self.lists(problem), self.candidates)
 
     def lists(self, problem: Problem) -> RowLists:
         """Return the shortlists of each row."""
@@ -162,7 +135,7 @@ class OneActor(Actor):
         lists = self.lists(problem)
         joinings = self.joinings_of_many if problem.costs.n > MANY else self.joinings
         fragments = all_alone(lists.means[..., 0], leaning=self.has_directions)
-        after = self.round(problem, fragments, first_of(lists), self.joinings)
+        after = self.round(problem, fragments, first_of(lists, self.candidates), self.joinings)
         while bool(self.are_listed(fragments, after)):
             fragments = after.trimmed()
             candidates = self.candidates_from(lists, fragments)
@@ -181,7 +154,7 @@ class OneActor(Actor):
 
     def candidates_from(self, lists: RowLists, fragments: Fragments) -> Candidates:
         """Return the candidates of ends from lists, in rows in which many are open."""
-        return listed_candidates(lists, fragments, self._many_open(fragments))
+        return listed_candidates(lists, fragments, self._many_open(fragments), self.candidates)
 
     def _many_open(self, fragments: Fragments) -> Bool[Tensor, " r"]:
         n = (fragments.links.shape[1] - 1) // 2
@@ -199,10 +172,10 @@ class OneActor(Actor):
 
     def round_of_few(self, costs: Costs, fragments: Fragments, joinings: int) -> Fragments:
         """Return the fragments after a round in rows in which more than two are left."""
-        candidates = cheapest_candidates(costs, fragments)
-        more = (fragments.left > ENOUGH)[:, None, None]
-        few = candidates._replace(costs=torch.where(more, candidates.costs, NEVER))
-        return self.round(costs, fragments, few, joinings)
+        more = (fragments.left > ENOUGH)[:, None]
+        to_join = fragments._replace(open=fragments.open & more)
+        candidates = cheapest_candidates(costs, to_join, self.candidates)
+        return self.round(costs, fragments, candidates, joinings)
 
     def round(
         self,
@@ -216,10 +189,14 @@ class OneActor(Actor):
         mates = mutual_best(fragments, candidates.positions, logits)
         after = joined_at_cost(costs, fragments, mates)
         for _ in range(joinings - 1):
-            logits = torch.where(still_possible(candidates, fragments, after), logits, -NEVER)
+            logits = torch.where(no_more_possible(candidates, fragments, after), -NEVER, logits)
             mates = mutual_best(after, candidates.positions, logits)
             after = joined_at_cost(costs, after, mates)
         return after
+
+    def judgement(self, joinings: int) -> Judgement:
+        """Return how this actor judges edges, for so many joinings each time."""
+        return Judgement(self.edge_logits, self.candidates, joinings)
 
     def _weighted_one_by_one(self, instances: Tensor, weights: Float[Tensor, "k 2"]) -> Costs:
         """Return the costs under the weights of each row of each instance, one after the other."""
@@ -237,7 +214,7 @@ class OneActor(Actor):
         rows = weights(preferences).repeat_interleave(times, dim=0)
         costs = self._weighted_one_by_one(instances, rows)
         tours, likelihoods = rollout_pa_one.sampled_tours(
-            self.edge_logits, costs, self.joinings, generator
+            self.judgement(self.joinings), costs, generator
         )
         by_instance = (len(instances), -1)
         return tours.unflatten(0, by_instance), likelihoods.unflatten(0, by_instance)
@@ -250,14 +227,6 @@ class OneActor(Actor):
     ) -> Float[Tensor, ""]:
         """Return the binary cross-entropy of each edge to a candidate, summed, for each end."""
         costs = self._weighted_one_by_one(instances, weights(preferences))
-        return rollout_pa_one.imitation_loss(self.edge_logits, costs, tours.flatten(0, 1))
-
-
-def _leans_in_units(
-    candidates: Candidates, fragments: Fragments, unit: Float[Tensor, "r 1"]
-) -> Float[Tensor, "r e c_and_one"] | None:
-    """Return the lean of each edge to a candidate, and then of the end, if there are any."""
-    if candidates.leans is None or fragments.leans is None:
-        return None
-    edges = torch.where(candidates.real, candidates.leans, 0.0)
-    return torch.cat((edges, fragments.leans[..., None]), dim=-1) / unit[..., None]
+        return rollout_pa_one.imitation_loss(
+            self.judgement(self.joinings), costs, tours.flatten(0, 1)
+        )

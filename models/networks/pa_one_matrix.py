@@ -20,8 +20,10 @@ class OneMatrixActor(OneActor):
 
     reads = "matrices"
     has_directions = True
+    candidates = 5
+    joinings = 3
     repair_joinings = 2
-    list_sizes = Sizes(KNOTS, length=24, short=24, ends=16, share=2)
+    list_sizes = Sizes(KNOTS, length=24, short=24, ends=24, share=2)
 
     def costs(self, instance: Float[Tensor, "2 n n"]) -> Matrices:
         """Return the costs of one instance in units of the largest of each matrix."""

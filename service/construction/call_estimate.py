@@ -24,11 +24,11 @@ class _Formula(NamedTuple):
     repair_city: float
 
 
-# Of pa-one and pa-one-matrix: one thread of an AMD EPYC, 100 preferences, up to 10,000 cities
-# with coordinates and 1000 with matrices.
+# Of pa-one: one thread of an AMD EPYC, 100 preferences, up to 10,000 cities. Of pa-one-matrix: one
+# thread of an Intel Xeon, 5 to 100 preferences, up to 1000 cities.
 _FORMULAS: dict[Kind, _Formula] = {
     "coordinates": _Formula(0.001, 8.5e-6, 1.0, 4.0, 0.002, 8e-5, 2.2e-7),
-    "matrices": _Formula(0.004, 3.0e-8, 2.0, 60.0, 0.004, 2.2e-4, 6e-7),
+    "matrices": _Formula(0.001, 9.0e-7, 1.3, 45.0, 0.001, 6.5e-5, 2.0e-7),
 }
 
 

@@ -13,6 +13,7 @@ from models.config import NAMES, NetworkConfig
 from models.networks.actor import Actor
 from models.networks.build import build
 from models.networks.pa_one import MANY
+from models.rollout_repairs import LATE_FROM
 
 ROOT = Path(__file__).parents[2]
 ACTORS = ROOT / "service/actors"
@@ -39,6 +40,11 @@ def test_the_released_file_builds_the_tours_of_the_released_checkpoint(path: Pat
     trained = load_weights(ROOT / f"models/checkpoints/{path.stem}.pt")
     # The export itself goes further.
     compare(trained.actor, onnx.load(path), sizes=(3, 60), counts=(20,), repairs=(0, 1, 10))
+
+
+def test_late_repairs_are_those_of_torch() -> None:
+    actor = small("pa-one")
+    compare(actor, to_onnx(actor), sizes=(9, 30), counts=(3,), repairs=(LATE_FROM + 2,))
 
 
 def test_the_file_joins_many_cities_as_torch_does() -> None:

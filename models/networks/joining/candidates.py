@@ -17,8 +17,8 @@ from models.networks.joining.fragments import (
     Fragments,
     all_alone,
     first_open,
+    impossible,
     joined,
-    possible,
 )
 from models.networks.joining.walks import tours_from
 
@@ -28,8 +28,8 @@ _ROUNDING = 1e-5  # of a cost, by which it may seem to have risen
 class Candidates(NamedTuple):
     """The candidates of each end by ascending cost: positions of other ends, and costs of edges.
 
-    An impossible edge costs NEVER. The lean of an edge is positive where the way from the end
-    along its edge is the dearer one, by twice as much; none where costs have no direction.
+    An impossible edge costs NEVER or more. The lean of an edge is positive where the way from the
+    end along its edge is the dearer one, by twice as much; none where costs have no direction.
     """
 
     costs: Float[Tensor, "r e c"]
@@ -41,19 +41,24 @@ class Candidates(NamedTuple):
         """Which of the edges are possible."""
         return self.costs < NEVER / 2
 
+    def theirs(self, of_ends: Float[Tensor, "r e"]) -> Float[Tensor, "r e c"]:
+        """Return what is known of ends for each of their candidates."""
+        return of_ends.gather(1, self.positions.flatten(1)).view_as(self.costs)
+
 
 def single_cities(costs: Costs) -> Fragments:
     """Return the fragments that a tour of each row begins from: every city alone."""
     return all_alone(costs.means[:, :, 0], leaning=costs.leans is not None)
 
 
-def cheapest_candidates(costs: Costs, fragments: Fragments) -> Candidates:
-    """Return the candidates of each end: the open ends to which an edge costs least."""
+def cheapest_candidates(costs: Costs, fragments: Fragments, count: int = CANDIDATES) -> Candidates:
+    """Return so many candidates of each end: the open ends to which an edge costs least."""
     ends, partners, open_ = fragments[:3]
     r, n = costs.means.shape[0], costs.means.shape[1]
     zeros = torch.zeros_like(costs.means[:, 0])
     place = torch.where(open_, ends, n)
-    closed = (zeros + NEVER).scatter(1, place, torch.where(open_, 0.0, NEVER).to(zeros))
+    closed = torch.where(open_, 0.0, NEVER).to(zeros)
+    of_stops = (zeros + NEVER).scatter(1, place, closed)
     rows = torch.arange(r, device=zeros.device)[:, None]
     lines = (n * rows + ends).flatten()
 
@@ -61,53 +66,44 @@ def cheapest_candidates(costs: Costs, fragments: Fragments) -> Candidates:
         return table.flatten(0, 1).index_select(0, lines).unflatten(0, ends.shape)
 
     leans = None
-    open_costs = from_ends(costs.means) + closed[:, None]
-    if costs.leans is not None and fragments.leans is not None:
-        own = fragments.leans
-        theirs = zeros.scatter(1, place, own)
-        leans = from_ends(costs.leans) + theirs[:, None] - own[..., None]
-        open_costs = open_costs + own.abs()[..., None] + theirs.abs()[:, None] - leans.abs()
-    cheapest, cities = open_costs.topk(CANDIDATES, largest=False)
+    if costs.leans is None or fragments.leans is None:
+        cheapest, cities = (from_ends(costs.means) + of_stops[:, None]).topk(count, largest=False)
+    else:
+        own = fragments.leans[..., None]
+        theirs = zeros.scatter(1, place, fragments.leans)
+        leans = from_ends(costs.leans) + theirs[:, None] - own
+        through = from_ends(costs.means) + (of_stops + theirs.abs())[:, None] - leans.abs()
+        cheapest, cities = through.topk(count, largest=False)
+        closed = closed + fragments.leans.abs()
     index = torch.arange(ends.shape[1], device=zeros.device).expand_as(ends)
     position = zeros.long().scatter(1, place, index)
     positions = position.gather(1, cities.flatten(1)).view_as(cities)
-    impossible = (positions == partners[..., None]) | ~open_[..., None] | (cheapest >= NEVER / 2)
-    cheapest = torch.where(impossible, NEVER, cheapest)
+    cheapest = torch.where(positions == partners[..., None], NEVER, cheapest + closed[..., None])
     return Candidates(cheapest, positions, None if leans is None else leans.gather(2, cities))
 
 
-def still_possible(
+def no_more_possible(
     candidates: Candidates, before: Fragments, after: Fragments
 ) -> Bool[Tensor, "r e c"]:
-    """Return which edges may still be added after some were, at no higher cost than before.
+    """Return which edges of open ends may not be added after some were, or not at the same cost.
 
     Candidates are of the fragments before. Where costs have directions, a path that has grown may
     want to be gone along the other way, in which another edge to it costs more.
     """
-    allowed = possible(after, candidates.positions)
-    if before.leans is None or after.leans is None:
-        return allowed
-    then, scale_then = _costs_of_leaning(candidates, before.leans, before.leans)
-    now, scale_now = _costs_of_leaning(candidates, before.leans, after.leans)
-    return allowed & (now <= then + _ROUNDING * (scale_then + scale_now))
+    forbidden = impossible(after, candidates.positions)
+    if candidates.leans is None or before.leans is None or after.leans is None:
+        return forbidden
+    paths, through = _of_both(before.leans.abs(), candidates), candidates.leans.abs()
+    most = (1 + _ROUNDING) * paths - (1 - _ROUNDING) * through
+    paths = _of_both((1 - _ROUNDING) * after.leans.abs(), candidates)
+    change = before.leans - after.leans
+    through = (candidates.leans + change[..., None] - candidates.theirs(change)).abs()
+    return forbidden | (paths - through > most)
 
 
-def _costs_of_leaning(
-    candidates: Candidates, before: Float[Tensor, "r e"], now: Float[Tensor, "r e"]
-) -> tuple[Float[Tensor, "r e c"], Float[Tensor, "r e c"]]:
-    """Return what directions add to the cost of each edge, and the scale of what that is made of.
-
-    Candidates are of the leans before.
-    """
-    assert candidates.leans is not None
-    change = now - before
-    theirs, change_there = (
-        leans.gather(1, candidates.positions.flatten(1)).view_as(candidates.costs)
-        for leans in (now, change)
-    )
-    through = (candidates.leans + change_there - change[..., None]).abs()
-    paths = now.abs()[..., None] + theirs.abs()
-    return paths - through, paths + through
+def _of_both(of_ends: Float[Tensor, "r e"], candidates: Candidates) -> Float[Tensor, "r e c"]:
+    """Return the sum of what is known of each end and of each of its candidates."""
+    return of_ends[..., None] + candidates.theirs(of_ends)
 
 
 def partner_costs(costs: Costs | Problem, fragments: Fragments) -> Float[Tensor, "r e"]:

@@ -15,6 +15,9 @@ from torch import Tensor
 
 # The cost of an impossible edge, and minus its logit. Twice this is a finite float.
 NEVER = 1e9
+# Logits and numbers of edges make one integer, of up to 2**15 ends.
+_MOST_LOGIT, _PARTS_OF_ONE = 2.0**10, 2.0**20
+_LEAST = -(2**62)
 
 
 class Fragments(NamedTuple):
@@ -85,11 +88,15 @@ def cleared(fragments: Fragments) -> tuple[Fragments, Int[Tensor, ""]]:
     return moved, kept.max()
 
 
-def possible(fragments: Fragments, candidates: Int[Tensor, "r e c"]) -> Bool[Tensor, "r e c"]:
-    """Return whether each end may be joined to each of its candidates, given by position."""
-    names = torch.where(fragments.open, fragments.names, -1)
-    theirs = names.gather(1, candidates.flatten(1)).view_as(candidates)
-    return (theirs >= 0) & (theirs != names[..., None]) & fragments.open[..., None]
+def impossible(fragments: Fragments, candidates: Int[Tensor, "r e c"]) -> Bool[Tensor, "r e c"]:
+    """Return whether each end, if it is open, may not be joined to each of its candidates.
+
+    Candidates are given by position.
+    """
+    names = fragments.names
+    theirs = torch.where(fragments.open, names, -1).gather(1, candidates.flatten(1))
+    theirs = theirs.view_as(candidates)
+    return (theirs < 0) | (theirs == names[..., None])
 
 
 def mutual_best(
@@ -97,31 +104,28 @@ def mutual_best(
 ) -> Int[Tensor, "r e"]:
     """Return the end to which to join each end, by position, or minus one.
 
-    Every end names its candidate with the highest logit, and two fragments are joined by an edge
-    whose logit is no lower than that of any other edge that either of them names or is named for.
-    So each fragment is joined to one other at most, no cycle closes, and in every row some are
-    joined. The logit of an edge is the same for both its ends, and -NEVER where it is impossible.
+    Every open end names its candidate with the highest logit, and two fragments are joined by an
+    edge whose logit is no lower than that of any other edge that either of them names or is named
+    for; of edges whose logits are the same to a millionth, by the one with the highest number. So
+    each fragment is joined to one other at most, no cycle closes, and in every row some are joined.
+    The logit of an edge is the same for both its ends, and -NEVER where it is impossible.
     """
     best, which = edge_logits.max(dim=-1)
-    mates = candidates.gather(2, which[..., None])[..., 0]
-    own = fragments.names
+    mates = candidates.gather(2, which[..., None]).squeeze(-1)
+    own, index = fragments.names, _positions(mates)
     theirs = own.gather(1, mates)
-    highest = torch.full_like(best, -NEVER).scatter_reduce(1, own, best, "amax")
-    highest = highest.scatter_reduce(1, theirs, best, "amax")
-    agreed = (best > -NEVER / 2) & (best >= highest.gather(1, own))
-    agreed = agreed & (best >= highest.gather(1, theirs))
-
-    # Of edges with one logit, a fragment takes the one with the highest number.
-    index = _positions(own)
-    e = index[-1] + 1
-    numbers = torch.where(agreed, torch.minimum(index, mates) * e + torch.maximum(index, mates), -1)
-    most = torch.full_like(numbers, -1).scatter_reduce(1, own, numbers, "amax")
-    most = most.scatter_reduce(1, theirs, numbers, "amax")
-    agreed = agreed & ((most.gather(1, own) == numbers) & (most.gather(1, theirs) == numbers))
-
-    chosen = torch.where(agreed, mates, -1)
-    room = torch.cat((chosen, chosen[:, :1]), dim=1)
-    return room.scatter(1, torch.where(agreed, mates, e), index.expand_as(mates))[:, :-1]
+    e = edge_logits.shape[1]
+    numbers = torch.minimum(index, mates) * e + torch.maximum(index, mates)
+    logits = (best.clamp(-_MOST_LOGIT, _MOST_LOGIT) * _PARTS_OF_ONE).long()
+    is_named = fragments.open & (best > -NEVER / 2)
+    ranks = torch.where(is_named, logits * (e * e) + numbers, _LEAST)
+    highest = torch.full_like(ranks, _LEAST).scatter_reduce(1, own, ranks, "amax")
+    highest = highest.scatter_reduce(1, theirs, ranks, "amax")
+    is_highest = (highest.gather(1, own) == ranks) & (highest.gather(1, theirs) == ranks)
+    agreed = is_named & is_highest
+    # To the mate, too, where it is not the end that it names itself.
+    chosen, back = (torch.where(agreed, ends, -1) for ends in (mates, index))
+    return chosen.scatter_reduce(1, mates, back, "amax")
 
 
 def joined(

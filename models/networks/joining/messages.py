@@ -4,7 +4,6 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from models.networks.joining.costs import CANDIDATES
 from models.networks.joining.neighbours import Neighbours
 from models.networks.layers import SilenceableLayer, feedforward
 
@@ -18,10 +17,10 @@ class MessagePassingLayer(SilenceableLayer):
     the nearest, the second and so on each in a way of its own.
     """
 
-    def __init__(self, width: int, hidden: int) -> None:
+    def __init__(self, width: int, hidden: int, candidates: int) -> None:
         super().__init__()
         self.tell = nn.Linear(width, _MESSAGE)
-        self.think = feedforward(width + (CANDIDATES + 1) * _MESSAGE, width, hidden)
+        self.think = feedforward(width + (candidates + 1) * _MESSAGE, width, hidden)
         self.silence()
 
     def silence(self) -> None:
@@ -32,7 +31,7 @@ class MessagePassingLayer(SilenceableLayer):
     def forward(self, features: Float[Tensor, "x d"], near: Neighbours) -> Float[Tensor, "x d"]:
         """Return the features of the ends, each after the messages of its neighbours."""
         messages = self.tell(features).relu()
-        received = near.candidates_of(messages).flatten(1)
+        received = near.side_by_side(messages)
         inputs = torch.cat((features, near.partners_of(messages), received), dim=-1)
         change: Tensor = self.think(inputs)
         return features + change

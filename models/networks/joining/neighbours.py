@@ -5,7 +5,6 @@ from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from models.networks.joining.candidates import Candidates
-from models.networks.joining.costs import CANDIDATES
 
 EDGE = 4  # hidden features of an edge
 
@@ -24,10 +23,23 @@ class Neighbours:
         self._partners = (partners + first[:, None]).flatten()
         self._count = c
 
-    def candidates_of(self, features: Float[Tensor, "x d"]) -> Float[Tensor, "x c d"]:
-        """Return the features of each end's candidates."""
+    def side_by_side(self, features: Float[Tensor, "x d"]) -> Float[Tensor, "x c_d"]:
+        """Return the features of each end's candidates, one candidate after the other."""
+        return self._of_candidates(features).view(-1, self._count * features.shape[1])
+
+    def summed(
+        self, features: Float[Tensor, "x d"], own: Float[Tensor, "x d"]
+    ) -> Float[Tensor, "x c d"]:
+        """Return the features of each end's candidates, to which what is the end's own is added.
+
+        ONNX Runtime adds tables of one shape ten times as fast as it repeats rows so short.
+        """
+        theirs = self._of_candidates(features).view(-1, self._count, features.shape[1])
+        return theirs + own[:, None].repeat(1, self._count, 1)
+
+    def _of_candidates(self, features: Float[Tensor, "x d"]) -> Float[Tensor, "x_c d"]:
         table = nn.functional.pad(features, (0, 0, 0, 1))
-        return table.index_select(0, self._candidates).unflatten(0, (-1, self._count))
+        return table.index_select(0, self._candidates)
 
     def partners_of(self, features: Float[Tensor, "x d"]) -> Float[Tensor, "x d"]:
         """Return the features of each end's partner."""
@@ -42,16 +54,8 @@ def of_both_ends(
     Where edges have directions, ends say another thing as well, that they start it or end it.
     """
     if directions is None:
-        return near.candidates_of(of_ends) + _for_each_candidate(of_ends)
-    own, start = (_for_each_candidate(part) for part in of_ends.chunk(2, dim=-1))
-    their_own, their_start = near.candidates_of(of_ends).chunk(2, dim=-1)
+        return near.summed(of_ends, of_ends)
+    signs = torch.tensor([1.0, -1.0], device=of_ends.device).repeat_interleave(EDGE)
+    both, apart = near.summed(of_ends, signs * of_ends).split(EDGE, dim=-1)
     towards = torch.cat([directions.flatten(0, 1)[..., None]] * EDGE, dim=-1)
-    return their_own + own + towards * (their_start - start)
-
-
-def _for_each_candidate(of_ends: Float[Tensor, "x d"]) -> Float[Tensor, "x c d"]:
-    """Return the features of each end once for each of its candidates.
-
-    ONNX Runtime adds tables of one shape ten times as fast as it repeats rows so short.
-    """
-    return of_ends[:, None].repeat(1, CANDIDATES, 1)
+    return both + towards * apart

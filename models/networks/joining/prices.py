@@ -66,18 +66,14 @@ def _prices(costs: Costs) -> Prices:
     kernel, back_kernel = (
         (-table[:, :, :n] / unit[..., None]).exp().clamp(min=_LEAST) for table in (there, back)
     )
-    leave, enter = kernel.sum(dim=2).rsqrt(), back_kernel.sum(dim=2).rsqrt()
+    # To leave, then to enter; what is on the other side of a step comes the other way round.
+    kernels = torch.stack((kernel, back_kernel))
+    both = kernels.sum(dim=3, keepdim=True).rsqrt()
+    other_way = torch.tensor([1, 0], device=both.device)
     for _ in range(_ITERATIONS):
-        leave, enter = (
-            (leave / _product(kernel, enter)).sqrt(),
-            (enter / _product(back_kernel, leave)).sqrt(),
-        )
-    leave, enter = unit * leave.log(), unit * enter.log()
+        both = (both / (kernels @ both.index_select(0, other_way))).sqrt()
+    leave, enter = unit * both.squeeze(3).log()
     return Prices((leave + enter) / 2, (leave - enter) / 2)
-
-
-def _product(tables: Float[Tensor, "g n n"], of: Float[Tensor, "g n"]) -> Float[Tensor, "g n"]:
-    return (tables @ of[..., None])[..., 0]
 
 
 def _unit(costs: Float[Tensor, "g two_n m"]) -> Float[Tensor, " g"]:

@@ -13,7 +13,7 @@ from torch import Tensor
 
 from models.networks.joining.candidates import joined_at_cost
 from models.networks.joining.costs import Costs, Problem, along, costs_between, weighted_sums
-from models.networks.joining.fragments import Fragments, cleared
+from models.networks.joining.fragments import Fragments
 from models.networks.joining.walks import begun, closed_neighbours, doubled, places_on_tours
 
 ENOUGH = 2  # fragments, which are joined the cheaper way
@@ -97,7 +97,7 @@ def last_two_joined(costs: Costs, fragments: Fragments) -> Fragments:
     mate = others.gather(1, ways.argmin(dim=1, keepdim=True))
     mates = torch.where(left[:, None] > 1, torch.cat((mate, one), dim=1), -1)
     both = torch.full_like(partners, -1).scatter(1, torch.cat((one, mate), dim=1), mates)
-    return cleared(joined_at_cost(costs, fragments, both))[0]
+    return joined_at_cost(costs, fragments, both)
 
 
 def _costs_of_joining(

@@ -162,16 +162,19 @@ def lists_of_rows(lists: Shortlists, weights: Float[Tensor, "r 2"]) -> RowLists:
     return of_rows._replace(leans=between(leans, rise_of_leans))
 
 
-def first_of(lists: RowLists) -> Candidates:
-    """Return the candidates while all cities are alone."""
+def first_of(lists: RowLists, count: int = CANDIDATES) -> Candidates:
+    """Return so many candidates of each city, while all are alone."""
     cities, means, leans = lists
-    return _cheapest(Costs(means, leans).cheaper_way, cities, leans)
+    return _cheapest(Costs(means, leans).cheaper_way, cities, leans, count)
 
 
 def listed_candidates(
-    lists: RowLists, fragments: Fragments, rows_in_use: Bool[Tensor, " r"]
+    lists: RowLists,
+    fragments: Fragments,
+    rows_in_use: Bool[Tensor, " r"],
+    count: int = CANDIDATES,
 ) -> Candidates:
-    """Return the candidates of each end: the open ends on its list to which an edge costs least.
+    """Return so many candidates of each end: the open ends on its list to which edges cost least.
 
     In a row that is not in use no edge is possible.
     """
@@ -193,17 +196,21 @@ def listed_candidates(
         own = fragments.leans
         theirs = own.gather(1, positions.flatten(1)).view_as(costs)
         leans = of_ends(lists.leans) + theirs - own[..., None]
-        costs = costs + own.abs()[..., None] + theirs.abs() - leans.abs()
-    is_end = open_ & rows_in_use[:, None]
-    impossible = (found < 0) | (found == partners[..., None]) | ~is_end[..., None]
-    return _cheapest(torch.where(impossible, NEVER, costs), positions, leans)
+        costs = costs + theirs.abs() - leans.abs()
+    impossible = (found < 0) | (found == partners[..., None])
+    candidates = _cheapest(torch.where(impossible, NEVER, costs), positions, leans, count)
+    of_starts = torch.where(open_ & rows_in_use[:, None], 0.0, NEVER)
+    if fragments.leans is not None:
+        of_starts = of_starts + fragments.leans.abs()
+    return candidates._replace(costs=candidates.costs + of_starts[..., None])
 
 
 def _cheapest(
     costs: Float[Tensor, "r e l"],
     positions: Int[Tensor, "r e l"],
     leans: Float[Tensor, "r e l"] | None,
+    count: int,
 ) -> Candidates:
-    cheapest, which = costs.topk(CANDIDATES, largest=False)
+    cheapest, which = costs.topk(count, largest=False)
     chosen = None if leans is None else leans.gather(2, which)
     return Candidates(cheapest, positions.gather(2, which), chosen)

@@ -12,9 +12,9 @@ from models.networks.joining.fragments import (
     Fragments,
     all_alone,
     first_open,
+    impossible,
     joined,
     mutual_best,
-    possible,
 )
 from models.networks.joining.walks import tours_from
 
@@ -39,7 +39,7 @@ def to_the_end(logits: Tensor) -> Fragments:
     fragments = all_alone(logits[:, 0])
     candidates = torch.arange(n).expand(r, n, n)
     for _ in range(n):
-        logits = torch.where(possible(fragments, candidates), logits, -NEVER)
+        logits = torch.where(impossible(fragments, candidates), -NEVER, logits)
         fragments = joined(fragments, mutual_best(fragments, candidates, logits))
     assert (fragments.left == 1).all()
     return fragments

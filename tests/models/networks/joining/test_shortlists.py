@@ -11,8 +11,8 @@ from models.networks.joining.candidates import (
     Candidates,
     cheapest_candidates,
     joined_at_cost,
+    no_more_possible,
     single_cities,
-    still_possible,
     toured,
 )
 from models.networks.joining.contraction import contracted, expanded
@@ -143,7 +143,7 @@ def test_an_edge_stays_possible_where_it_costs_no_more_than_before(
     mates = mutual_best(before, candidates.positions, logits)
     after = joined_at_cost(problem, before, mates)
     costs = cheapest_candidates(problem.tables, after)
-    possible = still_possible(candidates, before, after)
+    possible = ~no_more_possible(candidates, before, after)
     for row, end, place in candidates.real.nonzero().tolist():
         position = candidates.positions[row, end, place]
         now = costs.costs[row, end][(costs.positions == position)[row, end] & costs.real[row, end]]
