@@ -192,6 +192,8 @@ def _places(rows: NDArray[np.floating[Any]]) -> tuple[Indices, Indices]:
     """Return the first of each group of equal rows, and the group of each row."""
     numbers: dict[bytes, int] = {}
     place = np.array([numbers.setdefault(row.tobytes(), len(numbers)) for row in rows])
+    if len(numbers) == len(rows):
+        return place, place
     return np.unique(place, return_index=True)[1], place
 
 
