@@ -7,6 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
+from threading import Lock
 from time import time
 from typing import Any, TypeVar
 
@@ -15,6 +16,7 @@ from service.jobs.record import Record
 from service.jobs.sqlite_schema import IN_MEMORY, UNFINISHED, open_file
 from service.jobs.store import (
     COLUMNS,
+    SHORT,
     SOURCE_COLUMNS,
     SOURCE_SHARE,
     STORE_BYTES,
@@ -37,7 +39,9 @@ _READ = ", ".join(
     for name in COLUMNS
 )
 _FINISHED = f"NOT {UNFINISHED}"
-_SUMS = f"SELECT count(*), total(size) FROM front WHERE {_FINISHED}"
+_SUMS = (
+    f"SELECT count(*), total(size), min(kept), max(size) FROM front WHERE {_FINISHED}"  # one pass
+)
 # The oldest record of the client that has most; of those with one alone where nobody has two.
 _NEXT_OUT = f"""
 SELECT min(number) FROM front WHERE {_FINISHED} GROUP BY client
@@ -71,8 +75,10 @@ class SqliteStore:
         self._max_bytes = max_bytes
         self._tombstones = tombstones
         self._clock = clock
-        # All calls that touch the file are made in this thread, in their order.
+        # Calls that touch the file are made in this thread, in their order.
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="store")
+        self._turn = Lock()  # held during a transaction
+        self._in_memory = path == IN_MEMORY
         try:
             self._database = open_file(path)
         except (OSError, ValueError, sqlite3.Error) as error:
@@ -82,7 +88,14 @@ class SqliteStore:
 
     async def put(self, record: Record) -> None:
         """Store a record, in place of an earlier one with its id."""
-        await self._in_thread(self._put, record)
+        # To hand a short one to the thread would take longer than to store it in memory.
+        if self._in_memory and _is_short(record) and self._turn.acquire(blocking=False):
+            try:
+                self._transact(self._put, record)
+            finally:
+                self._turn.release()
+        else:
+            await self._in_thread(self._put, record)
 
     async def admit(self, record: Record) -> Record:
         """Store a new record and return it, or return the one that has its idempotency key."""
@@ -131,6 +144,11 @@ class SqliteStore:
         )
 
     def _in_transaction(self, act: Callable[..., T], *arguments: object) -> T:
+        """Return what an action does with the file, when it is its turn; errors as of _transact."""
+        with self._turn:
+            return self._transact(act, *arguments)
+
+    def _transact(self, act: Callable[..., T], *arguments: object) -> T:
         """Return what an action does with the file, all of it or nothing.
 
         Raises:
@@ -223,16 +241,19 @@ class SqliteStore:
 
     def _evict(self) -> None:
         oldest = self._clock() - self._max_age
-        self._drop(f"{_FINISHED} AND (kept < ? OR size > ?)", oldest, self._max_bytes)
-        while (most := self._most_over()) is not None:
-            self._drop(f"number = ({_NEXT_OUT.format(most=most)})")
+        while (out := self._next_out(oldest)) is not None:
+            self._drop(*out)
 
-    def _most_over(self) -> str | None:
-        """Return what there is too much of in the store, as an expression for each client."""
-        entries, size = self._database.execute(_SUMS).fetchone()
-        if entries > self._entries:
-            return "count(*)"
-        return "sum(size)" if size > self._max_bytes else None
+    def _next_out(self, oldest: float) -> tuple[str, float, float] | tuple[str, float] | None:
+        """Return which records make way next, as a condition with its values."""
+        entries, size, kept, longest = self._database.execute(_SUMS).fetchone()
+        if entries and (kept < oldest or longest > self._max_bytes):
+            return f"{_FINISHED} AND (kept < ? OR size > ?)", oldest, self._max_bytes
+        if entries <= self._entries and size <= self._max_bytes:
+            return None
+        most = "count(*)" if entries > self._entries else "sum(size)"
+        (number,) = self._database.execute(_NEXT_OUT.format(most=most)).fetchone()
+        return "number = ?", number
 
     def _drop(self, where: str, *values: float) -> None:
         """Delete records, but remember that they were there."""
@@ -241,6 +262,13 @@ class SqliteStore:
             self._database.execute(f"DELETE FROM front WHERE {where}", values)
             forget = "DELETE FROM gone WHERE number <= (SELECT max(number) FROM gone) - ?"
             self._database.execute(forget, (self._tombstones,))
+
+
+def _is_short(record: Record) -> bool:
+    """Return whether a record takes a fraction of a millisecond to store in memory."""
+    source = record.source
+    length = 0 if source is None else len(source.body) + len(source.upload or b"")
+    return length + len(record.front.tours) <= SHORT
 
 
 def _source_size(columns: dict[str, Any]) -> int:
