@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
 from service.jobs.record import Record
+from service.jobs.sqlite_eviction import FINISHED, next_out
 from service.jobs.sqlite_schema import IN_MEMORY, UNFINISHED, open_file
 from service.jobs.store import (
     COLUMNS,
@@ -38,15 +39,7 @@ _READ = ", ".join(
     f"CASE WHEN {UNFINISHED} THEN {name} END" if name in SOURCE_COLUMNS else name
     for name in COLUMNS
 )
-_FINISHED = f"NOT {UNFINISHED}"
-_SUMS = (
-    f"SELECT count(*), total(size), min(kept), max(size) FROM front WHERE {_FINISHED}"  # one pass
-)
-# The oldest record of the client that has most; of those with one alone where nobody has two.
-_NEXT_OUT = f"""
-SELECT min(number) FROM front WHERE {_FINISHED} GROUP BY client
-ORDER BY count(*) > 1 DESC, {{most}} DESC, min(number) LIMIT 1
-"""
+_SLACK = 16  # one part in so many may be put too much, until records are read
 _LOG = logging.getLogger("paretour")
 
 
@@ -79,6 +72,7 @@ class SqliteStore:
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="store")
         self._turn = Lock()  # held during a transaction
         self._in_memory = path == IN_MEMORY
+        self._puts = self._bytes_put = 0  # since records were last evicted
         try:
             self._database = open_file(path)
         except (OSError, ValueError, sqlite3.Error) as error:
@@ -115,7 +109,7 @@ class SqliteStore:
 
     async def latest(self, caller: str) -> Record:
         """Return the caller's record that was finished last."""
-        return await self._found(f"caller = ? AND {_FINISHED}", caller)
+        return await self._found(f"caller = ? AND {FINISHED}", caller)
 
     async def delete(self, record: Record) -> None:
         """Delete a record, and leave no trace of it."""
@@ -170,7 +164,10 @@ class SqliteStore:
         insert = f"INSERT INTO front (kept, size, client, {_COLUMNS}) VALUES ({places})"
         beside = (self._clock(), record_size(columns), record.client or record.caller)
         self._database.execute(insert, (*beside, *columns.values()))
-        self._evict()
+        self._puts += 1
+        self._bytes_put += beside[1]
+        if self._puts > self._entries // _SLACK or self._bytes_put > self._max_bytes // _SLACK:
+            self._evict()
 
     def _admit(self, record: Record) -> Record:
         self._evict()
@@ -240,20 +237,11 @@ class SqliteStore:
         self._database.execute("DELETE FROM front WHERE id = ?", (id,))
 
     def _evict(self) -> None:
+        self._puts = self._bytes_put = 0
         oldest = self._clock() - self._max_age
-        while (out := self._next_out(oldest)) is not None:
+        limits = oldest, self._entries, self._max_bytes
+        while (out := next_out(self._database, *limits)) is not None:
             self._drop(*out)
-
-    def _next_out(self, oldest: float) -> tuple[str, float, float] | tuple[str, float] | None:
-        """Return which records make way next, as a condition with its values."""
-        entries, size, kept, longest = self._database.execute(_SUMS).fetchone()
-        if entries and (kept < oldest or longest > self._max_bytes):
-            return f"{_FINISHED} AND (kept < ? OR size > ?)", oldest, self._max_bytes
-        if entries <= self._entries and size <= self._max_bytes:
-            return None
-        most = "count(*)" if entries > self._entries else "sum(size)"
-        (number,) = self._database.execute(_NEXT_OUT.format(most=most)).fetchone()
-        return "number = ?", number
 
     def _drop(self, where: str, *values: float) -> None:
         """Delete records, but remember that they were there."""
