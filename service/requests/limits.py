@@ -215,6 +215,8 @@ def lower_defaults(request: AnyPlanRequest, n: int, limits: Limits) -> AnyPlanRe
         for name, default in defaults(limits, n, request.id_bytes).items()
         if name not in request.model_fields_set and default < getattr(request, name)
     }
+    if not lowered:
+        return request
     copied = request.model_copy(update=lowered)
     # A field with a lower default still counts as not given.
     copied.model_fields_set.difference_update(lowered)
