@@ -3,11 +3,11 @@
 import asyncio
 import logging
 import sqlite3
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
-from threading import Lock
 from time import time
 from typing import Any, TypeVar
 
@@ -39,6 +39,7 @@ _READ = ", ".join(
     f"CASE WHEN {UNFINISHED} THEN {name} END" if name in SOURCE_COLUMNS else name
     for name in COLUMNS
 )
+_AT_ONCE = 16  # records that are written together
 _SLACK = 16  # one part in so many may be put too much, until records are read
 _LOG = logging.getLogger("paretour")
 
@@ -68,10 +69,12 @@ class SqliteStore:
         self._max_bytes = max_bytes
         self._tombstones = tombstones
         self._clock = clock
-        # Calls that touch the file are made in this thread, in their order.
+        # All calls that touch the file are made in this thread, in their order.
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="store")
-        self._turn = Lock()  # held during a transaction
-        self._in_memory = path == IN_MEMORY
+        # Short records that are not yet written, with the time when they were put. In memory there
+        # is nothing to lose by that, and to write many at once takes less time for each.
+        self._unwritten: deque[tuple[float, Record]] = deque()
+        self._most_unwritten = _AT_ONCE if path == IN_MEMORY else 0
         self._puts = self._bytes_put = 0  # since records were last evicted
         try:
             self._database = open_file(path)
@@ -82,14 +85,10 @@ class SqliteStore:
 
     async def put(self, record: Record) -> None:
         """Store a record, in place of an earlier one with its id."""
-        # To hand a short one to the thread would take longer than to store it in memory.
-        if self._in_memory and _is_short(record) and self._turn.acquire(blocking=False):
-            try:
-                self._transact(self._put, record)
-            finally:
-                self._turn.release()
+        if len(self._unwritten) < self._most_unwritten and _is_short(record):
+            self._unwritten.append((self._clock(), record))
         else:
-            await self._in_thread(self._put, record)
+            await self._in_thread(self._put, record, self._clock())
 
     async def admit(self, record: Record) -> Record:
         """Store a new record and return it, or return the one that has its idempotency key."""
@@ -138,31 +137,41 @@ class SqliteStore:
         )
 
     def _in_transaction(self, act: Callable[..., T], *arguments: object) -> T:
-        """Return what an action does with the file, when it is its turn; errors as of _transact."""
-        with self._turn:
-            return self._transact(act, *arguments)
-
-    def _transact(self, act: Callable[..., T], *arguments: object) -> T:
         """Return what an action does with the file, all of it or nothing.
 
         Raises:
             StoreUnavailable: The file cannot be read or written, mostly as the disk is full.
         """
         try:
+            self._write_unwritten()  # in a transaction of its own: the action may fail
             with self._database:
                 return act(*arguments)
         except sqlite3.Error as error:
             _LOG.error("the file of the store cannot be used: %s", error)
             raise StoreUnavailable from error
 
-    def _put(self, record: Record) -> None:
+    def _write_unwritten(self) -> None:
+        """Write the records that were put before; one that cannot be encoded is given up."""
+        unwritten = list(self._unwritten)
+        with self._database:
+            for kept, record in unwritten:
+                try:
+                    self._put(record, kept)
+                except sqlite3.Error:
+                    raise
+                except Exception as error:
+                    _LOG.error("front %s cannot be stored", record.id, exc_info=error)
+        for _ in unwritten:
+            self._unwritten.popleft()
+
+    def _put(self, record: Record, kept: float) -> None:
         self._delete(record.id)
         columns = record_columns(record)
         if record.finished and _source_size(columns) > self._max_bytes // SOURCE_SHARE:
             columns |= dict.fromkeys(SOURCE_COLUMNS)
         places = ", ".join("?" * (len(columns) + 3))
         insert = f"INSERT INTO front (kept, size, client, {_COLUMNS}) VALUES ({places})"
-        beside = (self._clock(), record_size(columns), record.client or record.caller)
+        beside = (kept, record_size(columns), record.client or record.caller)
         self._database.execute(insert, (*beside, *columns.values()))
         self._puts += 1
         self._bytes_put += beside[1]
@@ -174,8 +183,8 @@ class SqliteStore:
         if earlier := self._repeated(record):
             return earlier
         for failed in self._with_key_of(record):
-            self._put(replace(failed, key=None))
-        self._put(record)
+            self._put(replace(failed, key=None), self._clock())
+        self._put(record, self._clock())
         return record
 
     def _repeated(self, record: Record) -> Record | None:
@@ -253,7 +262,7 @@ class SqliteStore:
 
 
 def _is_short(record: Record) -> bool:
-    """Return whether a record takes a fraction of a millisecond to store in memory."""
+    """Return whether a record is so short that some may be kept beside the file."""
     source = record.source
     length = 0 if source is None else len(source.body) + len(source.upload or b"")
     return length + len(record.front.tours) <= SHORT
