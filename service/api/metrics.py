@@ -42,7 +42,7 @@ class Metrics:
 
     def __init__(self) -> None:
         self._registry = registry = CollectorRegistry()
-        # Those of every request: to find what has these labels takes longer than to count.
+        # Of each request `labels` is remembered: to find a child takes longer than to count in it.
         ProcessCollector(registry=registry)
         PlatformCollector(registry=registry)
         GCCollector(registry=registry)
