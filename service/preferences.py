@@ -9,19 +9,24 @@ It is not a *weight*. Minimising w1 f1 + w2 f2 for a heavy w1 makes f1 small and
 point towards 90 degrees: the weights that go with a direction are its components exchanged.
 """
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
 
+@lru_cache(maxsize=64)  # nearly all requests have the same k
 def fan(k: int) -> Array:
     """Return the middles of k equal parts of the interval from 0 to 90 degrees, ascending.
 
     >>> fan(3)
     array([15., 45., 75.])
     """
-    return (np.arange(k, dtype=np.float64) + 0.5) * (90.0 / k)
+    middles = (np.arange(k, dtype=np.float64) + 0.5) * (90.0 / k)
+    middles.setflags(write=False)
+    return middles
 
 
 def from_angles(degrees: Array) -> Array:
@@ -33,7 +38,10 @@ def from_angles(degrees: Array) -> Array:
            [0.   , 1.   ]])
     """
     radians = np.deg2rad(degrees)
-    return np.stack((np.cos(radians), np.sin(radians)), axis=-1).clip(0.0, 1.0)
+    directions = np.empty((len(radians), 2))
+    np.cos(radians, out=directions[:, 0])
+    np.sin(radians, out=directions[:, 1])
+    return directions.clip(0.0, 1.0, out=directions)
 
 
 def angles(points: Array) -> Array:

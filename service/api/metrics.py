@@ -1,6 +1,7 @@
 """Metrics for Prometheus: requests, planning, and the workers of the engine."""
 
 from collections.abc import Iterator
+from functools import cache
 from typing import Protocol
 
 from fastapi import APIRouter
@@ -41,34 +42,43 @@ class Metrics:
 
     def __init__(self) -> None:
         self._registry = registry = CollectorRegistry()
+        # Of each request `labels` is remembered: to find a child takes longer than to count in it.
         ProcessCollector(registry=registry)
         PlatformCollector(registry=registry)
         GCCollector(registry=registry)
-        self._requests = Counter(
-            "paretour_requests",
-            "requests answered",
-            ["method", "path", "status"],
-            registry=registry,
+        self._requests = cache(
+            Counter(
+                "paretour_requests",
+                "requests answered",
+                ["method", "path", "status"],
+                registry=registry,
+            ).labels
         )
-        self._request_seconds = Histogram(
-            "paretour_request_seconds",
-            "from a request to the end of its answer",
-            ["method", "path"],
-            registry=registry,
-            buckets=_SECONDS,
+        self._request_seconds = cache(
+            Histogram(
+                "paretour_request_seconds",
+                "from a request to the end of its answer",
+                ["method", "path"],
+                registry=registry,
+                buckets=_SECONDS,
+            ).labels
         )
-        self._fronts = Counter(
-            "paretour_fronts",
-            "fronts planned, by what they are of and why the search ended",
-            ["of", "terminated"],
-            registry=registry,
+        self._fronts = cache(
+            Counter(
+                "paretour_fronts",
+                "fronts planned, by what they are of and why the search ended",
+                ["of", "terminated"],
+                registry=registry,
+            ).labels
         )
-        self._planning = Histogram(
-            "paretour_planning_seconds",
-            "planning, by its phase and the most cities of the class",
-            ["phase", "cities"],
-            registry=registry,
-            buckets=_SECONDS,
+        self._planning = cache(
+            Histogram(
+                "paretour_planning_seconds",
+                "planning, by its phase and the most cities of the class",
+                ["phase", "cities"],
+                registry=registry,
+                buckets=_SECONDS,
+            ).labels
         )
         self._gained = Histogram(
             "paretour_hypervolume_gained",
@@ -111,8 +121,8 @@ class Metrics:
         """Count a request that was answered."""
         # A method that a client made up must not become a label: each costs memory for good.
         method = answered.method if answered.method in _METHODS else "other"
-        self._requests.labels(method, answered.path, answered.status).inc()
-        self._request_seconds.labels(method, answered.path).observe(answered.seconds)
+        self._requests(method, answered.path, answered.status).inc()
+        self._request_seconds(method, answered.path).observe(answered.seconds)
 
     def watch(self, engine: StatsSource) -> None:
         """Report the workers of an engine as they are at each scrape."""
@@ -125,10 +135,10 @@ class Metrics:
 
     def planned(self, front: FrontDocument) -> None:
         """Count a planned front, its phases, and the hypervolume that the search gained."""
-        self._fronts.labels(_kind_of(front), front.terminated).inc()
+        self._fronts(_kind_of(front), front.terminated).inc()
         cities = _size_class(front.cities)
         for phase, milliseconds in front.timings_ms.phases.items():
-            self._planning.labels(phase, cities).observe(milliseconds / 1000)
+            self._planning(phase, cities).observe(milliseconds / 1000)
         if front.gained is not None:
             self._gained.labels(cities).observe(front.gained)
 

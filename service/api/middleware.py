@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from http import HTTPStatus
 
-from starlette.datastructures import Headers, MutableHeaders
+from starlette.datastructures import Headers
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -41,14 +41,16 @@ class SecurityHeadersMiddleware:
     def __init__(self, app: ASGIApp, images: str = "") -> None:
         self._app = app
         policy = _CONTENT_POLICY.format(images=f"{_IMAGES} {images}".strip())
-        self._headers = {"Content-Security-Policy": policy, **_SECURITY_HEADERS}
+        headers = {"Content-Security-Policy": policy, **_SECURITY_HEADERS}
+        self._headers = Headers(headers).raw
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on one request."""
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                MutableHeaders(scope=message).update(self._headers)
+                # No answer has any of these by itself.
+                message["headers"] = [*message.get("headers", ()), *self._headers]
             await send(message)
 
         await self._app(scope, receive, send_with_headers)
@@ -84,7 +86,8 @@ class RequestIdMiddleware:
             nonlocal started
             if message["type"] == "http.response.start":
                 started = True
-                MutableHeaders(scope=message)["X-Request-ID"] = request_id
+                own = (b"x-request-id", request_id.encode())
+                message["headers"] = [*message.get("headers", ()), own]
             await send(message)
 
         try:
@@ -124,6 +127,7 @@ class AnsweredRequest:
 
 
 Observer = Callable[[AnsweredRequest], None]
+_REQUESTS = logging.getLogger("paretour.requests")
 
 
 class RequestLogMiddleware:
@@ -166,7 +170,7 @@ class RequestLogMiddleware:
 
 def log_request(answered: AnsweredRequest) -> None:
     """Write one line to the log for a request."""
-    logging.getLogger("paretour.requests").info("request", extra=vars(answered))
+    _REQUESTS.info("request", extra=vars(answered))
 
 
 class ProblemMiddleware:
@@ -203,8 +207,9 @@ class ProblemMiddleware:
 
 
 def _is_plain_error(message: Message) -> bool:
-    media_type = Headers(raw=message["headers"]).get("content-type", "")
-    return bool(message["status"] >= HTTPStatus.BAD_REQUEST and media_type != PROBLEM_JSON)
+    if message["status"] < HTTPStatus.BAD_REQUEST:
+        return False
+    return Headers(raw=message["headers"]).get("content-type", "") != PROBLEM_JSON
 
 
 def _framework_refusal(method: str, start: Message, text: str) -> Refusal:

@@ -5,7 +5,7 @@ import hashlib
 import time
 import uuid
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from fastapi import APIRouter
@@ -169,7 +169,8 @@ class PlanRoutes:
             received = await receive_source(request, kind, self._limits.body_bytes, allowance)
             body = _Body(received, front, time.monotonic())
             if front is None:
-                source = replace(received, task=await self._parser.parse(received))
+                task = await self._parser.parse(received)
+                source = TaskSource(received.kind, received.body, received.upload, task)
             else:
                 source = await self._rest(request, received, front)
             return await self._planned(request, source, body)

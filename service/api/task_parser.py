@@ -113,11 +113,11 @@ class TaskParser:
             InvalidInstance: The cities or the map cannot be planned.
             QueueFull: Too many bodies wait to be parsed.
         """
-        check_structure(source.body, self._limits)
         length = len(source.body) + len(source.upload or b"")
         short = length <= _SHORT and source.upload is None
         if short and source.body.count(b'"') <= _FEW_QUOTES:
             return parse_task(source, self._limits, self._actors)
+        check_structure(source.body, self._limits)
         return await self._in_turn(parse_task, source, length)
 
     def check_replan(self, body: bytes) -> None:

@@ -5,8 +5,10 @@ To add a member to the answer, add a field to `FrontDocument` and fill it in `en
 the documents stored by earlier releases needs a default.
 """
 
+from array import array
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
+from itertools import accumulate, islice
 from typing import Any, Self
 
 import numpy as np
@@ -167,8 +169,8 @@ _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
 def joined(tours: Iterable[bytes]) -> tuple[bytes, bytes]:
     """Return the JSON of all tours in one, and where each ends in it."""
     each = list(tours)
-    ends = np.cumsum([len(tour) + 1 for tour in each], dtype=np.int64) - 1
-    return b",".join(each), ends.tobytes()
+    ends = accumulate(each, lambda end, tour: end + 1 + len(tour), initial=-1)
+    return b",".join(each), array("q", islice(ends, 1, None)).tobytes()
 
 
 def _lengths(tour: bytes) -> list[float]:

@@ -96,11 +96,12 @@ class LocalEngine:
         self._unsaved.check_none()
         submission = self._workers.reserve(record.source, client=record.client)
         self._queue(submission)
+        disconnected.add_done_callback(lambda _: self._workers.stop(submission))
         try:
-            await submission.wait(disconnected)
+            front = await submission.front()
         finally:
             self._workers.stop(submission)
-        record = as_finished(record, await submission.front(), None)
+        record = as_finished(record, front, None)
         try:
             await self._store.put(record)
         except Exception as error:

@@ -74,7 +74,7 @@ def as_ended(
 def as_finished(record: Record, front: FrontDocument, reason: StopReason | None) -> Record:
     """Return the record with its final front: cancelled for that reason, else done."""
     status: Status = "cancelled" if reason is Cancelled else "done"
-    source = record.source and replace(record.source, task=None)
+    source = record.source and record.source.without_task()
     return replace(record, status=status, front=front, source=source)
 
 

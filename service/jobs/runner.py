@@ -128,7 +128,8 @@ class TaskRunner:
     ) -> FrontDocument:
         """Plan the front of an instance, whose costs took these milliseconds to find."""
         front = self._plan(task, instance, stop, report)
-        front = replace(front, timings={**timings, **front.timings})
+        if timings:
+            front = replace(front, timings={**timings, **front.timings})
         arrivals = _arrivals(task, instance, front)
         return encode_front(front, self._identity(task), labels=task.labels, arrivals=arrivals)
 

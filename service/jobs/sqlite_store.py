@@ -3,6 +3,7 @@
 import asyncio
 import logging
 import sqlite3
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -12,9 +13,11 @@ from typing import Any, TypeVar
 
 from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
 from service.jobs.record import Record
+from service.jobs.sqlite_eviction import FINISHED, next_out
 from service.jobs.sqlite_schema import IN_MEMORY, UNFINISHED, open_file
 from service.jobs.store import (
     COLUMNS,
+    SHORT,
     SOURCE_COLUMNS,
     SOURCE_SHARE,
     STORE_BYTES,
@@ -36,13 +39,8 @@ _READ = ", ".join(
     f"CASE WHEN {UNFINISHED} THEN {name} END" if name in SOURCE_COLUMNS else name
     for name in COLUMNS
 )
-_FINISHED = f"NOT {UNFINISHED}"
-_SUMS = f"SELECT count(*), total(size) FROM front WHERE {_FINISHED}"
-# The oldest record of the client that has most; of those with one alone where nobody has two.
-_NEXT_OUT = f"""
-SELECT min(number) FROM front WHERE {_FINISHED} GROUP BY client
-ORDER BY count(*) > 1 DESC, {{most}} DESC, min(number) LIMIT 1
-"""
+_AT_ONCE = 16  # records that are written together
+_SLACK = 16  # one part in so many may be put too much, until records are read
 _LOG = logging.getLogger("paretour")
 
 
@@ -73,6 +71,11 @@ class SqliteStore:
         self._clock = clock
         # All calls that touch the file are made in this thread, in their order.
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="store")
+        # Short records that are not yet written, with the time when they were put. In memory there
+        # is nothing to lose by that, and to write many at once takes less time for each.
+        self._unwritten: deque[tuple[float, Record]] = deque()
+        self._most_unwritten = _AT_ONCE if path == IN_MEMORY else 0
+        self._puts = self._bytes_put = 0  # since records were last evicted
         try:
             self._database = open_file(path)
         except (OSError, ValueError, sqlite3.Error) as error:
@@ -82,7 +85,10 @@ class SqliteStore:
 
     async def put(self, record: Record) -> None:
         """Store a record, in place of an earlier one with its id."""
-        await self._in_thread(self._put, record)
+        if len(self._unwritten) < self._most_unwritten and _is_short(record):
+            self._unwritten.append((self._clock(), record))
+        else:
+            await self._in_thread(self._put, record, self._clock())
 
     async def admit(self, record: Record) -> Record:
         """Store a new record and return it, or return the one that has its idempotency key."""
@@ -102,7 +108,7 @@ class SqliteStore:
 
     async def latest(self, caller: str) -> Record:
         """Return the caller's record that was finished last."""
-        return await self._found(f"caller = ? AND {_FINISHED}", caller)
+        return await self._found(f"caller = ? AND {FINISHED}", caller)
 
     async def delete(self, record: Record) -> None:
         """Delete a record, and leave no trace of it."""
@@ -137,30 +143,48 @@ class SqliteStore:
             StoreUnavailable: The file cannot be read or written, mostly as the disk is full.
         """
         try:
+            self._write_unwritten()  # in a transaction of its own: the action may fail
             with self._database:
                 return act(*arguments)
         except sqlite3.Error as error:
             _LOG.error("the file of the store cannot be used: %s", error)
             raise StoreUnavailable from error
 
-    def _put(self, record: Record) -> None:
+    def _write_unwritten(self) -> None:
+        """Write the records that were put before; one that cannot be encoded is given up."""
+        unwritten = list(self._unwritten)
+        with self._database:
+            for kept, record in unwritten:
+                try:
+                    self._put(record, kept)
+                except sqlite3.Error:
+                    raise
+                except Exception as error:
+                    _LOG.error("front %s cannot be stored", record.id, exc_info=error)
+        for _ in unwritten:
+            self._unwritten.popleft()
+
+    def _put(self, record: Record, kept: float) -> None:
         self._delete(record.id)
         columns = record_columns(record)
         if record.finished and _source_size(columns) > self._max_bytes // SOURCE_SHARE:
             columns |= dict.fromkeys(SOURCE_COLUMNS)
         places = ", ".join("?" * (len(columns) + 3))
         insert = f"INSERT INTO front (kept, size, client, {_COLUMNS}) VALUES ({places})"
-        beside = (self._clock(), record_size(columns), record.client or record.caller)
+        beside = (kept, record_size(columns), record.client or record.caller)
         self._database.execute(insert, (*beside, *columns.values()))
-        self._evict()
+        self._puts += 1
+        self._bytes_put += beside[1]
+        if self._puts > self._entries // _SLACK or self._bytes_put > self._max_bytes // _SLACK:
+            self._evict()
 
     def _admit(self, record: Record) -> Record:
         self._evict()
         if earlier := self._repeated(record):
             return earlier
         for failed in self._with_key_of(record):
-            self._put(replace(failed, key=None))
-        self._put(record)
+            self._put(replace(failed, key=None), self._clock())
+        self._put(record, self._clock())
         return record
 
     def _repeated(self, record: Record) -> Record | None:
@@ -222,17 +246,11 @@ class SqliteStore:
         self._database.execute("DELETE FROM front WHERE id = ?", (id,))
 
     def _evict(self) -> None:
+        self._puts = self._bytes_put = 0
         oldest = self._clock() - self._max_age
-        self._drop(f"{_FINISHED} AND (kept < ? OR size > ?)", oldest, self._max_bytes)
-        while (most := self._most_over()) is not None:
-            self._drop(f"number = ({_NEXT_OUT.format(most=most)})")
-
-    def _most_over(self) -> str | None:
-        """Return what there is too much of in the store, as an expression for each client."""
-        entries, size = self._database.execute(_SUMS).fetchone()
-        if entries > self._entries:
-            return "count(*)"
-        return "sum(size)" if size > self._max_bytes else None
+        limits = oldest, self._entries, self._max_bytes
+        while (out := next_out(self._database, *limits)) is not None:
+            self._drop(*out)
 
     def _drop(self, where: str, *values: float) -> None:
         """Delete records, but remember that they were there."""
@@ -241,6 +259,13 @@ class SqliteStore:
             self._database.execute(f"DELETE FROM front WHERE {where}", values)
             forget = "DELETE FROM gone WHERE number <= (SELECT max(number) FROM gone) - ?"
             self._database.execute(forget, (self._tombstones,))
+
+
+def _is_short(record: Record) -> bool:
+    """Return whether a record is so short that some may be kept beside the file."""
+    source = record.source
+    length = 0 if source is None else len(source.body) + len(source.upload or b"")
+    return length + len(record.front.tours) <= SHORT
 
 
 def _source_size(columns: dict[str, Any]) -> int:

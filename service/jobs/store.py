@@ -92,6 +92,7 @@ COLUMNS = (
     *FRONT_COLUMNS,
     *SOURCE_COLUMNS,
 )
+SHORT = 2**16  # bytes of tours that are not compressed, as there is little to gain
 _LEVEL = 1  # of compression: digits shrink to half of their size, quickly
 
 
@@ -117,7 +118,7 @@ def front_columns(front: FrontDocument) -> dict[str, bytes]:
     """Return a front as columns."""
     return {
         "members": to_json(front.members()),
-        "tours": zlib.compress(front.tours, _LEVEL),
+        "tours": zlib.compress(front.tours, _LEVEL if len(front.tours) > SHORT else 0),
         "ends": front.ends,
         "angles": front.angles,
     }

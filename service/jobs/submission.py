@@ -61,10 +61,6 @@ class Submission:
         """
         return await asyncio.shield(self._future)
 
-    async def wait(self, disconnected: Future[None]) -> None:
-        """Wait until it has ended or the client has disconnected."""
-        await asyncio.wait((self._future, disconnected), return_when=asyncio.FIRST_COMPLETED)
-
     def when_ended(self, callback: Callable[[], object]) -> None:
         """Have a function called soon after it has ended."""
         self._future.add_done_callback(lambda _: callback())

@@ -12,6 +12,7 @@ from service.requests.schemas import LARGEST
 from service.requests.stop_fields import find_index
 from service.requests.validation import invalid, parse_json, too_many_cities
 
+_REFERENCES = {"start", "end", "initial_tours"}  # the fields that may name stops by their ids
 AnyFrontRequest = TypeVar("AnyFrontRequest", bound=FrontRequest)
 
 
@@ -80,6 +81,8 @@ def _check_matrices(request: FrontRequest) -> None:
 
 def _by_index(request: AnyFrontRequest) -> AnyFrontRequest:
     """Return the request with the index of a stop in place of every id."""
+    if not request.model_fields_set & _REFERENCES:
+        return request
     stops = request.labels.stops if request.labels else ()
     ids = {stop.id: index for index, stop in enumerate(stops)}
     tours = [

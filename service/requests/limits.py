@@ -210,11 +210,10 @@ def check_router(stops: UnmeasuredStops, limits: Limits) -> None:
 
 def lower_defaults(request: AnyPlanRequest, n: int, limits: Limits) -> AnyPlanRequest:
     """Return a request about n cities, with the limit in place of every default that is over it."""
-    lowered = {
-        name: default
-        for name, default in defaults(limits, n, request.id_bytes).items()
-        if name not in request.model_fields_set and default < getattr(request, name)
-    }
+    given, values = request.model_fields_set, defaults(limits, n, request.id_bytes)
+    lowered = {k: v for k, v in values.items() if k not in given and v < getattr(request, k)}
+    if not lowered:
+        return request
     copied = request.model_copy(update=lowered)
     # A field with a lower default still counts as not given.
     copied.model_fields_set.difference_update(lowered)

@@ -83,6 +83,10 @@ class TaskSource:
     upload: bytes | None = None
     task: Task | None = field(default=None, compare=False, repr=False)
 
+    def without_task(self) -> "TaskSource":
+        """Return the source as it came."""
+        return TaskSource(self.kind, self.body, self.upload)
+
 
 def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
     """Return the task in a body.

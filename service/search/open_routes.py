@@ -50,9 +50,11 @@ def plain_tours(instance: Instance) -> Tours:
 
 
 def rotated(tours: NDArray[_Index], places: NDArray[np.intp]) -> NDArray[_Index]:
-    """Return closed tours, shape (k, n), each from another place on, shape (k,)."""
-    n = tours.shape[1]
-    return np.take_along_axis(tours, (places[:, np.newaxis] + np.arange(n)) % n, axis=1)
+    """Return closed tours, shape (k, n), each from another place on, 0 to n, shape (k,)."""
+    k, n = tours.shape
+    twice = np.concatenate((tours, tours), axis=1)  # so that no tour ends where it goes on
+    begins = places + 2 * n * np.arange(k)
+    return twice.reshape(-1).take(begins[:, np.newaxis] + np.arange(n))
 
 
 def moved_ends(instance: Instance, tours: Tours) -> Tours:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from service.errors import Expired, NotFound, StoreUnavailable
-from service.jobs.sqlite_store import SqliteStore
+from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.requests.task import TaskSource
 from tests.helpers.released_records import ANSWERS, SQLITE_ROWS, SQLITE_SCHEMA
 from tests.helpers.stores import job, record
@@ -177,3 +177,33 @@ def test_unfinished_work_without_a_body_is_dropped(tmp_path: Path) -> None:
         await store.close()
 
     asyncio.run(test())
+
+
+def test_in_memory_every_record_is_found_however_many_came_at_once() -> None:
+    async def test() -> None:
+        store = SqliteStore(IN_MEMORY, entries=100, max_age=60)
+        for number in range(50):
+            await store.put(record(str(number)))
+        assert (await store.latest("us")).id == "49"
+        for number in range(50):
+            assert (await store.get("us", str(number))).id == str(number)
+        await store.close()
+
+    asyncio.run(test())
+
+
+def test_in_memory_a_record_that_cannot_be_encoded_keeps_no_other_from_being_read(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def test() -> None:
+        store = SqliteStore(IN_MEMORY, entries=9, max_age=60)
+        await store.put(record("a"))
+        await store.put(record("b", problem={"unknown": object()}))
+        await store.put(record("c"))
+        assert [(await store.get("us", id_)).id for id_ in ("a", "c")] == ["a", "c"]
+        with pytest.raises(NotFound):
+            await store.get("us", "b")
+        await store.close()
+
+    asyncio.run(test())
+    assert "front b cannot be stored" in caplog.text

@@ -9,7 +9,10 @@ GEOJSON = "application/geo+json"
 
 def accepts_geojson(request: Request) -> bool:
     """Return whether the caller accepts GeoJSON, and no less than JSON."""
-    ranges = dict(_media_ranges(",".join(request.headers.getlist("accept"))))
+    accept = ",".join(request.headers.getlist("accept"))
+    if GEOJSON not in accept.lower():  # most do not name it, and each request asks several times
+        return False
+    ranges = dict(_media_ranges(accept))
     quality = ranges.get(GEOJSON, 0.0)
     return quality > 0 and quality >= ranges.get("application/json", 0.0)
 

@@ -1,11 +1,13 @@
 """Addresses: the network that one counts for, and the proxies that stand between."""
 
 from collections.abc import Callable
+from functools import lru_cache
 from ipaddress import IPv6Address, ip_address, ip_network
 
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 
+@lru_cache(maxsize=1024)  # each request asks several times
 def network_of(address: str) -> str:
     """Return an IPv4 address as it is, and of an IPv6 address the 64 bits that a client has.
 

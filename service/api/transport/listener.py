@@ -8,7 +8,7 @@ MOST_WAITING = 128  # accepted connections that wait to be served
 
 # Files, libraries, the store, the log, connections to Redis, and those that wait or are refused.
 _RESERVE = 128 + MOST_WAITING
-_RESERVE_PER_WORKER = 8  # its socket, and pipes while it is started
+_RESERVE_PER_WORKER = 8  # its two sockets, and pipes while it is started
 _FEWEST = 8
 
 

@@ -17,6 +17,7 @@ from service.errors import Refusal
 _LINGER_SECONDS = 10.0  # that the rest of a refused body is read and dropped
 _LINGER_BYTES = 2**26  # of that rest: four times the longest body
 _STALL_SECONDS = 30.0  # after which a client must have read some of its answer
+_LONG = 2**16  # bytes that are sent at once
 _NO_MORE_BODY = (h11.IDLE, h11.DONE, h11.MUST_CLOSE, h11.CLOSED)
 
 
@@ -33,6 +34,7 @@ class Connection(H11Protocol):
         self.conn: StrictParser = StrictParser(h11.SERVER)
         self._connections = connections
         self._socket: Transport
+        self._output: _Output
         self._head_timer: TimerHandle | None = None
         self._linger_timer: TimerHandle | None = None
         self._stall_timer: TimerHandle | None = None
@@ -42,7 +44,8 @@ class Connection(H11Protocol):
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         """Begin to wait for a request, or refuse the connection where there are too many."""
         self._socket = transport
-        super().connection_made(cast(Transport, _ClosingTransport(transport, self)))
+        self._output = _Output(transport, self)
+        super().connection_made(cast(Transport, self._output))
         peer = self.client[0] if self.client else ""
         if self._connections.admit(self, peer):
             self._note_idle()
@@ -102,6 +105,7 @@ class Connection(H11Protocol):
         """Close the connection, in peace where the client is still sending."""
         if self.lingering or self._socket.is_closing():
             return
+        self._output.flush()
         if self.conn.their_state in _NO_MORE_BODY:
             self._socket.close()
             self._expect_reading()
@@ -160,12 +164,13 @@ class Connection(H11Protocol):
         reason = HTTPStatus(refusal.status).phrase.encode()
         head = h11.Response(status_code=refusal.status, headers=headers, reason=reason)
         for event in (head, h11.Data(data=body), h11.EndOfMessage()):
-            self._socket.write(self.conn.send(event) or b"")
+            self._output.write(self.conn.send(event) or b"")
 
     def _linger(self) -> None:
         """Send no more, and drop what comes until the client has read its answer and closes."""
         if self.lingering or self._socket.is_closing():
             return
+        self._output.flush()
         self.lingering = True
         self._unset_keepalive_if_required()
         try:
@@ -191,15 +196,36 @@ class Connection(H11Protocol):
             self.abort()
 
 
-class _ClosingTransport:
-    """The transport of a connection, which the connection closes in its own way."""
+class _Output:
+    """The transport of a connection, which the connection closes in its own way.
+
+    What is written in one turn of the event loop is sent at its end, an answer's head with its
+    body: to send takes longer than all else that is done with them. Long parts are sent at once.
+    """
 
     def __init__(self, transport: asyncio.Transport, connection: Connection) -> None:
         self._transport = transport
         self._connection = connection
+        self._unsent: list[bytes] = []
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._transport, name)
+
+    def write(self, data: bytes) -> None:
+        """Send some bytes soon."""
+        if not data:
+            return
+        if not self._unsent:
+            self._connection.loop.call_soon(self.flush)
+        self._unsent.append(data)
+        if len(data) > _LONG:
+            self.flush()
+
+    def flush(self) -> None:
+        """Send what was written."""
+        unsent, self._unsent = self._unsent, []
+        if unsent and not self._transport.is_closing():
+            self._transport.write(b"".join(unsent))
 
     def is_closing(self) -> bool:
         """Return whether nothing more can be sent."""

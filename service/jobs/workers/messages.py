@@ -1,8 +1,8 @@
-"""Messages between the service and its worker processes: pickled, over one socket each."""
+"""Messages between the service and its worker processes: pickled, over two sockets each."""
 
 import pickle
 import struct
-from asyncio import StreamReader
+from collections.abc import Iterator
 from dataclasses import dataclass
 from socket import socket
 from typing import Any
@@ -75,15 +75,16 @@ def encode(message: object) -> bytes:
     return _LENGTH.pack(len(content)) + content
 
 
-async def receive(stream: StreamReader) -> Any:
-    """Return the next message.
-
-    Raises:
-        EOFError: The sender is gone.
-        OSError: Likewise.
-    """
-    (length,) = _LENGTH.unpack(await stream.readexactly(_LENGTH.size))
-    return pickle.loads(await stream.readexactly(length))
+def decode(received: bytearray) -> Iterator[Any]:
+    """Yield the messages that have been received whole, and remove each from the bytes."""
+    while len(received) >= _LENGTH.size:
+        (length,) = _LENGTH.unpack_from(received)
+        end = _LENGTH.size + length
+        if len(received) < end:
+            return
+        message = pickle.loads(received[_LENGTH.size : end])
+        del received[:end]
+        yield message
 
 
 def receive_blocking(connection: socket) -> Any:

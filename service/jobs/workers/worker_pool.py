@@ -86,7 +86,8 @@ class WorkerPool:
 
     @property
     def _working(self) -> list[Submission]:
-        return [submission for submission in self.running if not submission.ended]
+        running = (worker.submission for worker in self._workers)
+        return [each for each in running if each is not None and not each.ended]
 
     async def start(self) -> None:
         """Start the processes, and return before they are ready."""
@@ -232,7 +233,8 @@ class WorkerPool:
             # Before the first is warm, no task that needs compiled code is admitted.
             able = worker.warm if self._workers.was_warm else worker.started
             if able and worker.submission is None and self._queue:
-                submission = self._queue.take({each.client for each in self.running})
+                served = {each.submission.client for each in self._workers if each.submission}
+                submission = self._queue.take(served)
                 worker.submission = submission
                 submission.begin()
                 self._start_timer(submission)

@@ -7,14 +7,12 @@ import pickle
 import signal
 import time
 import traceback
-from asyncio import StreamReader, StreamWriter
-from collections.abc import AsyncIterator
-from contextlib import suppress
+from asyncio import Protocol, WriteTransport
+from collections.abc import Callable
+from contextlib import ExitStack, suppress
 from multiprocessing.context import ForkServerProcess
-from queue import SimpleQueue
 from socket import socket, socketpair
 from threading import Lock, Thread
-from typing import Any
 
 from service.jobs.runner import MakeRunner, Reporter, Runner
 from service.jobs.workers.messages import (
@@ -26,8 +24,8 @@ from service.jobs.workers.messages import (
     Stop,
     Warm,
     WarmUp,
+    decode,
     encode,
-    receive,
     receive_blocking,
 )
 from service.requests.task import Task, TaskSource
@@ -37,45 +35,56 @@ _TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin
 
 _CONTEXT = multiprocessing.get_context("forkserver")
 _CONTEXT.set_forkserver_preload(["service.jobs.workers.preloaded"])
-_BUFFER = 2**20  # bytes
 
 
-def run_worker(connection: socket, make_runner: MakeRunner) -> None:
-    """Run tasks until the service closes the connection."""
+def run_worker(tasks: socket, signals: socket, make_runner: MakeRunner) -> None:
+    """Run tasks until the service closes the connections.
+
+    Args:
+        tasks: Over it tasks come, and results go.
+        signals: Over it comes what does not wait for the task that is being run.
+        make_runner: Makes what runs them.
+    """
     # An interrupt from a terminal goes to all processes; the service tells its workers to end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.nice(NICENESS)
-    with suppress(OSError):
-        _WorkerLoop(connection, make_runner()).run()
+    with suppress(EOFError, OSError):
+        _WorkerLoop(tasks, signals, make_runner()).run()
 
 
 class _WorkerLoop:
-    """Runs tasks in one thread, reads messages in another, and warms up in a third."""
+    """Runs tasks in one thread, reads signals in another, and warms up in a third."""
 
-    def __init__(self, connection: socket, runner: Runner) -> None:
-        self._connection = connection
+    def __init__(self, tasks: socket, signals: socket, runner: Runner) -> None:
+        self._tasks = tasks
+        self._signals = signals
         self._runner = runner
         self._sending = Lock()
-        self._tasks: SimpleQueue[Do] = SimpleQueue()
-        self._changing = Lock()  # held while `_running` changes, and while its call is terminated
+        self._changing = Lock()  # held while these change, and while a call is terminated
         self._running: int | None = None
         self._stopped: int | None = None
 
     def run(self) -> None:
-        """Run tasks, one after another, until the service closes the connection."""
-        Thread(target=self._read, name="reader", daemon=True).start()
+        """Run tasks, one after another, until the service closes the connection.
+
+        Raises:
+            EOFError: The service is gone.
+            OSError: Likewise.
+        """
+        Thread(target=self._read_signals, name="signals", daemon=True).start()
         self._send(Started())
         while True:
-            task = self._tasks.get()
+            task: Do = receive_blocking(self._tasks)
+            self._begin(task.number)
             result = self._result(task.number, task.task)
-            self._set_running(None)
+            self._end()
             self._send(result)
 
-    def _read(self) -> None:
-        """Handle messages; exit at once when the service is gone, even in the middle of a task."""
+    def _read_signals(self) -> None:
+        """Handle signals; exit at once when the service is gone, even in the middle of a task."""
         try:
             while True:
-                self._handle(receive_blocking(self._connection))
+                self._handle(receive_blocking(self._signals))
         except (EOFError, OSError):
             os._exit(0)
         except BaseException:
@@ -84,14 +93,29 @@ class _WorkerLoop:
 
     def _handle(self, message: object) -> None:
         match message:
-            case Do():
-                self._set_running(message.number)
-                self._tasks.put(message)
             case Stop():
-                self._stopped = message.number
-                Thread(target=self._terminate, args=[message.number], daemon=True).start()
+                self._stop(message.number)
             case WarmUp():
                 Thread(target=self._warm_up, name="warm-up", daemon=True).start()
+
+    def _begin(self, number: int) -> None:
+        with self._changing:
+            self._running = number
+            if self._stopped == number:  # a signal may come before the task
+                self._terminate_soon(number)
+
+    def _end(self) -> None:
+        with self._changing:
+            self._running = None
+
+    def _stop(self, number: int) -> None:
+        with self._changing:
+            self._stopped = number
+            if self._running == number:
+                self._terminate_soon(number)
+
+    def _terminate_soon(self, number: int) -> None:
+        Thread(target=self._terminate, args=[number], daemon=True).start()
 
     def _terminate(self, number: int) -> None:
         """Terminate the calls of the runner until the task of this number has ended."""
@@ -101,10 +125,6 @@ class _WorkerLoop:
                     return
                 self._runner.terminate()
             time.sleep(_TERMINATE_EVERY)
-
-    def _set_running(self, number: int | None) -> None:
-        with self._changing:
-            self._running = number
 
     def _result(self, number: int, task: TaskSource | Task) -> Done | Failed:
         report = Reporter(lambda progress, front: self._send(Found(number, progress, front)))
@@ -121,7 +141,7 @@ class _WorkerLoop:
     def _send(self, message: object) -> None:
         content = encode(message)
         with self._sending:
-            self._connection.sendall(content)
+            self._tasks.sendall(content)
 
 
 def _picklable(error: Exception) -> Exception:
@@ -134,18 +154,57 @@ def _picklable(error: Exception) -> Exception:
     return error
 
 
-class WorkerProcess:
-    """The handle of a worker process: the process and the socket to it.
+class _Inbox(Protocol):
+    """Receives the messages of a process, and gives each to a function as soon as it is whole."""
 
-    When the service is gone, the process ends; when the process is gone, `messages` ends.
+    def __init__(self) -> None:
+        self._received = bytearray()
+        self._on_message: Callable[[object], None] | None = None
+        self._gone = asyncio.get_running_loop().create_future()
+
+    async def deliver(self, on_message: Callable[[object], None]) -> None:
+        """Call a function with each message until the process is gone; raise what it raises."""
+        self._on_message = on_message
+        self._deliver_received()
+        await self._gone
+
+    def data_received(self, data: bytes) -> None:
+        """Deliver the messages that are whole now."""
+        self._received += data
+        self._deliver_received()
+
+    def connection_lost(self, exc: Exception | None) -> None:  # noqa: ARG002
+        """Take note that the process is gone."""
+        if not self._gone.done():
+            self._gone.set_result(None)
+
+    def _deliver_received(self) -> None:
+        if self._on_message is None or self._gone.done():
+            return
+        try:
+            for message in decode(self._received):
+                self._on_message(message)
+        except Exception as error:
+            self._gone.set_exception(error)
+
+
+class WorkerProcess:
+    """The handle of a worker process: the process and the sockets to it.
+
+    When the service is gone, the process ends; when the process is gone, `deliver_messages` ends.
     """
 
     def __init__(
-        self, process: ForkServerProcess, reader: StreamReader, writer: StreamWriter
+        self,
+        process: ForkServerProcess,
+        inbox: _Inbox,
+        tasks: WriteTransport,
+        signals: WriteTransport,
     ) -> None:
         self._process = process
-        self._reader = reader
-        self._writer = writer
+        self._inbox = inbox
+        self._tasks = tasks
+        self._signals = signals
 
     @classmethod
     async def start(cls, make_runner: MakeRunner) -> "WorkerProcess":
@@ -154,40 +213,52 @@ class WorkerProcess:
         Raises:
             OSError: There are no descriptors or processes left.
         """
-        ours, theirs = socketpair()
-        try:
-            with theirs:
+        loop = asyncio.get_running_loop()
+        with ExitStack() as ours:  # closed where this fails, with which the process ends
+            with ExitStack() as theirs:
+                own_tasks, tasks = _socket_pair(ours, theirs)
+                own_signals, signals = _socket_pair(ours, theirs)
+                arguments = (tasks, signals, make_runner)
                 process = _CONTEXT.Process(
-                    target=run_worker, args=(theirs, make_runner), name="planner", daemon=True
+                    target=run_worker, args=arguments, name="planner", daemon=True
                 )
                 process.start()
-            return cls(process, *await asyncio.open_connection(sock=ours, limit=_BUFFER))
-        except BaseException:
-            ours.close()  # with which the process ends, if there is one
-            raise
+            writing, inbox = await loop.create_connection(_Inbox, sock=own_tasks)
+            ours.callback(writing.close)
+            signalling, _ = await loop.create_connection(Protocol, sock=own_signals)
+            ours.pop_all()
+        return cls(process, inbox, writing, signalling)
 
     @property
     def pid(self) -> int | None:
         """The id of the process."""
         return self._process.pid
 
-    def send(self, message: object) -> None:
+    def send(self, message: Do | Stop | WarmUp) -> None:
         """Send a message; one to a process that is gone is lost."""
-        self._writer.write(encode(message))
+        connection = self._tasks if isinstance(message, Do) else self._signals
+        connection.write(encode(message))
 
-    async def messages(self) -> AsyncIterator[Any]:
-        """Yield the messages of the process, until it is gone."""
-        try:
-            while True:
-                yield await receive(self._reader)
-        except (EOFError, OSError):
-            return
+    async def deliver_messages(self, on_message: Callable[[object], None]) -> None:
+        """Call a function with each message of the process, until it is gone.
+
+        Raises:
+            Exception: What the function raised, or a message that cannot be decoded.
+        """
+        await self._inbox.deliver(on_message)
 
     def kill(self) -> None:
         """Kill the process."""
         self._process.kill()
 
     async def join(self) -> None:
-        """Wait until the process has ended, and close the socket."""
-        self._writer.close()
+        """Wait until the process has ended, and close the sockets."""
+        self._tasks.close()
+        self._signals.close()
         await asyncio.to_thread(self._process.join)
+
+
+def _socket_pair(ours: ExitStack, theirs: ExitStack) -> tuple[socket, socket]:
+    """Return two connected sockets, one that we close and one that another process has."""
+    own, other = socketpair()
+    return ours.enter_context(own), theirs.enter_context(other)

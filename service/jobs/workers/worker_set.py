@@ -7,6 +7,7 @@ import asyncio
 import logging
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 from service.errors import NoWorker, WarmingUp
 from service.jobs.retries import GrowingPause
@@ -100,8 +101,7 @@ class WorkerSet:
         worker = Worker(await WorkerProcess.start(self._make_runner))
         self._workers.append(worker)
         try:
-            async for message in worker.process.messages():
-                self._handle(worker, message)
+            await worker.process.deliver_messages(partial(self._handle, worker))
             self.lost += 1
             _LOG.warning("worker %s was lost and is replaced", worker.process.pid)
         finally:

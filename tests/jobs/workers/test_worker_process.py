@@ -1,9 +1,14 @@
-"""The end of worker processes with that of the service."""
+"""The end of worker processes with that of the service, and of a task that was stopped early."""
 
 import os
 import subprocess
 import sys
 from pathlib import Path
+from socket import socketpair
+from threading import Event
+
+from service.jobs.front_document import FrontDocument
+from service.jobs.workers.worker_process import _WorkerLoop
 
 ROOT = Path(__file__).parents[3]
 
@@ -41,3 +46,35 @@ def test_no_worker_outlives_a_service_that_is_killed(tmp_path: Path) -> None:
 
 def zombie(pid: int) -> bool:
     return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+class TerminatedRunner:
+    """A runner that notes that its call is terminated."""
+
+    def __init__(self) -> None:
+        self.terminated = Event()
+
+    def warm_up(self) -> None:
+        pass
+
+    def run(self, *_: object) -> FrontDocument:
+        raise NotImplementedError
+
+    def terminate(self) -> None:
+        self.terminated.set()
+
+
+def test_a_task_that_is_stopped_before_it_has_come_is_terminated_when_it_begins() -> None:
+    tasks, signals = socketpair(), socketpair()
+    try:
+        runner = TerminatedRunner()
+        loop = _WorkerLoop(tasks[0], signals[0], runner)
+        loop._stop(3)
+        loop._begin(2)
+        assert not runner.terminated.wait(0.1)
+        loop._begin(3)
+        assert runner.terminated.wait(5)
+        loop._end()
+    finally:
+        for connection in (*tasks, *signals):
+            connection.close()
