@@ -20,10 +20,9 @@ from service import installed_version
 from service.actor import load_actors
 from service.actor_info import ActorInfo
 from service.api.app import Edge, create_app
-from service.api.auth import Access
+from service.api.auth import Access, Rates
 from service.api.body_budget import BodyBounds
 from service.api.metrics import Metrics
-from service.api.rates.rates import Rates
 from service.api.site.tiles import Tiles
 from service.api.task_parser import ParserBounds
 from service.api.transport.acceptor import FairServer

@@ -1,7 +1,6 @@
 """Logs as lines of JSON, or on a terminal as plain lines; and traces for OpenTelemetry."""
 
 import asyncio
-import json
 import logging
 import logging.config
 import sys
@@ -24,42 +23,14 @@ _VERBOSE = (  # loggers whose lines repeat what the service logs itself
 )
 
 
-class JsonFormatter(logging.Formatter):
-    """Formats a record as an object of JSON: time, level, logger, message, and the members added.
-
-    What no JSON can be made of is written as text.
-    """
-
-    _encoder = json.JSONEncoder(default=str)
-
-    def format(self, record: logging.LogRecord) -> str:
-        """Return the line."""
-        line = {
-            "time": self.formatTime(record, self.datefmt),
-            "level": record.levelname,
-            "logger": record.name,
-            "message": record.getMessage(),
-            **_added(record),
-        }
-        if record.exc_info:
-            line["exc_info"] = self.formatException(record.exc_info)
-        if record.stack_info:
-            line["stack_info"] = self.formatStack(record.stack_info)
-        return self._encoder.encode(line)
-
-
 class PlainFormatter(logging.Formatter):
     """Formats a record as a line to read: time, message, and the members added to it."""
 
     def format(self, record: logging.LogRecord) -> str:
         """Return the line."""
-        members = "".join(f" {name}={_short(value)}" for name, value in _added(record).items())
+        added = {name: value for name, value in vars(record).items() if name not in _KNOWN}
+        members = "".join(f" {name}={_short(value)}" for name, value in added.items())
         return super().format(record) + members
-
-
-def _added(record: logging.LogRecord) -> dict[str, Any]:
-    """Return the members that were added to a record."""
-    return {name: value for name, value in vars(record).items() if name not in _KNOWN}
 
 
 def _short(value: object) -> str:
@@ -72,7 +43,9 @@ def logging_config(level: str = "INFO", plain: bool = False) -> dict[str, Any]:
     It is an object of JSON, or if `plain` a line for people to read.
     """
     json_lines = {
-        "()": JsonFormatter,
+        "()": "pythonjsonlogger.json.JsonFormatter",
+        "format": "%(asctime)s %(levelname)s %(name)s %(message)s",
+        "rename_fields": {"asctime": "time", "levelname": "level", "name": "logger"},
         "datefmt": "%Y-%m-%dT%H:%M:%S%z",
     }
     plain_lines = {

@@ -8,14 +8,13 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 
 import httpx
 import pytest
 from fastapi import FastAPI
 from opentelemetry.proto.collector.trace.v1.trace_service_pb2 import ExportTraceServiceRequest
 
-from service.telemetry import JsonFormatter, PlainFormatter, trace
+from service.telemetry import PlainFormatter, trace
 from tests.helpers.processes import serve_process
 
 
@@ -105,16 +104,3 @@ def test_a_plain_line_has_the_members_of_a_record_behind_its_message() -> None:
     record.color_message = "coloured"
     line = PlainFormatter("%(message)s").format(record)
     assert line == "request status=200 seconds=0.0123"
-
-
-def test_a_line_of_json_has_the_members_of_a_record_and_its_traceback() -> None:
-    try:
-        raise ValueError("no such thing\nat all")
-    except ValueError:
-        error = sys.exc_info()
-    fields = {"msg": "request %s", "args": ("a",), "name": "paretour", "levelname": "ERROR"}
-    record = logging.makeLogRecord({**fields, "exc_info": error, "path": Path("/x"), "status": 200})
-    line = json.loads(JsonFormatter(datefmt="%Y").format(record))
-    assert (line["message"], line["logger"], line["level"]) == ("request a", "paretour", "ERROR")
-    assert (line["path"], line["status"], len(line["time"])) == ("/x", 200, 4)
-    assert line["exc_info"].endswith("ValueError: no such thing\nat all")

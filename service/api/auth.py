@@ -7,23 +7,32 @@ address has a rate of its own.
 
 import hashlib
 import hmac
+import logging
+import math
 import re
 import secrets
+import time
 from collections.abc import Iterable
 from dataclasses import dataclass
+from importlib.util import find_spec
 from typing import Self
 
 from fastapi import Depends, Security
 from fastapi.params import Depends as Dependency
 from fastapi.security import HTTPBearer
+from limits import RateLimitItem, parse
+from limits.aio.storage import MemoryStorage, RedisStorage
+from limits.aio.strategies import MovingWindowRateLimiter, SlidingWindowCounterRateLimiter
+from limits.errors import StorageError
 from starlette.requests import Request
 
 from service.api.middleware import ANONYMOUS
-from service.api.rates.rates import Rates
 from service.api.transport.addresses import network_of
 from service.errors import Refusal
 
+_REDIS_SECONDS = 0.5  # that a request waits for Redis at most
 _NAME = re.compile(r"[A-Za-z0-9._-]{1,64}")
+_LOG = logging.getLogger("paretour")
 _BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API key")
 
 
@@ -52,6 +61,60 @@ def new_key() -> tuple[str, str]:
     """Return a new key, which its caller alone keeps, and its hash for the settings."""
     key = secrets.token_urlsafe(32)
     return key, _digest(key)
+
+
+class Rates:
+    """A limit on the requests of each caller, in the notation of the package `limits`: 9/second.
+
+    Requests are counted in memory, or in Redis for all replicas together. Where Redis does not
+    answer, every request passes: a rate is a protection, and must not be an outage.
+
+    Raises:
+        ValueError: The extra for Redis is not installed.
+    """
+
+    def __init__(self, rate: str, redis_url: str | None = None) -> None:
+        self._rate: RateLimitItem = parse(rate)
+        storage = _storage(redis_url)
+        self._callers = MovingWindowRateLimiter(storage)
+        # Two numbers for each address: there may be very many.
+        self._addresses = SlidingWindowCounterRateLimiter(storage)
+
+    async def check(self, caller: str) -> None:
+        """Count a request of a caller with a key, and raise a refusal where there were too many.
+
+        Raises:
+            Refusal: The caller is over its rate.
+        """
+        await self._check(self._callers, caller)
+
+    async def check_address(self, address: str) -> None:
+        """Count a request from an address, and raise a refusal where there were too many.
+
+        Raises:
+            Refusal: The address is over its rate.
+        """
+        await self._check(self._addresses, network_of(address))
+
+    async def _check(
+        self, limiter: MovingWindowRateLimiter | SlidingWindowCounterRateLimiter, caller: str
+    ) -> None:
+        try:
+            if await limiter.hit(self._rate, caller):
+                return
+            window = await limiter.get_window_stats(self._rate, caller)
+        except StorageError:
+            _LOG.warning("rates are not counted: Redis does not answer")
+            return
+        wait = max(1, math.ceil(window.reset_time - time.time()))
+        raise Refusal(
+            "rate-limited",
+            rate=self._rate,
+            caller=caller,
+            wait=wait,
+            limit=self._rate.amount,
+            headers={"Retry-After": str(wait)},
+        )
 
 
 def caller_of(request: Request) -> str:
@@ -112,6 +175,20 @@ class Access:
         if not matches:
             raise _unauthorized("an API key of this service; this is none")
         return matches[0]
+
+
+def _storage(redis_url: str | None) -> MemoryStorage | RedisStorage:
+    if redis_url is None:
+        return MemoryStorage()
+    if find_spec("redis") is None:
+        raise ValueError("PARETOUR_REDIS_URL needs the extra paretour[cluster]")
+    return RedisStorage(
+        f"async+{redis_url}",
+        wrap_exceptions=True,
+        implementation="redispy",
+        socket_connect_timeout=_REDIS_SECONDS,
+        socket_timeout=_REDIS_SECONDS,
+    )
 
 
 def _digest(key: str) -> str:

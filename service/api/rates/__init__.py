@@ -1,1 +1,0 @@
-"""Rates: how many requests a caller may make in a time, counted in memory or in Redis."""
