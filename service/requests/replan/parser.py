@@ -17,6 +17,7 @@ from service.requests.replan.earlier_front import StoredFront, read_earlier_fron
 from service.requests.replan.earlier_map import MAP_MODELS
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.map_fields import check_of_stops
+from service.requests.replan.rest_members import EncodedTours
 from service.requests.replan.rest_of_map import rest_of_map
 from service.requests.replan.way import RestOfWay, driven_tour, left_of_tours, rest_of_way
 from service.requests.stops import Changed, Matrix, Measured, Objective, Plane, Source, kind_of
@@ -84,7 +85,7 @@ def rest_source(source: ReplanSource, limits: Limits) -> TaskSource:
             for objective, each in zip(objectives, sources, strict=True)
         ],
         **rest.end_members(place),
-        "earlier_tours": place[left].tolist(),
+        "earlier_tours": EncodedTours.members(place[left]),
         "touched": _touched(request, stops, moved, place),
         "balance": front.balance_of(driven),
         "min_kept": request.min_kept,

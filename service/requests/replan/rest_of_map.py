@@ -20,6 +20,7 @@ from service.requests.replan.earlier_map import read_earlier_map
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.map_fields import check_of_map
 from service.requests.replan.new_places import all_places
+from service.requests.replan.rest_members import EncodedTours
 from service.requests.replan.way import RestOfWay, driven_tour, left_of_tours, rest_of_way
 from service.requests.stops import Stop
 from service.requests.task import TaskSource
@@ -58,7 +59,7 @@ def rest_of_map(request: ReplanRequest, stored: StoredFront, limits: Limits) -> 
     members = {
         **_members(task),
         **rest.end_members(place),
-        "earlier_tours": place[left].tolist(),
+        "earlier_tours": EncodedTours.members(place[left]),
         "touched": None if request.map_changed else _at(place, moved),
         "balance": earlier.front.balance_of(driven),
         "min_kept": request.min_kept,
