@@ -11,7 +11,9 @@ Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
 Indices = NDArray[np.intp]
 _MOST_COMPARED = 100  # tours of about one balance, some milliseconds at thousands of cities
-_LONGER = 0.5  # of a mean leg, by which a tour that keeps more may be longer
+# Of a mean leg, by which a tour that keeps more may be longer: with half a leg it keeps half a
+# hundredth more of the driven tour, and is longer by four hundredths of one per cent.
+_LONGER = 0.125
 _EQUAL = 1e-12  # lengths whose relative difference is less count as equal, as in the search
 
 
@@ -72,8 +74,8 @@ def with_most_kept_at(
     """Return tours chosen of a front, that at a balance replaced by one that keeps more legs.
 
     Of the tours nearer to the balance than those chosen on either side, and longer than the
-    shortest of them by no more than half a leg of mean length, that is the one that keeps most of
-    the driven tour's legs. The ends of the front stay.
+    shortest of them by no more than an eighth of a leg of mean length, that is the one that keeps
+    most of the driven tour's legs. The ends of the front stay.
 
     Args:
         instance: The instance.
