@@ -12,6 +12,7 @@ _NAMES = (
     "actors",
     "asymmetric",
     "attack",
+    "behind",
     "concave",
     "coverage",
     "curves",
