@@ -36,7 +36,7 @@ def parse_front_request(
     _check_cities(request, limits)
     request = _by_index(request)
     check_limits(request, request.n, limits)
-    return lower_defaults(request, request.n, limits)
+    return lower_defaults(request, request.n, limits, request.id_bytes)
 
 
 def _check_form(request: FrontRequest, with_file: bool) -> None:

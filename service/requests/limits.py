@@ -208,9 +208,11 @@ def check_router(stops: UnmeasuredStops, limits: Limits) -> None:
             raise Refusal("no-router", name=part, measure=source.measure, pointer=f"/{part}")
 
 
-def lower_defaults(request: AnyPlanRequest, n: int, limits: Limits) -> AnyPlanRequest:
-    """Return a request about n cities, with the limit in place of every default that is over it."""
-    given, values = request.model_fields_set, defaults(limits, n, request.id_bytes)
+def lower_defaults(
+    request: AnyPlanRequest, n: int, limits: Limits, id_bytes: int = 0
+) -> AnyPlanRequest:
+    """Return a request with the limit, as of `defaults`, in place of every default over it."""
+    given, values = request.model_fields_set, defaults(limits, n, id_bytes)
     lowered = {k: v for k, v in values.items() if k not in given and v < getattr(request, k)}
     if not lowered:
         return request

@@ -82,7 +82,7 @@ class PlanFields(BaseModel):
         description="how often the network cuts each of its tours open somewhere and joins it"
         " again, which never makes it worse; the other tours that it meets on the way count for the"
         " front, too. By default 0 with a time limit, else as many as are worth their time: an"
-        " eighth of the number of cities with coordinates, a sixteenth with matrices, at least 3"
+        " eighth of the number of cities with coordinates, a third with matrices, at least 3"
         " or 2",
     )
     arrivals: bool = Field(

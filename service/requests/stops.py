@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic_core import to_json
 
 from service.instance import CLOSED, OBJECTIVES, Instance, Kind, RouteEnds
 from service.roads.great_circle import great_circle_matrix
@@ -40,6 +41,11 @@ class Labels:
 
     stops: tuple[Stop, ...]
     objectives: tuple[Objective, ...]
+
+    @property
+    def id_bytes(self) -> int:
+        """The bytes of all ids in one tour of an answer."""
+        return len(to_json([stop.id for stop in self.stops]))
 
     @property
     def members(self) -> dict[str, list[dict[str, Any]]]:

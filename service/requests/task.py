@@ -24,8 +24,9 @@ from service.requests.limits import (
     within_network,
 )
 from service.requests.maps.robots import SharedCoverage
+from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.rest_request import RestOfMapRequest, RestRequest
-from service.requests.schemas import Geometry, PlanRequest
+from service.requests.schemas import Geometry, PlanFields
 from service.requests.stops import Labels, UnmeasuredStops
 
 TaskKind = Literal["front", "coverage", "fleet", "replan", "replan-coverage"]
@@ -102,19 +103,42 @@ def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
         return _fleet_task(source.body, limits, actors)
     model = RestRequest if source.kind == "replan" else FrontRequest
     request = parse_front_request(source.body, limits, source.upload, model)
-    name = choose_actor(actors, request.kind, request.requested_actor)
-    options = within_network(_options(request, actors[name]), request.n, limits)
-    subject = request.subject()
+    return front_task(
+        request,
+        request.subject(),
+        limits,
+        actors,
+        labels=request.labels,
+        earlier=request.earlier if isinstance(request, RestRequest) else None,
+    )
+
+
+def front_task(
+    request: FrontRequest | ReplanRequest,
+    subject: Instance | UnmeasuredStops,
+    limits: Limits,
+    actors: Mapping[str, ActorInfo],
+    *,
+    labels: Labels | None = None,
+    earlier: EarlierTours | None = None,
+) -> Task:
+    """Return the task of a checked request; the arguments are those of Task.
+
+    Raises:
+        Refusal: No actor serves it, or it asks for what the actor cannot do.
+    """
+    name = choose_actor(actors, subject.kind, request.requested_actor)
+    options = within_network(_options(request, actors[name]), subject.n, limits)
     if isinstance(subject, Instance):
         check_reference_point(options, partial(least_lengths, subject))
     return Task(
         subject=subject,
         options=options,
         actor=name,
-        labels=request.labels,
+        labels=labels,
         arrivals=request.arrivals,
         geometry=request.geometry,
-        earlier=request.earlier if isinstance(request, RestRequest) else None,
+        earlier=earlier,
     )
 
 
@@ -143,7 +167,7 @@ def _shared_task(request: CoverageRequest, actors: Mapping[str, ActorInfo]) -> T
     )
 
 
-def _options(request: PlanRequest, actor: ActorInfo) -> PlanOptions:
+def _options(request: PlanFields, actor: ActorInfo) -> PlanOptions:
     """Return the options of a request, without repairs by an actor that makes none."""
     options = request.options()
     if actor.repairs or options.repairs == 0:

@@ -1,7 +1,7 @@
 """Replanned fronts against brute force on the remaining problem, over random changes."""
 
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.stops import UnmeasuredStops, make_instance
-from service.requests.task import Task, TaskSource
+from service.requests.task import Task, TaskSource, parse_task
 from service.search.improve import SearchResult
 from tests.helpers.actors import Shuffler, info_of
 from tests.helpers.changes import Change, random_change
@@ -134,6 +134,16 @@ def test_fewer_tours_are_completed_where_all_would_take_too_long() -> None:
     assert few_enough(instance, earlier, most=3 * 10 * 4).tours[:, 0].tolist() == [0, 4, 2]
     [driven] = few_enough(instance, earlier, most=1).tours
     assert driven.tolist() == earlier.driven.tolist()
+
+
+def test_the_task_of_a_rest_is_the_one_that_its_source_is_parsed_into() -> None:
+    for seed in range(80):
+        change = random_change(seed)
+        body = json.dumps({**change.request, "arrivals": True, "seed": seed}).encode()
+        rest = parse_replan(ReplanSource(body, change.front), LIMITS, INFOS)
+        assert rest.task is not None
+        parsed = parse_task(rest.without_task(), LIMITS, INFOS)
+        np.testing.assert_equal(asdict(rest.task), asdict(parsed))
 
 
 def test_more_stops_than_the_kind_of_their_costs_allows_are_refused_by_what_makes_them_so() -> None:

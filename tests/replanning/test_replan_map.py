@@ -14,8 +14,10 @@ from service.jobs.front_document import FrontDocument
 from service.jobs.runner import TaskRunner
 from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront
-from service.requests.replan.parser import ReplanSource, rest_source
+from service.requests.replan.fields import ReplanRequest
+from service.requests.replan.rest_of_map import rest_of_map
 from service.requests.task import TaskSource
+from service.requests.validation import parse_json
 from tests.helpers.actors import Shuffler, info_of
 
 LIMITS = Limits(body_bytes=2**20, cities=20, cells=200, preferences=99, size=9999, seconds=9)
@@ -25,6 +27,10 @@ WALLS = [[1, 1], [1, 4], [3, 2]]
 SECONDS = ("cost_layer", "second_matrix", "second_coordinates")
 ORIGIN = [3.0, -2.0, 0.5]
 FRAME = MapFrame(origin=ORIGIN, cell_size=0.5, rows=ROWS)
+
+
+def rest_of(front: StoredFront, body: bytes) -> TaskSource:
+    return rest_of_map(parse_json(ReplanRequest, body), front, LIMITS)
 
 
 @dataclass
@@ -63,7 +69,7 @@ class Scene:
     def rest(self, **request: Any) -> TaskSource:
         stored = StoredFront("front", self.source, self.front.tours, self.front.places)
         body = json.dumps({"size": 9999, **request}).encode()
-        return rest_source(ReplanSource(body, stored), LIMITS)
+        return rest_of(stored, body)
 
     def subset(self, indexes: list[int]) -> dict[str, Any]:
         """The second objective between places of the front, as a new request has it."""
@@ -139,7 +145,7 @@ def test_a_whole_map_and_a_whole_layer_may_be_new() -> None:
     assert same_lengths(rest, new_front(scene, grid=grid([]), cost_layer=layer))
     again = StoredFront("rest", scene.rest(grid=grid([])), rest.tours, rest.places)
     body = json.dumps({"remove": [2], "size": 9999}).encode()
-    second = planned(rest_source(ReplanSource(body, again), LIMITS))
+    second = planned(rest_of(again, body))
     places = [cell for i, cell in enumerate(scene.places) if i != 2]
     assert same_lengths(second, new_front(scene, grid=grid([]), places=places))
 
@@ -212,10 +218,10 @@ def test_the_paths_of_a_front_are_not_parsed() -> None:
     path = f',"arrivals":[{cells}],"path":{{"cells":[{cells}],"metres":1.0}}}}'.encode()
     plain = StoredFront("front", scene.source, scene.front.tours, scene.front.places)
     long = replace(plain, tours=scene.front.tours.replace(b"]}", b"]" + path))
-    expected = rest_source(ReplanSource(b'{"done": [1]}', plain), LIMITS)
+    expected = rest_of(plain, b'{"done": [1]}')
     tracemalloc.start()
     try:
-        rest = rest_source(ReplanSource(b'{"done": [1]}', long), LIMITS)
+        rest = rest_of(long, b'{"done": [1]}')
         _, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
