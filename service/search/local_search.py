@@ -50,7 +50,7 @@ def improve_at(
         if other[2]:
             move = other
     else:
-        move = block_swap(working, scalarization, city, threshold)
+        move, _ = block_swap(working, scalarization, city, threshold)
     if move[2] == 0:
         return False
     make_move(working, scalarization, move[1], move[2], move[3], move[4])

@@ -140,41 +140,71 @@ def best_insertion(
 
 
 @inlined
-def block_swap(working: WorkingTour, scalarization: Scalarization, city: int, least: float) -> Move:
-    """Return the best swap of two blocks of which the first begins right after the city.
+def block_swap(
+    working: QueuedTour, scalarization: Scalarization, city: int, least: float
+) -> tuple[Move, Move]:
+    """Return two swaps of two blocks of which the first begins right after the city.
 
-    If none gains more than `least`, the move has a = 0.
+    The first is the best. The second promises most: its gain is that before the step is added
+    which closes the tour, from the last city of the second block to the first city of the first.
+    If none gains more than `least`, a move has a = 0.
     """
     n = len(working.tour)
-    best = (least, 0, 0, 0, False)
+    best = promising = (least, 0, 0, 0, False)
     start = wrap(working.position[city] + 1, n)
-    second = working.tour[start]
-    removed = weighted_cost(scalarization, city, second)
+    removed = weighted_cost(scalarization, city, working.tour[start])
     for k in range(scalarization.candidates.shape[1]):
         third = scalarization.candidates[city, k]
-        open_gain = removed - scalarization.candidate_costs[city, k]
-        if open_gain <= best[0]:
+        gain = removed - scalarization.candidate_costs[city, k]
+        if gain <= best[0]:
             break
         a = wrap(working.position[third] - start, n)
-        if a == 0:
-            continue
-        tail = neighbour(working, third, -1)
-        open_gain += weighted_cost(scalarization, tail, third)
-        for m in range(scalarization.candidates.shape[1]):
-            head = scalarization.candidates[tail, m]
-            gain = open_gain - scalarization.candidate_costs[tail, m]
-            if gain <= best[0]:
-                break
-            b = wrap(working.position[head] - start, n) - a
-            if b <= 0:
-                continue
-            left = neighbour(working, head, -1)
-            gain += weighted_cost(scalarization, left, head) - weighted_cost(
-                scalarization, left, second
+        if a > 0:
+            best, promising = best_second_block(
+                working, scalarization, (gain, start, a), best, promising
             )
-            if gain > best[0]:
-                best = (gain, start, a, b, False)
-    return best
+    return best, promising
+
+
+@inlined
+def best_second_block(
+    working: QueuedTour,
+    scalarization: Scalarization,
+    opened: tuple[float, int, int],
+    best: Move,
+    promising: Move,
+) -> tuple[Move, Move]:
+    """Return the two swaps of block_swap() by choice of the second block.
+
+    Args:
+        working: The tour.
+        scalarization: The weighted sum, and the candidates.
+        opened: (gain, start, a): the first block, and what is gained when the step to it is
+            removed, and one to the city behind it added.
+        best: The best swap found before.
+        promising: The one found before that promises most.
+    """
+    n = len(working.tour)
+    gain, start, a = opened
+    second, third = working.tour[start], working.tour[wrap(start + a, n)]
+    tail = neighbour(working, third, -1)
+    gain += weighted_cost(scalarization, tail, third)
+    for m in range(scalarization.candidates.shape[1]):
+        head = scalarization.candidates[tail, m]
+        promised = gain - scalarization.candidate_costs[tail, m]
+        if promised <= best[0]:
+            break
+        b = wrap(working.position[head] - start, n) - a
+        if b <= 0:
+            continue
+        left = neighbour(working, head, -1)
+        promised += weighted_cost(scalarization, left, head)
+        closed = promised - weighted_cost(scalarization, left, second)
+        if promised > promising[0]:
+            promising = (promised, start, a, b, False)
+        if closed > best[0]:
+            best = (closed, start, a, b, False)
+    return best, promising
 
 
 @inlined

@@ -1,1 +1,4 @@
-"""Three-opt: exchanges of two or three steps, and longer ones made of two, for many cities."""
+"""Three-opt: exchanges of two or three steps, and longer ones made of these.
+
+For many cities, and for any number where costs differ by direction.
+"""

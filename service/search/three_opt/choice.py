@@ -16,7 +16,9 @@ from service.search.working_tour import QueuedTour, WorkingTour
 
 Cities = NDArray[np.int32]
 
-THREE_OPT = 250  # cities from which on iterations are by it; at 200 clustered ones it is worse
+# Cities from which on iterations are by it; at 200 clustered ones it is worse. Where costs differ
+# by direction it is better at any number.
+THREE_OPT = 250
 MENDING = 100  # the same where tours of an earlier front are mended: these are too good for two-opt
 EFFORT = 3  # of an iteration by three-opt, which takes three or four times as long as by two-opt
 OFFERED = 2_000  # cities, of which every local optimum is offered; of more, proportionally fewer
@@ -50,13 +52,12 @@ def choose_local_searches(state: SearchState, mending: bool) -> tuple[LocalSearc
 
     Of fewer cities than LARGE a descent by two-opt is over sooner; iterations mend what it left.
     """
-    n, two_opt = len(state.costs.cities), TwoOptSearch(state)
-    if n < (MENDING if mending else THREE_OPT) or not state.costs.symmetric:
+    n, symmetric, two_opt = len(state.costs.cities), state.costs.symmetric, TwoOptSearch(state)
+    if symmetric and n < (MENDING if mending else THREE_OPT):
         return two_opt, two_opt
-    if n < LARGE:
-        return two_opt, ThreeOptSearch(state, make_undoable_tour(n), EFFORT)
-    three_opt = ThreeOptSearch(state, make_undoable_tour(n))
-    return three_opt, three_opt
+    effort = 1 if symmetric and n >= LARGE else EFFORT
+    three_opt = ThreeOptSearch(state, make_undoable_tour(n), effort)
+    return two_opt if n < LARGE else three_opt, three_opt
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ class TwoOptSearch:
 
 @dataclass(frozen=True)
 class ThreeOptSearch:
-    """A local search by sequential exchanges of two to five steps, for symmetric costs."""
+    """A local search by exchanges of two to five steps, or where costs are asymmetric of 3 to 7."""
 
     state: SearchState
     working: UndoableTour

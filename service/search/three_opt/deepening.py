@@ -11,8 +11,7 @@ from service.search.candidates import Scalarization, weighted_cost
 from service.search.moves import neighbour
 from service.search.three_opt.exchanges import ALONE, NONE, Exchange, make_exchange, steps_between
 from service.search.three_opt.finding import find_in_direction, nothing_found
-from service.search.three_opt.undoable_tour import UndoableTour, undo_from
-from service.search.working_tour import drop_queued
+from service.search.three_opt.undoable_tour import UndoableTour, take_back
 
 MOST_MOVED = 300  # cities, for the sake of a look further: to make and undo it takes that long
 
@@ -50,9 +49,7 @@ def deepen(
     if best[0] != NONE:
         make_exchange(working, scalarization, best)
         return True
-    undo_from(working, changes)
-    drop_queued(working, queued)
-    working.length[0], working.length[1] = first_length, second_length
+    take_back(working, changes, queued, first_length, second_length)
     return False
 
 

@@ -83,6 +83,20 @@ def make_exchange(working: UndoableTour, scalarization: Scalarization, exchange:
 
 
 @inlined
+def swap_adjacent(
+    working: UndoableTour, scalarization: Scalarization, start: int, a: int, b: int
+) -> None:
+    """Swap the block of `a` cities from position start on with the `b` cities that follow it.
+
+    That reverses nothing, so costs may differ by direction.
+    """
+    n, tour = len(working.tour), working.tour
+    one = tour[start], tour[wrap(start + a - 1, n)]
+    other = tour[wrap(start + a, n)], tour[wrap(start + a + b - 1, n)]
+    make_exchange(working, scalarization, exchange_of(SWAPPED, 1, one, other, 0))
+
+
+@inlined
 def replace_step(
     working: UndoableTour,
     scalarization: Scalarization,

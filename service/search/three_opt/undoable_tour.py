@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from service.jit import compiled, inlined
 from service.search.working_tour import (
     dequeue,
+    drop_queued,
     exchange_blocks,
     longest_in_place,
     reverse,
@@ -72,6 +73,16 @@ def undo_from(working: UndoableTour, first: int) -> None:
         else:
             exchange_blocks(working, start, b, a)
     working.changed[0] = first
+
+
+@inlined
+def take_back(
+    working: UndoableTour, changes: int, queued: int, first_length: float, second_length: float
+) -> None:
+    """Return to a tour of known lengths, with so many changes in its log and cities queued."""
+    undo_from(working, changes)
+    drop_queued(working, queued)
+    working.length[0], working.length[1] = first_length, second_length
 
 
 @compiled

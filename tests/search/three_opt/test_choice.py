@@ -1,4 +1,4 @@
-"""Three-opt is for many cities and symmetric costs, and finds tours of them."""
+"""Three-opt is for many cities, and for costs that differ by direction."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from service.search.three_opt.choice import (
 FEW = Instance(coordinates=np.random.default_rng(0).random((12, 4)))
 
 
-def test_three_opt_is_for_many_cities_and_symmetric_costs() -> None:
+def test_three_opt_is_for_many_cities_and_for_asymmetric_costs() -> None:
     state = Search(FEW, 0, np.full(2, 12.0)).state
 
     def chosen(n: int, symmetric: bool = True, mending: bool = False) -> tuple[type, type]:
@@ -29,4 +29,6 @@ def test_three_opt_is_for_many_cities_and_symmetric_costs() -> None:
     assert chosen(MENDING - 1, mending=True) == (TwoOptSearch, TwoOptSearch)
     assert chosen(MENDING, mending=True) == (TwoOptSearch, ThreeOptSearch)
     assert chosen(LARGE) == (ThreeOptSearch, ThreeOptSearch)
-    assert chosen(LARGE, symmetric=False) == (TwoOptSearch, TwoOptSearch)
+    assert chosen(10, symmetric=False) == (TwoOptSearch, ThreeOptSearch)
+    assert chosen(10, symmetric=False, mending=True) == (TwoOptSearch, ThreeOptSearch)
+    assert chosen(LARGE, symmetric=False) == (ThreeOptSearch, ThreeOptSearch)
