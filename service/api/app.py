@@ -117,7 +117,6 @@ def create_app(
         version=version,
         lifespan=lifespan,
         middleware=edge.middleware,
-        routes=[edge.tiles.route(edge.streets is not None), *static_routes(), *guide_routes()],
         exception_handlers=dict.fromkeys(HANDLED, answer_refusal),
         redirect_slashes=False,
         generate_unique_id_function=lambda route: route.name,
@@ -130,6 +129,10 @@ def create_app(
     app.include_router(_actor_router(actors), **edge.guard)
     app.include_router(edge.metrics.router(), **edge.guard)
     app.include_router(_health_router(engine))
+    # Last: routes are tried in their order, and these are many.
+    app.routes.extend(
+        [edge.tiles.route(edge.streets is not None), *static_routes(), *guide_routes()]
+    )
     return app
 
 

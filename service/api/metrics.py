@@ -1,8 +1,8 @@
 """Metrics for Prometheus: requests, planning, and the workers of the engine."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from fastapi import APIRouter
 from prometheus_client import (
@@ -24,6 +24,7 @@ from service.jobs.engine import EngineStats
 from service.jobs.fleets.fleet_document import holds_plans
 from service.jobs.front_document import FrontDocument
 
+AnyMetric = TypeVar("AnyMetric", Counter, Histogram)
 _METHODS = ("GET", "HEAD", "POST", "DELETE", "OPTIONS")
 _SIZES = (20, 50, 100, 200, 500, 1000)  # the most cities of each class
 _SECONDS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
@@ -42,43 +43,42 @@ class Metrics:
 
     def __init__(self) -> None:
         self._registry = registry = CollectorRegistry()
-        # Of each request `labels` is remembered: to find a child takes longer than to count in it.
         ProcessCollector(registry=registry)
         PlatformCollector(registry=registry)
         GCCollector(registry=registry)
-        self._requests = cache(
+        self._requests = _children(
             Counter(
                 "paretour_requests",
                 "requests answered",
                 ["method", "path", "status"],
                 registry=registry,
-            ).labels
+            )
         )
-        self._request_seconds = cache(
+        self._request_seconds = _children(
             Histogram(
                 "paretour_request_seconds",
                 "from a request to the end of its answer",
                 ["method", "path"],
                 registry=registry,
                 buckets=_SECONDS,
-            ).labels
+            )
         )
-        self._fronts = cache(
+        self._fronts = _children(
             Counter(
                 "paretour_fronts",
                 "fronts planned, by what they are of and why the search ended",
                 ["of", "terminated"],
                 registry=registry,
-            ).labels
+            )
         )
-        self._planning = cache(
+        self._planning = _children(
             Histogram(
                 "paretour_planning_seconds",
                 "planning, by its phase and the most cities of the class",
                 ["phase", "cities"],
                 registry=registry,
                 buckets=_SECONDS,
-            ).labels
+            )
         )
         self._gained = Histogram(
             "paretour_hypervolume_gained",
@@ -141,6 +141,14 @@ class Metrics:
             self._planning(phase, cities).observe(milliseconds / 1000)
         if front.gained is not None:
             self._gained.labels(cities).observe(front.gained)
+
+
+def _children(metric: AnyMetric) -> Callable[..., AnyMetric]:
+    """Return a function that finds the child of a metric with given labels, each time the same.
+
+    It remembers them: to look for a child takes longer than to count in it.
+    """
+    return cache(metric.labels)
 
 
 class _WorkerCollector(Collector):

@@ -16,6 +16,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from service.api.responses import PROBLEM_JSON, problem_response
 from service.errors import Refusal, ShuttingDown
 
+RawHeaders = list[tuple[bytes, bytes]]  # with names in lower case
 # Everything comes from the service itself; maps of robots are drawn into images (data:).
 _CONTENT_POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src {images}; "
@@ -28,6 +29,13 @@ _SECURITY_HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",
 }
+
+
+def _set_headers(start: Message, headers: RawHeaders) -> None:
+    """Give an answer that starts these headers, in place of any of the same names."""
+    names = [name for name, _ in headers]
+    others = [each for each in start.get("headers", ()) if each[0] not in names]
+    start["headers"] = [*others, *headers]
 
 
 class SecurityHeadersMiddleware:
@@ -49,8 +57,7 @@ class SecurityHeadersMiddleware:
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                # No answer has any of these by itself.
-                message["headers"] = [*message.get("headers", ()), *self._headers]
+                _set_headers(message, self._headers)
             await send(message)
 
         await self._app(scope, receive, send_with_headers)
@@ -86,8 +93,7 @@ class RequestIdMiddleware:
             nonlocal started
             if message["type"] == "http.response.start":
                 started = True
-                own = (b"x-request-id", request_id.encode())
-                message["headers"] = [*message.get("headers", ()), own]
+                _set_headers(message, [(b"x-request-id", request_id.encode())])
             await send(message)
 
         try:

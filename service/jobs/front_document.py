@@ -5,10 +5,8 @@ To add a member to the answer, add a field to `FrontDocument` and fill it in `en
 the documents stored by earlier releases needs a default.
 """
 
-from array import array
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
-from itertools import accumulate, islice
 from typing import Any, Self
 
 import numpy as np
@@ -17,7 +15,7 @@ from pydantic_core import from_json, to_json
 
 from service.coverage.survey import CoveragePath
 from service.instance import OBJECTIVES, Instance
-from service.jobs.json_parts import encode_path, with_member
+from service.jobs.json_parts import encode_path, encode_tours, joined, split, with_member
 from service.pareto import balances
 from service.planner import Front
 from service.requests.stops import Labels, UnmeasuredStops
@@ -134,9 +132,7 @@ class FrontDocument:
 
     def split(self) -> list[bytes]:
         """Return the JSON of each tour."""
-        ends = np.frombuffer(self.ends, np.int64).tolist()
-        begins = [0, *(end + 1 for end in ends)]
-        return [self.tours[begin:end] for begin, end in zip(begins, ends, strict=False)]
+        return split(self.tours, self.ends)
 
     def tour(self, index: int) -> bytes:
         """Return the JSON of one tour."""
@@ -166,13 +162,6 @@ _MEMBERS = tuple(field.name for field in _MEMBER_FIELDS)
 _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
 
 
-def joined(tours: Iterable[bytes]) -> tuple[bytes, bytes]:
-    """Return the JSON of all tours in one, and where each ends in it."""
-    each = list(tours)
-    ends = accumulate(each, lambda end, tour: end + 1 + len(tour), initial=-1)
-    return b",".join(each), array("q", islice(ends, 1, None)).tobytes()
-
-
 def _lengths(tour: bytes) -> list[float]:
     """Return the lengths in the JSON of a tour, whose first members are numbers and they."""
     lengths: list[float] = from_json(tour[: tour.index(b"]") + 1] + b"}")["lengths"]
@@ -191,25 +180,14 @@ def encode_front(
 
     The actor is left out where it built no tours. Arrivals have shape (m, stops, 2).
     """
-    columns = {
-        "angle": front.angles,
-        "balance": balances(front.points),
-        "kept": front.kept,
-        "lengths": front.points,
-        "tour": front.tours,
-        "arrivals": arrivals,
-    }
-    given = {name: column.tolist() for name, column in columns.items() if column is not None}
-    rows = (dict(zip(given, row, strict=True)) for row in zip(*given.values(), strict=True))
-    encoded = [to_json(row) for row in rows]
+    tours, ends = encode_tours(_rows(front, arrivals))
     if labels is not None:
-        encoded = _with_stops(encoded, front.tours, labels)
+        tours, ends = joined(_with_stops(split(tours, ends), front.tours, labels))
     if paths is not None:
-        encoded = [
+        tours, ends = joined(
             with_member(tour, b"path", encode_path(path))
-            for tour, path in zip(encoded, paths, strict=True)
-        ]
-    tours, ends = joined(encoded)
+            for tour, path in zip(split(tours, ends), paths, strict=True)
+        )
     return FrontDocument(
         cities=front.n,
         points=front.found,
@@ -228,6 +206,30 @@ def encode_front(
         angles=front.angles.tobytes(),
         gained=front.gained,
     )
+
+
+def _rows(front: Front, arrivals: NDArray[np.float64] | None) -> list[dict[str, Any]]:
+    """Return the members of each tour, all of them numbers, ready for JSON."""
+    columns = zip(
+        front.angles.tolist(),
+        balances(front.points).tolist(),
+        _optional("kept", front.kept, front),
+        front.points.tolist(),
+        front.tours.tolist(),
+        _optional("arrivals", arrivals, front),
+        strict=True,
+    )
+    return [
+        {"angle": angle, "balance": balance, **kept, "lengths": lengths, "tour": tour, **arrived}
+        for angle, balance, kept, lengths, tour, arrived in columns
+    ]
+
+
+def _optional(name: str, values: NDArray[np.float64] | None, front: Front) -> list[dict[str, Any]]:
+    """Return a member of each tour of a front, or none where there are no values."""
+    if values is None:
+        return [{}] * len(front.tours)
+    return [{name: value} for value in values.tolist()]
 
 
 def _with_stops(encoded: list[bytes], tours: NDArray[np.integer], labels: Labels) -> list[bytes]:

@@ -1,14 +1,41 @@
-"""JSON written from parts: objects that get a member more, and paths, which are long."""
+"""JSON in parts: tours in one, objects that get a member more, and paths, which are long."""
 
+from array import array
 from collections.abc import Iterable
+from itertools import accumulate, islice
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from service.coverage.survey import CoveragePath
 
 PATH_PART = 2**14  # cells of a path that are written at once
+
+
+def encode_tours(rows: list[dict[str, Any]]) -> tuple[bytes, bytes]:
+    """Return the JSON of all tours in one, given their members, and where each ends in it.
+
+    That takes less time than one by one. Between the braces of each there are only numbers.
+    """
+    encoded = to_json(rows)[1:-1]
+    ends = np.flatnonzero(np.frombuffer(encoded, np.uint8) == ord("}")) + 1
+    return encoded, ends.astype(np.int64).tobytes()
+
+
+def joined(tours: Iterable[bytes]) -> tuple[bytes, bytes]:
+    """Return the JSON of all tours in one, and where each ends in it."""
+    each = list(tours)
+    ends = accumulate(each, lambda end, tour: end + 1 + len(tour), initial=-1)
+    return b",".join(each), array("q", islice(ends, 1, None)).tobytes()
+
+
+def split(tours: bytes, ends: bytes) -> list[bytes]:
+    """Return the JSON of each tour, of all in one and where each ends in it."""
+    lasts = np.frombuffer(ends, np.int64).tolist()
+    begins = [0, *(last + 1 for last in lasts)]
+    return [tours[begin:last] for begin, last in zip(begins, lasts, strict=False)]
 
 
 def with_member(encoded: bytes, name: bytes, value: bytes) -> bytes:

@@ -44,6 +44,8 @@ class Submission:
         self.timer: TimerHandle | None = None
         self._on_change = on_change
         self._future: Future[FrontDocument] = asyncio.get_running_loop().create_future()
+        # Beside the future, which a waiting task that is cancelled would cancel as well.
+        self._has_ended = asyncio.Event()
         self._submitted = perf_counter()
 
     @property
@@ -59,7 +61,8 @@ class Submission:
             Cancelled: It was cancelled before a tour was found.
             DeadlineExceeded: It took too long, and no tour was found.
         """
-        return await asyncio.shield(self._future)
+        await self._has_ended.wait()
+        return self._future.result()
 
     def when_ended(self, callback: Callable[[], object]) -> None:
         """Have a function called soon after it has ended."""
@@ -85,6 +88,7 @@ class Submission:
         self._cancel_timer()
         seconds = perf_counter() - self._submitted
         self._future.set_result(front.ended(seconds, late=self.stop_reason is DeadlineExceeded))
+        self._has_ended.set()
 
     def fail(self, error: Exception) -> None:
         """End with an error, unless it has ended."""
@@ -94,6 +98,7 @@ class Submission:
         self._future.set_exception(error)
         # Read once, so that asyncio does not warn where nobody waits any more.
         self._future.exception()
+        self._has_ended.set()
 
     def cut_short(self) -> None:
         """End with the best front so far; where there is none, with the reason of the stop."""

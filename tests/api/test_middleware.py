@@ -1,5 +1,6 @@
 """Request ids, security headers and the request log, against a live server."""
 
+import asyncio
 import socket
 import time
 from collections.abc import Iterator
@@ -7,10 +8,12 @@ from urllib.parse import urlsplit
 
 import httpx
 import pytest
+from starlette.responses import Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.api.app import Edge
 from service.api.metrics import Metrics
-from service.api.middleware import AnsweredRequest
+from service.api.middleware import AnsweredRequest, SecurityHeadersMiddleware
 from tests.helpers.actors import Broken
 from tests.helpers.serving import app_of, problem, serving
 
@@ -37,6 +40,26 @@ def test_browsers_are_told_to_load_nothing_from_elsewhere(client: httpx.Client) 
         assert headers["content-security-policy"].startswith("default-src 'none'")
         assert headers["x-content-type-options"] == "nosniff"
         assert headers["x-frame-options"] == "DENY"
+
+
+def test_headers_that_an_answer_has_already_are_replaced() -> None:
+    async def app(scope: Scope, receive: Receive, send: Send) -> None:
+        await Response(headers={"X-Frame-Options": "SAMEORIGIN"})(scope, receive, send)
+
+    sent: list[Message] = []
+    asyncio.run(_answer(SecurityHeadersMiddleware(app), sent))
+    frames = [value for name, value in sent[0]["headers"] if name == b"x-frame-options"]
+    assert frames == [b"DENY"]
+
+
+async def _answer(app: ASGIApp, sent: list[Message]) -> None:
+    async def send(message: Message) -> None:
+        sent.append(message)
+
+    async def receive() -> Message:
+        return {"type": "http.request"}
+
+    await app({"type": "http"}, receive, send)
 
 
 def test_a_bug_is_500_and_tells_the_caller_nothing_but_its_request(

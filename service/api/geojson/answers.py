@@ -114,11 +114,11 @@ class FrontAnswers:
         self.check(request, record.front.stops, geometry)
         if plan is not None:
             _check_plan(request, record, plan)
-        items = b"[" + (record.front.tours if plan is None else record.front.tour(plan)) + b"]"
+        items = record.front.tours if plan is None else record.front.tour(plan)
         alone = request.method == "POST" and "idempotency-key" not in request.headers
         with self._budget.open(client_of(request), len(items), always=alone) as allowance:
             if accepts_geojson(request):
-                drawing = await asyncio.to_thread(Drawing.of, record, items, plan or 0)
+                drawing = await asyncio.to_thread(Drawing.of, record, b"[%b]" % items, plan or 0)
                 response = await self._drawn(request, drawing, geometry, seconds)
             else:
                 response = await compressed(request, json_bytes(record.json()))

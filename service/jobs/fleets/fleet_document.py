@@ -11,7 +11,8 @@ from pydantic_core import to_json
 from service.fleet.evaluation import route_lengths, schedule, unassigned
 from service.fleet.fleet import Fleet, Over
 from service.fleet.plans import FleetFront, Plan, Route, path_of
-from service.jobs.front_document import FrontDocument, Timings, joined
+from service.jobs.front_document import FrontDocument, Timings
+from service.jobs.json_parts import joined
 from service.pareto import balances
 from service.preferences import angles
 from service.requests.fleets.subject import UnmeasuredFleet

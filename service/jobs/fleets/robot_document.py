@@ -13,8 +13,8 @@ from service.fleet.evaluation import route_lengths
 from service.fleet.plans import FleetFront, Plan, Route
 from service.jobs.fleets.fleet_document import directions
 from service.jobs.fleets.robot_fleet import RobotFleet
-from service.jobs.front_document import FrontDocument, Timings, empty_front, joined
-from service.jobs.json_parts import encode_path, with_member
+from service.jobs.front_document import FrontDocument, Timings, empty_front
+from service.jobs.json_parts import encode_path, joined, with_member
 from service.pareto import balances
 from service.requests.maps.robots import SharedCoverage
 from service.requests.task import Task

@@ -58,7 +58,7 @@ class TerminatedRunner:
         pass
 
     def run(self, *_: object) -> FrontDocument:
-        raise NotImplementedError
+        raise AssertionError("no task is sent to it")
 
     def terminate(self) -> None:
         self.terminated.set()
