@@ -11,9 +11,10 @@ Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
 Indices = NDArray[np.intp]
 _MOST_COMPARED = 100  # tours of about one balance, some milliseconds at thousands of cities
-# By what share of its length a tour that keeps more may be longer: at 200 stops five times as much
-# keeps one more leg in two hundred.
-_LONGER = 5e-4
+# By what a tour that keeps more may be longer: a share of its length, and of a mean leg. With half a
+# leg, 200 stops keep half a leg in a hundred more; with a thousandth, 1000 stops keep two, but the
+# tour is longer than what planning from nothing finds by as much.
+_LONGER, _LEG = 1e-3, 0.125
 _EQUAL = 1e-12  # lengths whose relative difference is less count as equal, as in the search
 
 
@@ -74,8 +75,8 @@ def with_most_kept_at(
     """Return tours chosen of a front, that at a balance replaced by one that keeps more legs.
 
     Of the tours nearer to the balance than those chosen on either side, and longer than the
-    shortest of them by no more than a twentieth of one per cent, that is the one that keeps most of
-    the driven tour's legs. The ends of the front stay.
+    shortest of them by no more than a thousandth, and an eighth of a leg of mean length, that is
+    the one that keeps most of the driven tour's legs. The ends of the front stay.
 
     Args:
         instance: The instance.
@@ -93,7 +94,8 @@ def with_most_kept_at(
     between = np.arange(before + 1, after)
     nearest = between[np.argsort(away[between - begin], kind="stable")][:_MOST_COMPARED]
     nearer = nearest[away[nearest - begin] <= away[[before - begin, after - begin]].min()]
-    short = nearer[_above_shortest(found.points, before, after, nearer) <= _LONGER]
+    longer = min(_LONGER, _LEG / instance.n)
+    short = nearer[_above_shortest(found.points, before, after, nearer) <= longer]
     kept = kept_shares(instance, found.tours_at(short), driven)
     instead = chosen.copy()
     instead[at] = short[kept.argmax()]

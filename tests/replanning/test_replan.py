@@ -249,7 +249,7 @@ def test_of_tours_about_as_balanced_and_as_short_the_one_that_keeps_most_is_chos
         nearer = [k for k in away if away[k] < min(away[other] for other in others)]
         width, height = found.points[chosen[at + 1]] - found.points[chosen[at - 1]]
         sums = found.points @ (-height, width)
-        short = [k for k in nearer if sums[k] <= (1 + 5e-4) * min(sums[nearer])]
+        short = [k for k in nearer if sums[k] <= (1 + 1e-3) * min(sums[nearer])]
         assert kept[instead[at]] == max(kept[short])
         more += kept[instead[at]] > kept[chosen[at]]
         longer += len(short) < len(nearer)
