@@ -11,9 +11,8 @@ Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
 Indices = NDArray[np.intp]
 _MOST_COMPARED = 100  # tours of about one balance, some milliseconds at thousands of cities
-# By what a tour that keeps more may be longer: a share of its length, and of a mean leg. With half a
-# leg, 200 stops keep half a leg in a hundred more; with a thousandth, 1000 stops keep two, but the
-# tour is longer than what planning from nothing finds by as much.
+# By what a tour that keeps more may be longer, at most: a share of its length, and of a mean leg.
+# Of 1000 stops a thousandth alone would keep two legs in a hundred more, and cost all of it.
 _LONGER, _LEG = 1e-3, 0.125
 _EQUAL = 1e-12  # lengths whose relative difference is less count as equal, as in the search
 
