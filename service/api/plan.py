@@ -5,7 +5,7 @@ import hashlib
 import time
 import uuid
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from fastapi import APIRouter
@@ -170,7 +170,7 @@ class PlanRoutes:
             body = _Body(received, front, time.monotonic())
             if front is None:
                 task = await self._parser.parse(received)
-                source = TaskSource(received.kind, received.body, received.upload, task)
+                source = replace(received, task=task)
             else:
                 source = await self._rest(request, received, front)
             return await self._planned(request, source, body)

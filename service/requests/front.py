@@ -7,7 +7,6 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, GetPydanticSchema
-from pydantic_core import to_json
 from pydantic_core.core_schema import no_info_after_validator_function
 
 from service.instance import OBJECTIVES, Instance, Kind
@@ -110,11 +109,6 @@ class FrontRequest(PlanRequest):
     def n(self) -> int:
         """The number of cities."""
         return len(self.stops) or len(self.coordinates) or self.matrices.shape[1]
-
-    @property
-    def id_bytes(self) -> int:
-        """The bytes of all ids in one tour of the answer."""
-        return len(to_json([stop.id for stop in self.stops]))
 
     @cached_property
     def labels(self) -> Labels | None:

@@ -35,8 +35,9 @@ def parse_front_request(
         )
     _check_cities(request, limits)
     request = _by_index(request)
-    check_limits(request, request.n, limits)
-    return lower_defaults(request, request.n, limits, request.id_bytes)
+    n, id_bytes = request.n, 0 if request.labels is None else request.labels.id_bytes
+    check_limits(request, n, limits, id_bytes)
+    return lower_defaults(request, n, limits, id_bytes)
 
 
 def _check_form(request: FrontRequest, with_file: bool) -> None:

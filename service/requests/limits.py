@@ -91,7 +91,7 @@ def check_structure(body: bytes, limits: Limits) -> None:
             raise Refusal("body-too-complex", demand=demand, limit=limit, actual=actual)
 
 
-def check_amounts(request: PlanFields, n: int, limits: Limits) -> None:
+def check_amounts(request: PlanFields, n: int, limits: Limits, id_bytes: int = 0) -> None:
     """Raise a refusal where a request about n cities asks for more than the limits allow."""
     asked = {
         "preferences": (limits.preferences, request.preference_count),
@@ -103,7 +103,7 @@ def check_amounts(request: PlanFields, n: int, limits: Limits) -> None:
         if name in request.model_fields_set:
             check_limit(name, limit, actual)
     if "size" in request.model_fields_set:
-        check_size(request.size, n, request.id_bytes, limits)
+        check_size(request.size, n, id_bytes, limits)
 
 
 def check_size(size: int, n: int, id_bytes: int, limits: Limits) -> None:
@@ -121,14 +121,14 @@ def check_size(size: int, n: int, id_bytes: int, limits: Limits) -> None:
         raise invalid("size", f"must be at most {most} with {n} cities{ids}, got {size}")
 
 
-def check_limits(request: PlanRequest, n: int, limits: Limits) -> None:
+def check_limits(request: PlanRequest, n: int, limits: Limits, id_bytes: int = 0) -> None:
     """Raise a refusal where the fields of a request about n cities go beyond these or the limits.
 
     Raises:
         Refusal: Over a limit, or a start or an initial tour that does not fit n cities.
     """
     _check_ends(request, n)
-    check_amounts(request, n, limits)
+    check_amounts(request, n, limits, id_bytes)
     check_limit("initial_tours", limits.size, len(request.initial_tours))
     ends = request.ends
     for index, tour in enumerate(request.initial_tours):

@@ -102,11 +102,6 @@ class PlanFields(BaseModel):
     )
 
     @property
-    def id_bytes(self) -> int:
-        """The bytes of all ids in one tour of the answer."""
-        return 0
-
-    @property
     def requested_actor(self) -> str | None:
         """The name of the actor, None where the request leaves it to the service."""
         return self.actor if "actor" in self.model_fields_set else None

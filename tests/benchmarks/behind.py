@@ -17,14 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.actor import OnnxActor
-from service.construction.repairs import repairs_worth
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
-from service.planner import PlanOptions, plan
-from service.preferences import fan, from_angles
 from service.search.improve import warm_up
 from tests.benchmarks.asymmetric import MORE_KINDS, asymmetric, drawn
-from tests.benchmarks.beside import ACTORS, COUNT, TOURS, Nothing
+from tests.benchmarks.beside import ACTORS, COUNT, Nothing, planned
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rows import resume
@@ -56,13 +53,10 @@ def main(arguments: list[str]) -> str | None:
 
 def measured(actor: OnnxActor, corner: float, instance: Instance) -> dict[str, float]:
     """Hypervolume in per cent of the box to a corner times the scale, by how tours were found."""
-    preferences = from_angles(fan(TOURS))
-    repairs = repairs_worth("matrices", instance.n)
-    nothing = np.empty((0, instance.n), np.int64)
     found = {
-        "alone": _front(instance, 0.0, actor.tours(instance, preferences)),
-        "repaired": _front(instance, 0.0, actor.tours(instance, preferences, repairs)),
-        "search": _front(instance, SECONDS, nothing),
+        "alone": planned(actor, 0.0, instance),
+        "repaired": planned(actor, 0.0, instance, repaired=True),
+        "search": planned(Nothing(), SECONDS, instance),
     }
     reference_point = corner * instance.scale
     return {
@@ -79,12 +73,6 @@ def unmet(stored: dict[str, Any]) -> list[str]:
         for kind, behind in means.items()
         if behind > _MOST[kind]
     ]
-
-
-def _front(instance: Instance, seconds: float, tours: NDArray[np.int64]) -> NDArray[np.integer]:
-    """Return the front of tours, after so many seconds of search from them."""
-    demand = PlanOptions(angles=fan(TOURS), size=TOURS, time_limit=seconds, initial_tours=tours)
-    return plan(Nothing(), instance, demand).tours
 
 
 def _behind(entry: dict[str, Any], call: str) -> NDArray[np.float64]:

@@ -73,11 +73,11 @@ def methods(actors: Path) -> dict[str, tuple[str, Method]]:
     for name, actor in load_actors(actors, threads=1).items():
         if actor.info.inputs == "matrices":
             digest = actor.info.digest
-            rows[f"{name}, network alone"] = digest, partial(_planned, actor, 0.0)
+            rows[f"{name}, network alone"] = digest, partial(planned, actor, 0.0)
             if actor.info.repairs:
-                rows[f"{name}, repaired"] = digest, partial(_planned, actor, 0.0, repaired=True)
-            rows[f"{name}, {SECONDS} s of search"] = digest, partial(_planned, actor, SECONDS)
-    rows[f"search alone, {SECONDS} s"] = "", partial(_planned, Nothing(), SECONDS)
+                rows[f"{name}, repaired"] = digest, partial(planned, actor, 0.0, repaired=True)
+            rows[f"{name}, {SECONDS} s of search"] = digest, partial(planned, actor, SECONDS)
+    rows[f"search alone, {SECONDS} s"] = "", partial(planned, Nothing(), SECONDS)
     rows["OR-Tools, n_l = 10"] = "", partial(_ortools, 10)
     rows["OR-Tools, n_l = 100"] = "", partial(_ortools, 100)
     return rows
@@ -95,9 +95,10 @@ def measure(
     _print_table(load(benchmark), list(groups))
 
 
-def _planned(
+def planned(
     constructor: OnnxActor | Nothing, seconds: float, instance: Instance, *, repaired: bool = False
 ) -> Tours:
+    """The front of a constructor's tours, as they are or repaired, after so much search."""
     # The time of the network comes on top of the seconds of search.
     repairs = repairs_worth("matrices", instance.n) if repaired else 0
     tours = constructor.tours(instance, from_angles(fan(TOURS)), repairs)

@@ -13,6 +13,7 @@ from service.coverage.coverage import Coverage, size_of
 from service.coverage.grid import free_cells
 from service.coverage.places import find_places
 from service.errors import InvalidCoverage
+from service.replanning.earlier_tours import EarlierTours
 from service.requests.limits import Limits, check_amounts
 from service.requests.replan.costs import AllStops
 from service.requests.replan.earlier_front import StoredFront
@@ -20,8 +21,14 @@ from service.requests.replan.earlier_map import read_earlier_map
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.map_fields import check_of_map
 from service.requests.replan.new_places import all_places
-from service.requests.replan.rest_members import EncodedTours
-from service.requests.replan.way import RestOfWay, driven_tour, left_of_tours, rest_of_way
+from service.requests.replan.rest_members import EarlierMembers
+from service.requests.replan.way import (
+    RestOfWay,
+    driven_tour,
+    indexes_in_rest,
+    left_of_tours,
+    rest_of_way,
+)
 from service.requests.stops import Stop
 from service.requests.task import TaskSource
 from service.requests.validation import invalid, too_many_cities
@@ -59,18 +66,17 @@ def rest_of_map(request: ReplanRequest, stored: StoredFront, limits: Limits) -> 
     members = {
         **_members(task),
         **rest.end_members(place),
-        "earlier_tours": EncodedTours.members(place[left]),
-        "touched": None if request.map_changed else _at(place, moved),
-        "balance": earlier.front.balance_of(driven),
-        "min_kept": request.min_kept,
+        **EarlierMembers.members(
+            EarlierTours(
+                tours=place[left],
+                min_kept=request.min_kept,
+                touched=None if request.map_changed else indexes_in_rest(place, moved),
+                balance=earlier.front.balance_of(driven),
+            )
+        ),
         **request.model_dump(include={*request.options_given, "paths"}),
     }
     return TaskSource("replan-coverage", to_json(members), _picture(task.blocked))
-
-
-def _at(place: NDArray[np.int64], stops: NDArray[np.int64]) -> list[int]:
-    """Return where the stops are in the rest, those that are in it."""
-    return place[stops][place[stops] >= 0].tolist()
 
 
 def _changed_map(coverage: Coverage, request: ReplanRequest) -> Coverage:

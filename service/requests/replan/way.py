@@ -44,9 +44,13 @@ class RestOfWay:
         )
         return RouteEnds(False, start, end)
 
+    def begin_at(self, place: NDArray[np.int64]) -> int | None:
+        """Return the stop at which it goes on as an index in the rest."""
+        return None if self.start is None else int(place[self.start])
+
     def end_members(self, place: NDArray[np.int64]) -> dict[str, Any]:
         """Return the members of a request that say where the rest begins and ends."""
-        begin = None if self.start is None else int(place[self.start])
+        begin = self.begin_at(place)
         if self.ends.closed:
             return {"closed": True, "start": begin}
         return {"closed": False, "start": begin, "end": self.ends_at(place).end}
@@ -113,6 +117,12 @@ def left_of_tours(
     before, after = sides
     beside = np.union1d(_beside_gone(tours, is_left), np.array([*first, *last], np.int64))
     return np.concatenate((before, kept, after), axis=1), beside
+
+
+def indexes_in_rest(place: NDArray[np.int64], stops: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the indexes in the rest of those among stops that it has; `place` has those of all."""
+    indexes = place[stops]
+    return indexes[indexes >= 0]
 
 
 def _beside_gone(tours: Tours, is_left: NDArray[np.bool_]) -> NDArray[np.int64]:
