@@ -53,6 +53,12 @@ class Submission:
         """Whether it has a front, or has failed."""
         return self._future.done()
 
+    @property
+    def is_brief(self) -> bool:
+        """Whether it may share a process's turn: it is short, and was in no process that died."""
+        task = self.source.task
+        return task is not None and task.is_brief and self.attempts == 0
+
     async def front(self) -> FrontDocument:
         """Wait for the front and return it. Planning goes on if the waiting task is cancelled.
 

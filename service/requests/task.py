@@ -29,6 +29,7 @@ from service.requests.replan.rest_request import RestOfMapRequest, RestRequest
 from service.requests.schemas import Geometry, PlanFields
 from service.requests.stops import Labels, UnmeasuredStops
 
+_BRIEF = 5000  # preferences times cities
 TaskKind = Literal["front", "coverage", "fleet", "replan", "replan-coverage"]
 
 
@@ -65,6 +66,13 @@ class Task:
         """Whether planning needs more than the network."""
         compiled = isinstance(self.subject, Coverage | SharedCoverage | UnmeasuredFleet)
         return compiled or self.options.needs_compiled_code
+
+    @property
+    def is_brief(self) -> bool:
+        """Whether planning is one call of a network, of some 30 ms or less."""
+        if not isinstance(self.subject, Instance) or self.needs_compiled_code:
+            return False
+        return self.options.repairs == 0 and len(self.options.angles) * self.subject.n <= _BRIEF
 
 
 @dataclass(frozen=True)

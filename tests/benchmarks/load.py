@@ -1,10 +1,11 @@
 """`python -m tests.benchmarks load`: what HTTP costs, and how long answers take under load.
 
 40 cities, 100 preferences, the network alone. The server, its clients and the bare ONNX session
-share the cores that this process may use. The bare session is called in a loop, with all cores for
-each call; beside it stands what so many sessions as cores do, each in a process and with a thread
-of its own, as in the server. All are measured in turn, because machines drift, and the milliseconds
-that they take of the processor are counted beside the answers: these tell on a busy machine, too.
+share the cores that this process may use. Sessions are called bare, in a loop: as many as cores,
+each in a process and with a thread of its own, as in the server, and a single one with all cores
+for each call. Clients, eight a core, ask again as soon as they are answered. All are measured in
+turn, because machines drift, and the milliseconds that they take of the processor are counted
+beside the answers: these tell on a busy machine, too.
 Stores `results/load.json`, and says what does not hold.
 """
 
@@ -43,6 +44,7 @@ from tests.benchmarks.under_load import load_table
 from tests.helpers.processes import ServeProcess, serve_process
 
 CITIES = 40
+CLIENTS = 8  # a core: enough that some always wait for each worker
 SECONDS = 20  # of each measurement
 ROUNDS = 5
 SHARE = 0.8  # of the sustained rate, at which answers are timed
@@ -81,7 +83,7 @@ def measure(cores: int, rounds: int, seconds: float) -> dict[str, Any]:
         for seed in range(rounds):
             bare.append(_bare(1, cores, seconds))
             apart.append(_bare(cores, 1, seconds))
-            served.append(_served(service, 3 * cores, seconds))
+            served.append(_served(service, CLIENTS * cores, seconds))
             rate = SHARE * served[-1]["per_second"]
             for asked, dues in (
                 (timed, evenly(rate, seconds)),
@@ -95,6 +97,7 @@ def measure(cores: int, rounds: int, seconds: float) -> dict[str, Any]:
     return {
         "cities": CITIES,
         "preferences": PREFERENCES,
+        "clients": CLIENTS * cores,
         "seconds": seconds,
         "bare": bare,
         "apart": apart,

@@ -13,11 +13,12 @@ from typing import Any
 
 import numpy as np
 
+from service.instance import Instance
 from service.jobs.front_document import FrontDocument, encode_front
 from service.jobs.runner import Report
 from service.jobs.workers.worker_pool import WorkerPool
-from service.planner import Front
-from service.requests.task import TaskSource
+from service.planner import Front, PlanOptions
+from service.requests.task import Task, TaskSource
 from service.search.improve import Progress
 
 _TERMINATED = Event()  # of the process that runs
@@ -40,10 +41,11 @@ class ScriptedRunner:
             time.sleep(0.01)
 
     def run(  # noqa: C901
-        self, source: TaskSource, stop: Callable[[], bool], report: Report
+        self, task: TaskSource | Task, stop: Callable[[], bool], report: Report
     ) -> FrontDocument:
-        """Return a front of one tour, after what the body names."""
-        match source.body:
+        """Return a front of one tour, after what the body names, or the actor of a task."""
+        body = task.actor.encode() if isinstance(task, Task) else task.body
+        match body:
             case b"fail":
                 raise KeyError("city")
             case b"die":
@@ -51,7 +53,7 @@ class ScriptedRunner:
             case b"wait" | b"stop slowly":
                 while not stop():
                     time.sleep(0.001)
-                time.sleep(source.body == b"stop slowly")
+                time.sleep(body == b"stop slowly")
                 return document("cancelled")
             case b"call":
                 _TERMINATED.wait()
@@ -95,6 +97,15 @@ def document(terminated: str | None, gained: float | None = None) -> FrontDocume
 def source(body: bytes = b"") -> TaskSource:
     """Return a task's source of which the body says what the runner does."""
     return TaskSource("front", body)
+
+
+def brief_source(body: bytes = b"") -> TaskSource:
+    """Return the source of a brief task, parsed already, that says the same."""
+    instance = Instance(coordinates=np.random.default_rng(0).random((3, 4)))
+    options = PlanOptions(angles=np.array([45.0]), size=1)
+    return TaskSource(
+        "front", body, task=Task(subject=instance, options=options, actor=body.decode())
+    )
 
 
 def _same(runner: ScriptedRunner) -> ScriptedRunner:

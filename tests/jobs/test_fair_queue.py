@@ -27,8 +27,10 @@ def turns(before: str, then: str, taken: int = 1, served: Sequence[str] = ()) ->
         order = [queue.take().client for _ in range(taken)]
         for number, client in enumerate(then, len(before)):
             queue.append(Submission(number, TaskSource("front", b""), lambda: None, True, client))
-        order += [queue.take(served).client for _ in range(len(queue))]
-        assert len(queue) == 0
+        while len(queue):
+            following = queue.next(served)
+            assert queue.take(served) is following
+            order.append(following.client)
         return "".join(order)
 
     return asyncio.run(take())

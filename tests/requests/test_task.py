@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -35,6 +36,25 @@ def test_a_body_becomes_a_task() -> None:
     task = parse_task(TaskSource("coverage", json.dumps(COVERAGE).encode()), LIMITS, FACTS)
     assert isinstance(task.subject, Coverage)
     assert (task.actor, task.paths, task.needs_compiled_code) == ("pa-one-matrix", True, True)
+
+
+@pytest.mark.parametrize(
+    ("cities", "options", "brief"),
+    [
+        (250, {}, True),
+        (251, {}, False),  # 20 preferences each
+        (3, {"repairs": 1}, False),
+        (3, {"time_limit": 0.01}, False),
+        (3, {"size": 19}, False),  # the best subset is chosen by compiled code
+    ],
+)
+def test_a_task_is_brief_where_one_short_call_of_a_network_does_it(
+    cities: int, options: dict[str, object], brief: bool
+) -> None:
+    coordinates = np.random.default_rng(0).random((cities, 4)).tolist()
+    request = {"coordinates": coordinates, "time_limit": 0, "repairs": 0, **options}
+    source = TaskSource("front", json.dumps(request).encode())
+    assert parse_task(source, replace(LIMITS, cities=300), FACTS).is_brief == brief
 
 
 MATRIX = [[0, 2, 3], [4, 0, 1], [5, 2, 0]]  # least out of each city: 2 + 1 + 2; into: 4 + 2 + 1

@@ -2,7 +2,7 @@
 
 import pickle
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from socket import socket
 from typing import Any
@@ -21,10 +21,9 @@ class WarmUp:
 
 @dataclass(frozen=True)
 class Do:
-    """To an idle worker: run this task."""
+    """To an idle worker: run these tasks by number, in this order, and send all results at once."""
 
-    number: int
-    task: TaskSource | Task
+    tasks: Mapping[int, TaskSource | Task]
 
 
 @dataclass(frozen=True)
@@ -69,10 +68,10 @@ class Failed:
     error: Exception
 
 
-def encode(message: object) -> bytes:
-    """Return a message as bytes, its length first."""
-    content = pickle.dumps(message, pickle.HIGHEST_PROTOCOL)
-    return _LENGTH.pack(len(content)) + content
+def encode(*messages: object) -> bytes:
+    """Return messages as bytes, the length of each before it."""
+    contents = [pickle.dumps(message, pickle.HIGHEST_PROTOCOL) for message in messages]
+    return b"".join(_LENGTH.pack(len(content)) + content for content in contents)
 
 
 def decode(received: bytearray) -> Iterator[Any]:

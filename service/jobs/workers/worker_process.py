@@ -62,7 +62,7 @@ class _WorkerLoop:
         self._sending = Lock()
         self._changing = Lock()  # held while these change, and while a call is terminated
         self._running: int | None = None
-        self._stopped: int | None = None
+        self._stopped: set[int] = set()
 
     def run(self) -> None:
         """Run tasks, one after another, until the service closes the connection.
@@ -74,11 +74,11 @@ class _WorkerLoop:
         Thread(target=self._read_signals, name="signals", daemon=True).start()
         self._send(Started())
         while True:
-            task: Do = receive_blocking(self._tasks)
-            self._begin(task.number)
-            result = self._result(task.number, task.task)
-            self._end()
-            self._send(result)
+            do: Do = receive_blocking(self._tasks)
+            results = [self._result(number, task) for number, task in do.tasks.items()]
+            # Before they are sent: what is stopped after that is a task that is still to come.
+            self._stopped.clear()
+            self._send(*results)
 
     def _read_signals(self) -> None:
         """Handle signals; exit at once when the service is gone, even in the middle of a task."""
@@ -101,7 +101,7 @@ class _WorkerLoop:
     def _begin(self, number: int) -> None:
         with self._changing:
             self._running = number
-            if self._stopped == number:  # a signal may come before the task
+            if number in self._stopped:  # a signal may come before the task
                 self._terminate_soon(number)
 
     def _end(self) -> None:
@@ -110,7 +110,7 @@ class _WorkerLoop:
 
     def _stop(self, number: int) -> None:
         with self._changing:
-            self._stopped = number
+            self._stopped.add(number)
             if self._running == number:
                 self._terminate_soon(number)
 
@@ -128,18 +128,21 @@ class _WorkerLoop:
 
     def _result(self, number: int, task: TaskSource | Task) -> Done | Failed:
         report = Reporter(lambda progress, front: self._send(Found(number, progress, front)))
+        self._begin(number)
         try:
-            return Done(number, self._runner.run(task, lambda: self._stopped == number, report))
+            return Done(number, self._runner.run(task, lambda: number in self._stopped, report))
         except Exception as error:
             return Failed(number, _picklable(error))
+        finally:
+            self._end()
 
     def _warm_up(self) -> None:
         self._runner.warm_up()
         with suppress(OSError):
             self._send(Warm())
 
-    def _send(self, message: object) -> None:
-        content = encode(message)
+    def _send(self, *messages: object) -> None:
+        content = encode(*messages)
         with self._sending:
             self._tasks.sendall(content)
 

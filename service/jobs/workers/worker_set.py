@@ -6,7 +6,7 @@ The first process compiles the search, and the others load what it has compiled.
 import asyncio
 import logging
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 from service.errors import NoWorker, WarmingUp
@@ -23,13 +23,13 @@ _LOG = logging.getLogger("paretour")
 
 @dataclass(eq=False)
 class Worker:
-    """A worker process, its stage, and the submission that it runs."""
+    """A worker process, its stage, and the submissions that it runs, by number."""
 
     process: WorkerProcess
     started: bool = False
     warming: bool = False
     warm: bool = False
-    submission: Submission | None = None
+    submissions: dict[int, Submission] = field(default_factory=dict)
 
 
 class WorkerSet:

@@ -6,7 +6,7 @@ import resource
 import signal
 import time
 from collections.abc import Awaitable, Callable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,7 @@ from service.errors import (
 )
 from service.jobs.front_document import FrontDocument
 from service.jobs.workers.worker_pool import WorkerPool
-from tests.helpers.scripted_runner import ScriptedRunner, source, worker_pool
+from tests.helpers.scripted_runner import ScriptedRunner, brief_source, source, worker_pool
 
 
 def run(test: Callable[[WorkerPool], Awaitable[None]], *args: Any, **options: Any) -> None:
@@ -177,6 +177,79 @@ def test_a_client_that_is_served_waits_behind_those_that_are_not() -> None:
         workers.stop(served)
 
     run(test, workers=2, queue=7)
+
+
+def test_brief_work_that_waits_shares_a_turn_of_a_process() -> None:
+    async def test(workers: WorkerPool) -> None:
+        together: list[int] = []
+
+        def began() -> None:
+            together.append(len(workers.running))
+
+        first = workers.submit(source(b"wait"))
+        await until(lambda: len(workers.running) == 1)
+        waiting = [*[brief_source()] * 6, source(), brief_source()]
+        submissions = [workers.submit(each, began) for each in waiting]
+        workers.stop(first)
+        for submission in submissions:
+            assert (await submission.front()).terminated == "converged"
+        assert together == [4, 4, 4, 4, 2, 2, 1, 1]
+
+    run(test, queue=8)
+
+
+def test_two_processes_share_the_brief_work_that_waits() -> None:
+    async def test(workers: WorkerPool) -> None:
+        first = [workers.submit(source(b"wait")) for _ in range(2)]
+        await until(lambda: len(workers.running) == 2)
+        submissions = [workers.submit(brief_source(b"wait")) for _ in range(4)]
+        workers.stop(first[0])
+        await until(lambda: first[0] not in workers.running)
+        assert [each in workers.running for each in submissions] == [True, True, False, False]
+        for submission in (*first, *submissions):
+            workers.stop(submission)
+
+    run(test, workers=2, queue=4)
+
+
+def test_brief_work_that_shares_a_turn_is_stopped_alone() -> None:
+    async def test(workers: WorkerPool) -> None:
+        first = workers.submit(source(b"wait"))
+        await until(lambda: len(workers.running) == 1)
+        submissions = [workers.submit(brief_source(body)) for body in (b"wait", b"wait", b"")]
+        workers.stop(first)
+        await until(lambda: len(workers.running) == 3)
+        waiting, stopped, other = submissions
+        workers.stop(stopped)
+        with pytest.raises(Cancelled):
+            await stopped.front()
+        assert not waiting.ended
+        workers.stop(waiting)
+        assert (await waiting.front()).terminated == "cancelled"
+        assert (await other.front()).terminated == "converged"
+        assert workers.lost == 0
+
+    run(test, queue=3)
+
+
+@pytest.mark.parametrize("deaths", [1, 2])
+def test_brief_work_beside_what_kills_its_process_is_done(tmp_path: Path, deaths: int) -> None:
+    lives = tmp_path / "lives"
+    lives.write_bytes(bytes(deaths))
+
+    async def test(workers: WorkerPool) -> None:
+        first = workers.submit(source(b"wait"))
+        await until(lambda: len(workers.running) == 1)
+        submissions = [workers.submit(brief_source(body)) for body in (b"", b"die", b"")]
+        workers.stop(first)
+        before, deadly, behind = submissions
+        assert (await before.front()).terminated == "converged"
+        assert (await behind.front()).terminated == "converged"
+        assert workers.lost == deaths
+        with pytest.raises(WorkerLost) if deaths > 1 else nullcontext():
+            await deadly.front()
+
+    run(test, ScriptedRunner(lives=lives), queue=3)
 
 
 def test_processes_that_cannot_be_started_are_tried_again(
