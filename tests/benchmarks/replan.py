@@ -56,6 +56,7 @@ LIMITS = (0.1, 0.2, 0.5)  # seconds of an answer
 FIRST_SECONDS = 3.0  # for the front that is replanned
 REFERENCE_SECONDS = 5.0
 _LEAST = 0.01  # seconds of planning, where the rest takes nearly all
+_TIMED = 0.05  # seconds of planning, beside which the rest is timed: with less, some of it is late
 _COUNT = 100
 _EDGE = 1e-9  # by which the box is wider, so that the points on its edges lie within
 _NARROWEST = 1e-3  # of a box, as a share of the least length
@@ -210,8 +211,8 @@ def _planned(
 
 def _spent(client: httpx.Client, path: str, body: dict[str, Any]) -> float:
     """The seconds of an answer that are not of planning, in the median of five."""
-    answers = [_planned(client, path, body, 2 * _LEAST) for _ in range(5)]
-    return median(seconds for _, seconds in answers) - 2 * _LEAST
+    answers = [_planned(client, path, body, _TIMED) for _ in range(5)]
+    return median(seconds for _, seconds in answers) - _TIMED
 
 
 def _points(answer: dict[str, Any]) -> Array:
