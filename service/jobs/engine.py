@@ -21,7 +21,7 @@ class JobState:
 
 @dataclass(frozen=True, kw_only=True)
 class EngineStats:
-    """Numbers of tasks waiting and running, and of workers lost and replaced."""
+    """Numbers of tasks that wait, of workers that run any, and of those lost and replaced."""
 
     waiting: int
     working: int

@@ -69,7 +69,7 @@ class Task:
 
     @property
     def is_brief(self) -> bool:
-        """Whether planning is one call of a network, of some 30 ms or less."""
+        """Whether planning is one short call of a network: by pa-one, of 50 ms or less."""
         if not isinstance(self.subject, Instance) or self.needs_compiled_code:
             return False
         return self.options.repairs == 0 and len(self.options.angles) * self.subject.n <= _BRIEF

@@ -71,8 +71,9 @@ class WorkerPool:
 
     @property
     def working(self) -> int:
-        """The number of submissions that are being run, and are not stopped."""
-        return len(self._working)
+        """The number of processes that run a submission that is not stopped."""
+        workers = (worker.submissions.values() for worker in self._workers)
+        return sum(any(not each.ended for each in running) for running in workers)
 
     @property
     def lost(self) -> int:

@@ -76,7 +76,7 @@ class _WorkerLoop:
         while True:
             do: Do = receive_blocking(self._tasks)
             results = [self._result(number, task) for number, task in do.tasks.items()]
-            # Before they are sent: what is stopped after that is a task that is still to come.
+            # Before these are sent, as what is stopped then may be a task that is still to come.
             self._stopped.clear()
             self._send(*results)
 

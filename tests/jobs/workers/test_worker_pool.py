@@ -185,6 +185,7 @@ def test_brief_work_that_waits_shares_a_turn_of_a_process() -> None:
 
         def began() -> None:
             together.append(len(workers.running))
+            assert workers.working == 1
 
         first = workers.submit(source(b"wait"))
         await until(lambda: len(workers.running) == 1)
