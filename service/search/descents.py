@@ -15,7 +15,7 @@ from service.search.candidates import Scalarization
 from service.search.costs import lengths
 from service.search.edge_assembly.assembly import assemble
 from service.search.local_search import LEAST_GAIN, offer
-from service.search.pareto_local_search import LARGE, WEIGHTS, SearchState
+from service.search.pareto_local_search import LARGE, SearchState
 from service.search.starts.constructed_tour import GREEDY, constructed_tour
 from service.search.three_opt.choice import LocalSearch
 from service.search.working_tour import enqueue_cities
@@ -103,7 +103,8 @@ class Descents:
         tours = []
         if assembling and (known := self._best_tour(scalarization)) is not None:
             tours.append(known[0].copy())
-        for neighbour in {max(k - 1, 0), min(k + 1, WEIGHTS - 1)} - {k}:
+        last = len(self.state.weighted_candidates.weights) - 1
+        for neighbour in {max(k - 1, 0), min(k + 1, last)} - {k}:
             self.load_start(self.local_search, self.scalarization(neighbour))
             cities = self.local_search.working.tour
             yield from self._sweep(scalarization, cities, offering=True)

@@ -22,9 +22,11 @@ from service.search.working_tour import WorkingTour, load
 Array = NDArray[np.float64]
 
 WEIGHTS = 50  # at 500 cities and 0.3 s better than 100, which get too little time each, and than 35
+MENDED_WEIGHTS = 85  # where tours of an earlier front are mended: each needs less time
 LEAST_SHARE = 1e-3  # of a weight: the other length still counts at the ends, to break ties
 WIDEST_LOGIT = 7.0  # of a weight, where weights are evenly spaced by their logit
 LARGE = 500  # cities from which on they are; at 400 that is the worse in the first second
+MENDING = 100  # cities from which on earlier tours are mended by three-opt: too good for two-opt
 MANY = 1_200  # cities from which on a round is too long for a rest that is mostly as before
 VAST = 7_000  # cities from which on a round of descents alone comes first; at 5,000 it is no better
 TOURNAMENT_SIZE = 8  # points drawn, of which one is chosen
@@ -40,15 +42,19 @@ class WeightedCandidates(NamedTuple):
     candidate_costs: Array  # (k, n, candidates)
 
 
-def make_weighted_candidates(instance: Instance, n: int) -> WeightedCandidates:
-    """Return weights, for scaled lengths, and empty candidate lists of n cities under each."""
+def make_weighted_candidates(instance: Instance, n: int, mending: bool) -> WeightedCandidates:
+    """Return weights, for scaled lengths, and empty candidate lists of n cities under each.
+
+    With `mending` the search sets out from tours of an earlier front.
+    """
+    count = MENDED_WEIGHTS if mending and MENDING <= n < LARGE else WEIGHTS
     if n < LARGE:
-        share = np.linspace(0.0, 1.0, WEIGHTS).clip(LEAST_SHARE, 1 - LEAST_SHARE)
+        share = np.linspace(0.0, 1.0, count).clip(LEAST_SHARE, 1 - LEAST_SHARE)
     else:
-        share = 1 / (1 + np.exp(np.linspace(WIDEST_LOGIT, -WIDEST_LOGIT, WEIGHTS)))
+        share = 1 / (1 + np.exp(np.linspace(WIDEST_LOGIT, -WIDEST_LOGIT, count)))
     weights = np.stack([share, 1 - share], axis=1) / np.ldexp(instance.scale, instance.shifts)
     weights /= weights.sum(axis=1, keepdims=True)
-    candidates = np.zeros((WEIGHTS, n, min(CANDIDATES_PER_CITY, n - 1)), np.int32)
+    candidates = np.zeros((count, n, min(CANDIDATES_PER_CITY, n - 1)), np.int32)
     return WeightedCandidates(weights, candidates, np.zeros(candidates.shape))
 
 
@@ -88,7 +94,7 @@ def rounds(n: int, touched: NDArray[np.integer] | None) -> tuple[Round, ...]:
         by_iterations = Round(4, 4 if n < LARGE else 0), Round(1, 0)
         return by_iterations if n < VAST else (Round(n, 0), *by_iterations)
     if n < LARGE:
-        return (Round(4, 8),) * 4
+        return (Round(4, 8),) * 4 if n < MENDING else (Round(8, 6),) * 5
     return (Round(8, 0), Round(4, 0)) if n < MANY or 2 * len(touched) > n else ()
 
 

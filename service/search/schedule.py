@@ -38,7 +38,6 @@ from service.search.pareto_local_search import (
     LARGE,
     STEPS,
     VAST,
-    WEIGHTS,
     SearchState,
     bisection_order,
     fill_gaps,
@@ -92,7 +91,8 @@ class Search:
         self.n = len(costs.cities)
         self.large = self.n >= LARGE
         self.block = max(STEPS, BLOCK * FULL_BLOCK // max(FULL_BLOCK, self.n))
-        weighted_candidates = make_weighted_candidates(instance, self.n)
+        mending = touched is not None
+        weighted_candidates = make_weighted_candidates(instance, self.n, mending)
         self.weights = weighted_candidates.weights
         self.state = SearchState(
             costs,
@@ -101,7 +101,7 @@ class Search:
             make_working_tour(self.n),
             np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
         )
-        descent, self.local_search = choose_local_searches(self.state, mending=touched is not None)
+        descent, self.local_search = choose_local_searches(self.state, mending)
         self.descents = Descents(instance, self.state, descent, self.touched)
 
     @property
@@ -141,7 +141,7 @@ class Search:
 
     def construct(self) -> None:
         """Add a nearest-neighbour tour under equal weights, at most O(n^2)."""
-        tour = constructed_tour(self.instance, self.descents.scalarization(WEIGHTS // 2))
+        tour = constructed_tour(self.instance, self.descents.scalarization(len(self.weights) // 2))
         insert(self.state.archive, lengths(self.state.costs, tour), tour)
 
     def run(self) -> Iterator[int]:
@@ -151,7 +151,9 @@ class Search:
         """
         yield from self.pool_candidates()
         ahead = rounds(self.n, self.touched)
-        yield from self._reach_weights(LARGE_DESCENTS if self.large and ahead else WEIGHTS)
+        yield from self._reach_weights(
+            LARGE_DESCENTS if self.large and ahead else len(self.weights)
+        )
         for number, (divisor, fills) in enumerate(ahead):
             for k in self._order_in_round(number):
                 yield from self._iterate(k, self.n // divisor)
@@ -162,13 +164,13 @@ class Search:
     def _order_in_round(self, number: int) -> list[int]:
         """Return the order of the weights in a round: from earlier tours, to and fro."""
         if self.touched is None or self.large:
-            return bisection_order(WEIGHTS)
-        order = list(range(WEIGHTS))
+            return bisection_order(len(self.weights))
+        order = list(range(len(self.weights)))
         return order[::-1] if number % 2 else order
 
     def _reach_weights(self, descents: int) -> Iterator[int]:
         """Find a tour under each weight: under so many by descent, then from their neighbours'."""
-        order = bisection_order(WEIGHTS)
+        order = bisection_order(len(self.weights))
         constructions = LARGE_CONSTRUCTIONS if self.large else CONSTRUCTIONS
         for rank, k in enumerate(order[:descents]):
             rank_candidates(self.pool, self.descents.scalarization(k))
@@ -182,7 +184,7 @@ class Search:
     def pool_candidates(self) -> Iterator[int]:
         """Fill the pool from which the candidates under each weight are ranked."""
         self.pool = make_candidate_pool(self.n)
-        pooled = self.weights[np.linspace(0, WEIGHTS - 1, POOL_WEIGHTS).astype(int)]
+        pooled = self.weights[np.linspace(0, len(self.weights) - 1, POOL_WEIGHTS).astype(int)]
         for _ in fill_in_blocks(self.pool, self.state.costs, pooled):
             yield 0
 
@@ -211,7 +213,7 @@ class Search:
 
         Gain is hypervolume per iteration, as a moving average.
         """
-        next_weight = cycle(bisection_order(WEIGHTS))
+        next_weight = cycle(bisection_order(len(self.weights)))
         area = partial(dominated_area, self.state.archive, self.corner[0], self.corner[1])
         rates = [np.inf, np.inf]
         quiet, turn = 0, 0

@@ -4,11 +4,20 @@ from itertools import islice
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from service.instance import tour_lengths
 from service.pareto import hypervolume
 from service.search.improve import improve
-from service.search.pareto_local_search import LARGE, LEAST_SHARE, MANY, rounds
+from service.search.pareto_local_search import (
+    LARGE,
+    LEAST_SHARE,
+    MANY,
+    MENDED_WEIGHTS,
+    MENDING,
+    WEIGHTS,
+    rounds,
+)
 from service.search.schedule import Search
 from tests.helpers.instances import ENDS, opened, random_tours, small_integers, uniform
 
@@ -74,7 +83,18 @@ def test_many_earlier_cities_get_a_round_only_where_most_of_them_are_touched() -
     few, most = (np.arange(size, dtype=np.int32) for size in (MANY // 2, MANY // 2 + 1))
     assert rounds(MANY, few) == ()
     assert len(rounds(MANY, most)) == len(rounds(MANY - 1, few)) == len(rounds(MANY, None)) == 2
-    assert len(rounds(LARGE - 1, few)) == 4
+    assert len(rounds(LARGE - 1, few)) == 5
+
+
+def test_earlier_tours_are_mended_under_more_weights_where_three_opt_does() -> None:
+    touched = np.arange(3, dtype=np.int32)
+
+    def weights(n: int, touched: NDArray[np.int32] | None) -> int:
+        return len(Search(uniform(n), 0, np.full(2, float(n)), touched=touched).weights)
+
+    assert weights(MENDING - 1, touched) == weights(LARGE, touched) == WEIGHTS
+    assert weights(MENDING, touched) == weights(LARGE - 1, touched) == MENDED_WEIGHTS
+    assert weights(MENDING, None) == WEIGHTS
 
 
 def test_of_a_large_instance_every_weight_has_candidates_before_iterations_begin() -> None:

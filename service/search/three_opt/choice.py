@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from service.search import local_search, working_tour
 from service.search.candidates import Scalarization
-from service.search.pareto_local_search import LARGE, SearchState
+from service.search.pareto_local_search import LARGE, MENDING, SearchState
 from service.search.three_opt import local_search as three_opt
 from service.search.three_opt import undoable_tour
 from service.search.three_opt.undoable_tour import UndoableTour, make_undoable_tour
@@ -19,7 +19,6 @@ Cities = NDArray[np.int32]
 # Cities from which on iterations are by it; at 200 clustered ones it is worse. Where costs differ
 # by direction it is better at any number.
 THREE_OPT = 250
-MENDING = 100  # the same where tours of an earlier front are mended: these are too good for two-opt
 EFFORT = 3  # of an iteration by three-opt, which takes three or four times as long as by two-opt
 OFFERED = 2_000  # cities, of which every local optimum is offered; of more, proportionally fewer
 

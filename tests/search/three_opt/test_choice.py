@@ -3,10 +3,9 @@
 import numpy as np
 
 from service.instance import Instance
-from service.search.pareto_local_search import LARGE
+from service.search.pareto_local_search import LARGE, MENDING
 from service.search.schedule import Search
 from service.search.three_opt.choice import (
-    MENDING,
     THREE_OPT,
     ThreeOptSearch,
     TwoOptSearch,
