@@ -58,24 +58,18 @@ class FairQueue:
         Raises:
             IndexError: None waits.
         """
-        if self._first or not self._by_client:
-            return self._first.popleft()
-        client = self._next_client(served)
-        self._note_turn(client)
-        waiting = self._by_client[client]
-        submission = waiting.popleft()
-        if not waiting:
-            del self._by_client[client]
+        submission = self.next(served)
+        if not self._first:
+            self._note_turn(submission.client)
+        self.remove(submission)
         return submission
 
     def next(self, served: Container[str] = ()) -> Submission:
         """Return the submission that `take` would remove; arguments and errors are the same."""
         if self._first or not self._by_client:
             return self._first[0]
-        return self._by_client[self._next_client(served)][0]
-
-    def _next_client(self, served: Container[str]) -> str:
-        return min(self._by_client, key=lambda each: (each in served, self._turns.get(each, -1)))
+        client = min(self._by_client, key=lambda each: (each in served, self._turns.get(each, -1)))
+        return self._by_client[client][0]
 
     def _note_turn(self, client: str) -> None:
         self._turns.pop(client, None)

@@ -94,6 +94,7 @@ class Search:
         mending = touched is not None
         weighted_candidates = make_weighted_candidates(instance, self.n, mending)
         self.weights = weighted_candidates.weights
+        self.bisection = bisection_order(len(self.weights))
         self.state = SearchState(
             costs,
             weighted_candidates,
@@ -164,13 +165,13 @@ class Search:
     def _order_in_round(self, number: int) -> list[int]:
         """Return the order of the weights in a round: from earlier tours, to and fro."""
         if self.touched is None or self.large:
-            return bisection_order(len(self.weights))
+            return self.bisection
         order = list(range(len(self.weights)))
         return order[::-1] if number % 2 else order
 
     def _reach_weights(self, descents: int) -> Iterator[int]:
         """Find a tour under each weight: under so many by descent, then from their neighbours'."""
-        order = bisection_order(len(self.weights))
+        order = self.bisection
         constructions = LARGE_CONSTRUCTIONS if self.large else CONSTRUCTIONS
         for rank, k in enumerate(order[:descents]):
             rank_candidates(self.pool, self.descents.scalarization(k))
@@ -213,7 +214,7 @@ class Search:
 
         Gain is hypervolume per iteration, as a moving average.
         """
-        next_weight = cycle(bisection_order(len(self.weights)))
+        next_weight = cycle(self.bisection)
         area = partial(dominated_area, self.state.archive, self.corner[0], self.corner[1])
         rates = [np.inf, np.inf]
         quiet, turn = 0, 0

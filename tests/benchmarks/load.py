@@ -102,7 +102,6 @@ def measure(cores: int, rounds: int, seconds: float) -> dict[str, Any]:
         "bare": bare,
         "apart": apart,
         "served": served,
-        "served_share": round(_mean(served, "per_second") / _mean(bare, "per_second"), 4),
         "share_of_apart": round(_mean(served, "per_second") / _mean(apart, "per_second"), 4),
         "processor_share": round(_mean(apart, "session_ms") / _processor_ms(served), 4),
         "at_80_percent": {**quantiles(timed), "requests": len(timed)},

@@ -31,7 +31,6 @@ def loaded(**other: Any) -> dict[str, Any]:
         "bare": [{"per_second": 100.0, "session_ms": 20.0}],
         "apart": [{"per_second": 120.0, "session_ms": 18.0}],
         "served": [{"per_second": 90.0, "workers_ms": 18.5, "server_ms": 1.0, "clients_ms": 0.25}],
-        "served_share": 0.9,
         "share_of_apart": 0.9,
         "processor_share": 0.911,
         "at_80_percent": {"median_ms": 20.0, "p99_ms": 79.9, "worst_ms": 90.0},

@@ -94,10 +94,6 @@ class WorkerPool:
             for submission in worker.submissions.values()
         }
 
-    @property
-    def _working(self) -> list[Submission]:
-        return [each for each in self.running if not each.ended]
-
     async def start(self) -> None:
         """Start the processes, and return before they are ready."""
         await self._workers.start()
@@ -117,7 +113,8 @@ class WorkerPool:
 
     def check_place(self, client: str = "") -> None:
         """Raise QueueFull or ShareFull when no place is left for one more task of a client."""
-        held = (*self._reserved, *self._queue, *self._working)
+        running = (each for each in self.running if not each.ended)
+        held = (*self._reserved, *self._queue, *running)
         check_place(held, client, self._places, self._places_of_client)
 
     def check_warm(self) -> None:
