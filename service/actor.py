@@ -23,6 +23,8 @@ _FATAL = 4  # the severity from which on ONNX Runtime writes to stderr
 _FEW = 100  # cities or preferences, up to which a session keeps less than 20 MB
 _MIN_PLACES = 3  # of fewer there is one tour, and no network was trained on them
 _RESOLUTION = 2.0**20  # of a plane: cities whose coordinates round to the same are at one place
+_LARGEST_COST = 2.0  # scaled, of a forbidden leg or an outlier: networks were trained on up to 1
+_MARGIN = 0.25  # around the unit square, in which cities far from all others are put
 _LEAST_PREFERENCE = 1e-3  # for an objective: else all cities that coincide in the other are alike
 
 
@@ -85,11 +87,13 @@ class OnnxActor:
         outputs = ["tours", "visited"] if repairs > 0 else ["tours"]
         options = self._begin(max(instance.n, len(preferences)))
         if self.info.inputs == "matrices":
-            matrices = _without_zero_matrix(instance.scaled_matrices.astype(np.float32))
+            scaled = instance.scaled_matrices.clip(max=_LARGEST_COST)
+            matrices = _without_zero_matrix(scaled.astype(np.float32))
             first, place = _places_by_matrices(matrices)
             inputs: dict[str, NDArray[Any]] = {"matrices": matrices[:, first[:, np.newaxis], first]}
         else:
-            cities = _without_zero_plane(instance.scaled_coordinates.astype(np.float32))
+            scaled = instance.scaled_coordinates.clip(-_MARGIN, 1 + _MARGIN)
+            cities = _without_zero_plane(scaled.astype(np.float32))
             first, place = _places_by_coordinates(cities)
             inputs = {"cities": cities[first]}
         if len(first) < _MIN_PLACES:

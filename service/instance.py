@@ -15,6 +15,9 @@ Kind = Literal["coordinates", "matrices"]
 OBJECTIVES = 2  # lengths of a tour
 PLANE = 2  # coordinates of a city in the plane of an objective
 MOST_SPREAD = 2.0**-1000  # of a matrix's largest cost; below it a scaled cost would vanish
+OUTLYING = 100.0  # times the typical cost: what is larger does not count for the scale
+SAMPLED = 100  # cities whose costs between each other show what is typical
+LARGEST_SCALED = 2.0**256  # of a cost, so that products of two lengths are finite
 
 
 class RouteEnds(NamedTuple):
@@ -65,9 +68,9 @@ class Instance:
             object.__setattr__(self, "coordinates", _checked_coordinates(self.coordinates))
         else:
             object.__setattr__(self, "matrices", _checked_matrices(self.matrices))
-        if not math.isfinite(2 * self.n * float(self._extents.max())):
+        if not math.isfinite(2 * self.n * float(self.extents.max())):
             raise InvalidInstance(
-                f"costs must leave a tour's length finite, got costs up to {self._extents.max():g}"
+                f"costs must leave a tour's length finite, got costs up to {self.extents.max():g}"
             )
         _check_ends(self)
 
@@ -88,18 +91,55 @@ class Instance:
     def scale(self) -> Array:
         """The unit of each objective, shape (2,), in which the network and angles work.
 
-        That is the longer side of the plane's bounding box, or the largest finite entry of the
-        matrix; 1 where this is 0.
+        That is the longer side of the plane's bounding box, or the largest cost of the matrix; 1
+        where this is 0. Outliers do not count: costs of more than 100 times the median positive
+        cost, and cities that lie farther from the middle than 100 times the median distance.
         """
-        return np.where(self._extents > 0, self._extents, 1.0)
+        if self.coordinates is not None:
+            ordinary = np.stack([np.ptp(box, axis=0).max() for box in self._ordinary_boxes])
+        else:
+            ordinary = self._ordinary_costs
+        return np.where(ordinary > 0, ordinary, 1.0)
+
+    @cached_property
+    def reference_point(self) -> Array:
+        """The default reference point of hypervolumes, shape (2,): n times the scale.
+
+        Where outliers alone take a tour half of the way there, the least that every tour has to pay
+        is added: a city far from all others then leaves room for trade-offs among these.
+        """
+        common = self.n * self.scale
+        if (self.extents <= self.scale).all():
+            return common
+        least = least_lengths(self)
+        unavoidable = np.isfinite(least) & (self.extents > self.scale) & (2 * least > common)
+        return common + np.where(unavoidable, least, 0.0)
 
     @cached_property
     def shifts(self) -> NDArray[np.intp]:
-        """The powers of two, shape (2,), by which costs are multiplied to bring scale into [1, 2).
+        """The powers of two, shape (2,), by which costs are multiplied for the search.
 
+        They bring scale into [1, 2), or where some cost is very much larger, that cost below 2^256.
         As a factor such a power may be infinite or 0 where the product is neither: use np.ldexp.
         """
-        return 1 - np.frexp(self.scale)[1].astype(np.intp)
+        unit = np.maximum(self.scale, self.extents / LARGEST_SCALED)
+        return 1 - np.frexp(unit)[1].astype(np.intp)
+
+    @cached_property
+    def penalised_matrices(self) -> Array:
+        """Costs, shape (2, n, n), in which a forbidden leg costs more than a tour without one.
+
+        Raises:
+            InvalidInstance: The instance was made from coordinates.
+        """
+        if self.matrices is None:
+            raise InvalidInstance("an instance made from coordinates has no matrices")
+        forbidden = np.isinf(self.matrices[0])
+        if not forbidden.any():
+            return self.matrices
+        largest = np.where(self.extents > 0, self.extents, 1.0)
+        penalties = np.minimum(2 * self.n * largest, np.finfo(np.float64).max / (8 * self.n))
+        return np.where(forbidden, penalties[:, np.newaxis, np.newaxis], self.matrices)
 
     @cached_property
     def symmetric(self) -> bool:
@@ -112,12 +152,15 @@ class Instance:
     def scaled_coordinates(self) -> Array:
         """Coordinates, shape (n, 4), with each plane moved and scaled into the unit square.
 
+        Cities far from all others, which do not count for the scale, lie outside it.
+
         Raises:
             InvalidInstance: The instance was made from matrices.
         """
         if self.coordinates is None:
             raise InvalidInstance("an instance made from matrices has no coordinates")
-        return (self.coordinates - self.coordinates.min(axis=0)) / self.scale.repeat(PLANE)
+        corner = np.concatenate([box[0] for box in self._ordinary_boxes])
+        return (self.coordinates - corner) / self.scale.repeat(PLANE)
 
     @property
     def scaled_matrices(self) -> Array:
@@ -128,7 +171,37 @@ class Instance:
         return np.hypot(steps[..., 0::PLANE], steps[..., 1::PLANE]).transpose(2, 0, 1)
 
     @cached_property
-    def _extents(self) -> Array:
+    def _ordinary_boxes(self) -> Array:
+        """The least and greatest coordinates in each plane without outliers, shape (2, 2, 2)."""
+        assert self.coordinates is not None
+        planes = self.coordinates.reshape(self.n, OBJECTIVES, PLANE)
+        boxes = np.stack([planes.min(axis=0), planes.max(axis=0)], axis=1)
+        if self.n <= 2:
+            return boxes
+        for plane, box in enumerate(boxes):
+            cities = planes[:, plane]
+            with np.errstate(over="ignore"):
+                distances = np.abs(cities - np.median(cities, axis=0)).max(axis=1)
+            ordinary = distances <= OUTLYING * _median_positive(distances)
+            if not ordinary.all():
+                box[:] = cities[ordinary].min(axis=0), cities[ordinary].max(axis=0)
+        return boxes
+
+    @cached_property
+    def _ordinary_costs(self) -> Array:
+        """The largest finite cost of each matrix without outliers, shape (2,)."""
+        assert self.matrices is not None
+        step = -(-self.n // SAMPLED)
+        largest = self.extents.copy()
+        for m, matrix in enumerate(self.matrices):
+            limit = OUTLYING * _median_positive(matrix[::step, ::step])
+            if largest[m] > limit:
+                largest[m] = matrix.max(where=matrix <= limit, initial=0.0)
+        return largest
+
+    @cached_property
+    def extents(self) -> Array:
+        """The longer side of each plane's bounding box, or each matrix's largest finite cost."""
         if self.coordinates is not None:
             with np.errstate(over="ignore"):
                 return np.ptp(self.coordinates, axis=0).reshape(OBJECTIVES, PLANE).max(axis=1)
@@ -173,9 +246,12 @@ def tour_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
 def step_lengths(
     instance: Instance, origins: NDArray[np.integer], destinations: NDArray[np.integer]
 ) -> Array:
-    """Return both costs of steps, in the instance's units, with one more axis of 2 at the end."""
+    """Return both costs of steps, in the instance's units, with one more axis of 2 at the end.
+
+    A forbidden leg has its penalty as its cost, so that sums and differences stay finite.
+    """
     if instance.matrices is not None:
-        return np.moveaxis(instance.matrices[:, origins, destinations], 0, -1)
+        return np.moveaxis(instance.penalised_matrices[:, origins, destinations], 0, -1)
     assert instance.coordinates is not None
     cities = instance.coordinates.view(np.complex128)
     return np.abs(cities[destinations] - cities[origins])
@@ -221,6 +297,12 @@ def least_lengths(instance: Instance) -> Array:
     if not instance.closed:
         leaving, entering = (np.sort(least)[:, :-1] for least in (leaving, entering))
     return np.maximum(leaving.sum(axis=1), entering.sum(axis=1))
+
+
+def _median_positive(costs: Array) -> float:
+    """Return the median of the finite positive costs; infinity where there is none."""
+    positive = costs[(costs > 0) & (costs < np.inf)]
+    return float(np.median(positive)) if len(positive) else np.inf
 
 
 def cumulated_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:

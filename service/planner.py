@@ -38,8 +38,8 @@ class PlanOptions:
             many as fit into the network's share of it.
         size: The greatest number of tours of the front.
         start: The city from which every closed tour is reported.
-        reference_point: Of the hypervolume, shape (2,), in the instance's units; by default n
-            times the scale.
+        reference_point: Of the hypervolume, shape (2,), in the instance's units; by default
+            the instance's.
         time_limit: Seconds for construction, search and selection together, not for the bound;
             at 0 there is no search.
         initial_tours: Shape (m, n): tours that the front shall dominate or equal as well.
@@ -150,7 +150,7 @@ def plan(
     deadline = time.monotonic() + options.time_limit
     reference_point = options.reference_point
     if reference_point is None:
-        reference_point = instance.n * instance.scale
+        reference_point = instance.reference_point
     options = replace(options, reference_point=reference_point)
     constructed = _constructed(constructor, instance, options)
     first = _first_tours(instance, constructed, options)

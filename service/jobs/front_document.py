@@ -253,7 +253,7 @@ def empty_front(task: Task) -> FrontDocument:
     if isinstance(subject, Instance):
         cities, scale, places = subject.n, subject.scale.tolist(), None
         if reference_point is None:
-            reference_point = subject.n * subject.scale
+            reference_point = subject.reference_point
     elif isinstance(subject, UnmeasuredStops):
         cities, scale, places = subject.n, None, None
     else:

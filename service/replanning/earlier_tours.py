@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance, tour_lengths
+from service.instance import Instance, step_lengths, tour_steps
 from service.jit import compiled
 from service.search.closing import closed_tours, opened_tours
 from service.search.costs import Costs, make_costs, step_costs
@@ -65,7 +65,7 @@ def completed(instance: Instance, earlier: EarlierTours) -> Tours:
     for the driven one. O(m n (n - k)).
     """
     costs = make_costs(instance)
-    lengths = tour_lengths(instance, earlier.tours) / instance.scale
+    lengths = _scaled_lengths(instance, earlier.tours)
     weights = _weights(lengths)
     routes = _better_way_round(instance, earlier.tours, (lengths * weights).sum(axis=1), weights)
     known = np.isin(np.arange(instance.n), routes[0])
@@ -89,6 +89,12 @@ def touched_cities(instance: Instance, earlier: EarlierTours, tours: Tours) -> N
     return np.union1d(earlier.touched, tours[beside])
 
 
+def _scaled_lengths(instance: Instance, tours: Tours) -> Array:
+    """Return lengths, shape (m, 2), finite where a leg has become forbidden, in units of scale."""
+    steps = step_lengths(instance, *tour_steps(instance, tours))
+    return steps.sum(axis=1) / instance.scale
+
+
 def _weights(lengths: Array) -> Array:
     """Return weights of scaled lengths, shape (m, 2), by the rank of each route in balance."""
     rank = (lengths[:, 0] - lengths[:, 1]).argsort(kind="stable").argsort(kind="stable")
@@ -104,7 +110,7 @@ def _better_way_round(instance: Instance, routes: Tours, sums: Array, weights: A
     end = routes.shape[1] - int(instance.end is not None)
     turned = routes.copy()
     turned[:, begin:end] = routes[:, begin:end][:, ::-1]
-    better = (tour_lengths(instance, turned) / instance.scale * weights).sum(axis=1) < sums
+    better = (_scaled_lengths(instance, turned) * weights).sum(axis=1) < sums
     better[0] = False
     return np.where(better[:, np.newaxis], turned, routes)
 

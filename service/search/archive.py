@@ -12,7 +12,7 @@ Cities = NDArray[np.int32]
 
 MAX_POINTS = 50_000
 MAX_BYTES = 2**28  # of tours
-TOLERANCE = 1e-12  # lengths whose relative difference is less count as equal
+ROUNDING = 2.0**-52  # relative: as much as two sums of the same steps may differ for each step
 
 
 class Archive(NamedTuple):
@@ -58,9 +58,10 @@ def count_up_to(archive: Archive, bound: float) -> int:
 
 @inlined
 def accepts(archive: Archive, first: float, second: float) -> bool:
-    """Return whether no point dominates or equals the given one. O(log m)."""
-    k = count_up_to(archive, first * (1 + TOLERANCE))
-    return k == 0 or archive.points[k - 1, 1] > second * (1 + TOLERANCE)
+    """Return whether no point dominates or equals the given one, but for rounding. O(log m)."""
+    slack = 1 + ROUNDING * archive.tours.shape[1]
+    k = count_up_to(archive, first * slack)
+    return k == 0 or archive.points[k - 1, 1] > second * slack
 
 
 @inlined

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.jit import allocating, inlined
-from service.search.closing import FORBIDDEN, is_closing
+from service.search.closing import NEVER_ADDED, is_closing
 from service.search.costs import Costs, make_costs, step_costs
 from service.search.kd_tree import (
     KdTrees,
@@ -106,7 +106,7 @@ def candidate_costs(costs: Costs, i: int, j: int) -> tuple[float, float]:
     """
     first, second = step_costs(costs, i, j)
     if is_closing(costs.closing, i, j):
-        return (FORBIDDEN, FORBIDDEN) if costs.symmetric else (abs(first), abs(second))
+        return (NEVER_ADDED, NEVER_ADDED) if costs.symmetric else (abs(first), abs(second))
     return first, second
 
 

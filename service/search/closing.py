@@ -18,23 +18,38 @@ from service.search.open_routes import oriented, rotated
 
 Array = NDArray[np.float64]
 
-KEPT = -1024.0  # far below what a move can gain otherwise: scaled steps cost less than 3
-FORBIDDEN = 1024.0
+LEAST_BARRIER = 16.0  # more than a move can gain where scaled steps cost less than 2
+NEVER_ADDED = 2.0**900  # above the cost of any step
 
 
 def closing_costs(instance: Instance) -> Array:
     """Return the costs from city 0 to each city, and from each city to city 0, shape (2, n + 1)."""
     costs = np.zeros((2, instance.n + 1))
+    barrier = largest_costs(instance).max()
     if instance.symmetric:
         if len(instance.fixed_ends) == len(costs):
-            costs[:] = FORBIDDEN
-        costs[:, [1 + city for city in instance.fixed_ends]] = KEPT
+            costs[:] = barrier
+        costs[:, [1 + city for city in instance.fixed_ends]] = -barrier
         return costs
     for direction, end in enumerate((instance.start, instance.end)):
         if end is not None:
-            costs[direction] = FORBIDDEN
-            costs[direction, 1 + end] = KEPT
+            costs[direction] = barrier
+            costs[direction, 1 + end] = -barrier
     return costs
+
+
+def largest_costs(instance: Instance) -> Array:
+    """Return bounds, shape (2,), on what the search counts for a step, that to city 0 included."""
+    matrices = instance.kind == "matrices"
+    largest = instance.penalised_matrices.max(axis=(1, 2)) if matrices else instance.extents
+    scaled = np.ldexp(largest, instance.shifts)
+    return scaled if instance.closed else np.maximum(scaled, _barrier(scaled))
+
+
+def _barrier(largest: Array) -> float:
+    """Return what kept and forbidden steps count: a power of two, more than a move gains."""
+    exponent = int(np.frexp(largest.max())[1])
+    return float(np.ldexp(LEAST_BARRIER, max(0, exponent - 1)))
 
 
 def closed_tours(instance: Instance, tours: NDArray[np.integer]) -> NDArray[np.int32]:

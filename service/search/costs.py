@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.jit import compiled, inlined
-from service.search.closing import closing_cost, closing_costs, is_closing
+from service.search.closing import closing_cost, closing_costs, is_closing, largest_costs
 
 Array = NDArray[np.float64]
 
@@ -22,6 +22,9 @@ LEAST_REFERENCE, LARGEST_REFERENCE = 2.0**-500, 2.0**500
 class Costs(NamedTuple):
     """The scaled costs of an instance: a matrix, or coordinates where that is empty.
 
+    A forbidden leg costs more than any tour without one, under both objectives. So a tour that has
+    one is dominated by every tour that has none.
+
     Those of open routes have one more city, city 0, which comes before the instance's.
     """
 
@@ -29,6 +32,7 @@ class Costs(NamedTuple):
     matrix: Array  # (n, n, 2), or (0, 0, 2) where the coordinates are used
     symmetric: bool
     closing: Array | None  # (2, n), the costs from city 0 and to it; None of closed tours
+    largest: Array  # (2,), of any step: what rounding can add to a gain is a share of these
 
 
 def make_costs(instance: Instance) -> Costs:
@@ -40,18 +44,18 @@ def make_costs(instance: Instance) -> Costs:
     closing = None if instance.closed else closing_costs(instance)
     added = 0 if closing is None else 1
     n = added + instance.n
-    cities = np.zeros((n, 4))
+    cities, largest = np.zeros((n, 4)), largest_costs(instance)
     if instance.coordinates is None:
         assert instance.matrices is not None
-        planes = np.ldexp(instance.matrices, instance.shifts[:, None, None])
+        planes = np.ldexp(instance.penalised_matrices, instance.shifts[:, None, None])
         matrix = np.empty((n, n, 2))
         matrix[added:, added:] = planes.transpose(1, 2, 0)
         if closing is not None:
             matrix[0], matrix[:, 0] = closing[0, :, None], closing[1, :, None]
-        return Costs(cities, matrix, instance.symmetric, closing)
+        return Costs(cities, matrix, instance.symmetric, closing, largest)
     corner = instance.coordinates.min(axis=0)
     cities[added:] = np.ldexp(instance.coordinates - corner, instance.shifts.repeat(2))
-    sparse = Costs(cities, np.zeros((0, 0, 2)), True, closing)
+    sparse = Costs(cities, np.zeros((0, 0, 2)), True, closing, largest)
     if instance.n >= DENSE_BELOW:
         return sparse
     matrix = np.empty((n, n, 2))

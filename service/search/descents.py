@@ -14,7 +14,7 @@ from service.search.archive import best_point, insert
 from service.search.candidates import Scalarization
 from service.search.costs import lengths
 from service.search.edge_assembly.assembly import assemble
-from service.search.local_search import LEAST_GAIN, offer
+from service.search.local_search import least_gain, offer, sum_afresh
 from service.search.pareto_local_search import LARGE, SearchState
 from service.search.starts.constructed_tour import GREEDY, constructed_tour
 from service.search.three_opt.choice import LocalSearch
@@ -118,10 +118,10 @@ class Descents:
         local_search, working = self.local_search, self.local_search.working
         self.load_start(local_search, scalarization)
         value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
-        gained = 0.0
+        gained, threshold = 0.0, least_gain(scalarization, value)
         for other in ASSEMBLIES * [*tours]:
             given = working.tour, working.position, other
-            gained += assemble(given, scalarization, LEAST_GAIN * value, self.state.random)
+            gained += assemble(given, scalarization, threshold, self.state.random)
             yield 0
         if gained > 0.0:
             local_search.load(working.tour, *lengths(scalarization.costs, working.tour))
@@ -135,9 +135,11 @@ class Descents:
         working, archive = self.local_search.working, self.state.archive
         enqueue_cities(working, cities)
         value = scalarization.w0 * working.length[0] + scalarization.w1 * working.length[1]
+        threshold = least_gain(scalarization, value)
         block = 1 + self.n // OFFERS if offering else DESCENT_BLOCK
-        while self.local_search.descend(scalarization, LEAST_GAIN * value, block) == 0:
+        while self.local_search.descend(scalarization, threshold, block) == 0:
             if offering:  # with lengths as updated: to sum them afresh takes as long as the rest
                 insert(archive, (working.length[0], working.length[1]), working.tour)
             yield 0
+        sum_afresh(working, scalarization)
         offer(working, scalarization, archive)

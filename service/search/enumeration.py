@@ -1,11 +1,15 @@
 """The exact front of a few cities: all tours, but those that begin with too long a way."""
 
+import time
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.jit import compiled, inlined
-from service.search.archive import TOLERANCE, Archive, accepts, insert, make_archive
+from service.search.archive import ROUNDING, Archive, accepts, insert, make_archive
 from service.search.closing import closing_cost, opened_tours
 from service.search.costs import Costs, lengths, make_costs, travel_costs
 
@@ -13,21 +17,72 @@ Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
 
 MAX_ENUMERATED = 9  # cities: at most 9! tours
+DIGITS = 40  # binary, of the least costs that are summed
+STEPS = 5_000  # cities put into a tour between two checks of the deadline, a fraction of a ms
 
 
-def exact_tours(instance: Instance) -> Cities:
-    """Return a tour for every point of the front of an instance, shape (m, n)."""
+class Enumeration(NamedTuple):
+    """How far an enumeration, depth first, has come."""
+
+    tour: Cities  # (n,): before a place the cities are chosen, after it are those that are left
+    tried: Cities  # (n,): the place from which the city at a place has come
+    reached: Array  # (n, 2), zero in the first row: both lengths up to a place
+    least: Array  # (n, 2): the least costs of a step that leaves a city
+    left: Array  # (n, 2): the sums of these over the city at a place and those that are left
+    place: NDArray[np.int64]  # (1,): the place whose city is chosen next; 0 at the end
+
+
+def exact_tours(
+    instance: Instance,
+    deadline: float | None = None,
+    stop: Callable[[], bool] = lambda: False,
+) -> tuple[Cities, bool]:
+    """Return a tour for every point of the front of an instance, shape (m, n), and True.
+
+    Where time runs out first, return those found so far, one at least, and False.
+
+    Args:
+        instance: The instance.
+        deadline: Time to stop, by time.monotonic(); None sets no limit.
+        stop: Called at least every few ms; True ends the enumeration at once.
+    """
     costs = make_costs(instance)
+    archive = make_archive(len(costs.cities))
+    complete = True
+    for _ in enumerate_tours(costs, archive):
+        late = deadline is not None and time.monotonic() >= deadline
+        if (late or stop()) and archive.counts[0] > 0:
+            complete = False
+            break
+    tours = archive.tours[archive.slots[np.flatnonzero(_distinct(archive))]]
+    return opened_tours(instance, tours), complete
+
+
+def enumerate_tours(costs: Costs, archive: Archive) -> Iterator[None]:
+    """Insert all nondominated tours, and yield about every ms."""
     n = len(costs.cities)
-    archive = make_archive(n)
-    order = np.arange(n, dtype=np.int32)
-    insert_all(costs, archive, order, order.copy(), np.zeros((n, 2)))
-    return opened_tours(instance, archive.tours[archive.slots[np.flatnonzero(_distinct(archive))]])
+    tour = np.arange(n, dtype=np.int32)
+    if n == 1:
+        insert(archive, (0.0, 0.0), tour)
+        return
+    least = np.zeros((n, 2))
+    least_steps(costs, least)
+    # Rounded down to few digits, sums and differences of them are exact.
+    unit = np.ldexp(1.0, np.frexp(least.max(axis=0))[1] - DIGITS)
+    least = np.floor(least / unit) * unit
+    left = np.tile(least.sum(axis=0), (n, 1))
+    enumeration = Enumeration(
+        tour, np.zeros(n, np.int32), np.zeros((n, 2)), least, left, np.ones(1, np.int64)
+    )
+    while enumeration.place[0] > 0:
+        insert_some(costs, archive, enumeration, STEPS)
+        yield
 
 
 def _distinct(archive: Archive) -> NDArray[np.bool_]:
     """Return which points only rounding keeps from being dominated by a neighbour, as False."""
-    first, second = archive.points[: archive.counts[0]].T * (1 + TOLERANCE)
+    slack = 1 + ROUNDING * archive.tours.shape[1]
+    first, second = archive.points[: archive.counts[0]].T * slack
     distinct = np.ones(len(first), np.bool_)
     distinct[:-1] &= archive.points[1 : len(first), 0] > first[:-1]
     distinct[1:] &= archive.points[: len(first) - 1, 1] > second[1:]
@@ -35,23 +90,27 @@ def _distinct(archive: Archive) -> NDArray[np.bool_]:
 
 
 @compiled
-def insert_all(costs: Costs, archive: Archive, tour: Cities, tried: Cities, reached: Array) -> None:
-    """Insert all nondominated tours from city 0 on, depth first.
+def least_steps(costs: Costs, least: Array) -> None:
+    """Fill in, shape (n, 2), the least costs of a step that leaves a city."""
+    for i in range(len(least)):
+        least[i, 0] = least[i, 1] = np.inf
+        for j in range(len(least)):
+            if j != i:
+                c = travel_costs(costs, i, j)
+                least[i, 0], least[i, 1] = min(least[i, 0], c[0]), min(least[i, 1], c[1])
 
-    Args:
-        costs: The costs.
-        archive: Empty.
-        tour: All cities in order, shape (n,). Before each place the cities are chosen, after it are
-            those that are left.
-        tried: Scratch space, shape (n,): the place from which the city at a place has come.
-        reached: Scratch space, shape (n, 2), zero in the first row: both lengths up to a place.
+
+@compiled
+def insert_some(costs: Costs, archive: Archive, enumeration: Enumeration, steps: int) -> None:
+    """Go on with an enumeration of tours from city 0 on, for so many steps or to its end.
+
+    A beginning is left out as soon as no tour that begins so can still be on the front.
     """
-    n = len(tour)
-    if n == 1:
-        insert(archive, (0.0, 0.0), tour)
-    place = 1 if n > 1 else 0
-    tried[place] = place - 1
-    while place > 0:
+    tour, tried = enumeration.tour, enumeration.tried
+    n, place = len(tour), enumeration.place[0]
+    for _ in range(steps):
+        if place == 0:
+            break
         if tried[place] >= place:
             swap(tour, place, tried[place])
         tried[place] += 1
@@ -59,18 +118,29 @@ def insert_all(costs: Costs, archive: Archive, tour: Cities, tried: Cities, reac
             place -= 1
             continue
         swap(tour, place, tried[place])
-        c = travel_costs(costs, tour[place - 1], tour[place])
-        reached[place, 0] = reached[place - 1, 0] + c[0]
-        reached[place, 1] = reached[place - 1, 1] + c[1]
         if not may_follow(costs.closing, tour, place):
             continue
-        if not accepts(archive, reached[place, 0], reached[place, 1]):
+        first, second = least_lengths_at(costs, enumeration, place)
+        if not accepts(archive, first, second):
             continue
         if place == n - 1:
             insert(archive, lengths(costs, tour), tour)
         else:
             place += 1
             tried[place] = place - 1
+    enumeration.place[0] = place
+
+
+@inlined
+def least_lengths_at(costs: Costs, enumeration: Enumeration, place: int) -> tuple[float, float]:
+    """Return what all tours that begin as this one does, up to a place, cost at least."""
+    tour, _, reached, least, left, _ = enumeration
+    before = tour[place - 1]
+    c = travel_costs(costs, before, tour[place])
+    for m in range(2):
+        reached[place, m] = reached[place - 1, m] + c[m]
+        left[place, m] = left[place - 1, m] - least[before, m]
+    return reached[place, 0] + left[place, 0], reached[place, 1] + left[place, 1]
 
 
 @inlined

@@ -82,7 +82,8 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
 ) -> SearchResult:
     """Return the front that a search finds; it dominates or equals each of the given tours.
 
-    Up to nine cities that is the exact front, by enumeration. Beyond, `converged` says that for
+    No tour has a forbidden leg; where none without one was found, the front is empty.
+    Up to nine cities it is the exact front, by enumeration. Beyond, `converged` says that for
     1,000 iterations per city no new tour was found: it is no proof that there is none.
 
     Args:
@@ -98,24 +99,24 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
         stop: Called every millisecond or two; True ends the search at once.
         report: Called about ten times a second with the progress, and with a function that copies
             the best so many tours found so far, which may be called until the report returns.
-        reference_point: Shape (2,), of the hypervolume, in the instance's units; by default n
-            times the scale. The search works where this hypervolume grows fastest.
+        reference_point: Shape (2,), of the hypervolume, in the instance's units; by default
+            the instance's. The search works where this hypervolume grows fastest.
         capacity: The most tours that the search keeps, at least 16; the result has more only where
             it was given more.
         touched: Where the given tours are of an earlier front: the cities at which they may have
             become worse, where the search looks first. It constructs no tours then.
     """
     if instance.n <= MAX_ENUMERATED:
-        return _front(instance, exact_tours(instance), "converged")
+        return _enumerated(instance, tours, deadline, stop)
     if reference_point is None:
-        reference_point = instance.n * instance.scale
+        reference_point = instance.reference_point
     search = Search(instance, seed, reference_point, capacity, touched)
     search.add(tours)
     terminated = _run(search, deadline, reserve, iterations, stop, report)
     if not search.size:
         search.construct()
     dropped = search.not_covered(tours)
-    if len(dropped):
+    if len(dropped) or not search.allowed:
         return _front(instance, np.concatenate((search.tours(), dropped)), terminated)
     return SearchResult(search.points(), search.tours, terminated)
 
@@ -140,11 +141,27 @@ def _run(
         if left <= reserve(search.size) or (iterations is not None and spent >= iterations):
             return "time_limit"
         # A report takes time; shortly before the deadline it could break it.
-        if report is not None and now - reported >= REPORT_EVERY and left > REPORT_EVERY:
+        due = now - reported >= REPORT_EVERY and left > REPORT_EVERY
+        if report is not None and due and search.allowed:
             reported = now
             progress = Progress(now - began, search.hypervolume, search.size)
             report(progress, partial(_best_found, search))
     return "converged"
+
+
+def _enumerated(
+    instance: Instance,
+    tours: NDArray[np.integer],
+    deadline: float | None,
+    stop: Callable[[], bool] | None,
+) -> SearchResult:
+    """Return the exact front, or where time runs out what was found of it and the given tours."""
+    found, complete = exact_tours(instance, deadline, stop or (lambda: False))
+    if complete:
+        return _front(instance, found, "converged")
+    cancelled = stop is not None and stop()
+    every = np.concatenate((found, tours))
+    return _front(instance, every, "cancelled" if cancelled else "time_limit")
 
 
 def _best_found(search: Search, size: int) -> SearchResult:
@@ -155,7 +172,7 @@ def _best_found(search: Search, size: int) -> SearchResult:
 
 
 def _front(instance: Instance, tours: NDArray[np.integer], terminated: Termination) -> SearchResult:
-    """Return the nondominated among tours."""
+    """Return the nondominated among tours, without those that have a forbidden leg."""
     points = tour_lengths(instance, tours)
     indices = nondominated(points)
     return SearchResult(points[indices], tours[indices].astype(np.int32).__getitem__, terminated)
@@ -173,7 +190,7 @@ def warm_up_kind(closed: bool, coordinates: bool) -> None:
     exact_tours(_instance(5, closed, coordinates))
     instance = _instance(12, closed, coordinates)
     improve(instance, np.arange(12)[np.newaxis], iterations=5_000)
-    hypervolume_bound(instance, 12 * instance.scale)
+    hypervolume_bound(instance, instance.reference_point)
     candidates.warm_up(instance)
     if coordinates:
         _warm_up_three_opt(instance)
@@ -181,7 +198,7 @@ def warm_up_kind(closed: bool, coordinates: bool) -> None:
 
 def _warm_up_three_opt(instance: Instance) -> None:
     """Compile, with a few steps of a search, what instances of many cities are searched by."""
-    search = Search(instance, 0, instance.n * instance.scale)
+    search = Search(instance, 0, instance.reference_point)
     three_opt = ThreeOptSearch(search.state, make_undoable_tour(search.n))
     search.local_search = search.descents.local_search = three_opt
     for _ in islice(search.run(), 2 * WEIGHTS):  # a descent under each weight takes one or more

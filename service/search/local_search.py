@@ -25,7 +25,9 @@ Cities = NDArray[np.int32]
 LONGEST_BLOCK = 50  # cities that a perturbation moves at once
 KICKS_PER_END = 8  # kicks of an open route, of which one is at an end of it
 UNLIMITED = 1 << 60
-LEAST_GAIN = 1e-12  # as a share of the weighted length, far above what rounding adds
+LEAST_GAIN = 2.0**-46  # as a share of the weighted length, above what rounding adds to a gain
+LEAST_OF_LARGEST = 2.0**-48  # the same of the largest cost, which a tour may have on the way
+SPIKE = 16.0  # times a length: where it has been so long on the way, it is summed afresh
 
 
 @inlined
@@ -37,6 +39,17 @@ def random_below(state: NDArray[np.int64], count: int) -> int:
     x ^= x << 17
     state[0] = x
     return int((x >> 33) & 0x7FFFFFFF) % count
+
+
+@compiled
+def least_gain(scalarization: Scalarization, value: float) -> float:
+    """Return what a move must gain at least in a tour of this weighted length.
+
+    What seems to gain less may be rounding, and the search could go round in circles.
+    """
+    largest = scalarization.costs.largest
+    most = scalarization.w0 * largest[0] + scalarization.w1 * largest[1]
+    return LEAST_GAIN * value + LEAST_OF_LARGEST * most
 
 
 @inlined
@@ -158,6 +171,18 @@ def offer(working: QueuedTour, scalarization: Scalarization, archive: Archive) -
     return insert(archive, point, working.tour)
 
 
+@inlined
+def spiked(working: QueuedTour, first: float, second: float) -> bool:
+    """Return whether a length is so far above one before that its rounding error would be too."""
+    return working.length[0] > SPIKE * first or working.length[1] > SPIKE * second
+
+
+@compiled
+def sum_afresh(working: QueuedTour, scalarization: Scalarization) -> None:
+    """Sum both lengths afresh. O(n)."""
+    working.length[0], working.length[1] = lengths(scalarization.costs, working.tour)
+
+
 @compiled
 def descend_and_offer(
     working: WorkingTour, scalarization: Scalarization, archive: Archive, threshold: float
@@ -183,14 +208,17 @@ def iterated_local_search(
     """
     w0, w1 = scalarization.w0, scalarization.w1
     value = w0 * working.length[0] + w1 * working.length[1]
-    threshold = LEAST_GAIN * value
+    threshold = least_gain(scalarization, value)
     save(working)
     for _ in range(steps):
         perturb(working, scalarization, random)
+        rounded = spiked(working, working.saved_length[0], working.saved_length[1])
         if offer_all:
             descend_and_offer(working, scalarization, archive, threshold)
         else:
             descend(working, scalarization, threshold, UNLIMITED)
+        if rounded:
+            sum_afresh(working, scalarization)
         offer(working, scalarization, archive)
         reached = w0 * working.length[0] + w1 * working.length[1]
         if reached <= value + threshold:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance
+from service.instance import Instance, least_lengths
 from service.jit import compiled, inlined
 from service.search.archive import Archive
 from service.search.candidates import CANDIDATES_PER_CITY, Scalarization
@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 WEIGHTS = 50  # at 500 cities and 0.3 s better than 100, which get too little time each, and than 35
 MENDED_WEIGHTS = 85  # where tours of an earlier front are mended: each needs less time
 LEAST_SHARE = 1e-3  # of a weight: the other length still counts at the ends, to break ties
+DECADE = 10.0  # between two of the weights that are added where costs are of very different sizes
+LEXICOGRAPHIC = 1e3  # times less than the least that decides: at the ends, only to break ties
 WIDEST_LOGIT = 7.0  # of a weight, where weights are evenly spaced by their logit
 LARGE = 500  # cities from which on they are; at 400 that is the worse in the first second
 MENDING = 100  # cities from which on earlier tours are mended by three-opt: too good for two-opt
@@ -52,10 +54,33 @@ def make_weighted_candidates(instance: Instance, n: int, mending: bool) -> Weigh
         share = np.linspace(0.0, 1.0, count).clip(LEAST_SHARE, 1 - LEAST_SHARE)
     else:
         share = 1 / (1 + np.exp(np.linspace(WIDEST_LOGIT, -WIDEST_LOGIT, count)))
-    weights = np.stack([share, 1 - share], axis=1) / np.ldexp(instance.scale, instance.shifts)
+    below, above = _extremes(instance)
+    shares = np.concatenate((below, np.stack([share, 1 - share], axis=1), above))
+    weights = shares / np.ldexp(instance.scale, instance.shifts)
     weights /= weights.sum(axis=1, keepdims=True)
-    candidates = np.zeros((count, n, min(CANDIDATES_PER_CITY, n - 1)), np.int32)
+    candidates = np.zeros((len(weights), n, min(CANDIDATES_PER_CITY, n - 1)), np.int32)
     return WeightedCandidates(weights, candidates, np.zeros(candidates.shape))
+
+
+def _extremes(instance: Instance) -> tuple[Array, Array]:
+    """Return shares to add before the least first weight and after the greatest, shape (k, 2) each.
+
+    There are none for an instance without outliers. With them, trade-offs lie further apart: an
+    outlier of one objective has to count as little as a common cost of the other, and where tours
+    need only costs far below the scale, these have to count as much.
+    """
+    larger = instance.extents / instance.scale
+    if (larger <= 1).all():
+        return np.empty((0, 2)), np.empty((0, 2))
+    least = least_lengths(instance)
+    known = np.isfinite(least) & (least > 0)
+    smaller = np.where(known, instance.scale / np.where(known, least, 1.0), 1.0).clip(1.0)
+    below, above = (
+        LEAST_SHARE * DECADE ** -np.arange(1.0, np.ceil(np.log10(ratio)) + 1)
+        for ratio in LEXICOGRAPHIC * larger * smaller[::-1]
+    )
+    few = [np.stack([ratios / (1 + ratios), 1 / (1 + ratios)], axis=1) for ratios in (below, above)]
+    return few[0][::-1], few[1][:, ::-1]
 
 
 def bisection_order(count: int) -> list[int]:

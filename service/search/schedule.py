@@ -16,7 +16,7 @@ from itertools import cycle
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance
+from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.search.archive import (
     MAX_POINTS,
@@ -34,6 +34,7 @@ from service.search.candidates import (
 from service.search.closing import closed_tours, opened_tours
 from service.search.costs import lengths, make_costs, scaled_reference
 from service.search.descents import Descents
+from service.search.enumeration import enumerate_tours
 from service.search.pareto_local_search import (
     LARGE,
     STEPS,
@@ -56,6 +57,7 @@ LARGE_DESCENTS = 25  # of a large instance: weights descended to before others f
 BLOCK = 300  # iterations between two checks of the deadline, some milliseconds
 FULL_BLOCK = 1_000  # cities beyond which iterations take longer, and fewer are a block
 EXPLORE_EVERY = 10  # turns, of which one goes to what has lately gained less
+MAX_PROVED = 12  # cities, the invented one among them, up to which convergence is proved
 PATIENCE = 1_000  # iterations per city without a new tour, after which the search has converged
 
 
@@ -111,6 +113,12 @@ class Search:
         return hypervolume(self.points(), self.reference_point)
 
     @property
+    def allowed(self) -> bool:
+        """Whether the tours found so far have no forbidden leg: either none of them has, or all."""
+        first = self.tours(np.arange(min(1, self.size)))
+        return len(first) > 0 and bool(np.isfinite(tour_lengths(self.instance, first)).all())
+
+    @property
     def size(self) -> int:
         """The number of points of the front found so far."""
         return int(self.state.archive.counts[0])
@@ -148,7 +156,8 @@ class Search:
     def run(self) -> Iterator[int]:
         """Search, and yield about every millisecond the number of iterations done since.
 
-        Ends when the search has converged.
+        Ends when the search has converged. Of few cities the front is proved then: all tours are
+        enumerated that could still be on it.
         """
         yield from self.pool_candidates()
         ahead = rounds(self.n, self.touched)
@@ -161,6 +170,9 @@ class Search:
             for _ in range(fills):
                 yield from self._fill_gaps()
         yield from self._compete()
+        if self.n <= MAX_PROVED:
+            for _ in enumerate_tours(self.state.costs, self.state.archive):
+                yield 0
 
     def _order_in_round(self, number: int) -> list[int]:
         """Return the order of the weights in a round: from earlier tours, to and fro."""

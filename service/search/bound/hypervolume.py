@@ -46,8 +46,9 @@ def hypervolume_bound(
         stop: Called at least every few ms; True ends the tightening at once.
     """
     if instance.n <= MAX_ENUMERATED:
-        points = tour_lengths(instance, exact_tours(instance))
-        return hypervolume(points, reference_point)
+        tours, complete = exact_tours(instance, deadline, stop)
+        if complete:
+            return hypervolume(tour_lengths(instance, tours), reference_point)
     share = np.linspace(0.0, 1.0, WEIGHTS)
     scale = np.ldexp(instance.scale, instance.shifts)
     weights = np.stack([share, 1 - share], axis=1) / scale

@@ -10,12 +10,14 @@ from service.jit import compiled, inlined
 from service.search.archive import Archive
 from service.search.candidates import Scalarization
 from service.search.local_search import (
-    LEAST_GAIN,
     LONGEST_BLOCK,
     draw_swap,
+    least_gain,
     offer,
     random_below,
     removes_kept_step,
+    spiked,
+    sum_afresh,
 )
 from service.search.three_opt.deepening import deepen
 from service.search.three_opt.exchanges import NONE, make_exchange, swap_adjacent, wide
@@ -107,11 +109,14 @@ def iterated_local_search(
     """
     w0, w1 = scalarization.w0, scalarization.w1
     value = w0 * working.length[0] + w1 * working.length[1]
-    threshold = LEAST_GAIN * value
+    threshold = least_gain(scalarization, value)
     save(working)
     for step in range(1, steps + 1):
         perturb(working, scalarization, random)
+        rounded = spiked(working, working.saved_length[0], working.saved_length[1])
         descend(working, scalarization, threshold, MOST_CITIES, True)
+        if rounded:
+            sum_afresh(working, scalarization)
         if step % every == 0:
             offer(working, scalarization, archive)
         reached = w0 * working.length[0] + w1 * working.length[1]
