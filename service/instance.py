@@ -105,15 +105,19 @@ class Instance:
     def reference_point(self) -> Array:
         """The default reference point of hypervolumes, shape (2,): n times the scale.
 
-        Where outliers alone take a tour half of the way there, the least that every tour has to pay
-        is added: a city far from all others then leaves room for trade-offs among these.
+        What no tour can avoid of outliers is added, so that a city far from all others leaves room
+        for trade-offs among these: once round the bounding box of a plane, or each outlier that is
+        the least cost of leaving a city or of reaching it.
         """
         common = self.n * self.scale
         if (self.extents <= self.scale).all():
             return common
-        least = least_lengths(self)
-        unavoidable = np.isfinite(least) & (self.extents > self.scale) & (2 * least > common)
-        return common + np.where(unavoidable, least, 0.0)
+        if self.coordinates is not None:
+            sides = np.ptp(self.coordinates, axis=0).reshape(OBJECTIVES, PLANE)
+            return common + np.where(self.extents > self.scale, 2 * sides.sum(axis=1), 0.0)
+        least = np.concatenate(_least_steps(self), axis=1)
+        outlying = np.isfinite(least) & (least > self.scale[:, np.newaxis])
+        return common + least.sum(axis=1, where=outlying)
 
     @cached_property
     def shifts(self) -> NDArray[np.intp]:
@@ -292,11 +296,17 @@ def least_lengths(instance: Instance) -> Array:
     assert instance.matrices is not None
     if instance.n == 1:
         return np.zeros(OBJECTIVES)
-    steps = np.where(np.eye(instance.n, dtype=bool), np.inf, instance.matrices)
-    leaving, entering = steps.min(axis=2), steps.min(axis=1)
+    leaving, entering = _least_steps(instance)
     if not instance.closed:
         leaving, entering = (np.sort(least)[:, :-1] for least in (leaving, entering))
     return np.maximum(leaving.sum(axis=1), entering.sum(axis=1))
+
+
+def _least_steps(instance: Instance) -> tuple[Array, Array]:
+    """Return the least costs of leaving each city, and of reaching it, shape (2, n) each."""
+    assert instance.matrices is not None
+    steps = np.where(np.eye(instance.n, dtype=bool), np.inf, instance.matrices)
+    return steps.min(axis=2), steps.min(axis=1)
 
 
 def _median_positive(costs: Array) -> float:
