@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-import onnxruntime
 import torch
 from numpy.typing import NDArray
 from onnx import ModelProto
@@ -15,6 +14,7 @@ from models.networks.actor import Actor, StepwiseActor
 from models.networks.pa_one import OneActor
 from models.rollout import log_likelihoods_by_city
 from models.rollout_repairs import repaired_tours
+from service.onnx_runtime import onnxruntime
 
 CITIES = (3, 7, 20, 40, 200, 1000)
 PREFERENCES = (1, 20, 100)

@@ -11,9 +11,10 @@ from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
-import onnxruntime
 from numpy.typing import NDArray
 from onnx import ModelProto, NodeProto, ValueInfoProto, helper, numpy_helper
+
+from service.onnx_runtime import onnxruntime
 
 Array = NDArray[Any]
 Both = tuple[int, int]  # a number in the first run and in the second

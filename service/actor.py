@@ -6,7 +6,6 @@ from threading import Lock
 from typing import Any, Protocol
 
 import numpy as np
-import onnxruntime
 from numpy.typing import NDArray
 
 from service.actor_info import ActorInfo, read_actor_info
@@ -14,6 +13,7 @@ from service.construction.call_estimate import CallEstimate
 from service.construction.first_tours import Constructor
 from service.errors import Cancelled
 from service.instance import PLANE, Instance
+from service.onnx_runtime import onnxruntime
 
 RELEASED = Path(__file__).parent / "actors"
 Array = NDArray[np.float64]

@@ -45,8 +45,25 @@ from service.settings import Settings
 from service.telemetry import configure_logging, log_loading, logged, trace
 
 
-def build(settings: Settings) -> FastAPI:
-    """Return the application of the service.
+class Ending:
+    """How the process of the service ends: by a signal, or because it cannot start."""
+
+    def __init__(self) -> None:
+        self._status = 0
+
+    def exit(self, _signal: int, _frame: FrameType | None) -> NoReturn:
+        """Exit: as the handler of a signal."""
+        sys.exit(self._status)
+
+    def fail(self, reason: str) -> None:
+        """Shut the service down, with the status of a start that has failed."""
+        logging.getLogger("paretour").critical("the service cannot start: %s", reason)
+        self._status = STARTUP_FAILURE
+        signal.raise_signal(signal.SIGTERM)
+
+
+def build(settings: Settings, ending: Ending) -> FastAPI:
+    """Return the application of the service, which fails where no worker gets ready.
 
     Raises:
         ValueError: There are no actors, the store cannot be opened, or an extra is not installed.
@@ -57,7 +74,7 @@ def build(settings: Settings) -> FastAPI:
     metrics = Metrics()
     roads = None if settings.roads is None else RoadClient(settings.roads, metrics.routed)
     if settings.redis_url is None:
-        store, engine = _local_engine(settings, metrics, infos, roads)
+        store, engine = _local_engine(settings, metrics, infos, roads, ending)
     else:
         store, engine = _redis_engine(settings, metrics)
     metrics.watch(engine)
@@ -84,15 +101,14 @@ def build(settings: Settings) -> FastAPI:
     )
     if settings.traces:
         trace(app)
-    if sys.stderr.isatty():
-        log_loading(app, engine.check_ready)
+    log_loading(app, engine.check_ready)
     return app
 
 
-def serve(app: FastAPI, settings: Settings) -> None:
+def serve(app: FastAPI, settings: Settings, ending: Ending) -> None:
     """Serve requests until told to stop."""
     # Without a handler, uvicorn ends by the signal and the exit status says so.
-    signal.signal(signal.SIGTERM, _exit)
+    signal.signal(signal.SIGTERM, ending.exit)
     # Loaded modules stay; a collection that goes through them blocks the event loop for 40 ms.
     gc.collect()
     gc.freeze()
@@ -110,7 +126,9 @@ def serve(app: FastAPI, settings: Settings) -> None:
     try:
         sockets = bound_sockets(settings.host, settings.port)
     except OSError as error:
-        logging.getLogger("paretour").error("cannot listen: %s", error)
+        logging.getLogger("paretour").error(
+            "cannot listen at %s, port %d: %s", settings.host, settings.port, error
+        )
         sys.exit(STARTUP_FAILURE)
     with suppress(KeyboardInterrupt):
         server.run(sockets)
@@ -180,6 +198,7 @@ def _local_engine(
     metrics: Metrics,
     actors: Mapping[str, ActorInfo],
     roads: RoadClient | None,
+    ending: Ending,
 ) -> tuple[Store, Engine]:
     """Return the store in SQLite, and the engine in this process and its children."""
     workers = WorkerPool(
@@ -189,6 +208,7 @@ def _local_engine(
         share=settings.caller_share,
         seconds=settings.request_seconds,
         on_front=metrics.planned,
+        on_failed=ending.fail,
     )
     store = SqliteStore(
         settings.store,
@@ -243,7 +263,3 @@ def _check_actors(settings: Settings) -> None:
 
 def _load_actors(settings: Settings) -> None:
     load_actors(settings.actors, settings.threads, settings.own_actors)
-
-
-def _exit(_signal: int, _frame: FrameType | None) -> NoReturn:
-    sys.exit(0)

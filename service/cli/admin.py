@@ -1,21 +1,23 @@
 """The commands of an operator: serve, work and key."""
 
 import sys
+from functools import partial
 
 import typer
 
 from service.api.auth import KeyHash, new_key
 from service.cli.configuration import load_settings, load_with
 from service.cli.errors import EXIT_STALLED, UsageError, exit_on_error, exit_with
-from service.server import build, build_worker, serve, takes_work
+from service.server import Ending, build, build_worker, serve, takes_work
 
 
 def run_serve(host: str | None, port: int | None, workers: int | None) -> None:
     """Answer requests until a signal ends it. An option that is None is left to the settings."""
     with exit_on_error():
         settings = load_settings(host=host, port=port, workers=workers)
-        app = load_with(build, settings)
-    serve(app, settings)
+        ending = Ending()
+        app = load_with(partial(build, ending=ending), settings)
+    serve(app, settings, ending)
 
 
 def run_work(workers: int | None) -> None:

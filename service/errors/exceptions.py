@@ -142,10 +142,11 @@ class _Plain(Refusal):
         super().__init__(type(self).code)
 
 
-class NoWorker(_Plain):
+class NoWorker(Refusal):
     """No worker process runs, and none can be started; it is tried again."""
 
-    code = "no-worker"
+    def __init__(self, reason: str) -> None:
+        super().__init__("no-worker", reason=reason)
 
 
 class QueueFull(_Plain):

@@ -15,7 +15,7 @@ import pytest
 from service.actor import OnnxActor
 from service.instance import Instance, step_lengths, tour_lengths
 from service.jobs.runner import load_runner
-from service.server import build
+from service.server import Ending, build
 from service.settings import Settings
 from tests.helpers.actors import Shuffler
 from tests.helpers.artifacts import by_row_sums
@@ -241,7 +241,7 @@ def test_what_is_under_way_for_too_long_at_the_end_is_refused(tmp_path: Path) ->
 
 def test_the_released_actors_plan_over_http() -> None:
     steps = np.random.default_rng(3).random((2, 9, 9)).tolist()
-    with serving(build(Settings(workers=1)), warm=False) as url:
+    with serving(build(Settings(workers=1), Ending()), warm=False) as url:
         released = httpx.get(f"{url}/actors").json()["actors"]
         digests = {facts["name"]: facts["digest"] for facts in released}
         for given, name in (

@@ -20,10 +20,10 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import numpy as np
-import onnxruntime
 import psutil
 
 from service.instance import Instance
+from service.onnx_runtime import onnxruntime
 from service.preferences import fan, from_angles
 from tests.benchmarks import long_bodies
 from tests.benchmarks.actors import ACTORS, PREFERENCES

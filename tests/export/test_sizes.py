@@ -1,7 +1,6 @@
 """Sizes in a traced graph are computed once each, and the graph gives what it gave before."""
 
 import numpy as np
-import onnxruntime
 import pytest
 import torch
 from onnx import ModelProto
@@ -9,6 +8,7 @@ from torch import Tensor, nn
 
 from export.onnx_parts import traced
 from export.sizes import with_shared_sizes
+from service.onnx_runtime import onnxruntime
 
 
 class Shapes(nn.Module):

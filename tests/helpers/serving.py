@@ -22,7 +22,7 @@ from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.limits import Limits
-from service.server import build, make_server
+from service.server import Ending, build, make_server
 from service.settings import Settings
 from tests.helpers.actors import Shuffler, info_of
 from tests.helpers.processes import UNLIMITED
@@ -127,7 +127,7 @@ def serving_released() -> Iterator[str]:
 
     The fixture `released` of tests/conftest.py is such a server for a whole session.
     """
-    with serving(build(Settings(workers=1, rate=UNLIMITED))) as address:
+    with serving(build(Settings(workers=1, rate=UNLIMITED), Ending())) as address:
         yield address
 
 

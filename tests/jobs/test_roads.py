@@ -10,7 +10,7 @@ import httpx
 import numpy as np
 import pytest
 
-from service.server import build
+from service.server import Ending, build
 from service.settings import Settings
 from tests.helpers.fake_router import (
     BEYOND,
@@ -50,7 +50,7 @@ def url(engine: FakeOsrm) -> Iterator[str]:
         router="osrm",
         router_seconds=3.0,
     )
-    with serving(build(settings)) as url:
+    with serving(build(settings, Ending())) as url:
         yield url
 
 

@@ -39,6 +39,13 @@ class Started:
 
 
 @dataclass(frozen=True)
+class Unable:
+    """From a worker: it cannot work and ends, for this reason."""
+
+    reason: str
+
+
+@dataclass(frozen=True)
 class Warm:
     """From a worker: the search is compiled."""
 

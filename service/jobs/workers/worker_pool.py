@@ -39,6 +39,7 @@ class WorkerPool:
         seconds: The time limit of a submission.
         stop_seconds: How long a stopped task may go on until its process is killed.
         on_front: Called with every front as the worker wrote it.
+        on_failed: Called with the reason where no process gets ready in three tries.
     """
 
     def __init__(  # noqa: PLR0913  all but the first are keyword-only
@@ -51,8 +52,9 @@ class WorkerPool:
         seconds: float = 90.0,
         stop_seconds: float = STOP_SECONDS,
         on_front: Callable[[FrontDocument], None] = lambda _: None,
+        on_failed: Callable[[str], None] = lambda _: None,
     ) -> None:
-        self._workers = WorkerSet(make_runner, workers, self._handle, self._requeue_from)
+        self._workers = WorkerSet(make_runner, workers, self._handle, self._requeue_from, on_failed)
         self._size = workers
         self._places = workers + queue
         self._places_of_client = places_of_client(workers, queue, share)

@@ -22,6 +22,7 @@ from service.jobs.workers.messages import (
     Found,
     Started,
     Stop,
+    Unable,
     Warm,
     WarmUp,
     decode,
@@ -48,8 +49,14 @@ def run_worker(tasks: socket, signals: socket, make_runner: MakeRunner) -> None:
     # An interrupt from a terminal goes to all processes; the service tells its workers to end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.nice(NICENESS)
+    try:
+        runner = make_runner()
+    except Exception as error:
+        with suppress(OSError):
+            tasks.sendall(encode(Unable(repr(error))))
+        raise
     with suppress(EOFError, OSError):
-        _WorkerLoop(tasks, signals, make_runner()).run()
+        _WorkerLoop(tasks, signals, runner).run()
 
 
 class _WorkerLoop:
@@ -137,7 +144,13 @@ class _WorkerLoop:
             self._end()
 
     def _warm_up(self) -> None:
-        self._runner.warm_up()
+        try:
+            self._runner.warm_up()
+        except Exception as error:
+            traceback.print_exc()
+            with suppress(OSError):
+                self._send(Unable(repr(error)))
+            os._exit(1)
         with suppress(OSError):
             self._send(Warm())
 
@@ -249,6 +262,11 @@ class WorkerProcess:
             Exception: What the function raised, or a message that cannot be decoded.
         """
         await self._inbox.deliver(on_message)
+
+    @property
+    def exit_status(self) -> int | None:
+        """The exit status of the process once `join` has returned; minus a signal's number."""
+        return self._process.exitcode
 
     def kill(self) -> None:
         """Kill the process."""

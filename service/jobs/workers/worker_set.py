@@ -13,11 +13,12 @@ from service.errors import NoWorker, WarmingUp
 from service.jobs.retries import GrowingPause
 from service.jobs.runner import MakeRunner
 from service.jobs.submission import Submission
-from service.jobs.workers.messages import Started, Warm, WarmUp
+from service.jobs.workers.messages import Started, Unable, Warm, WarmUp
 from service.jobs.workers.worker_process import WorkerProcess
 
 _SHORTEST_PAUSE = 0.5  # seconds until a process that could not even start is tried again
 _LONGEST_PAUSE = 15.0
+_MOST_TRIES = 3  # of each process before the first is ready: then a start has failed
 _LOG = logging.getLogger("paretour")
 
 
@@ -29,6 +30,7 @@ class Worker:
     started: bool = False
     warming: bool = False
     warm: bool = False
+    reason: str = ""  # why it ends, where it said so
     submissions: dict[int, Submission] = field(default_factory=dict)
 
 
@@ -40,6 +42,7 @@ class WorkerSet:
         size: How many processes there are.
         on_message: Called with each message of a worker.
         on_lost: Called with each worker that is lost, once it is out of the set.
+        on_failed: Called with the reason where no process gets ready in three tries.
 
     Attributes:
         lost: The number of processes that were lost and replaced.
@@ -52,14 +55,18 @@ class WorkerSet:
         size: int,
         on_message: Callable[[Worker, object], None],
         on_lost: Callable[[Worker], None],
+        on_failed: Callable[[str], None] = lambda _: None,
     ) -> None:
         self._make_runner = make_runner
         self._size = size
         self._on_message = on_message
         self._on_lost = on_lost
+        self._on_failed = on_failed
         self._workers: list[Worker] = []
         self._keepers: list[asyncio.Task[None]] = []
         self._failing = False
+        self._failures = 0
+        self._reason = ""
         self.lost = 0
         self.was_warm = False
 
@@ -80,7 +87,7 @@ class WorkerSet:
     def check_ready(self) -> None:
         """Raise NoWorker while none can be started, WarmingUp while none has the search."""
         if self._failing and not any(worker.started for worker in self._workers):
-            raise NoWorker
+            raise NoWorker(self._reason)
         if not any(worker.warm for worker in self._workers):
             raise WarmingUp
 
@@ -105,18 +112,30 @@ class WorkerSet:
             self.lost += 1
             _LOG.warning("worker %s was lost and is replaced", worker.process.pid)
         finally:
+            idle = not worker.submissions  # else what it ran may be what it died of
             worker.process.kill()
             self._workers.remove(worker)
             self._warm_up()
             self._on_lost(worker)
             await worker.process.join()
+        if idle and not self.was_warm:
+            status = worker.process.exit_status
+            self._fail(worker.reason or f"a process ended with status {status} while it loaded")
         return worker.started
 
     def _log_failure(self, error: Exception) -> None:
         """Log that a process cannot run, once until one has started again."""
         if not self._failing:
             _LOG.error("a worker cannot run, and is tried again", exc_info=error)
-        self._failing = True
+        self._failing, self._reason = True, repr(error)
+
+    def _fail(self, reason: str) -> None:
+        """Count a process that was lost before any was ready; the last failure ends the start."""
+        self._failing, self._reason = True, reason
+        self._failures += 1
+        _LOG.error("no worker is ready, and the last was lost: %s", reason)
+        if self._failures == _MOST_TRIES * self._size:
+            self._on_failed(reason)
 
     def _handle(self, worker: Worker, message: object) -> None:
         match message:
@@ -125,6 +144,8 @@ class WorkerSet:
                 self._failing = False
             case Warm():
                 worker.warm = self.was_warm = True
+            case Unable():
+                worker.reason = message.reason
         self._warm_up()
         self._on_message(worker, message)
 

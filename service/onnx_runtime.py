@@ -1,0 +1,13 @@
+"""ONNX Runtime, imported with its telemetry off: import it from here and nowhere else.
+
+Left to itself it writes an identifier of the device and a database of events into the user's cache
+when it is imported, and sends these events to its maker.
+"""
+
+import os
+
+os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")  # read when it is imported
+
+import onnxruntime
+
+__all__ = ["onnxruntime"]

@@ -1,0 +1,15 @@
+"""Make child processes run the code of this one, whatever the current directory holds.
+
+Python puts the current directory before all installed packages when it is started with -m or -c,
+as most children are. A folder that holds a package `service`, or any other name that is imported,
+would then stand in for the one that this process runs.
+"""
+
+import os
+import sys
+
+
+def keep_for_children() -> None:
+    """Have processes that are started from now on import what this one would import."""
+    os.environ["PYTHONSAFEPATH"] = "1"
+    os.environ["PYTHONPATH"] = os.pathsep.join(os.path.abspath(folder) for folder in sys.path)

@@ -1,0 +1,128 @@
+"""A service runs its own code in any folder, says why it cannot, and calls nobody unasked."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import httpx
+import psutil
+import pytest
+
+from tests.helpers.ports import free_port
+
+PARETOUR = str(Path(sys.executable).with_name("paretour"))
+CITIES = [[float(i), float(i * i % 7), float(i * 3 % 5), float(i)] for i in range(12)]
+PATIENCE = 300.0  # seconds, against hanging
+
+
+@contextmanager
+def served(folder: Path, **settings: str) -> Iterator[tuple[subprocess.Popen[bytes], str]]:
+    """Run the installed command in a folder, and yield its process and address."""
+    port = free_port()
+    environment = {**os.environ, **settings}
+    environment.pop("PYTHONPATH", None)
+    with subprocess.Popen(
+        [PARETOUR, "serve", "--port", str(port), "--workers", "1"],
+        cwd=folder,
+        env=environment,
+        stderr=subprocess.PIPE,
+    ) as process:
+        try:
+            yield process, f"http://127.0.0.1:{port}"
+        finally:
+            process.send_signal(signal.SIGTERM)
+            process.communicate(timeout=PATIENCE)
+
+
+def until_ok(process: subprocess.Popen[bytes], url: str) -> None:
+    ends = time.monotonic() + PATIENCE
+    while time.monotonic() < ends:
+        assert process.poll() is None, "the service has ended"
+        try:
+            if httpx.get(url).status_code == 200:
+                return
+        except httpx.TransportError:
+            pass
+        time.sleep(0.02)
+    raise TimeoutError
+
+
+@pytest.mark.usefixtures("compiled")
+@pytest.mark.parametrize("name", ["service/__init__.py", "service.py", "numpy.py", "signal.py"])
+def test_a_module_in_the_current_folder_stands_in_for_none_that_is_installed(
+    tmp_path: Path, quick_actors: dict[str, str], name: str
+) -> None:
+    module = tmp_path / name
+    module.parent.mkdir(exist_ok=True)
+    module.write_text("raise RuntimeError('not the one that is installed')")
+    with served(tmp_path, **quick_actors) as (process, url):
+        until_ok(process, f"{url}/health/ready")
+        answer = httpx.post(f"{url}/front", json={"coordinates": CITIES, "time_limit": 0.1})
+        assert answer.status_code == 200
+        # A long body is parsed in a process of its own.
+        content = answer.request.content + b" " * 2**18
+        headers = {"Content-Type": "application/json"}
+        answer = httpx.post(f"{url}/front", content=content, headers=headers, timeout=60)
+        assert answer.status_code == 200
+
+
+def test_a_service_whose_workers_cannot_load_says_why_and_ends(
+    tmp_path: Path, quick_actors: dict[str, str]
+) -> None:
+    actors = shutil.copytree(quick_actors["PARETOUR_ACTORS"], tmp_path / "actors")
+    with served(tmp_path, PARETOUR_ACTORS=str(actors)) as (process, url):
+        assert process.stderr is not None
+        until_ok(process, f"{url}/health/live")
+        shutil.rmtree(actors)  # which the server has read; each worker reads it when it has begun
+        log = process.stderr.read()  # until it ends
+        assert process.wait() == 3
+    assert b"the service cannot start" in log
+    assert b"must hold ONNX files" in log
+
+
+def connections(process: psutil.Process) -> set[str]:
+    """The addresses, not of this machine, that a process and its children talk to."""
+    found = set()
+    for each in [process, *process.children(recursive=True)]:
+        for connection in each.net_connections("inet"):
+            if connection.raddr and connection.raddr.ip not in ("127.0.0.1", "::1"):
+                found.add(f"{connection.raddr.ip}:{connection.raddr.port}")
+    return found
+
+
+def test_a_service_writes_its_cache_alone_and_connects_to_nobody(tmp_path: Path) -> None:
+    home, work = tmp_path / "home", tmp_path / "work"
+    home.mkdir()
+    work.mkdir()
+    places = {f"XDG_{kind}_HOME": str(home / kind) for kind in ("CACHE", "CONFIG", "DATA", "STATE")}
+    outward = set()
+    with served(work, HOME=str(home), TMPDIR=str(work), **places) as (process, url):
+        until_ok(process, f"{url}/health/ready")
+        for limit in (0, 0.2):
+            body = {"coordinates": CITIES, "time_limit": limit}
+            assert httpx.post(f"{url}/front", json=body).status_code == 200
+            outward |= connections(psutil.Process(process.pid))
+    written = {path for path in [*home.rglob("*"), *work.rglob("*")] if path.is_file()}
+    assert {path for path in written if "numba" not in str(path)} == set()
+    assert outward == set()
+
+
+def test_onnx_runtime_is_imported_in_one_place_with_its_telemetry_off() -> None:
+    root = Path(__file__).parents[1]
+    importing = {
+        str(path.relative_to(root))
+        for part in ("service", "models", "export", "tests")
+        for path in (root / part).rglob("*.py")
+        for line in path.read_text().splitlines()
+        if line.strip().startswith(("import onnxruntime", "from onnxruntime"))
+    }
+    assert importing == {"service/onnx_runtime.py"}
+    code = "from service.onnx_runtime import onnxruntime, os; print(os.environ)"
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True).stdout
+    assert b"'ORT_DISABLE_TELEMETRY': '1'" in shown
