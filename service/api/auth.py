@@ -38,17 +38,19 @@ _BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API ke
 
 @dataclass(frozen=True, kw_only=True)
 class KeyHash:
-    """The name of a caller and the SHA-256 of a key that it may show, in hexadecimal."""
+    """The name of a caller and the SHA-256 of a key that it may show, in hexadecimal.
+
+    No error repeats what was given: it may be a key that was put in the place of either.
+    """
 
     caller: str
     digest: str
 
     def __post_init__(self) -> None:
         if not _NAME.fullmatch(self.caller):
-            sentence = "a caller must be named by 1 to 64 letters, digits, dots, dashes"
-            raise ValueError(f"{sentence}, got {self.caller!r}")
+            raise ValueError("a caller must be named by 1 to 64 letters, digits, dots, dashes")
         if len(self.digest) != 64 or not set(self.digest) <= set("0123456789abcdef"):
-            raise ValueError(f"the hash of {self.caller}'s key must be 64 hexadecimal digits")
+            raise ValueError("the hash after CALLER: must be 64 hexadecimal digits")
 
     @classmethod
     def read(cls, text: str) -> Self:

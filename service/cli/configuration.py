@@ -11,7 +11,8 @@ from service.cli.errors import UsageError
 from service.settings import Settings, unknown_variables, variable_of
 
 T = TypeVar("T")
-_PASSWORD = re.compile(r"//[^/]*@")  # of a URL
+_PASSWORD = re.compile(r"//[^/]*@|(?<=password=)[^&\s']+", re.IGNORECASE)  # of a URL
+_SECRET = "api_keys"  # the setting of which nothing is shown
 
 
 def load_settings(**options: Any) -> Settings:
@@ -43,10 +44,15 @@ def load_with(load: Callable[[Settings], T], settings: Settings) -> T:
 def _sentence(error: ValidationError, options: Mapping[str, Any]) -> str:
     """Return what is wrong, with options and variables named as the operator wrote them."""
     return "; ".join(
-        f"{_written(fault['loc'], options)}: {fault['msg'].removeprefix('Value error, ')},"
-        f" got {_PASSWORD.sub('//***@', repr(fault['input']))}"
+        f"{_written(fault['loc'], options)}: {fault['msg'].removeprefix('Value error, ')}"
+        + ("" if fault["loc"][0] == _SECRET else f", got {_masked(repr(fault['input']))}")
         for fault in error.errors()
     )
+
+
+def _masked(text: str) -> str:
+    """Return a text with *** in place of the passwords of URLs."""
+    return _PASSWORD.sub(lambda found: "//***@" if found[0].startswith("//") else "***", text)
 
 
 def _written(location: tuple[int | str, ...], options: Mapping[str, Any]) -> str:

@@ -153,8 +153,8 @@ def test_the_header_of_a_proxy_that_is_not_trusted_counts_for_nothing() -> None:
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("dispatch", "the hash of dispatch's key must be 64 hexadecimal digits"),
-        (f"dispatch:{DISPATCH}", "the hash of dispatch's key must be 64 hexadecimal digits"),
+        ("dispatch", "the hash after CALLER: must be 64 hexadecimal digits"),
+        (f"dispatch:{DISPATCH}", "the hash after CALLER: must be 64 hexadecimal digits"),
         (f"dispatch:{DISPATCH_HASH.upper()}x", "the hash of dispatch's key"),
         (f"two words:{DISPATCH_HASH}", "a caller must be named"),
         (f":{DISPATCH_HASH}", "a caller must be named"),

@@ -68,3 +68,23 @@ def test_variables_of_the_command_and_of_orchestrators_pass(
     ):
         monkeypatch.setenv(name, value)
     assert load_settings().queue == 3
+
+
+@pytest.mark.parametrize(
+    ("variable", "value"),
+    [
+        ("PARETOUR_API_KEYS", "sesame"),
+        ("PARETOUR_API_KEYS", "open sesame:12"),
+        ("PARETOUR_API_KEYS", "us:sesame"),
+        ("PARETOUR_REDIS_URL", "redis://:sesame@"),
+        ("PARETOUR_REDIS_URL", "http://redis?password=sesame"),
+        ("PARETOUR_ROUTER_URL", "ftp://us:sesame@router"),
+    ],
+)
+def test_a_wrong_setting_that_may_hold_a_secret_is_named_without_it(
+    monkeypatch: pytest.MonkeyPatch, variable: str, value: str
+) -> None:
+    monkeypatch.setenv(variable, value)
+    with pytest.raises(UsageError, match=rf"^{variable}") as raised:
+        load_settings()
+    assert "sesame" not in str(raised.value)
