@@ -4,6 +4,7 @@ import ssl
 
 from celery import Celery
 from kombu.exceptions import OperationalError
+from redis.exceptions import ResponseError
 
 from service.cluster.records import UNAVAILABLE
 from service.cluster.transport import TRANSPORT
@@ -62,9 +63,9 @@ def send_record(celery: Celery, id: str) -> None:  # noqa: A002
     """Send the id of a record to plan. The same id may be sent twice.
 
     Raises:
-        StoreUnavailable: Redis does not answer.
+        StoreUnavailable: Redis does not answer, or the key of the messages holds something else.
     """
     try:
         celery.send_task(TASK, args=[id], task_id=id, retry_policy=_ONCE_MORE)
-    except (OperationalError, *UNAVAILABLE) as error:
+    except (OperationalError, ResponseError, *UNAVAILABLE) as error:
         raise StoreUnavailable from error

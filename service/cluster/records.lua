@@ -25,6 +25,7 @@ local function repeated(caller, key, digest)
   local earlier = key ~= '' and redis.call('GET', key_of(caller, key))
   if not earlier then return nil end
   local same, status = unpack(redis.call('HMGET', front_of(earlier), 'digest', 'status'))
+  if not same then return nil end -- it was damaged
   if same ~= digest then return 'mismatch' end
   if status ~= 'failed' then return {earlier, redis.call('HGETALL', front_of(earlier))} end
 end
@@ -72,9 +73,16 @@ function verbs.drop(_)
   redis.call('PUBLISH', TOLD, id .. ':failed')
 end
 
--- Fails where Redis takes no more data, which it tells only who would write.
+function verbs.repair(_) repair(ARGV[3]) end
+
+function verbs.messages(_) return redis.call('LLEN', ARGV[3]) end
+
+-- How many workers there are. Fails where Redis takes no more data, which it tells only who would
+-- write.
 function verbs.write(now)
   redis.call('SET', P .. 'written', now)
+  redis.call('ZREMRANGEBYSCORE', WORKERS, '-inf', now - 5)
+  return redis.call('ZCARD', WORKERS)
 end
 
 function verbs.unfinished(_)
@@ -127,7 +135,7 @@ function verbs.standing(_)
     if redis.call('HGET', front_of(id), 'status') == 'running' then working = working + 1 end
   end
   local waiting = redis.call('ZCARD', UNFINISHED) - working
-  return {waiting, working, tonumber(redis.call('GET', LOST) or 0)}
+  return {waiting, working, tonumber(redis.call('GET', LOST) or 0) or 0}
 end
 
 -- The refusal of one more record of a client, where it has no place: 'full', or how many it may have.
@@ -153,12 +161,14 @@ local function queue_turn(client, wait)
   end
 end
 
--- Admission to the queue and to the records at once.
+-- Admission to the queue and to the records at once. Who waits for the front needs a worker now.
 function verbs.submit(now)
-  local reply = repeated(unpack(ARGV, 7, 9)) or refusal(now)
+  local waits = ARGV[6] ~= ''
+  local reply = repeated(unpack(ARGV, 8, 10)) or (waits and workers_at(now) == 0 and 'alone')
+    or refusal(now)
   if reply then return reply end
-  reply = admit(now, 6)
-  redis.call('HSET', front_of(ARGV[6]), 'client', ARGV[5])
+  reply = admit(now, 7)
+  redis.call('HSET', front_of(ARGV[7]), 'client', ARGV[5])
   queue_turn(ARGV[5])
   return reply
 end

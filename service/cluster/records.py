@@ -5,6 +5,8 @@ the columns in `jobs.store` and the keys in `stored_records.lua` therefore stay 
 """
 
 import json
+import logging
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -54,6 +56,9 @@ UNAVAILABLE = (
 # How errors begin where Redis cannot write to its disk, or to enough copies.
 REFUSES_WRITES = ("MISCONF", "NOREPLICAS")
 
+# How the script fails where a key holds what is not ours, and the name of that key in JSON.
+_DAMAGED = re.compile(r'damaged ("(?:[^"\\]|\\.)*")')
+
 Argument = str | bytes | float
 _TEXTS = ("id", "caller", "request_id", "status", "key", "digest", "kind", CLIENT)
 
@@ -87,6 +92,21 @@ def record_arguments(record: Record) -> list[Argument]:
 def progress_arguments(progress: Progress, front: FrontDocument) -> list[Argument]:
     """Return the fields that a worker's report changes, as arguments of the script."""
     return _names_and_values({**front_columns(front), PROGRESS: to_json(asdict(progress))})
+
+
+def damaged_key(error: exceptions.ResponseError) -> str | None:
+    """Return the key that holds what is not ours, where that is why the script has failed."""
+    found = _DAMAGED.search(str(error))
+    return None if found is None else str(json.loads(found[1]))
+
+
+def log_repaired(key: str, error: exceptions.ResponseError) -> None:
+    """Log that a key was put aside, because no record or number of ours was in it."""
+    logging.getLogger("paretour").error(
+        "key %s of Redis is damaged, put aside as paretour:damaged and made anew: %s",
+        key.encode("unicode_escape").decode()[:200],
+        error,
+    )
 
 
 def stored_record(*hashes: Iterable[bytes]) -> StoredRecord:

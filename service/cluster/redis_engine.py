@@ -108,13 +108,13 @@ class RedisEngine:
         """Raise nothing: jobs wait in the queue until a worker has the compiled search."""
 
     async def check_ready(self) -> None:
-        """Raise ShuttingDown, or StoreUnavailable when Redis does not answer or is full."""
+        """Raise ShuttingDown, NoWorker, or StoreUnavailable if Redis does not answer or is full."""
         await self.check_open()
-        await self._store.check_writable()
+        await self._store.check_ready()
 
     async def run(self, record: Record, disconnected: Future[None]) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it."""
-        await self.submit(record)
+        await self._submit(record, waits=True)
         ending = asyncio.ensure_future(final_record(self, record))
         try:
             await asyncio.wait(
@@ -132,13 +132,17 @@ class RedisEngine:
 
     async def submit(self, record: Record) -> Record:
         """Store and begin a job at once, or return the earlier one that it is a repeat of."""
+        return await self._submit(record, waits=False)
+
+    async def _submit(self, record: Record, waits: bool) -> Record:
         await self.check_open()
-        first = await self._store.submit(record, self._queue, self._share)
+        first = await self._store.submit(record, self._queue, self._share, waits)
         if first.id == record.id:
             try:
                 await self._send_id(record.id)
             except Exception:
                 await self._store.delete(record)
+                await self._store.call("messages", QUEUE)  # which repairs them, if that is why
                 raise
         return first
 

@@ -13,6 +13,8 @@ from service.cluster.records import (
     UNAVAILABLE,
     Argument,
     StoredRecord,
+    damaged_key,
+    log_repaired,
     record_arguments,
     stored_record,
     stored_source,
@@ -21,6 +23,7 @@ from service.errors import (
     Expired,
     IdempotencyMismatch,
     NotFound,
+    NoWorker,
     QueueFull,
     ShareFull,
     StoreUnavailable,
@@ -28,6 +31,8 @@ from service.errors import (
 from service.jobs.record import Record
 from service.jobs.store import STORE_BYTES, UnreadableRecord, log_dropped
 from service.requests.task import TaskSource
+
+NOBODY = "none of the cluster was there in the last 5 s"
 
 
 class RedisStore:
@@ -67,22 +72,24 @@ class RedisStore:
         """Return the record that has the idempotency key of this one, if one has and succeeded."""
         return await self._earlier(record.caller, "repeated", *_identity(record)[1:])
 
-    async def submit(self, record: Record, queue: int, share: float) -> Record:
+    async def submit(self, record: Record, queue: int, share: float, waits: bool = False) -> Record:
         """Admit a record, if there is a place for it, which is no use to a repeat.
 
         Args:
             record: The record.
             queue: How many records may be unfinished beside those that there are workers for.
             share: Of all of these, the share of one client.
+            waits: Whether the client waits for the front, which takes a worker now.
 
         Raises:
+            NoWorker: The client waits, and no worker is there.
             QueueFull: No place is left.
             ShareFull: The client holds as many as it may.
             IdempotencyMismatch: The caller used the key for another body.
             StoreUnavailable: Redis does not answer.
         """
         await self._evict()
-        place = (queue, share, record.client or record.caller)
+        place = (queue, share, record.client or record.caller, "waits" if waits else "")
         arguments = (*place, *_identity(record), *record_arguments(record))
         return await self._earlier(record.caller, "submit", *arguments) or record
 
@@ -128,11 +135,21 @@ class RedisStore:
         except ResponseError as error:
             if str(error).startswith(REFUSES_WRITES):
                 raise StoreUnavailable from error
-            raise
+            await self._repair(error)
+            raise StoreUnavailable from error
 
-    async def check_writable(self) -> None:
-        """Raise StoreUnavailable if Redis does not answer, or takes no more data."""
-        await self.call("write")
+    async def _repair(self, error: ResponseError) -> None:
+        """Make the key anew that the script has failed at; raise the error if there is none."""
+        key = damaged_key(error)
+        if key is None:
+            raise error
+        log_repaired(key, error)
+        await self._script(args=["repair", self._clock(), key])
+
+    async def check_ready(self) -> None:
+        """Raise StoreUnavailable if Redis takes no more data, NoWorker if no worker is there."""
+        if await self.call("write") == 0:
+            raise NoWorker(NOBODY)
 
     async def find(self, verb: str, *arguments: str) -> StoredRecord:
         """Return the record that the verb `get` or `latest` finds.
@@ -205,11 +222,14 @@ def _check_reply(reply: Any) -> None:
         IdempotencyMismatch: The key is of another body.
         QueueFull: No place is left.
         ShareFull: The client holds as many as it may.
+        NoWorker: The client would wait for a worker, and none is there.
     """
     match reply:
         case b"mismatch":
             raise IdempotencyMismatch
         case b"full":
             raise QueueFull
+        case b"alone":
+            raise NoWorker(NOBODY)
         case int(places):
             raise ShareFull(places)

@@ -1,5 +1,18 @@
 -- How records are stored, found by their callers, counted, and dropped. records.lua follows.
 
+-- A call that fails because a key holds what is not ours fails with the name of the key.
+local server = redis
+local redis = {}
+function redis.call(...)
+  local reply = server.pcall(...)
+  if type(reply) ~= 'table' or not reply.err then return reply end
+  local key = select(2, ...)
+  if string.find(reply.err, 'WRONGTYPE', 1, true) or string.find(reply.err, 'ERR value is not', 1, true) then
+    error('damaged ' .. cjson.encode(key) .. ': ' .. reply.err)
+  end
+  return server.call(...) -- which fails again, as it would have without this
+end
+
 local P = 'paretour:'
 local NUMBER, LOST = P .. 'number', P .. 'lost'
 local UNFINISHED, FINISHED, GONE = P .. 'unfinished', P .. 'finished', P .. 'gone'
@@ -41,10 +54,9 @@ local function forget(id, known)
   local caller, key, size = unpack(redis.call('HMGET', front_of(id), 'caller', 'key', 'size'))
   local client = client_of(id)
   caller, size = known or caller, tonumber(size)
-  redis.call('DEL', front_of(id), work_of(id))
+  if caller then redis.call('ZREM', all_of(caller), id) end
   redis.call('ZREM', UNFINISHED, id)
   local finished = redis.call('ZREM', FINISHED, id) == 1
-  if caller then redis.call('ZREM', all_of(caller), id) end
   if finished and client then
     redis.call('ZREM', owned_by(client), id)
     if size then count(client, -1, -size) end
@@ -52,6 +64,8 @@ local function forget(id, known)
   if key and redis.call('GET', key_of(caller, key)) == id then
     redis.call('DEL', key_of(caller, key))
   end
+  -- Last, so that it is still there where a key before holds what is not ours.
+  redis.call('DEL', front_of(id), work_of(id))
 end
 
 -- The bytes of values, without the names that stand before each.
@@ -67,8 +81,8 @@ end
 
 -- The source comes as the fields `work`.
 local function put(now, id, fields, work)
-  forget(id)
   local number = redis.call('INCR', NUMBER)
+  forget(id)
   redis.call('HSET', front_of(id), 'number', number, 'kept', now, unpack(fields))
   local status, caller, key =
     unpack(redis.call('HMGET', front_of(id), 'status', 'caller', 'key'))
@@ -141,7 +155,7 @@ local function next_of_most_bytes()
   return next_of_most_entries()
 end
 
-local function total() return tonumber(redis.call('GET', TOTAL) or 0) end
+local function total() return tonumber(redis.call('GET', TOTAL) or 0) or 0 end
 
 local function drop_source(id)
   local source = size_of(redis.call('HGETALL', work_of(id)))
@@ -164,6 +178,33 @@ local function drop_too_large(bytes)
       if size_of_record(id) > bytes then drop(id) end
     end
   end
+end
+
+-- Enter all records anew in the lists that they are found by.
+local function list_again()
+  local last = 0
+  for _, key in ipairs(redis.call('KEYS', front_of('*'))) do
+    if server.call('TYPE', key).ok == 'hash' then
+      local id = string.sub(key, #front_of('') + 1)
+      local number, status, caller = unpack(redis.call('HMGET', key, 'number', 'status', 'caller'))
+      number = tonumber(number) or 0
+      last = math.max(last, number)
+      if status and is_finished(status) then
+        redis.call('ZADD', FINISHED, number, id)
+        if caller then redis.call('ZADD', all_of(caller), number, id) end
+      elseif status then
+        redis.call('ZADD', UNFINISHED, number, id)
+      end
+    end
+  end
+  if tonumber(redis.call('GET', NUMBER) or 0) < last then redis.call('SET', NUMBER, last) end
+  redis.call('DEL', COUNTED)
+end
+
+-- Put a key that holds what is not ours aside, and make it anew from the records.
+local function repair(key)
+  if redis.call('EXISTS', key) == 1 then redis.call('RENAME', key, P .. 'damaged') end
+  list_again()
 end
 
 local function make_way(now, max_age, entries, tombstones, bytes)

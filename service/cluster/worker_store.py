@@ -9,6 +9,8 @@ from typing import Any
 from redis import Redis
 from redis.backoff import NoBackoff
 from redis.commands.core import Script
+from redis.exceptions import ConnectionError as Unavailable
+from redis.exceptions import ResponseError
 from redis.retry import Retry
 
 from service.cluster.celery_app import QUEUE
@@ -20,6 +22,8 @@ from service.cluster.records import (
     UNAVAILABLE,
     Argument,
     StoredRecord,
+    damaged_key,
+    log_repaired,
     progress_arguments,
     record_arguments,
     stored_record,
@@ -118,7 +122,15 @@ class WorkerStore:
             return self._call(verb, *arguments)
 
     def _call(self, verb: str, *arguments: Argument) -> Any:
-        return self._script(args=[verb, time(), *arguments])
+        try:
+            return self._script(args=[verb, time(), *arguments])
+        except ResponseError as error:
+            key = damaged_key(error)
+            if key is None:
+                raise
+            log_repaired(key, error)
+            self._script(args=["repair", time(), key])
+            raise Unavailable(str(error)) from error  # and so the call is tried again
 
 
 _LOST_AFTER = LEASE + 1  # seconds until a lost process is no longer counted

@@ -131,7 +131,7 @@ PROBLEMS: Mapping[str, Problem] = {
         503, "all bodies under way must fit {limit} bytes: ask again", (*_PLANS, _STORED)
     ),
     "no-worker": Problem(
-        503, "a worker must be running, and none is: {reason}", ("GET /health/ready",)
+        503, "a worker must be running, and none is: {reason}", ("GET /health/ready", *_PLANS)
     ),
     "queue-full": Problem(
         503, "the queue must have a free place, and all are taken: ask again", _PLANS

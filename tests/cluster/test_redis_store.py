@@ -181,6 +181,7 @@ def test_a_redis_that_takes_no_more_is_unavailable(tmp_path: Path) -> None:
             store, engine = connect(redis.url, entries=9, max_age=60, queue=1, seconds=60)
             await store.put(record("a"))
             connection = redis_client.Redis.from_url(redis.url)
+            WorkerStore(redis.url, "a worker").send_heartbeat()
             for refuse, accept in (
                 (("maxmemory", 1), ("maxmemory", 0)),
                 (("min-replicas-to-write", 1), ("min-replicas-to-write", 0)),
