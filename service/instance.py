@@ -39,16 +39,17 @@ class Instance:
         coordinates: Shape (n, 4), plane 1 in columns 0-1 and plane 2 in columns 2-3. Cost m is the
             Euclidean distance in plane m.
         matrices: Shape (2, n, n). Cost m of going from i to j is matrices[m, i, j]. The diagonal
-            is ignored.
+            is ignored. Infinity means that there is no way from i to j: such a leg is forbidden,
+            and is made infinite under the other objective too.
         closed: Whether tours return to where they began. If not, they are open routes.
         start: The city at which every open route starts; None leaves it free.
         end: The city at which every open route ends; None leaves it free.
 
     Raises:
-        InvalidInstance: A shape is wrong, there is no city, a number is not finite, a cost is
-            negative, costs are so large that the length of a tour could overflow, a matrix has
-            costs so far apart that no double holds both in one unit, an end is no city or that of
-            closed tours, or a route of several cities starts where it ends.
+        InvalidInstance: A shape is wrong, there is no city, a coordinate is not finite, a cost is
+            no number or negative, costs are so large that the length of a tour could overflow, a
+            matrix has costs so far apart that no double holds both in one unit, an end is no city
+            or that of closed tours, or a route of several cities starts where it ends.
     """
 
     coordinates: Array | None = None
@@ -87,8 +88,8 @@ class Instance:
     def scale(self) -> Array:
         """The unit of each objective, shape (2,), in which the network and angles work.
 
-        That is the longer side of the plane's bounding box, or the largest entry of the matrix; 1
-        where this is 0.
+        That is the longer side of the plane's bounding box, or the largest finite entry of the
+        matrix; 1 where this is 0.
         """
         return np.where(self._extents > 0, self._extents, 1.0)
 
@@ -120,7 +121,7 @@ class Instance:
 
     @property
     def scaled_matrices(self) -> Array:
-        """Costs, shape (2, n, n), each in units of its objective's scale."""
+        """Costs, shape (2, n, n), each in units of its objective's scale; infinite ones stay so."""
         if self.matrices is not None:
             return self.matrices / self.scale[:, np.newaxis, np.newaxis]
         steps = self.scaled_coordinates[:, np.newaxis] - self.scaled_coordinates
@@ -132,7 +133,7 @@ class Instance:
             with np.errstate(over="ignore"):
                 return np.ptp(self.coordinates, axis=0).reshape(OBJECTIVES, PLANE).max(axis=1)
         assert self.matrices is not None
-        return self.matrices.max(axis=(1, 2))
+        return self.matrices.max(axis=(1, 2), where=np.isfinite(self.matrices), initial=0.0)
 
     @property
     def ends(self) -> RouteEnds:
@@ -149,7 +150,8 @@ class Instance:
 def tour_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
     """Return the lengths, shape (k, 2), of tours, shape (k, n), in the instance's units.
 
-    Of closed tours the step from the last city back to the first is included. O(k n).
+    Of closed tours the step from the last city back to the first is included. Tours with a
+    forbidden leg are infinitely long. O(k n).
 
     >>> corners = np.array([[0, 0, 0, 0], [3, 0, 0, 1], [3, 4, 2, 1], [0, 4, 2, 0]])
     >>> square = Instance(coordinates=corners)
@@ -196,7 +198,8 @@ def least_lengths(instance: Instance) -> Array:
 
     In a plane a tour goes from one side of the bounding box to the other, and back where it is
     closed. Of a matrix it has an entry in each row and in each column, none of them on the
-    diagonal; an open route has none in one row and in one column.
+    diagonal; an open route has none in one row and in one column. The lengths are infinite where
+    these conditions already leave no tour without a forbidden leg.
 
     >>> corners = np.array([[0, 0, 0, 0], [3, 0, 0, 1], [3, 4, 2, 1], [0, 4, 2, 0]])
     >>> least_lengths(Instance(coordinates=corners))
@@ -264,12 +267,18 @@ def _checked_matrices(matrices: Array | None) -> Array:
             f"matrices must have shape ({OBJECTIVES}, n, n) with n at least 1, got {shape}"
         )
     matrices[:, np.arange(shape[1]), np.arange(shape[1])] = 0.0
-    if not np.isfinite(matrices).all():
-        raise InvalidInstance("costs must be finite")
+    if np.isnan(matrices).any():
+        m, i, j = np.argwhere(np.isnan(matrices))[0]
+        raise InvalidInstance(
+            f"costs must be numbers, got NaN from city {i} to {j} in matrix {m}; where there is no "
+            "way, write null in JSON and infinity in an array"
+        )
     if (matrices < 0).any():
         raise InvalidInstance(f"costs must not be negative, got {matrices.min():g}")
+    matrices[:, np.isinf(matrices).any(axis=0)] = np.inf
     for matrix in matrices:
-        least, largest = matrix.min(where=matrix > 0, initial=np.inf), matrix.max()
+        least = matrix.min(where=matrix > 0, initial=np.inf)
+        largest = matrix.max(where=np.isfinite(matrix), initial=0.0)
         if least < largest * MOST_SPREAD:
             raise InvalidInstance(
                 "positive costs of an objective must lie within a factor of 1e301 of each other, "

@@ -62,7 +62,8 @@ def test_no_tour_is_shorter_than_the_least_lengths(kind: str, ends: str, n: int,
         ({"matrices": np.zeros((1, 3, 3))}, r"got \(1, 3, 3\)"),
         ({"matrices": np.zeros((2, 0, 0))}, "n at least 1"),
         ({"matrices": -np.ones((2, 2, 2))}, "not be negative, got -1"),
-        ({"matrices": np.full((2, 2, 2), np.inf)}, "costs must be finite"),
+        ({"matrices": np.full((2, 2, 2), np.nan)}, "got NaN from city 0 to 1 in matrix 0; .* null"),
+        ({"matrices": np.full((2, 2, 2), -np.inf)}, "not be negative, got -inf"),
         ({"matrices": np.full((2, 2, 2), 1e308)}, r"got costs up to 1e\+308"),
         ({"coordinates": SQUARE, "start": 1}, "a closed tour has no start, got 1"),
         ({"coordinates": SQUARE, "end": 0}, "a closed tour has no end, got 0"),
@@ -74,6 +75,28 @@ def test_no_tour_is_shorter_than_the_least_lengths(kind: str, ends: str, n: int,
 def test_what_is_not_an_instance_is_refused(given: dict[str, np.ndarray], sentence: str) -> None:
     with pytest.raises(InvalidInstance, match=sentence):
         Instance(**given)
+
+
+def test_a_leg_that_is_infinite_under_one_objective_is_forbidden() -> None:
+    costs = np.arange(1.0, 19.0).reshape(2, 3, 3)
+    costs[0, 0, 1] = np.inf
+    costs[1, 2, 2] = np.nan  # on the diagonal anything is disregarded
+    instance = Instance(matrices=costs)
+    assert instance.matrices is not None
+    assert instance.matrices[:, 0, 1].tolist() == [np.inf, np.inf]
+    assert np.isfinite(instance.matrices).sum() == 16
+    assert instance.scale.tolist() == [8, 17]
+    tours = np.array([[0, 1, 2], [0, 2, 1]])
+    assert tour_lengths(instance, tours).tolist() == [[np.inf, np.inf], [15, 42]]
+    assert (instance.scaled_matrices[:, 0, 1] == np.inf).all()
+
+
+def test_the_least_lengths_are_infinite_where_a_city_has_no_leg_out() -> None:
+    costs = np.ones((2, 3, 3))
+    costs[:, 1] = np.inf
+    assert (least_lengths(Instance(matrices=costs)) == np.inf).all()
+    assert least_lengths(Instance(matrices=costs, closed=False)).tolist() == [2, 2]
+    assert Instance(matrices=np.full((2, 3, 3), np.inf)).scale.tolist() == [1, 1]
 
 
 def test_the_scale_is_the_longer_side_of_each_plane() -> None:
