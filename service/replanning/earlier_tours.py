@@ -5,13 +5,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance, tour_lengths
+from service.instance import Instance, step_lengths, tour_steps
 from service.jit import compiled
 from service.search.closing import closed_tours, opened_tours
 from service.search.costs import Costs, make_costs, step_costs
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
+_LONGER = 2.0  # scaled, than any leg that is allowed
+_MOST = 1e300  # of a leg's cost, where it is forbidden
 MOST_TRIED = 2**25  # places of cities that are inserted, each in some ten nanoseconds
 
 
@@ -65,7 +67,7 @@ def completed(instance: Instance, earlier: EarlierTours) -> Tours:
     for the driven one. O(m n (n - k)).
     """
     costs = make_costs(instance)
-    lengths = tour_lengths(instance, earlier.tours) / instance.scale
+    lengths = _bounded_lengths(instance, earlier.tours)
     weights = _weights(lengths)
     routes = _better_way_round(instance, earlier.tours, (lengths * weights).sum(axis=1), weights)
     known = np.isin(np.arange(instance.n), routes[0])
@@ -89,6 +91,12 @@ def touched_cities(instance: Instance, earlier: EarlierTours, tours: Tours) -> N
     return np.union1d(earlier.touched, tours[beside])
 
 
+def _bounded_lengths(instance: Instance, tours: Tours) -> Array:
+    """Return the scaled lengths of tours, shape (m, 2), with a finite one for a forbidden leg."""
+    steps = step_lengths(instance, *tour_steps(instance, tours)) / instance.scale
+    return np.where(np.isinf(steps), _LONGER, steps).sum(axis=1)
+
+
 def _weights(lengths: Array) -> Array:
     """Return weights of scaled lengths, shape (m, 2), by the rank of each route in balance."""
     rank = (lengths[:, 0] - lengths[:, 1]).argsort(kind="stable").argsort(kind="stable")
@@ -104,7 +112,7 @@ def _better_way_round(instance: Instance, routes: Tours, sums: Array, weights: A
     end = routes.shape[1] - int(instance.end is not None)
     turned = routes.copy()
     turned[:, begin:end] = routes[:, begin:end][:, ::-1]
-    better = (tour_lengths(instance, turned) / instance.scale * weights).sum(axis=1) < sums
+    better = (_bounded_lengths(instance, turned) * weights).sum(axis=1) < sums
     better[0] = False
     return np.where(better[:, np.newaxis], turned, routes)
 
@@ -124,8 +132,11 @@ def insert_cheapest(costs: Costs, tours: NDArray[np.int32], begun: int, weights:
                     step_costs(costs, city, after),
                     step_costs(costs, before, after),
                 )
-                more = weights[k, 0] * (to[0] + on[0] - direct[0])
-                more += weights[k, 1] * (to[1] + on[1] - direct[1])
+                more = 0.0
+                for m in range(2):
+                    # Infinite costs have no difference, and no product with a weight of 0.
+                    extra = min(to[m], _MOST) + min(on[m], _MOST) - min(direct[m], _MOST)
+                    more += weights[k, m] * extra
                 if more < least:
                     least, place = more, i + 1
             for i in range(size, place, -1):

@@ -3,7 +3,7 @@
 Every function raises a refusal that points at the row or the number at fault.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -68,6 +68,13 @@ def cost_matrix(rows: CostRows, name: str) -> Array:
         raise invalid(f"{name}/{i}/{j}", f"{demand}, got {show(float(matrix[i, j]))}")
     matrix[null] = np.inf
     return matrix
+
+
+def costs_array(costs: Sequence[float | None]) -> Array:
+    """Return finite costs as an array, shape (n,), infinite where they have None."""
+    array = np.array(costs, dtype=np.float64)
+    array[np.isnan(array)] = np.inf
+    return array
 
 
 def rectangular_array(rows: AnyRows, name: str) -> Array:
