@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from service.construction.first_tours import MIN_CONSTRUCTED, SHARE, Constructor, construct
 from service.construction.repairs import TOURS_REPAIRED, repairs_worth
 from service.errors import Cancelled, NoTour, Obstacle
-from service.forbidden_legs import tightest
 from service.instance import Instance, tour_lengths
 from service.pareto import best_subset, hypervolume, nondominated, selection_seconds
 from service.preferences import angles
 from service.search.bound.hypervolume import hypervolume_bound
 from service.search.enumeration import MAX_ENUMERATED
+from service.search.forbidden_legs import tightest
 from service.search.improve import Progress, SearchResult, Termination, improve
 from service.search.open_routes import oriented, plain_tours, rotated
 

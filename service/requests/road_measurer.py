@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 from service.errors import Cancelled
-from service.forbidden_legs import check_ways
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.stops import UnmeasuredStops
 from service.requests.task import Task, TaskSource
 from service.roads.client import RoadClient
+from service.search.forbidden_legs import check_ways
 
 _POLL_SECONDS = 0.05  # between two questions whether to stop
 

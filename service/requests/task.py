@@ -8,7 +8,6 @@ from typing import Literal
 from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage
 from service.errors import CityNames, Refusal
-from service.forbidden_legs import check_legs
 from service.instance import Instance, Kind, least_lengths
 from service.planner import PlanOptions
 from service.replanning.earlier_tours import EarlierTours
@@ -29,6 +28,7 @@ from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.rest_request import RestOfMapRequest, RestRequest
 from service.requests.schemas import Geometry, PlanFields
 from service.requests.stops import Labels, UnmeasuredStops
+from service.search.forbidden_legs import check_legs
 
 _BRIEF = 5000  # preferences times cities
 TaskKind = Literal["front", "coverage", "fleet", "replan", "replan-coverage"]

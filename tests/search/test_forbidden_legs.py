@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from service.errors import CityNames, NoTour
-from service.forbidden_legs import check_legs, check_ways, find_obstacles, tightest
 from service.instance import Instance, RouteEnds
+from service.search.forbidden_legs import check_legs, check_ways, find_obstacles, tightest
 
 ENDS = st.sampled_from(("closed", "free", "start", "end", "both"))
 
