@@ -97,6 +97,23 @@ def test_what_is_plainly_impossible_is_refused_at_once_and_named(client: httpx.C
     assert refused["errors"] == [{"detail": sentence, "pointer": "/stops/3"}]
 
 
+def test_a_job_that_finds_no_tour_fails_with_the_reason(client: httpx.Client) -> None:
+    spider = np.full((2, 7, 7), np.inf)  # three legs of two cities, of which a route has two
+    for origin, destination in ((0, 1), (1, 2), (0, 3), (3, 4), (0, 5), (5, 6)):
+        spider[:, origin, destination] = spider[:, destination, origin] = 1.0
+    request = {"matrices": as_json(spider), "closed": False, "start": None, "time_limit": 0.2}
+    accepted = client.post("/front", json=request, headers={"Prefer": "respond-async"})
+    assert accepted.status_code == 202
+    events = client.get(f"/front/{accepted.json()['id']}/events").text
+    front = client.get(f"/front/{accepted.json()['id']}").json()
+    assert (front["status"], front["problem"]["code"]) == ("failed", "no-plan")
+    assert front["problem"]["detail"] == (
+        "no tour without a forbidden leg exists: all were tried; the fewest ways lead to and from"
+        " cities 2, 4 and 6"
+    )
+    assert '"status":"failed"' in events
+
+
 def test_the_network_alone_never_takes_a_forbidden_leg(client: httpx.Client) -> None:
     ring = np.full((2, 30, 30), np.inf)
     ring[:, np.arange(30), np.arange(1, 31) % 30] = 1.0

@@ -31,6 +31,7 @@ from tests.helpers.fake_router import (
     replying,
     road_costs,
     sleeping,
+    without_ways,
 )
 from tests.helpers.ports import free_port
 
@@ -124,24 +125,9 @@ def test_stops_without_any_way_are_named() -> None:
     places = _locations(60)
     places[7, 0] = BEYOND + 1
 
-    def without_order_55(fake: FakeOsrm, path: str) -> Reply | None:
-        if "distance" not in path:
-            return None
-        status, body, headers = fake.answer(path)
-        document, lon = json.loads(body), f"{places[55, 0]:.6f}"
-        names = path.partition("?")[0].rpartition("/")[2].split(";")
-        query = parse_qs(path.partition("?")[2])
-        rows, columns = (
-            [names[int(i)].startswith(lon) for i in query[each][0].split(";")]
-            for each in ("sources", "destinations")
-        )
-        for table in (document["durations"], document["distances"]):
-            for row, is_it in zip(table, rows, strict=True):
-                for j, also in enumerate(columns):
-                    row[j] = None if is_it or also else row[j]
-        return status, json.dumps(document).encode(), headers
-
-    with fake_osrm(without_order_55) as fake, pytest.raises(NoRoad) as refused:
+    forgotten = np.zeros((60, 60), np.bool_)
+    forgotten[55] = forgotten[:, 55] = True
+    with fake_osrm(without_ways(places, forgotten)) as fake, pytest.raises(NoRoad) as refused:
         _asked(fake, places)
     document = refused.value.document("")
     assert (document["status"], document["code"]) == (422, "no-road")
