@@ -15,10 +15,13 @@ from numpy.typing import NDArray
 
 from service.construction.first_tours import MIN_CONSTRUCTED, SHARE, Constructor, construct
 from service.construction.repairs import TOURS_REPAIRED, repairs_worth
+from service.errors import Cancelled, NoTour, Obstacle
 from service.instance import Instance, tour_lengths
 from service.pareto import best_subset, hypervolume, nondominated, selection_seconds
 from service.preferences import angles
 from service.search.bound.hypervolume import hypervolume_bound
+from service.search.enumeration import MAX_ENUMERATED
+from service.search.forbidden_legs import tightest
 from service.search.improve import Progress, SearchResult, Termination, improve
 from service.search.open_routes import oriented, plain_tours, rotated
 
@@ -144,7 +147,8 @@ def plan(
             that gives the best front so far of at most so many tours.
 
     Raises:
-        Cancelled: The constructor was told to stop before it had a tour.
+        Cancelled: It was told to stop before it had a tour.
+        NoTour: Every tour that was found has a forbidden leg.
     """
     clock = _Clock()
     deadline = time.monotonic() + options.time_limit
@@ -160,6 +164,8 @@ def plan(
     report_front = partial(_report_front, instance, options, len(constructed), report)
     found = _improved(instance, first, options, deadline, stop, report_front)
     clock.ends("improvement")
+    if not len(found.points):
+        raise Cancelled if stop() else _no_tour(instance, options, found)
     gained = None if before is None else hypervolume(found.points, reference_point) - before
     chosen = best_subset(found.points, options.size, reference_point, stop)
     if options.choose_again is not None:
@@ -258,6 +264,19 @@ def _report_front(
         )
 
     report(progress, best_front)
+
+
+def _no_tour(instance: Instance, options: PlanOptions, result: SearchResult) -> NoTour:
+    """Return the refusal of an instance of which no tour without a forbidden leg was found."""
+    if options.time_limit == 0:
+        found = "was built by the network: a time_limit above 0 has a search look for one"
+    elif instance.n <= MAX_ENUMERATED and result.terminated == "converged":
+        found = "exists: all were tried"
+    else:
+        found = f"was found in {options.time_limit:g} s"
+    fewest = "the fewest ways lead to and from {cities}"
+    sentence = f"no tour without a forbidden leg {found}; {fewest}"
+    return NoTour([Obstacle(sentence, tightest(instance))])
 
 
 def _as_reported(instance: Instance, start: int, tours: NDArray[np.integer]) -> NDArray[np.integer]:

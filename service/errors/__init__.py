@@ -29,11 +29,13 @@ from service.errors.roads import (
     RouterUnusable,
     StreetsTooLong,
 )
+from service.errors.tours import CityNames, NoTour, Obstacle
 
 __all__ = [
     "MOST_FAULTS",
     "PROBLEMS",
     "Cancelled",
+    "CityNames",
     "DeadlineExceeded",
     "Expired",
     "Fault",
@@ -41,8 +43,10 @@ __all__ = [
     "InvalidCoverage",
     "InvalidInstance",
     "NoRoad",
+    "NoTour",
     "NoWorker",
     "NotFound",
+    "Obstacle",
     "OffRoad",
     "QueueFull",
     "Refusal",

@@ -15,6 +15,7 @@
     │   ├── DeadlineExceeded      a task took too long before it had a front
     │   ├── IdempotencyMismatch   a key was used for another body
     │   ├── OffRoad, NoRoad       stops without a road, or a way to another; see `roads.py`
+    │   ├── NoTour                no tour is without a forbidden leg; see `tours.py`
     │   ├── RouterUnavailable, RouterUnusable, RouterTooSlow
     │   ├── StreetsTooLong        lines along streets are too many, or too long
     │   └── StoreUnavailable      the store does not answer

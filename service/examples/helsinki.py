@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from service.errors import NoRoad, OffRoad
 from service.roads.client import RoadClient
 from service.roads.great_circle import great_circle_distances
+from service.roads.reachability import missing_ways
 from service.roads.router import Line, RouterSettings
 from service.roads.trails import Leg
 
@@ -43,7 +44,7 @@ def helsinki(router_url: str) -> dict[str, Any]:
 async def reachable_places(router_url: str, n: int, seed: int) -> Array:
     """Return n places, shape (n, 2), by road in reach of each other.
 
-    They are the first of random ones without those that refusals name.
+    They are the first of random ones without those that lack a road, or a way to another.
     """
     rng = np.random.default_rng(seed)
     places = rng.uniform(SOUTH_WEST, NORTH_EAST, (n + n // 4 + 10, 2)).round(5)
@@ -51,13 +52,14 @@ async def reachable_places(router_url: str, n: int, seed: int) -> Array:
     try:
         while True:
             try:
-                await client.costs(places, _ids(len(places)))
+                costs = await client.costs(places, _ids(len(places)))
+                named = {way.blamed for way in missing_ways(np.isinf(costs.seconds))}
             except (NoRoad, OffRoad) as refused:
                 pointers = "".join(fault.pointer or "" for fault in refused.errors)
                 named = {int(index) for index in re.findall(r"\d+", pointers)}
-                places = np.delete(places, sorted(named), axis=0)
-            else:
+            if not named:
                 return places[:n]
+            places = np.delete(places, sorted(named), axis=0)
     finally:
         await client.close()
 

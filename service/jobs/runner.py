@@ -3,7 +3,6 @@
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Protocol
 
@@ -13,8 +12,8 @@ from numpy.typing import NDArray
 from service.actor import NamedActor, load_actors
 from service.coverage.coverage import Coverage
 from service.coverage.survey import CoveragePath, Survey, survey
-from service.errors import Cancelled
-from service.instance import Instance, cumulated_lengths, least_lengths
+from service.errors import Cancelled, NoTour
+from service.instance import Instance, cumulated_lengths
 from service.jobs.compiled_code import warm_up
 from service.jobs.fleets.fleet_run import run_fleet
 from service.jobs.fleets.robot_run import run_robots
@@ -22,11 +21,11 @@ from service.jobs.front_document import FrontDocument, encode_front
 from service.planner import Front, plan
 from service.replanning.replan import replan
 from service.requests.fleets.subject import UnmeasuredFleet
-from service.requests.limits import Limits, check_reference_point, within_network
+from service.requests.limits import Limits, within_network
 from service.requests.maps.robots import SharedCoverage
 from service.requests.road_measurer import BlockingMeasurer, needs_roads
 from service.requests.stops import UnmeasuredStops, make_instance
-from service.requests.task import Task, TaskSource, parse_task
+from service.requests.task import Task, TaskSource, check_instance, parse_task
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 from service.search.improve import Progress
@@ -114,7 +113,7 @@ class TaskRunner:
     ) -> FrontDocument:
         began = time.perf_counter()
         instance = make_instance(stops)
-        check_reference_point(task.options, partial(least_lengths, instance))
+        check_instance(task, instance)
         timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
         return self._plan_instance(task, instance, stop, report, timings)
 
@@ -138,7 +137,7 @@ class TaskRunner:
     ) -> FrontDocument:
         began = time.perf_counter()
         surveyed = survey(coverage, self.limits.most_places(shared=False), stop)
-        check_reference_point(task.options, partial(least_lengths, surveyed.instance))
+        check_instance(task, surveyed.instance)
         survey_seconds = time.perf_counter() - began
         places = surveyed.places.tolist()
         options = within_network(task.options, surveyed.instance.n, self.limits)
@@ -181,9 +180,12 @@ class TaskRunner:
             )
 
         actor = self.actors[task.actor]
-        if task.earlier is not None:
-            return replan(actor, instance, task.options, task.earlier, stop, report_encoded)
-        return plan(actor, instance, task.options, stop, report_encoded)
+        try:
+            if task.earlier is not None:
+                return replan(actor, instance, task.options, task.earlier, stop, report_encoded)
+            return plan(actor, instance, task.options, stop, report_encoded)
+        except NoTour as refusal:
+            raise refusal.named(task.city_names) from None
 
     def _identity(self, task: Task) -> dict[str, str]:
         return self.actors[task.actor].info.identity

@@ -104,7 +104,8 @@ def _keeping(
     instance: Instance, front: Front, first: Tours, earlier: EarlierTours, size: int
 ) -> Front:
     """Return the best of a front and the first tours that keep enough of the driven tour."""
-    tours = np.concatenate((first, front.tours))
+    allowed = np.isfinite(tour_lengths(instance, first)).all(axis=1)
+    tours = np.concatenate((first[allowed], front.tours))
     kept = kept_shares(instance, tours, earlier.driven)
     enough = kept >= earlier.min_kept - _ROUNDING
     if not enough.any():

@@ -3,39 +3,40 @@
 Every function raises a refusal that points at the row or the number at fault.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import GetPydanticSchema, ValidationInfo
-from pydantic_core import to_json
 from pydantic_core.core_schema import with_info_after_validator_function
 
-from service.requests.schemas import ArrayRows
-from service.requests.validation import invalid
+from service.requests.validation import invalid, show
 
 Array = NDArray[np.float64]
 Rows = list[list[float]]
+CostRows = list[list[float | None]]
+AnyRows = TypeVar("AnyRows", Rows, CostRows)
 
 
-def array_field(parse: Callable[[Rows, str], Array]) -> GetPydanticSchema:
-    """Return the schema of a field of rows that is parsed with its name into an array."""
+def array_field(parse: Callable[[AnyRows, str], Array], rows_type: Any) -> GetPydanticSchema:
+    """Return the schema of a field of rows of a type, parsed with its name into an array."""
 
-    def parse_named(rows: Rows, info: ValidationInfo) -> Array:
+    def parse_named(rows: AnyRows, info: ValidationInfo) -> Array:
         return parse(rows, str(info.field_name))
 
     return GetPydanticSchema(
-        lambda _, handler: with_info_after_validator_function(parse_named, handler(ArrayRows))
+        lambda _, handler: with_info_after_validator_function(parse_named, handler(rows_type))
     )
 
 
-def stack_matrices(matrices: list[Rows]) -> Array:
-    """Return one matrix for each objective as an array, shape (2, n, n).
+def stack_matrices(matrices: list[CostRows]) -> Array:
+    """Return the costs of each objective as one array, shape (2, n, n), as `cost_matrix` does.
 
     Raises:
-        Refusal: A matrix is not square, or they differ in size.
+        Refusal: A matrix is not square, or they differ in size, or an entry is not finite.
     """
-    arrays = [square_array(rows, f"matrices/{m}") for m, rows in enumerate(matrices)]
+    arrays = [cost_matrix(rows, f"matrices/{m}") for m, rows in enumerate(matrices)]
     n = len(arrays[0])
     for m, array in enumerate(arrays):
         if len(array) != n:
@@ -44,21 +45,40 @@ def stack_matrices(matrices: list[Rows]) -> Array:
     return np.stack(arrays)
 
 
-def square_array(rows: Rows, name: str) -> Array:
-    """Return the rows of a matrix as an array, shape (n, n).
+def cost_matrix(rows: CostRows, name: str) -> Array:
+    """Return rows of costs as an array, shape (n, n), infinite where they have null.
+
+    The diagonal becomes 0, whatever stands there.
 
     Raises:
-        Refusal: A row is not as long as there are rows.
+        Refusal: A row is not as long as there are rows, or an entry is not finite.
     """
     matrix = rectangular_array(rows, name)
     n, width = matrix.shape
     if n != width:
         raise invalid(name, f"must be square, got {n} rows of {width} numbers")
+    np.fill_diagonal(matrix, 0.0)
+    if np.isfinite(matrix).all():
+        return matrix
+    null = np.array([[cost is None for cost in row] for row in rows])
+    np.fill_diagonal(null, False)
+    matrix[null] = 0.0
+    for i, j in np.argwhere(~np.isfinite(matrix))[:1]:
+        demand = "must be a finite number, or null where there is no way"
+        raise invalid(f"{name}/{i}/{j}", f"{demand}, got {show(float(matrix[i, j]))}")
+    matrix[null] = np.inf
     return matrix
 
 
-def rectangular_array(rows: Rows, name: str) -> Array:
-    """Return rows of numbers as an array, shape (rows, columns).
+def costs_array(costs: Sequence[float | None]) -> Array:
+    """Return finite costs as an array, shape (n,), infinite where they have None."""
+    array = np.array(costs, dtype=np.float64)
+    array[np.isnan(array)] = np.inf
+    return array
+
+
+def rectangular_array(rows: AnyRows, name: str) -> Array:
+    """Return rows of numbers as an array, shape (rows, columns), NaN where they have null.
 
     Raises:
         Refusal: There is no number, or the rows differ in length.
@@ -75,19 +95,21 @@ def rectangular_array(rows: Rows, name: str) -> Array:
 def check_costs(matrix: Array, name: str, largest: float) -> None:
     """Raise a refusal unless all entries of a matrix, shape (n, n), off its diagonal are costs.
 
+    An infinite one says that there is no way.
+
     Raises:
-        Refusal: An entry is not finite, negative or too large.
+        Refusal: An entry is not a number, negative or too large.
     """
     # A comparison with NaN is false, so what is not a number is found as well.
     with np.errstate(invalid="ignore"):
-        is_cost = (matrix >= 0) & (matrix <= largest) | np.eye(len(matrix), dtype=np.bool_)
+        is_cost = (matrix >= 0) & ((matrix <= largest) | (matrix == np.inf))
+    is_cost |= np.eye(len(matrix), dtype=np.bool_)
     if is_cost.all():
         return
     i, j = np.unravel_index(is_cost.argmin(), is_cost.shape)
     entry = float(matrix[i, j])
-    if not np.isfinite(entry):
-        demand = "must be a finite number"
+    if np.isnan(entry):
+        demand = "must be a number, or infinity where there is no way"
     else:
         demand = "must not be negative" if entry < 0 else f"must be at most {largest:g}"
-    shown = to_json(entry, inf_nan_mode="constants").decode()
-    raise invalid(f"{name}/{i}/{j}", f"{demand}, got {shown}")
+    raise invalid(f"{name}/{i}/{j}", f"{demand}, got {show(entry)}")

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from service.coverage.coverage import Coverage
 from service.instance import CLOSED, Kind, RouteEnds
-from service.requests.arrays import array_field, check_costs, square_array
+from service.requests.arrays import array_field, check_costs, cost_matrix
 from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
 from service.requests.maps.fields import ABSENT, Layer, MapRequest, describe_map, empty_array
 from service.requests.maps.robots import (
@@ -23,10 +23,17 @@ from service.requests.maps.robots import (
     describe_robots,
     rules_of_robots,
 )
-from service.requests.schemas import LARGEST, NonNegativeInteger, PlanePoint, PositiveNumber
+from service.requests.schemas import (
+    LARGEST,
+    NO_WAY,
+    CostRows,
+    NonNegativeInteger,
+    PlanePoint,
+    PositiveNumber,
+)
 from service.requests.validation import invalid, parse_json, too_many_cities
 
-Matrix = Annotated[NDArray[np.float64], array_field(square_array)]
+Matrix = Annotated[NDArray[np.float64], array_field(cost_matrix, CostRows)]
 Cell = Annotated[list[NonNegativeInteger], Field(min_length=2, max_length=2, fail_fast=True)]
 _SECOND = ("second_matrix", "cost_layer", "second_coordinates")
 
@@ -59,7 +66,8 @@ class CoverageRequest(MapRequest):
     )
     second_matrix: Matrix = Field(
         default_factory=empty_array,
-        description="the second objective: its costs from each place (row) to each (column)",
+        description="the second objective: its costs from each place (row) to each (column),"
+        f" {NO_WAY}",
     )
     cost_layer: Layer = Field(
         default_factory=empty_array,

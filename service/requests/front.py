@@ -14,9 +14,10 @@ from service.requests.arrays import stack_matrices
 from service.requests.schemas import (
     END,
     GEOMETRY,
+    NO_WAY,
     START,
-    ArrayRows,
     AsInteger,
+    CostRows,
     Geometry,
     Number,
     PlanRequest,
@@ -44,7 +45,7 @@ _MOST_SYMMETRIES = 8  # that earlier versions showed the network
 FORMS = ("coordinates", "matrices", "stops")  # of a request, each by the member that tells it
 City = Annotated[list[Number], Field(min_length=_COLUMNS, max_length=_COLUMNS, fail_fast=True)]
 _MatrixRows = Annotated[
-    list[ArrayRows], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
+    list[CostRows], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
 ]
 Matrices = Annotated[
     NDArray[np.float64],
@@ -68,7 +69,7 @@ class FrontRequest(PlanRequest):
     matrices: Matrices = Field(
         default_factory=lambda: np.empty((OBJECTIVES, 0, 0)),
         description="instead of coordinates, for each objective the costs from each city (row) to"
-        " each (column); the diagonal is disregarded",
+        f" each (column), {NO_WAY}",
     )
     stops: Annotated[list[StopItem], Field(min_length=1, fail_fast=True)] = Field(
         default_factory=list, description="the cities, by ids that come back with every tour"

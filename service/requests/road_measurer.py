@@ -5,11 +5,14 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from service.errors import Cancelled
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.stops import UnmeasuredStops
 from service.requests.task import Task, TaskSource
 from service.roads.client import RoadClient
+from service.search.forbidden_legs import check_ways
 
 _POLL_SECONDS = 0.05  # between two questions whether to stop
 
@@ -28,7 +31,8 @@ async def measured_by_road(task: Task, client: RoadClient) -> Task:
     """Return a task with its costs by road, and the time that it took to ask for them.
 
     Raises:
-        Refusal: The engine has no costs between these stops, or fails; see RoadClient.costs.
+        Refusal: The engine knows so few ways between these stops that no tour is without a leg that
+            it does not know, or it fails; see RoadClient.costs.
     """
     subject, labels = task.subject, task.labels
     assert isinstance(subject, UnmeasuredStops | UnmeasuredFleet)
@@ -36,6 +40,8 @@ async def measured_by_road(task: Task, client: RoadClient) -> Task:
     began = time.perf_counter()
     stops = subject.stops if isinstance(subject, UnmeasuredFleet) else subject
     costs = await client.costs(stops.locations, [stop.id for stop in labels.stops])
+    if isinstance(subject, UnmeasuredStops):
+        check_ways(np.isinf(costs.seconds), subject.ends, task.city_names, "no-road")
     measured = subject.measured_by_road({"road_time": costs.seconds, "road_distance": costs.metres})
     return replace(task, subject=measured, timings={"roads": 1000 * (time.perf_counter() - began)})
 

@@ -48,6 +48,11 @@ Text = Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT, pattern=PRINT
 # Of the numbers only the type is checked here, and the rest once they are an array: half a million
 # are too many to check one by one.
 ArrayRows = Annotated[list[Annotated[list[float], Field(fail_fast=True)]], Field(fail_fast=True)]
+# Of costs from each city to each; null where there is no way.
+CostRows = Annotated[
+    list[Annotated[list[float | None], Field(fail_fast=True)]], Field(fail_fast=True)
+]
+NO_WAY = "null where there is no way; the diagonal is disregarded"
 
 
 class PlanFields(BaseModel):

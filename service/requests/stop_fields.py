@@ -8,10 +8,11 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from service.errors import Refusal
-from service.requests.arrays import check_costs, square_array
+from service.requests.arrays import check_costs, cost_matrix
 from service.requests.schemas import (
     LARGEST,
-    ArrayRows,
+    NO_WAY,
+    CostRows,
     NonNegativeInteger,
     PlanePoint,
     Text,
@@ -47,9 +48,9 @@ class ObjectiveItem(BaseModel):
     name: Text = Field(description="of the objective, in answers and charts")
     unit: Text | None = Field(default=None, description="of its costs, in answers and charts")
     # An empty default means that the field was not given: no caller can give an empty array.
-    matrix: ArrayRows = Field(
+    matrix: CostRows = Field(
         default_factory=list,
-        description="the costs from each stop (row) to each (column); the diagonal is disregarded",
+        description=f"the costs from each stop (row) to each (column), {NO_WAY}",
     )
     coordinates: Annotated[list[PlanePoint], Field(min_length=1, fail_fast=True)] = Field(
         default_factory=list, description="x and y of each stop in a plane; its distances"
@@ -102,7 +103,7 @@ class ObjectiveItem(BaseModel):
 
     def _matrix(self, part: str, n: int) -> Matrix:
         _check_rows(part, n, len(self.matrix))
-        matrix = square_array(self.matrix, part)
+        matrix = cost_matrix(self.matrix, part)
         check_costs(matrix, part, LARGEST)
         return Matrix(matrix)
 

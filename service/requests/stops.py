@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
+from service.errors import CityNames
 from service.instance import CLOSED, OBJECTIVES, Instance, Kind, RouteEnds
 from service.roads.great_circle import great_circle_matrix
 
@@ -46,6 +47,11 @@ class Labels:
     def id_bytes(self) -> int:
         """The bytes of all ids in one tour of an answer."""
         return len(to_json([stop.id for stop in self.stops]))
+
+    @property
+    def city_names(self) -> CityNames:
+        """The names of the stops in refusals."""
+        return CityNames("stop", [stop.id for stop in self.stops], "stops")
 
     @property
     def members(self) -> dict[str, list[dict[str, Any]]]:

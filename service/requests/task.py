@@ -7,7 +7,7 @@ from typing import Literal
 
 from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage
-from service.errors import Refusal
+from service.errors import CityNames, Refusal
 from service.instance import Instance, Kind, least_lengths
 from service.planner import PlanOptions
 from service.replanning.earlier_tours import EarlierTours
@@ -28,6 +28,7 @@ from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.rest_request import RestOfMapRequest, RestRequest
 from service.requests.schemas import Geometry, PlanFields
 from service.requests.stops import Labels, UnmeasuredStops
+from service.search.forbidden_legs import check_legs
 
 _BRIEF = 5000  # preferences times cities
 TaskKind = Literal["front", "coverage", "fleet", "replan", "replan-coverage"]
@@ -60,6 +61,17 @@ class Task:
     labels: Labels | None = None
     timings: Mapping[str, float] = field(default_factory=dict)
     earlier: EarlierTours | None = None
+
+    @property
+    def city_names(self) -> CityNames:
+        """The names of its cities in refusals; the request to replan has none of the rest."""
+        names = CityNames()
+        if self.labels is not None:
+            names = self.labels.city_names
+        elif isinstance(self.subject, Coverage):
+            given = self.subject.places is not None
+            names = CityNames("place", part="places" if given else None)
+        return names if self.earlier is None else replace(names, part=None)
 
     @property
     def needs_compiled_code(self) -> bool:
@@ -133,13 +145,12 @@ def front_task(
     """Return the task of a checked request; the arguments are those of Task.
 
     Raises:
-        Refusal: No actor serves it, or it asks for what the actor cannot do.
+        Refusal: No actor serves it, it asks for what the actor cannot do, or it is plain that no
+            tour is without a forbidden leg.
     """
     name = choose_actor(actors, subject.kind, request.requested_actor)
     options = within_network(_options(request, actors[name]), subject.n, limits)
-    if isinstance(subject, Instance):
-        check_reference_point(options, partial(least_lengths, subject))
-    return Task(
+    task = Task(
         subject=subject,
         options=options,
         actor=name,
@@ -148,6 +159,20 @@ def front_task(
         geometry=request.geometry,
         earlier=earlier,
     )
+    if isinstance(subject, Instance):
+        check_instance(task, subject)
+    return task
+
+
+def check_instance(task: Task, instance: Instance) -> None:
+    """Raise a refusal where it is plain that the instance of a task has no tour, or none to count.
+
+    Raises:
+        NoTour: Forbidden legs leave no tour.
+        Refusal: No tour lies below the reference point.
+    """
+    check_legs(instance, task.city_names)
+    check_reference_point(task.options, partial(least_lengths, instance))
 
 
 def _coverage_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:

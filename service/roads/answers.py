@@ -39,7 +39,7 @@ def read(model: type[_Model], content: bytes) -> _Model:
 
 
 def costs_of(seconds: Rows, metres: Rows, shape: tuple[int, int]) -> Array:
-    """Return two tables as one array, shape (2, sources, targets), NaN where there is no way.
+    """Return two tables as one array, shape (2, sources, targets), infinite where there is none.
 
     Raises:
         Unintelligible: A table is not of the shape, or only one of them has a way.
@@ -50,4 +50,5 @@ def costs_of(seconds: Rows, metres: Rows, shape: tuple[int, int]) -> Array:
     costs = np.array([seconds, metres], dtype=np.float64).reshape(2, *shape)
     if (np.isnan(costs[0]) != np.isnan(costs[1])).any():
         raise Unintelligible("a way must have both a time and a distance")
+    costs[np.isnan(costs)] = np.inf
     return costs

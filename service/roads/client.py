@@ -56,7 +56,9 @@ class RoadClient:
         self._drawing = asyncio.Semaphore(_DRAWN_AT_ONCE)
 
     async def costs(self, locations: Array, ids: Sequence[str]) -> RoadCosts:
-        """Return the costs between all stops. The arrays must not be changed.
+        """Return the costs between all stops, infinite where the engine knows no way.
+
+        The arrays must not be changed.
 
         Args:
             locations: Longitude and latitude of each stop in degrees, shape (n, 2).
@@ -64,7 +66,7 @@ class RoadClient:
 
         Raises:
             OffRoad: Stops lie too far from every road.
-            NoRoad: There is no way between some stops.
+            NoRoad: There is no way between some stops and any others.
             RouterUnavailable: The engine does not answer.
             RouterUnusable: It answers something else than it should.
             RouterTooSlow: It takes longer than the seconds.

@@ -96,7 +96,7 @@ class Osrm:
         return self._question("table", places, options, size)
 
     def read_table(self, answer: Answer, shape: tuple[int, int]) -> Array:
-        """Return seconds and metres, shape (2, sources, targets), NaN where there is no way."""
+        """Return seconds and metres, shape (2, sources, targets), infinite where there is none."""
         _check(answer)
         table = read(_Table, answer.content)
         return costs_of(table.durations, table.distances, shape)

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from service.errors import NoRoad, OffRoad, RouterUnusable
 from service.roads.great_circle import great_circle_distances
-from service.roads.reachability import MissingWay, missing_ways
+from service.roads.reachability import MissingWay, missing_ways, ways_of_isolated
 from service.roads.router import Array, Line, Location, NoWay, RouterInterface, Unintelligible
 from service.roads.trails import Leg, trails
 from service.roads.transport import AT_ONCE, RouterTransport
 
 _PLACES_AT_ONCE = 100  # in one question about the nearest roads
+_MOST_REFUSED = 32  # pairs that are found one by one, each by a dozen questions
 _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
 _Indices = NDArray[np.int64]
@@ -38,6 +39,7 @@ class Questions:
         self._ids = ids
         n = len(places)
         self._costs = np.full((2, n, n), np.nan)
+        self._refused = np.zeros((n, n), np.bool_)
 
     async def check_snapped(self, snap: float) -> None:
         """Raise OffRoad where stops lie farther from every road than so many metres."""
@@ -50,15 +52,18 @@ class Questions:
     async def costs(self, pairs: int) -> Array:
         """Return both matrices, shape (2, n, n), of blocks of at most so many pairs.
 
+        They are infinite where there is no way.
+
         Raises:
-            NoRoad: There is no way between some stops.
+            NoRoad: There is no way between some stops and any others, or the engine refuses too
+                many pairs one by one.
         """
         parts = _parts(len(self._places), isqrt(pairs))
         blocks = ((sources, targets) for sources in parts for targets in parts)
         await _for_each(blocks, self._fill)
         for costs in self._costs:
             np.fill_diagonal(costs, 0.0)
-        if ways := missing_ways(np.isnan(self._costs[0])):
+        if ways := ways_of_isolated(np.isinf(self._costs[0])):
             raise self._no_road(ways)
         self._costs.setflags(write=False)
         return self._costs
@@ -130,7 +135,7 @@ class Questions:
         """Return the costs of a block, shape (2, sources, targets).
 
         An engine that refuses the whole block is asked for halves of it, until it is found between
-        which two stops there is no way.
+        which stops there is no way.
         """
         places = self._places_of(sources.tolist()), self._places_of(targets.tolist())
         answer = await self._transport.ask(self._router.ask_table(*places))
@@ -142,12 +147,19 @@ class Questions:
                 origin, destination = int(sources[0]), int(targets[0])
                 if origin == destination:
                     return np.zeros((2, 1, 1))
-                raise self._no_road([MissingWay(origin, destination, origin)]) from None
+                self._refuse(origin, destination)
+                return np.full((2, 1, 1), np.inf)
         if shape[0] >= shape[1]:
             halves = [await self._table(half, targets) for half in np.array_split(sources, 2)]
             return np.concatenate(halves, axis=1)
         halves = [await self._table(sources, half) for half in np.array_split(targets, 2)]
         return np.concatenate(halves, axis=2)
+
+    def _refuse(self, origin: int, destination: int) -> None:
+        """Take note of a pair that the engine refuses; of too many, raise NoRoad."""
+        self._refused[origin, destination] = True
+        if np.count_nonzero(self._refused) > _MOST_REFUSED:
+            raise self._no_road(missing_ways(self._refused))
 
     def _places_of(self, indices: Sequence[int]) -> list[Location]:
         return [self._places[i] for i in indices]

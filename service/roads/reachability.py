@@ -1,4 +1,4 @@
-"""Which stops to leave out, so that there is a way by road between all that remain."""
+"""Find stops without a way by road: to and from any other, or those to leave out."""
 
 from typing import NamedTuple
 
@@ -39,3 +39,18 @@ def missing_ways(missing: NDArray[np.bool_]) -> list[MissingWay]:
             ways.append(MissingWay(int(left[:, blamed].argmax()), blamed, blamed))
         left[blamed] = left[:, blamed] = False
     return ways
+
+
+def ways_of_isolated(missing: NDArray[np.bool_]) -> list[MissingWay]:
+    """Return a missing way of each stop that no way leads to or from; `missing` is as above.
+
+    >>> island = np.array([[0, 0, 1], [0, 0, 1], [1, 1, 0]], dtype=bool)
+    >>> ways_of_isolated(island)
+    [MissingWay(origin=2, destination=0, blamed=2)]
+    """
+    others = len(missing) - 1
+    isolated = (missing.sum(axis=0) == others) & (missing.sum(axis=1) == others) & (others > 0)
+    return [
+        MissingWay(stop, int(missing[stop].argmax()), stop)
+        for stop in np.flatnonzero(isolated).tolist()
+    ]

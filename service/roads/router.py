@@ -89,7 +89,7 @@ class RouterInterface(Protocol):
         """Return the question for the times and distances from each source to each target."""
 
     def read_table(self, answer: Answer, shape: tuple[int, int]) -> Array:
-        """Return seconds and metres, shape (2, sources, targets), NaN where there is no way.
+        """Return seconds and metres, shape (2, sources, targets), infinite where there is none.
 
         Raises:
             NoWay: The engine refuses the whole table because some pair has no way.

@@ -101,7 +101,7 @@ class Valhalla:
         return self._question("/sources_to_targets", size, members, verbose=False)
 
     def read_table(self, answer: Answer, shape: tuple[int, int]) -> Array:
-        """Return seconds and metres, shape (2, sources, targets), NaN where there is no way."""
+        """Return seconds and metres, shape (2, sources, targets), infinite where there is none."""
         self._check(answer)
         tables = read(_Matrix, answer.content).sources_to_targets
         costs = costs_of(tables.durations, tables.distances, shape)

@@ -185,7 +185,7 @@ def test_what_cannot_be_is_refused_at_its_place(
     assert client.get(f"/front/{front['id']}").json() == front
 
 
-@pytest.mark.parametrize("cost", ["NaN", "Infinity", "1e999", '"1"', "null"])
+@pytest.mark.parametrize("cost", ["NaN", "Infinity", "1e999", '"1"'])
 def test_costs_that_are_no_numbers_are_refused(
     client: httpx.Client, front: dict[str, Any], cost: str
 ) -> None:

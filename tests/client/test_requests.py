@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from paretour import coverage_plan, front_plan
+from paretour import coverage_plan, front_plan, replan_plan
 
 CITIES = np.random.default_rng(3).random((12, 4))
 
@@ -53,6 +53,41 @@ def test_other_objectives_travel_as_json(second: Any) -> None:
     plan = front_plan({"stops": [{"id": "a"}, {"id": "b"}], "objectives": [first, second]})
     assert plan.file is None
     assert json.loads(plan.json)["objectives"][0]["matrix"] == [[0, 2], [2, 0]]
+
+
+@pytest.mark.parametrize(
+    "matrix",
+    [
+        np.array([[0.0, np.inf], [2.0, 0.0]]),
+        np.array([[0, None], [2, 0]]),
+        [[0, None], [2, 0]],
+        [[0, np.inf], [np.float64(2), 0]],
+    ],
+)
+def test_where_there_is_no_way_json_has_null(matrix: Any) -> None:
+    objectives: Any = [{"name": "t", "matrix": matrix}, {"name": "r", "from": "great_circle"}]
+    plan = front_plan({"stops": [{"id": "a"}, {"id": "b"}], "objectives": objectives})
+    assert json.loads(plan.json)["objectives"][0]["matrix"] == [[0, None], [2, 0]]
+    of_map: Any = {"second_matrix": matrix}
+    assert json.loads(coverage_plan(of_map, None).json) == {"second_matrix": [[0, None], [2, 0]]}
+    closed: Any = {"costs": [{"objective": 0, "from": "a", "to": "b", "cost": np.inf}]}
+    assert json.loads(replan_plan("id", closed).json)["costs"][0]["cost"] is None
+
+
+def test_arrays_with_none_travel_as_json_and_with_infinity_as_a_file() -> None:
+    matrices = np.full((2, 3, 3), np.inf)
+    parts = front_plan({"matrices": matrices}).body["files"]
+    np.testing.assert_array_equal(np.load(BytesIO(parts["matrices"][1])), matrices)
+    plan = front_plan({"matrices": np.full((2, 3, 3), None)})
+    assert plan.file is None
+    assert json.loads(plan.json)["matrices"] == np.full((2, 3, 3), None).tolist()
+
+
+def test_other_numbers_travel_as_they_are_for_the_service_to_refuse() -> None:
+    assert front_plan({"coordinates": [[0, 0, 0, np.inf]]}).json == (
+        b'{"coordinates": [[0, 0, 0, Infinity]]}'
+    )
+    assert front_plan({"matrices": [[[np.nan]], [[0]]]}).json == b'{"matrices": [[[NaN]], [[0]]]}'
 
 
 def test_a_map_is_a_file_or_a_grid() -> None:

@@ -188,6 +188,30 @@ def replying(status: int, body: bytes = b"", **headers: str) -> Misbehaviour:
     return lambda *_: (status, body, headers)
 
 
+def without_ways(places: Array, forgotten: NDArray[np.bool_]) -> Misbehaviour:
+    """Return a misbehaviour that knows no way from a place (row) to another (column)."""
+    names = [f"{lon:.6f},{lat:.6f}" for lon, lat in places]
+
+    def misbehave(fake: FakeOsrm, path: str) -> Reply | None:
+        split = urlsplit(path)
+        query = {name: values[0] for name, values in parse_qs(split.query).items()}
+        if query.get("annotations") != "duration,distance":
+            return None
+        asked = [names.index(each) for each in split.path.rpartition("/")[2].split(";")]
+        sources, targets = (
+            [asked[int(index)] for index in query[name].split(";")]
+            for name in ("sources", "destinations")
+        )
+        status, body, headers = fake.answer(path)
+        document = json.loads(body)
+        unknown = forgotten[np.ix_(sources, targets)]
+        for name in ("durations", "distances"):
+            document[name] = np.where(unknown, None, np.array(document[name], object)).tolist()
+        return status, json.dumps(document).encode(), headers
+
+    return misbehave
+
+
 def sleeping(seconds: float) -> Misbehaviour:
     """Return a misbehaviour that answers after so many seconds."""
 

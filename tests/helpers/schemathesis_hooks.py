@@ -188,7 +188,7 @@ def _are_matrices(value: list[Any]) -> bool:
     return all(
         isinstance(rows, list)
         and rows != []
-        and all(isinstance(row, list) and all(map(_is_number, row)) for row in rows)
+        and all(isinstance(row, list) and all(map(_is_cost, row)) for row in rows)
         for rows in value
     )
 
@@ -212,6 +212,10 @@ def _is_key(value: Any) -> bool:
 
 def _is_city(value: Any) -> bool:
     return _is_number(value) and value % 1 == 0 and 0 <= value < 2**31
+
+
+def _is_cost(value: Any) -> bool:
+    return value is None or _is_number(value)
 
 
 def _is_number(value: Any) -> bool:

@@ -10,6 +10,8 @@ import httpx
 import numpy as np
 import pytest
 
+from service.instance import Instance, tour_lengths
+from service.pareto import nondominated
 from service.server import Ending, build
 from service.settings import Settings
 from tests.helpers.fake_router import (
@@ -20,7 +22,9 @@ from tests.helpers.fake_router import (
     replying,
     road_costs,
     sleeping,
+    without_ways,
 )
+from tests.helpers.instances import every_tour
 from tests.helpers.processes import UNLIMITED
 from tests.helpers.serving import problem, serving
 
@@ -183,6 +187,54 @@ def test_stops_without_a_way_are_named(url: str) -> None:
     document = problem(httpx.post(f"{url}/front", json=request), 422, "no-road")
     assert document["errors"][0]["pointer"] == "/stops/3"
     assert "'order-3'" in document["detail"]
+
+
+def test_a_way_that_the_engine_knows_in_one_direction_alone_is_driven_in_that_alone(
+    url: str, engine: FakeOsrm
+) -> None:
+    request = _request(seed=21)
+    places = np.array([stop["location"] for stop in request["stops"]])
+    forgotten = np.random.default_rng(21).random((7, 7)) < 0.3
+    costs = np.where(forgotten & ~np.eye(7, dtype=bool), np.inf, road_costs(places, places))
+    with misbehaving(engine, without_ways(places, forgotten)):
+        answer = httpx.post(f"{url}/front", json=request)
+    instance = Instance(matrices=costs)
+    lengths = tour_lengths(instance, every_tour(instance))
+    expected = lengths[nondominated(lengths)]
+    assert len(expected) > 0
+    np.testing.assert_allclose([each["lengths"] for each in answer.json()["front"]], expected)
+    # Costs by road that have been changed are stored as JSON: a closed leg stays closed.
+    for _ in range(2):
+        front = answer.json()
+        origin, destination = front["front"][0]["tour"][:2]
+        costs[:, origin, destination] = np.inf
+        closed = {"objective": 0, "from": origin, "to": destination, "cost": None}
+        answer = httpx.post(
+            f"{url}/front/{front['id']}/replan", json={"costs": [closed], "time_limit": 0.1}
+        )
+        instance = Instance(matrices=costs)
+        lengths = tour_lengths(instance, every_tour(instance))
+        found = [each["lengths"] for each in answer.json().get("front", ())]
+        np.testing.assert_allclose(np.array(found).reshape(-1, 2), lengths[nondominated(lengths)])
+        if not found:
+            problem(answer, 422, "no-plan")
+            return
+
+
+def test_a_stop_without_a_way_out_ends_no_closed_tour_but_may_end_a_route(
+    url: str, engine: FakeOsrm
+) -> None:
+    request = _request(seed=22)
+    places = np.array([stop["location"] for stop in request["stops"]])
+    forgotten = np.zeros((7, 7), np.bool_)
+    forgotten[4] = True
+    with misbehaving(engine, without_ways(places, forgotten)):
+        document = problem(httpx.post(f"{url}/front", json=request), 422, "no-road")
+        route = httpx.post(f"{url}/front", json={**request, "closed": False}).json()
+    sentence = "a way must lead from stop 'order-4' to another stop, and none does"
+    assert document["detail"] == sentence
+    assert document["errors"][0]["pointer"] == "/stops/4"
+    assert {each["stops"][-1] for each in route["front"]} == {"order-4"}
 
 
 def test_what_is_asked_of_the_engine_is_counted(url: str, engine: FakeOsrm) -> None:

@@ -7,6 +7,7 @@ import logging
 import time
 from collections.abc import Callable
 from typing import Any
+from urllib.parse import parse_qs
 
 import numpy as np
 import pytest
@@ -30,6 +31,7 @@ from tests.helpers.fake_router import (
     replying,
     road_costs,
     sleeping,
+    without_ways,
 )
 from tests.helpers.ports import free_port
 
@@ -110,15 +112,48 @@ def test_stops_too_far_from_a_road_are_named() -> None:
     ]
 
 
-def test_stops_without_a_way_are_named() -> None:
+def test_where_the_engine_knows_no_way_the_costs_are_infinite() -> None:
     places = _locations(60)
-    places[[7, 55], 0] = BEYOND + 1
-    with fake_osrm() as fake, pytest.raises(NoRoad) as refused:
+    places[[7, 55], 0] = BEYOND + 1  # an island with two stops
+    with fake_osrm() as fake:
+        (costs,) = _asked(fake, places)
+    expected = road_costs(places, places)
+    np.testing.assert_array_equal(costs, np.where(np.isnan(expected), np.inf, expected))
+
+
+def test_stops_without_any_way_are_named() -> None:
+    places = _locations(60)
+    places[7, 0] = BEYOND + 1
+
+    forgotten = np.zeros((60, 60), np.bool_)
+    forgotten[55] = forgotten[:, 55] = True
+    with fake_osrm(without_ways(places, forgotten)) as fake, pytest.raises(NoRoad) as refused:
         _asked(fake, places)
     document = refused.value.document("")
     assert (document["status"], document["code"]) == (422, "no-road")
     assert [each["pointer"] for each in document["errors"]] == ["/stops/7", "/stops/55"]
     assert "from stop 'order-7' to stop 'order-0'" in document["detail"]
+
+
+def test_where_the_engine_refuses_a_block_for_one_direction_the_pair_is_found() -> None:
+    places = _locations(60)
+    first, second = (f"{place[0]:.6f},{place[1]:.6f}" for place in places[[3, 44]])
+
+    def refuse_one_way(_: FakeOsrm, path: str) -> Reply | None:
+        names = path.partition("?")[0].rpartition("/")[2].split(";")
+        query = parse_qs(path.partition("?")[2])
+        sources, targets = (
+            [names[int(i)] for i in query[each][0].split(";")]
+            for each in ("sources", "destinations")
+        )
+        refused = "distance" in path and first in sources and second in targets
+        return (400, b'{"code": "NoTable"}', {}) if refused else None
+
+    with fake_osrm(refuse_one_way) as fake:
+        (costs,) = _asked(fake, places)
+    expected = road_costs(places, places)
+    expected[:, 3, 44] = np.inf
+    np.testing.assert_array_equal(costs, expected)
 
 
 def test_where_the_engine_refuses_a_block_the_stops_are_found() -> None:
@@ -132,7 +167,7 @@ def test_where_the_engine_refuses_a_block_the_stops_are_found() -> None:
 
     with fake_osrm(refuse_apart) as fake, pytest.raises(NoRoad, match="'order-41'"):
         _asked(fake, places)
-    assert len(fake.asked) < 60
+    assert len(fake.asked) < 250
 
 
 def test_where_the_engine_finds_no_segment_the_stop_is_found() -> None:

@@ -5,6 +5,9 @@ from typing import Any, Literal, Required, TypedDict
 
 from numpy.typing import ArrayLike
 
+# From each city (row) to each (column); None, or infinity, where there is no way.
+Costs = ArrayLike | Sequence[Sequence[float | None]]
+
 
 class PlanOptions(TypedDict, total=False):
     """The members that every request to plan may have; the service's /docs explains them."""
@@ -40,7 +43,7 @@ ObjectiveRequest = TypedDict(
     {
         "name": Required[str],
         "unit": str | None,
-        "matrix": ArrayLike,
+        "matrix": Costs,
         "coordinates": ArrayLike,
         "from": str,
     },
@@ -52,10 +55,11 @@ class FrontRequest(PlanRequest, total=False):
     """The members of a request to POST /front: coordinates, matrices, or stops with objectives.
 
     With stops, `start` and `initial_tours` may name them by id. `augment` is without effect.
+    Where there is no way from one city to another, its cost is None or infinite.
     """
 
     coordinates: ArrayLike
-    matrices: ArrayLike
+    matrices: ArrayLike | Sequence[Costs]
     stops: Sequence[StopRequest]
     objectives: Sequence[ObjectiveRequest]
     start: int | str | None
@@ -133,7 +137,7 @@ class CoverageRequest(PlanRequest, total=False):
     spacing: float
     start_pose: ArrayLike
     end_pose: ArrayLike
-    second_matrix: ArrayLike
+    second_matrix: Costs
     cost_layer: ArrayLike
     second_coordinates: ArrayLike
     paths: bool

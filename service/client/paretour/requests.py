@@ -19,6 +19,7 @@ from paretour.values import Front
 
 _DEFAULT_TIME_LIMIT = 1.0  # seconds, the service's own
 _OBJECTIVES = 2
+_COSTS = ("matrices", "matrix", "second_matrix", "costs")  # members that hold costs
 _BOUND_SECONDS = 5.0  # that the service takes at most to prove a bound
 
 
@@ -47,8 +48,11 @@ class Plan:
 
     @property
     def json(self) -> bytes:
-        """The members as JSON, without the file."""
-        return json.dumps(self.request, default=_listed).encode()
+        """The members as JSON, without the file; of infinite costs null, as JSON has none."""
+        try:
+            return json.dumps(self.request, default=_listed, allow_nan=False).encode()
+        except ValueError:
+            return json.dumps(_with_null(self.request)).encode()
 
     @property
     def body(self) -> dict[str, Any]:
@@ -62,11 +66,12 @@ class Plan:
 def front_plan(request: FrontRequest) -> Plan:
     """Return the request to POST /front, with matrices that are arrays as a NumPy file.
 
-    They are `matrices`, or the matrix of each objective where both are arrays.
+    They are `matrices`, or the matrix of each objective where both are arrays, of numbers: None in
+    an array of objects becomes null in JSON.
     """
     members: dict[str, Any] = dict(request)
     objectives: Sequence[Mapping[str, Any]] = members.get("objectives", ())
-    if isinstance(members.get("matrices"), np.ndarray):
+    if _is_array(members.get("matrices")):
         return Plan("/front", members, _matrices_file(members.pop("matrices")))
     matrices: list[Any] = [objective.get("matrix") for objective in objectives]
     if not _fit_a_file(matrices):
@@ -77,9 +82,14 @@ def front_plan(request: FrontRequest) -> Plan:
 
 def _fit_a_file(matrices: Sequence[Any]) -> bool:
     """Return whether matrices are two arrays of one shape, as a file must have them."""
-    if len(matrices) != _OBJECTIVES or not all(isinstance(each, np.ndarray) for each in matrices):
+    if len(matrices) != _OBJECTIVES or not all(map(_is_array, matrices)):
         return False
     return matrices[0].ndim == 2 and matrices[0].shape == matrices[1].shape
+
+
+def _is_array(matrices: Any) -> bool:
+    """Return whether matrices are an array that a file can have, which is not of objects."""
+    return isinstance(matrices, np.ndarray) and not matrices.dtype.hasobject
 
 
 def _matrices_file(matrices: NDArray[Any]) -> File:
@@ -106,3 +116,14 @@ def fleet_plan(request: FleetRequest) -> Plan:
 def _listed(array: Any) -> Any:
     """Return an array as nested lists, and a scalar of NumPy as a number."""
     return array.tolist()
+
+
+def _with_null(value: Any, is_cost: bool = False) -> Any:
+    """Return members of a request with None in place of costs that are infinite."""
+    if is_cost and isinstance(value, float):
+        return None if value == np.inf else value
+    if isinstance(value, Mapping):
+        return {name: _with_null(each, is_cost or name in _COSTS) for name, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_with_null(each, is_cost) for each in value]
+    return _with_null(value.tolist(), is_cost) if hasattr(value, "tolist") else value

@@ -21,10 +21,10 @@ from service.requests.maps.pictures import (
     occupancy,
     read_picture,
 )
-from service.requests.schemas import AsInteger, Number, PlanRequest, PositiveNumber
+from service.requests.schemas import ArrayRows, AsInteger, Number, PlanRequest, PositiveNumber
 from service.requests.validation import invalid, too_many_cells
 
-Layer = Annotated[NDArray[np.float64], array_field(rectangular_array)]
+Layer = Annotated[NDArray[np.float64], array_field(rectangular_array, ArrayRows)]
 _Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 _Pose = Annotated[list[Number], Field(min_length=3, max_length=3, fail_fast=True)]
 

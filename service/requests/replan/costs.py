@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from service.requests.arrays import costs_array
 from service.requests.replan.earlier_front import EarlierFront
 from service.requests.replan.fields import CostEntry, NewStop, ReplanRequest
 from service.requests.stop_fields import find_index, read_objectives
@@ -163,11 +164,11 @@ def _extended_matrix(costs: Array, m: int, stops: AllStops) -> Array:
     return matrix
 
 
-def _row(costs: Sequence[float], part: str, own: int, size: int) -> Array:
+def _row(costs: Sequence[float | None], part: str, own: int, size: int) -> Array:
     """Return a row of costs, in which that of the stop to itself is 0."""
     if len(costs) != size:
         raise invalid(part, f"must have {size} costs, one for each stop, got {len(costs)}")
-    row = np.array(costs, np.float64)
+    row = costs_array(costs)
     row[own] = 0.0
     return row
 
@@ -188,7 +189,8 @@ def _with_entries(
         destination = _stop(entry.destination, ids, stops, f"{part}/to")
         if origin == destination:
             raise invalid(f"{part}/to", "must not be the stop that the step leads from")
-        changed[_objective(entry.objective, names, part)][origin, destination] = entry.cost
+        cost = np.inf if entry.cost is None else entry.cost
+        changed[_objective(entry.objective, names, part)][origin, destination] = cost
     return [
         _changed(source, steps) if steps else source
         for source, steps in zip(sources, changed, strict=True)

@@ -11,7 +11,7 @@ from service.requests.schemas import GEOMETRY, LARGEST, Geometry, PlanePoint, Pl
 from service.requests.stop_fields import Latitude, Longitude, ObjectiveItem, StopReference
 
 Cost = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
-_Row = Annotated[list[Cost], Field(min_length=1, fail_fast=True)]
+_Row = Annotated[list[Cost | None], Field(min_length=1, fail_fast=True)]
 _References = Annotated[list[StopReference], Field(fail_fast=True)]
 
 
@@ -22,7 +22,8 @@ class StopCosts(BaseModel):
 
     to: _Row = Field(
         description="from the new stop to each stop of the front, then to each of `add`, then to"
-        " `position` where that is a place; its own entry is disregarded"
+        " `position` where that is a place; its own entry is disregarded; null where there"
+        " is no way"
     )
     back: _Row = Field(
         default_factory=list,
@@ -69,7 +70,9 @@ class CostEntry(BaseModel):
     ] = Field(description="0 or 1, or its name")
     origin: StopReference = Field(alias="from", description="the stop that the step leads from")
     destination: StopReference = Field(alias="to", description="the stop that it leads to")
-    cost: Cost = Field(description="of that step from now on")
+    cost: Cost | None = Field(
+        description="of that step from now on; null where there is no way any more"
+    )
 
 
 def _form_of_position(value: object) -> str:

@@ -76,7 +76,8 @@ def rest_of_map(request: ReplanRequest, stored: StoredFront, limits: Limits) -> 
         ),
         **request.model_dump(include={*request.options_given, "paths"}),
     }
-    return TaskSource("replan-coverage", to_json(members), _picture(task.blocked))
+    body = to_json(members, inf_nan_mode="null")
+    return TaskSource("replan-coverage", body, _picture(task.blocked))
 
 
 def _changed_map(coverage: Coverage, request: ReplanRequest) -> Coverage:

@@ -96,7 +96,7 @@ class RestOfStops:
             **EarlierMembers.members(self.earlier),
             **self.request.model_dump(include=set(self.request.options_given)),
         }
-        return TaskSource("replan", to_json(members), file)
+        return TaskSource("replan", to_json(members, inf_nan_mode="null"), file)
 
 
 def rest_of_stops(request: ReplanRequest, stored: StoredFront, limits: Limits) -> RestOfStops:

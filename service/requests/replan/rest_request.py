@@ -11,6 +11,7 @@ from pydantic import Field
 
 from service.instance import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours
+from service.requests.arrays import costs_array
 from service.requests.coverage import CoverageRequest
 from service.requests.front import FrontRequest
 from service.requests.replan.fields import Cost
@@ -19,11 +20,14 @@ from service.requests.stop_fields import ObjectiveItem
 from service.requests.stops import Changed, Matrix, Source, Stop, changed_costs
 from service.requests.validation import invalid
 
-_Step = tuple[Index, Index, Cost]
+_Step = tuple[Index, Index, Cost | None]
 
 
 class RestObjective(ObjectiveItem):
-    """An objective with the costs of some steps changed, each as origin, destination and cost."""
+    """An objective with the costs of some steps changed, each as origin, destination and cost.
+
+    A cost is null where there is no way any more.
+    """
 
     changed: Annotated[list[_Step], Field(fail_fast=True)] = Field(default_factory=list)
 
@@ -35,7 +39,7 @@ class RestObjective(ObjectiveItem):
         steps = np.array([step[:2] for step in self.changed], np.int64)
         if steps.max() >= len(stops):
             raise invalid(f"{part}/changed", "must be of stops that there are")
-        costs = np.array([step[2] for step in self.changed], np.float64)
+        costs = costs_array([step[2] for step in self.changed])
         if isinstance(base, Matrix):
             return Matrix(changed_costs(base.costs, steps, costs))
         assert not isinstance(base, Changed)

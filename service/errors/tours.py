@@ -1,0 +1,91 @@
+"""The refusal of cities that no tour without a forbidden leg goes through, and names for them."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from service.errors.exceptions import MOST_FAULTS, Fault, Refusal, summarize
+
+_LONGEST_NAME = 100  # characters of a caller's name for a stop, where it is quoted
+_MOST_NAMED = 5  # cities of one kind in one sentence
+_PLURALS = {"city": "cities", "stop": "stops", "place": "places"}
+
+
+@dataclass(frozen=True)
+class CityNames:
+    """How refusals name cities.
+
+    Args:
+        noun: What a city is called.
+        ids: The caller's names of the cities; None where there are only indexes.
+        part: The member of the request that has an item for each city; None where none has.
+    """
+
+    noun: str = "city"
+    ids: Sequence[str] | None = None
+    part: str | None = None
+
+    def of(self, cities: Sequence[int]) -> str:
+        """Return the names of some cities, of at most a few of them."""
+        noun = self.noun if len(cities) == 1 else _PLURALS[self.noun]
+        names = [self._name(city) for city in cities[:_MOST_NAMED]]
+        if len(cities) > _MOST_NAMED:
+            names.append(f"{len(cities) - _MOST_NAMED} more")
+        listed = ", ".join(names[:-1])
+        return f"{noun} {listed} and {names[-1]}" if listed else f"{noun} {names[-1]}"
+
+    def pointer(self, city: int) -> str | None:
+        """Return the JSON pointer to a city in the request."""
+        return None if self.part is None else f"/{self.part}/{city}"
+
+    def _name(self, city: int) -> str:
+        return str(city) if self.ids is None else repr(self.ids[city][:_LONGEST_NAME])
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """A reason why there is no tour without a forbidden leg.
+
+    Args:
+        sentence: With `{cities}` and maybe `{others}` in place of their names, and `{noun}`.
+        cities: Those to look at first.
+        others: Those that the sentence names beside them.
+    """
+
+    sentence: str
+    cities: tuple[int, ...]
+    others: tuple[int, ...] = ()
+
+    def fault(self, names: CityNames) -> Fault:
+        """Return the reason as a fault of a request."""
+        detail = self.sentence.format(
+            cities=names.of(self.cities),
+            others=names.of(self.others) if self.others else "",
+            noun=names.noun,
+        )
+        return Fault(detail, names.pointer(self.cities[0]))
+
+
+class NoTour(Refusal):
+    """There is no tour without a forbidden leg, or none was found.
+
+    Args:
+        obstacles: The reasons, one or more.
+        names: How to name the cities in them.
+        code: `no-plan`, or `no-road` where only roads are to blame.
+    """
+
+    def __init__(
+        self,
+        obstacles: Iterable[Obstacle],
+        names: CityNames | None = None,
+        code: str = "no-plan",
+    ) -> None:
+        self.obstacles = tuple(obstacles)
+        faults = [each.fault(names or CityNames()) for each in self.obstacles]
+        summary = summarize(faults)
+        shown = faults[:MOST_FAULTS]
+        super().__init__(code, errors=shown, reason=summary, detail=summary)
+
+    def named(self, names: CityNames) -> "NoTour":
+        """Return this refusal with other names of the cities."""
+        return NoTour(self.obstacles, names, self.code)
