@@ -18,6 +18,7 @@ Cities = NDArray[np.int32]
 
 MAX_ENUMERATED = 9  # cities: at most 9! tours
 DIGITS = 40  # binary, of the least costs that are summed
+LEAST_BLOCKS = 50  # of steps before the deadline counts: most instances need fewer, some 20 ms
 STEPS = 5_000  # cities put into a tour between two checks of the deadline, a fraction of a ms
 
 
@@ -49,8 +50,8 @@ def exact_tours(
     costs = make_costs(instance)
     archive = make_archive(len(costs.cities))
     complete = True
-    for _ in enumerate_tours(costs, archive):
-        late = deadline is not None and time.monotonic() >= deadline
+    for block, _ in enumerate(enumerate_tours(costs, archive)):
+        late = deadline is not None and block >= LEAST_BLOCKS and time.monotonic() >= deadline
         if (late or stop()) and archive.counts[0] > 0:
             complete = False
             break
