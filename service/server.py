@@ -25,9 +25,13 @@ from service.api.body_budget import BodyBounds
 from service.api.metrics import Metrics
 from service.api.site.tiles import Tiles
 from service.api.task_parser import ParserBounds
-from service.api.transport.acceptor import FairServer
 from service.api.transport.connections import ConnectionLimits, Connections
-from service.api.transport.listener import bound_sockets, most_connections
+from service.api.transport.listener import (
+    ACCEPTED_AT_ONCE,
+    Server,
+    bound_sockets,
+    most_connections,
+)
 from service.api.transport.protocol import Connection
 from service.cluster import check_cluster
 from service.jobs.compiled_code import warm_up
@@ -116,7 +120,7 @@ def serve(app: FastAPI, settings: Settings) -> None:
         server.run(sockets)
 
 
-def make_server(app: FastAPI, connections: Connections, drain_seconds: int) -> FairServer:
+def make_server(app: FastAPI, connections: Connections, drain_seconds: int) -> Server:
     """Return a server of HTTP/1.1 alone, over these connections."""
     config = uvicorn.Config(
         app,
@@ -129,8 +133,9 @@ def make_server(app: FastAPI, connections: Connections, drain_seconds: int) -> F
         log_config=None,
         access_log=False,
         timeout_graceful_shutdown=drain_seconds,
+        backlog=ACCEPTED_AT_ONCE,
     )
-    return FairServer(config, connections)
+    return Server(config)
 
 
 def build_worker(settings: Settings) -> Callable[[], int]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from service.api.transport.addresses import network_of, proxies_of
+from service.api.transport.turns import Turns
 
 _REFUSED_AT_ONCE = 32  # connections beyond the limits that are told so, at a time
 _LOG_EVERY = 1.0  # seconds between two lines about connections that make way
@@ -51,6 +52,9 @@ class Connections:
     One that is idle makes way for a new one when there are too many, in all or from its address:
     the one of these that has waited longest for a request. Where none is idle, the new one is
     refused.
+
+    Attributes:
+        turns: The turns in which these connections parse what came at once.
     """
 
     def __init__(self, limits: ConnectionLimits) -> None:
@@ -61,10 +65,10 @@ class Connections:
         self._idle: dict[OpenConnection, None] = {}  # the first has been idle longest
         self._refused: dict[OpenConnection, None] = {}
         self._next_line = 0.0
+        self.turns = Turns()
 
-    def admit(self, connection: OpenConnection, peer: str) -> bool:
-        """Take in a new connection of a peer, and return whether there is room for it."""
-        network = self.network_of_peer(peer)
+    def admit(self, connection: OpenConnection, network: str) -> bool:
+        """Take in a new connection of a network, and return whether there is room for it."""
         if self._has_place(network) and self._has_room():
             self._open[connection] = network
             self._held[network] += 1
@@ -77,14 +81,6 @@ class Connections:
     def network_of_peer(self, peer: str) -> str:
         """Return the network that a connection of a peer counts for, PROXY where it is one."""
         return PROXY if self._is_proxy(peer) else network_of(peer)
-
-    def make_room(self) -> bool:
-        """Close the connection that has been idle longest, and return whether there was one."""
-        oldest = next(iter(self._idle), None)
-        if oldest is not None:
-            self._log("idle connections make way for new ones: %d are open", len(self._open))
-            oldest.abort()
-        return oldest is not None
 
     def set_idle(self, connection: OpenConnection, idle: bool) -> None:
         """Take note of whether a connection waits for a request."""
@@ -105,7 +101,11 @@ class Connections:
 
     def _has_room(self) -> bool:
         """Return whether there may be one connection more, after an idle one has made way."""
-        if len(self._open) < self.limits.connections or self.make_room():
+        if len(self._open) < self.limits.connections:
+            return True
+        if (oldest := next(iter(self._idle), None)) is not None:
+            self._log("idle connections make way for new ones: %d are open", len(self._open))
+            oldest.abort()
             return True
         self._log("a connection was refused: %d are busy", len(self._open))
         return False

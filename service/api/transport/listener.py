@@ -1,13 +1,16 @@
-"""The sockets to listen to, and how many connections descriptors are left for."""
+"""The sockets to listen to, how they are accepted, and how many connections there may be."""
 
 import logging
 import resource
 import socket
 
-MOST_WAITING = 128  # accepted connections that wait to be served
+import uvicorn
 
-# Files, libraries, the store, the log, connections to Redis, and those that wait or are refused.
-_RESERVE = 128 + MOST_WAITING
+ACCEPTED_AT_ONCE = 32  # of a listening socket, in a turn of the event loop
+_IN_KERNEL = 1024  # connections that wait until they are accepted
+# Files, libraries, the store, the log, connections to Redis and those that are refused; and those
+# that are accepted, which takes three turns until they are counted.
+_RESERVE = 160 + 3 * ACCEPTED_AT_ONCE
 _RESERVE_PER_WORKER = 8  # its two sockets, and pipes while it is started
 _FEWEST = 8
 
@@ -46,3 +49,13 @@ def most_connections(wanted: int, workers: int) -> int:
         return wanted
     left = descriptors - _RESERVE - _RESERVE_PER_WORKER * workers
     return min(wanted, max(left, _FEWEST))
+
+
+class Server(uvicorn.Server):
+    """A server of uvicorn that accepts few connections at a time, while many may wait."""
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Start the application, then accept connections of these sockets."""
+        await super().startup(sockets)
+        for listening in sockets or ():
+            listening.listen(_IN_KERNEL)  # asyncio has as many wait as it accepts at a time
