@@ -6,11 +6,11 @@ import socket
 
 import uvicorn
 
-ACCEPTED_AT_ONCE = 32  # of a listening socket, in a turn of the event loop
+ACCEPTED_AT_ONCE = 8  # of a listening socket, in a turn of the event loop
 _IN_KERNEL = 1024  # connections that wait until they are accepted
 # Files, libraries, the store, the log, connections to Redis and those that are refused; and those
 # that are accepted, which takes three turns until they are counted.
-_RESERVE = 160 + 3 * ACCEPTED_AT_ONCE
+_RESERVE = 232 + 3 * ACCEPTED_AT_ONCE
 _RESERVE_PER_WORKER = 8  # its two sockets, and pipes while it is started
 _FEWEST = 8
 

@@ -19,7 +19,7 @@ _LINGER_SECONDS = 10.0  # that the rest of a refused body is read and dropped
 _LINGER_BYTES = 2**26  # of that rest: four times the longest body
 _STALL_SECONDS = 30.0  # after which a client must have read some of its answer
 _READ_AT_ONCE = 2**16  # bytes
-_HALF_CLOSED_SECONDS = 0.25  # between two looks at whether a client that sends no more still reads
+_HALF_CLOSED_SECONDS = 0.1  # between two looks at whether a client that sends no more still reads
 _EVERY_ANSWER = b"HTTP/1.1 "
 _NO_MORE_BODY = (h11.IDLE, h11.DONE, h11.MUST_CLOSE, h11.CLOSED)
 
@@ -183,7 +183,7 @@ class Connection(H11Protocol):
     def _check_half_closed(self, count: int = 1) -> None:
         """Close the connection where the client has gone, as far as its machine has said so.
 
-        A letter is sent ahead at the 1st, 2nd, 4th, 8th check and so on: nine last for a minute.
+        A letter is sent ahead at the 1st, 2nd, 4th, 8th check and so on: nine last for 26 seconds.
         """
         if self._socket.get_extra_info("socket").getsockopt(socket.SOL_SOCKET, socket.SO_ERROR):
             self.abort()

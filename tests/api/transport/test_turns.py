@@ -162,9 +162,11 @@ class Waiting:
     def __init__(self) -> None:
         self.began, self.released, self.ended = (threading.Event() for _ in range(3))
         self.saw = ""
+        self.calls = 0
 
     async def __call__(self, _: Any, receive: Any, send: Any) -> None:
         """Wait until the test releases it, or the client goes away."""
+        self.calls += 1
         await receive()
         self.began.set()
         gone = asyncio.ensure_future(receive())
