@@ -18,7 +18,7 @@ from service.requests.limits import Limits, check_structure
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.task import Task, TaskSource, parse_task
-from service.requests.validation import parse_json
+from service.requests.validation import check_json, parse_json
 
 _SHORT = 2**17  # bytes that are parsed here, in a few milliseconds
 _FEW_QUOTES = 2000  # those of 300 stops; as many faults take a few milliseconds
@@ -117,12 +117,12 @@ class TaskParser:
         short = length <= _SHORT and source.upload is None
         if short and source.body.count(b'"') <= _FEW_QUOTES:
             return parse_task(source, self._limits, self._actors)
-        check_structure(source.body, self._limits)
+        self._check(source.body)
         return await self._in_turn(parse_task, source, length)
 
     def check_replan(self, body: bytes) -> None:
         """Raise a refusal where a short body is no request to replan; others are parsed later."""
-        check_structure(body, self._limits)
+        self._check(body)
         if len(body) <= _SHORT and body.count(b'"') <= _FEW_QUOTES:
             parse_json(ReplanRequest, body)
 
@@ -132,6 +132,15 @@ class TaskParser:
         if source.length <= _SHORT and quotes <= _FEW_QUOTES:
             return parse_replan(source, self._limits, self._actors)
         return await self._in_turn(parse_replan, source, source.length)
+
+    def _check(self, body: bytes) -> None:
+        """Raise a refusal where a body is too complex or, unless it is long, is not JSON.
+
+        JSON that is too deep is refused here: it need not wait until a process is started.
+        """
+        check_structure(body, self._limits)
+        if len(body) <= _MEDIUM:
+            check_json(body)
 
     async def _in_turn(self, parse: _Parse[S, T], source: S, length: int) -> T:
         lane = self._medium if length <= _MEDIUM else self._long
