@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 import httpx
 import typer
-from paretour import Refused
+from paretour import Refused, UnexpectedAnswer
 
 EXIT_STALLED = 1  # of `paretour work --alive`
 EXIT_USAGE = 2
@@ -37,6 +37,8 @@ def exit_on_error() -> Iterator[None]:
     except Refused as error:
         faulty = 400 <= error.status < 500 and error.status not in _NOT_THE_REQUEST
         raise exit_with(str(error), EXIT_USAGE if faulty else EXIT_UNAVAILABLE) from None
+    except UnexpectedAnswer as error:
+        raise exit_with(f"the service answers oddly: {error}", EXIT_UNAVAILABLE) from None
     except httpx.TransportError as error:
         raise exit_with(f"the service does not answer: {error}", EXIT_UNAVAILABLE) from None
 

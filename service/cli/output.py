@@ -152,7 +152,7 @@ def front_summary(front: Front) -> str:
 
 def end_of_search(terminated: str | None) -> str:
     """Return why a search ended, in words."""
-    return _TERMINATED[terminated]
+    return _TERMINATED.get(terminated, f"ended: {terminated!r:.80}")
 
 
 def tour_as_json(tour: Tour) -> str:
