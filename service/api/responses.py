@@ -262,6 +262,11 @@ class FileAnswer(BaseModel):
     columns: list[ColumnItem] | SkipJsonSchema[None] = Field(
         default=None, description="of a table with a heading"
     )
+    planes: list[list[float]] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="of two files EUC_2D: x and y of each city in both planes, of whose distances"
+        " the matrices in the request are the rounded ones",
+    )
     name: str
 
 

@@ -15,12 +15,13 @@ _NAMES = {
     "y": "y ycoord coordy ycoordinate yc ypos posy northing hochwert nord",
     "demand": "demand qty quantity load amount pallets parcels boxes items weight volume menge"
     " bedarf gewicht demanda cantidad kg",
-    "window_from": "windowfrom windowstart timewindowstart timewindowfrom timefrom starttime twstart"
-    " twfrom twopen readytime ready earliest open opens opening from begin von start",
+    "window_from": "windowfrom windowstart timewindowstart timewindowfrom timefrom starttime "
+    " twstart twfrom twopen readytime ready earliest open opens opening from begin von start",
     "window_to": "windowto windowend timewindowend timewindowto timeto endtime twend twto twclose"
     " duedate duetime due latest close closes closing to until end bis",
     "window": "window timewindow tw deliverywindow zeitfenster",
-    "service": "service servicetime serviceduration stoptime handlingtime dwell servicezeit standzeit",
+    "service": "service servicetime serviceduration stoptime handlingtime dwell servicezeit"
+    " standzeit",
     "skills": "skills skill",
     "prize": "prize",
     "cost": "cost costs risk danger exposure co2 emissions kosten risiko",

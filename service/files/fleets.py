@@ -41,6 +41,11 @@ def timed(stops: Sequence[Stop]) -> bool:
     return any(stop.keys() & {"service", "window"} for stop in stops)
 
 
+def note_left_out(source: Source, what: str) -> None:
+    """Note what a file asks for, and this service has not."""
+    source.note("left-out", f"{what} was not used: fleets have no such thing here.")
+
+
 def with_one_vehicle(source: Source, stops: list[Stop], objectives: list[Any]) -> Request:
     """Return the request for one vehicle from the first stop, that holds all demand.
 

@@ -8,10 +8,12 @@ from typing import Any
 from service.files.reading import Kind, Reading, Source, quoted
 from service.files.stop_tables import reading_of
 from service.files.tables import table_of
+from service.files.texts import text_of
 from service.files.vroom import is_vroom, read_vroom
 
-_OBJECTIVES = {"objectives", "vehicles"}
 _STRUCTURE = ("type", "features", "bbox", "name", "crs", "metadata", "xy_coordinate_resolution")
+_OBJECTS = {"stops", "vehicles", "robots", "shipments", "objectives"}
+_ROWS = {"coordinates", "grid", "cost_layer"}
 _DEGREES = re.compile(r"(OGC:.*CRS84$|EPSG:+4326$|CRS84$|WGS ?84)", re.IGNORECASE)
 _PAIRS = {"latitude": ("lat", "latitude"), "longitude": ("lon", "lng", "long", "longitude")}
 
@@ -21,22 +23,18 @@ def looks_like_json(text: str) -> bool:
     return text.lstrip()[:1] in ("{", "[")
 
 
-def read_json(source: Source, text: str, wanted: Kind) -> Reading:
+def read_json(source: Source, text: str, wanted: Kind | None) -> Reading:
     """Return the request that a text of JSON is, or becomes.
 
     Args:
         source: The file.
         text: What it holds.
-        wanted: The kind of an object that does not tell its own.
+        wanted: The kind of an object that does not tell its own; None refuses it.
 
     Raises:
         UnreadableFile: It is no JSON, or nothing that the reader knows.
     """
-    try:
-        # Some write Infinity for no way, which JSON does not know; null says the same in a request.
-        value = json.loads(text, parse_constant=lambda _: None)
-    except (ValueError, RecursionError) as error:
-        raise source.refusal(f"must be JSON: {error}") from None
+    value = _parsed(source, text)
     if isinstance(value, list):
         return _read_list(source, value)
     if not isinstance(value, dict):
@@ -49,7 +47,32 @@ def read_json(source: Source, text: str, wanted: Kind) -> Reading:
         raise source.refusal("must be GeoJSON, got TopoJSON: export it as GeoJSON")
     if {"info", "data"} <= value.keys():
         return source.reading("coverage", {"occupancy_grid": value})
-    return source.reading(_kind_of(value) or wanted, value)
+    _check_lists(source, value)
+    kind = _kind_of(value) or wanted
+    if kind is None:
+        names = ", ".join(map(quoted, list(value)[:5])) or "none"
+        raise source.refusal(f"must be a request, GeoJSON or VROOM's, got members {names}")
+    return source.reading(kind, value)
+
+
+def read_object(source: Source) -> dict[str, Any]:
+    """Return the object that a file of JSON is.
+
+    Raises:
+        UnreadableFile: It is none.
+    """
+    value = _parsed(source, text_of(source))
+    if not isinstance(value, dict):
+        raise source.refusal("must be a request, an object")
+    return value
+
+
+def _parsed(source: Source, text: str) -> Any:
+    try:
+        # Some write Infinity for no way, which JSON does not know; null says the same in a request.
+        return json.loads(text, parse_constant=lambda _: None)
+    except (ValueError, RecursionError) as error:
+        raise source.refusal(f"must be JSON: {str(error)[:200]}") from None
 
 
 def _kind_of(request: dict[str, Any]) -> Kind | None:
@@ -60,11 +83,23 @@ def _kind_of(request: dict[str, Any]) -> Kind | None:
     return "front" if request.keys() & {"coordinates", "matrices", "stops"} else None
 
 
+def _check_lists(source: Source, request: dict[str, Any]) -> None:
+    """Raise UnreadableFile where what is drawn of a request is no list, of objects or of rows."""
+    for names, kind, what in ((_OBJECTS, dict, "objects"), (_ROWS, list, "rows")):
+        for name in names & request.keys():
+            items = request[name]
+            if not isinstance(items, list) or not all(isinstance(each, kind) for each in items):
+                raise source.refusal(f"{name} must be a list of {what}, got {quoted(items)}")
+
+
 def _read_list(source: Source, value: list[Any]) -> Reading:
     """Return the request of rows of four numbers, or of records."""
     if value and all(isinstance(each, dict) for each in value):
         return reading_of(source, table_of(source, _records(value)))
     source.check_count("cities", source.bounds.cities, len(value))
+    for each in value:
+        if not isinstance(each, list):
+            raise source.refusal(f"must be a list of rows, or of objects, got {quoted(each)[1:-1]}")
     return source.reading("front", {"coordinates": value})
 
 
@@ -114,6 +149,8 @@ def _read_geojson(source: Source, value: dict[str, Any]) -> Reading:
     if not isinstance(features, list):
         raise source.refusal("a FeatureCollection must have a list of features")
     records = [each for at, feature in enumerate(features) for each in _points(source, feature, at)]
+    if any(_id(each, _properties(each)) is None for each in features):
+        source.note("ids", "Features without an id, or a property id or name, are numbered from 1.")
     if not records:
         raise source.refusal("a FeatureCollection must have a point for each stop, got none")
     rest = (
@@ -121,9 +158,9 @@ def _read_geojson(source: Source, value: dict[str, Any]) -> Reading:
         if value["type"] == "Feature"
         else {k: v for k, v in value.items() if k not in _STRUCTURE}
     )
-    if _OBJECTIVES & rest.keys():
+    if "objectives" in rest and "vehicles" not in rest:
         stops = [{"id": each["id"], "location": each["location"]} for each in records]
-        return source.reading(_kind_of(rest) or "front", {**rest, "stops": stops})
+        return source.reading("front", {**rest, "stops": stops})
     reading = reading_of(source, table_of(source, _records(records)))
     return source.reading(reading.kind, {**reading.request, **rest})
 
@@ -154,19 +191,23 @@ def _points(source: Source, feature: Any, at: int) -> Iterator[dict[str, Any]]:
             raise source.refusal(f"features/{at} must be a Point, got {quoted(kind)}")
         case _:
             raise source.refusal(f"features/{at} must be a Point with a longitude and a latitude")
-    properties = feature.get("properties")
-    named = properties if isinstance(properties, dict) else {}
+    named = _properties(feature)
     for number, place in enumerate(places, 1):
         if not _is_place(list(place)):
             raise source.refusal(f"features/{at} must have a place of numbers, got {quoted(place)}")
-        name = _id(source, feature, named, at)
+        name = _id(feature, named) or str(at + 1)
         kept = {k: v for k, v in named.items() if k != "id"}
         several_id = name if len(places) == 1 else f"{name}-{number}"
         yield {"id": several_id, "location": list(place), **kept}
 
 
-def _id(source: Source, feature: dict[str, Any], named: dict[str, Any], at: int) -> str:
+def _id(feature: dict[str, Any], named: dict[str, Any]) -> str | None:
     for found in (feature.get("id"), named.get("id"), named.get("name")):
         if isinstance(found, str | int | float) and not isinstance(found, bool):
             return str(found)
-    return str(at + 1)
+    return None
+
+
+def _properties(feature: dict[str, Any]) -> dict[str, Any]:
+    properties = feature.get("properties")
+    return properties if isinstance(properties, dict) else {}

@@ -47,7 +47,7 @@ def note_places(source: Source, stops: Sequence[dict[str, Any]]) -> None:
     """Note stops that lie at (0, 0), or so far from the rest that they look swapped."""
     places = np.array([stop["location"] for stop in stops])
     ids = [stop["id"] for stop in stops]
-    nowhere = ~places.any(axis=1)
+    nowhere: NDArray[np.bool_] = np.all(places == 0, axis=1)
     if nowhere.any() and not nowhere.all():
         text = f"{_named(ids, nowhere)} at longitude 0 and latitude 0: was the address not found?"
         source.note("place", text)
@@ -74,7 +74,7 @@ def note_places(source: Source, stops: Sequence[dict[str, Any]]) -> None:
 
 def _named(ids: Sequence[str], which: NDArray[np.bool_]) -> str:
     """Return the stops that a mask picks, with a verb."""
-    picked = [ids[at] for at in np.flatnonzero(which)]
+    picked = [ids[at] for at in np.flatnonzero(which).tolist()]
     shown = ", ".join(quoted(each) for each in picked[:_MOST_NAMED])
     more = f" and {len(picked) - _MOST_NAMED} more" if len(picked) > _MOST_NAMED else ""
     return f"Stop {shown} lies" if len(picked) == 1 else f"Stops {shown}{more} lie"

@@ -1,11 +1,8 @@
 """Read what people bring, one file or two: told by content, then by ending."""
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any
 
-import numpy as np
-
+from service.files.benchmarks import is_customers, is_cvrp, read_customers, read_cvrp
 from service.files.json_files import looks_like_json, read_json
 from service.files.reading import (
     Bounds,
@@ -20,7 +17,7 @@ from service.files.spreadsheets import is_spreadsheet, rows_of
 from service.files.stop_tables import Part, part_of, reading_of
 from service.files.tables import Table, table_of, table_of_csv
 from service.files.texts import text_of
-from service.files.tsplib import costs, is_tsplib, places, split_tsplib
+from service.files.tsplib import costs, is_tsplib, places, plain, split_tsplib
 
 _BINARY = {
     b"%PDF": "a PDF",
@@ -35,7 +32,7 @@ def read_files(
     files: Sequence[NamedFile],
     bounds: Bounds,
     *,
-    wanted: Kind = "front",
+    wanted: Kind | None = "front",
     unrounded: bool = False,
 ) -> Reading:
     """Return the request that one file is, or two are with one objective each.
@@ -43,25 +40,32 @@ def read_files(
     Args:
         files: In the order of their objectives.
         bounds: What they may hold.
-        wanted: The kind of a request that does not tell its own.
+        wanted: The kind of a request that does not tell its own; None refuses it.
         unrounded: Whether EUC_2D of TSPLIB means planes, not distances rounded as it says.
 
     Raises:
         UnreadableFile: A file is nothing that the reader knows; the message names it.
     """
     sources = [Source(file, bounds) for file in files]
+    if any(file.is_picture or file.is_yaml for file in files):
+        from service.files.maps import read_map  # which takes a while to load
+
+        return read_map(sources)
     if len(sources) == 1:
         return _read(sources[0], wanted)
     if len(sources) != 2:
         raise UnreadableFile(f"one file is wanted, or two with an objective each, got {len(files)}")
     first, second = (_part(source, unrounded) for source in sources)
-    request = _joined(sources[0], first, second)
+    request = _joined(first, second)
+    planes = None
+    if first.plane and second.plane:
+        planes = [[*one, *other] for one, other in zip(first.plane, second.plane, strict=True)]
     notes = tuple(note for source in sources for note in source.notes)
     columns = tuple(column for source in sources for column in source.columns)
-    return Reading("front", request, f"{first.name}, {second.name}", notes, columns)
+    return Reading("front", request, f"{first.name}, {second.name}", notes, columns, planes)
 
 
-def _read(source: Source, wanted: Kind) -> Reading:
+def _read(source: Source, wanted: Kind | None) -> Reading:
     """Return the request in a file that holds both objectives, or a fleet, or a map."""
     if is_spreadsheet(source.file.data):
         return reading_of(source, table_of(source, rows_of(source)))
@@ -69,7 +73,12 @@ def _read(source: Source, wanted: Kind) -> Reading:
     if looks_like_json(text):
         return read_json(source, text, wanted)
     if is_tsplib(text):
+        file = split_tsplib(source, text)
+        if is_cvrp(file):
+            return read_cvrp(file)
         raise source.refusal("a file of TSPLIB is one objective: name another for the other one")
+    if is_customers(text):
+        return read_customers(source, text)
     if source.name.casefold().endswith((".json", ".geojson")):
         return read_json(source, text, wanted)
     return reading_of(source, table_of_csv(source, text))
@@ -111,19 +120,11 @@ def _tsplib_part(source: Source, text: str, unrounded: bool) -> Part:
     found = costs(file)
     if file.kind != "EXPLICIT":
         source.note("rounded", f"Distances are whole numbers, as TSPLIB defines {file.kind}.")
-    return Part(source.name, len(found), None, {"matrix": plain(found)})
+    plane = places(file).tolist() if file.kind == "EUC_2D" else None
+    return Part(source.name, len(found), None, {"matrix": plain(found)}, plane=plane)
 
 
-def plain(costs: np.ndarray[Any, np.dtype[np.float64]]) -> list[list[Any]]:
-    """Return costs as rows of JSON: whole numbers without a fraction, None for no way."""
-    if np.isfinite(costs).all():
-        whole = (costs == np.rint(costs)).all() and (np.abs(costs) < 2**53).all()
-        rows: list[list[Any]] = (costs.astype(np.int64) if whole else costs).tolist()
-        return rows
-    return [[cost if np.isfinite(cost) else None for cost in row] for row in costs.tolist()]
-
-
-def _joined(source: Source, first: Part, second: Part) -> Request:
+def _joined(first: Part, second: Part) -> Request:
     """Return the request of two files about the same stops.
 
     Raises:

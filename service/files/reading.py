@@ -6,6 +6,8 @@ from typing import Any, Literal
 
 Kind = Literal["front", "fleet", "coverage"]
 Request = dict[str, Any]
+_PICTURES = (b"\x89PNG", b"P5", b"P2")
+_PICTURE_NAMES = (".png", ".pgm", ".jpg", ".jpeg", ".gif", ".webp", ".bmp")
 _LONGEST_SHOWN = 80  # characters of a file that a sentence quotes
 
 
@@ -41,6 +43,19 @@ class NamedFile:
     name: str
     data: bytes
 
+    @property
+    def is_picture(self) -> bool:
+        """Whether it is PNG or PGM, by its first bytes, or another picture by its ending."""
+        return self.data.startswith(_PICTURES) or self._ends_with(_PICTURE_NAMES)
+
+    @property
+    def is_yaml(self) -> bool:
+        """Whether it is YAML, by its ending."""
+        return self._ends_with((".yaml", ".yml"))
+
+    def _ends_with(self, endings: tuple[str, ...]) -> bool:
+        return self.name.casefold().endswith(endings)
+
 
 @dataclass(frozen=True)
 class Note:
@@ -68,6 +83,7 @@ class Reading:
     name: str
     notes: tuple[Note, ...] = ()
     columns: tuple[Column, ...] = ()
+    planes: list[list[float]] | None = None  # rows of x, y, x, y, whose rounded distances are asked
 
     @property
     def document(self) -> Mapping[str, Any]:
@@ -75,7 +91,8 @@ class Reading:
         columns = {"columns": [asdict(each) for each in self.columns]} if self.columns else {}
         notes = [asdict(note) for note in self.notes]
         members = {"kind": self.kind, "request": self.request, "notes": notes}
-        return {**members, **columns, "name": self.name}
+        planes = {} if self.planes is None else {"planes": self.planes}
+        return {**members, **columns, **planes, "name": self.name}
 
 
 @dataclass(frozen=True)
@@ -89,7 +106,8 @@ class Source:
 
     @property
     def name(self) -> str:
-        return self.file.name
+        """The file's name without characters that no terminal shows."""
+        return "".join(each if each.isprintable() else "?" for each in self.file.name)
 
     def note(self, code: str, text: str) -> None:
         """Note what is taken for granted."""

@@ -2,7 +2,6 @@
 
 import io
 import zipfile
-from collections.abc import Iterator
 from datetime import datetime, time
 from typing import Any
 
@@ -17,8 +16,8 @@ def is_spreadsheet(data: bytes) -> bool:
     return data.startswith(b"PK\x03\x04")
 
 
-def rows_of(source: Source) -> Iterator[list[str]]:
-    """Yield the fields of each row, as text.
+def rows_of(source: Source) -> list[list[str]]:
+    """Return the fields of each row, as text.
 
     Raises:
         UnreadableFile: It is no XLSX, has no row, or is too large unpacked.
@@ -31,7 +30,7 @@ def rows_of(source: Source) -> Iterator[list[str]]:
             io.BytesIO(source.file.data), read_only=True, data_only=True, keep_links=False
         )
         sheets = [sheet for sheet in book.worksheets if sheet.sheet_state == "visible"]
-        yield from _first_with_rows(source, sheets)
+        return _first_with_rows(source, sheets)
     except FileTooLarge:
         raise
     except Exception as error:  # whatever a part that is not as it should be leads to
@@ -52,19 +51,23 @@ def _check_size(source: Source) -> None:
         raise source.refusal("must be XLSX, got another zip file: unpack it first")
 
 
-def _first_with_rows(source: Source, sheets: list[Any]) -> Iterator[list[str]]:
-    """Yield the rows of the first sheet that has any, and note that there are others."""
+def _first_with_rows(source: Source, sheets: list[Any]) -> list[list[str]]:
+    """Return the rows of the first sheet that has any, and note that there are others."""
     for sheet in sheets:
         sheet.reset_dimensions()  # else a wrong one makes rows short, and a huge one long
-        found = False
+        rows: list[list[str]] = []
+        count = 0
         for row in sheet.iter_rows(values_only=True):
-            found = found or any(value is not None for value in row)
-            if found:
-                yield [_text(value) for value in row]
-        if found:
+            count += 1 + len(row)
+            source.check_count("fields and rows", source.bounds.cells, count)
+            rows.append([_text(value) for value in row])
+        if any(any(row) for row in rows):
             if len(sheets) > 1:
                 source.note("sheet", f"Only the sheet {sheet.title!r} of {len(sheets)} was read.")
-            return
+            width = max(map(len, rows))  # a row ends with its last field that holds something
+            source.check_count("fields", source.bounds.cells, width * len(rows))
+            return [row + [""] * (width - len(row)) for row in rows]
+    return []
 
 
 def _text(value: Any) -> str:

@@ -27,6 +27,7 @@ class Table:
 
     @property
     def width(self) -> int:
+        """How many fields each row has."""
         return len(self.rows[0][1])
 
 
@@ -133,7 +134,7 @@ def _take_heading(source: Source, rows: list[Row]) -> list[str] | None:
 
 
 def _counts_up(fields: Sequence[str]) -> bool:
-    """Return whether fields are those of a heading that pandas writes where columns have no name."""
+    """Return whether fields are a heading as pandas writes it where columns have no names."""
     numbers = fields[1:] if fields[0] == "" else fields
     return list(numbers) == [str(number) for number in range(len(numbers))]
 

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,6 +80,17 @@ def is_tsplib(text: str) -> bool:
 def split_tsplib(source: Source, text: str) -> TsplibFile:
     """Return the keywords and sections of a text: a section ends where the next keyword stands."""
     file = TsplibFile(source)
+    _fill(file, text)
+    kind = file.header.get("TYPE", "").upper().split(" ")[0]
+    if kind in _NOT_PLANNED:
+        raise source.refusal(f"TYPE must be TSP, ATSP or CVRP, got {kind}: {_NOT_PLANNED[kind]}")
+    if file.sections.get("FIXED_EDGES_SECTION", ["-1"]) != ["-1"]:
+        source.note("left-out", "FIXED_EDGES_SECTION was not used: tours may do without its edges.")
+    return file
+
+
+def _fill(file: TsplibFile, text: str) -> None:
+    """Read the lines of a text into the keywords and sections of a file."""
     words: list[str] | None = None  # of the section that a line is in
     for line in text.splitlines():
         keyword = _KEYWORD.match(line)
@@ -94,12 +106,6 @@ def split_tsplib(source: Source, text: str) -> TsplibFile:
             file.header.setdefault(name, keyword[2] or "")
         elif keyword[2]:
             words.extend(keyword[2].split())
-    kind = file.header.get("TYPE", "").upper().split(" ")[0]
-    if kind in _NOT_PLANNED:
-        raise source.refusal(f"TYPE must be TSP, ATSP or CVRP, got {kind}: {_NOT_PLANNED[kind]}")
-    if file.sections.get("FIXED_EDGES_SECTION", ["-1"]) != ["-1"]:
-        source.note("left-out", "FIXED_EDGES_SECTION was not used: tours may do without its edges.")
-    return file
 
 
 def places(file: TsplibFile) -> Array:
@@ -148,3 +154,12 @@ def _explicit(file: TsplibFile) -> Array:
     matrix[at] = file.parsed(section, words)
     matrix[at[1], at[0]] = matrix[at]
     return matrix
+
+
+def plain(costs: Array) -> list[list[Any]]:
+    """Return costs as rows of JSON: whole numbers without a fraction, None for no way."""
+    if np.isfinite(costs).all():
+        whole = (costs == np.rint(costs)).all() and (np.abs(costs) < 2**53).all()
+        rows: list[list[Any]] = (costs.astype(np.int64) if whole else costs).tolist()
+        return rows
+    return [[cost if np.isfinite(cost) else None for cost in row] for row in costs.tolist()]

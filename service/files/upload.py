@@ -1,4 +1,4 @@
-"""Read files that came over HTTP, within the limits of a service, as JSON that says what they are."""
+"""Read files that came over HTTP, within the limits of a service, as JSON."""
 
 from collections.abc import Mapping, Sequence
 
@@ -37,7 +37,7 @@ def read_upload(
         if not is_spreadsheet(file.data):  # whose bytes are compressed
             check_structure(file.data, limits)
     try:
-        reading = read_files(files, bounds_of(limits))
+        reading = read_files(files, bounds_of(limits), wanted=None)
     except FileTooLarge as error:
         raise Refusal("file-too-large", detail=str(error)) from None
     except UnreadableFile as error:

@@ -46,7 +46,7 @@ def split_files(content_type: str, body: bytes) -> list[tuple[str, bytes]]:
     Raises:
         Refusal: The body is malformed, of other parts, or of too many.
     """
-    files = []
+    files: list[tuple[str, bytes]] = []
     for name, content, filename in _parts(_delimiter(content_type), body):
         if name != "file" or not filename:
             came = shorten(name)

@@ -56,7 +56,12 @@ def bomb() -> bytes:
         ([("a.csv", b"id,lat,lon\na,1,2\nb,north,3\n")], 422, "unreadable-file", "row 3"),
         ([("a.csv", b"")], 422, "unreadable-file", "a.csv"),
         ([("../../etc/x\x1b.csv", b"1,2\n")], 422, "unreadable-file", "4 columns"),
-        ([("a.tsp", b"DIMENSION: 20000\nEDGE_WEIGHT_TYPE: EUC_2D\n")] * 2, 413, "file-too-large", "20000"),
+        (
+            [("a.tsp", b"DIMENSION: 20000\nEDGE_WEIGHT_TYPE: EUC_2D\n")] * 2,
+            413,
+            "file-too-large",
+            "20000",
+        ),
         ([("a.xlsx", b"PK\x03\x04")], 422, "unreadable-file", "XLSX"),
         ([("a.csv", b"1,2,3,4\n")] * 9, 422, "invalid-parts", "8 parts"),
     ],

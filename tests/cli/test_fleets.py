@@ -43,4 +43,4 @@ def test_a_file_that_is_no_request_and_two_formats_are_refused(file: Path) -> No
     file.write_text("[1]")
     ended = paretour("fleet", file)
     assert (ended.returncode, ended.stdout) == (2, "")
-    assert "must hold an object" in ended.stderr
+    assert "must be a list of rows, or of objects, got 1" in ended.stderr

@@ -13,7 +13,13 @@ if TYPE_CHECKING:
 
 
 def fleet(  # noqa: PLR0913  an option each
-    file: Annotated[Path, Argument(help="A request in JSON, as for POST /fleet.")],
+    file: Annotated[
+        Path,
+        Argument(
+            help="A request in JSON, as for POST /fleet; or CSV or XLSX of stops with demands or"
+            " windows, VROOM's JSON, CVRPLIB, Solomon's, or Li and Lim's. - is standard input."
+        ),
+    ],
     time_limit: TimeLimit = None,
     size: Annotated[int | None, Option(help="The most plans to give.", show_default="100")] = None,
     seed: Seed = None,
@@ -46,21 +52,17 @@ def fleet(  # noqa: PLR0913  an option each
 
 
 def read_fleet(file: Path, options: dict[str, Any]) -> "Plan":
-    """Return the plan in a file of JSON, with options that were given in place of its members.
+    """Return the plan in a file, with options that were given in place of its members.
 
     Raises:
-        UnreadableFile: It is no JSON object.
+        UnreadableFile: It cannot be read.
+        UsageError: It is of another command.
         OSError: There is no such file.
     """
     from paretour import FleetRequest, fleet_plan
 
-    from service.cli.errors import UnreadableFile
+    from service.cli.inputs import read_request
 
-    try:
-        request = json.loads(file.read_text())
-    except (ValueError, RecursionError) as error:
-        raise UnreadableFile(f"{file} must be JSON: {error}") from None
-    if not isinstance(request, dict):
-        raise UnreadableFile(f"{file} must hold an object, as a request is")
+    request, _ = read_request([file], "fleet")
     given = {name: value for name, value in options.items() if value is not None}
     return fleet_plan(cast(FleetRequest, {**request, **given}))

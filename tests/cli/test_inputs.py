@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from service.cli.errors import UnreadableFile
-from service.cli.inputs.files import read_layer, read_map, read_request
+from service.cli.inputs import read_layer, read_map, read_request
 from tests.helpers.tsplib_files import EUCLIDEAN, EXPLICIT
 
 
@@ -76,19 +76,19 @@ def test_a_map_is_read_by_its_suffix(tmp_path: Path) -> None:
 
 
 WRONG = [
-    ("a.csv", "", "must have a row of numbers for each city, got none"),
-    ("a.csv", "a,b,c,d\n", "must have a row of numbers"),
-    ("a.csv", "1,2,3\n", "must have 4 columns, x and y in either plane, got 3"),
-    ("a.csv", "1,2,3,4\n1,2,3\n", "line 2 must have 4 fields, as the first row, got 3"),
-    ("a.csv", "1,2,3,4\n1,2,x,4\n", "line 2 must hold numbers, got 'x'"),
-    ("a.csv", "1,2,3,nan\n", "line 1 must hold numbers, got 'nan'"),
+    ("a.csv", "", "must have a row for each stop, got none"),
+    ("a.csv", "a,b,c,d\n", "must have a row for each stop below its heading"),
+    ("a.csv", "1,2,3\n", "must have 4 columns, x and y in either plane, or"),
+    ("a.csv", "1,2,3,4\n1,2,3\n", "row 2 must have 4 fields, as the first row, got 3"),
+    ("a.csv", "1,2,3,4\n1,2,x,4\n", "row 2, column '3' must be a number, got 'x'"),
+    ("a.csv", "1,2,3,nan\n", "row 1, column '4' must be a number, got 'nan'"),
     ("a.json", "{", "must be JSON"),
     ("a.json", "[" * 100_000, "must be JSON"),
-    ("a.csv", "x" * 200_000, "must be CSV"),
-    ("a.csv", "1,5;2;3;4\n1.234,5;2;3;4\n", "line 2 must hold numbers, got '1.234,5'"),
-    ("a.csv", "id,1,2,3\n1,2,3,4\n", "must have 4 columns, x and y in either plane, got 3"),
-    ("a.csv", "a,1,2,3,4\nb,1,2,3,4\na,5,6,7,8\n", "line 3 must have an id of its own, got 'a'"),
-    ("a.csv", "id,1,1,1,1\n ,1,2,3,4\n", "line 2 must begin with an id, got none"),
+    ("a.csv", '1,"2', "must be CSV: unexpected end of data"),
+    ("a.csv", "1,5;2;3;4\n1.234,5;2;3;4\n", "row 2, column '1' must be a number, got '1.234,5'"),
+    ("a.csv", "id,1,2,3\n1,2,3,4\n", "or columns named lon and lat, got 3"),
+    ("a.csv", "a,1,2,3,4\nb,1,2,3,4\na,5,6,7,8\n", "row 3, column '1' must be an id of its own"),
+    ("a.csv", "id,1,1,1,1\n ,1,2,3,4\n", "row 2, column 'id' must be an id, got none"),
     ("a.json", "3", "must be a request, an object, or its coordinates, a list"),
     ("a.tsp", EUCLIDEAN, "one objective: name another"),
 ]
@@ -113,8 +113,8 @@ def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
 
 
 WRONG_PAIRS = [
-    ("a.tsp", "", "b.tsp", EXPLICIT, "a.tsp: EDGE_WEIGHT_TYPE must be EUC_2D"),
-    ("a.csv", "1,2\n3,4\n5,6\n", "b.csv", "1,2\n3,4\n", "got 3x2 and 2x2"),
+    ("a.tsp", "", "b.tsp", EXPLICIT, "a.tsp: must have a row for each stop"),
+    ("a.csv", "1,2\n3,4\n5,6\n", "b.csv", "1,2\n3,4\n", "as many stops, got 3 of"),
     ("a.csv", "1,2,3\n", "b.csv", "1,2\n", "must have 2 columns, x and y, or as many as rows"),
 ]
 
@@ -145,8 +145,13 @@ def test_numbers_may_have_decimal_commas(tmp_path: Path) -> None:
 def test_a_first_column_may_hold_ids(
     tmp_path: Path, text: str, ids: tuple[str, ...] | None
 ) -> None:
-    expected = {"coordinates": [[1, 2, 3, 4], [5, 6, 7, 8]]}
-    assert read_request(written(tmp_path, ("a.csv", text))) == (expected, ids)
+    request, found = read_request(written(tmp_path, ("a.csv", text)))
+    assert found == ids
+    planes = [[[1, 2], [5, 6]], [[3, 4], [7, 8]]]
+    if ids is None:
+        assert request == {"coordinates": [[1, 2, 3, 4], [5, 6, 7, 8]]}
+    else:
+        assert [each["coordinates"] for each in request["objectives"]] == planes
 
 
 def test_the_ids_of_two_files_are_the_same(tmp_path: Path) -> None:
@@ -165,7 +170,7 @@ class Piped:
 
 
 @pytest.mark.parametrize(
-    "data", [b' {"coordinates": [[1, 2, 3, 4]]}', b"[[1, 2, 3, 4]]", b"id;1;1;1;1\na;1;2;3;4\n"]
+    "data", [b' {"coordinates": [[1, 2, 3, 4]]}', b"[[1, 2, 3, 4]]", b"x;x;x;x\n1;2;3;4\n"]
 )
 def test_a_file_may_be_standard_input(data: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", Piped(data))
