@@ -13,6 +13,7 @@ Row = tuple[int, list[str]]  # its number, as a spreadsheet counts, and its fiel
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas"}
 _SAMPLE = 2**16  # characters that a separator is told by
 _SAMPLE_ROWS = 50
+_LARGEST = 1e150  # as in requests
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
 _MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\xa0": "", "\u202f": ""})
@@ -39,7 +40,7 @@ def number_in(field: str) -> float | None:
     if not _NUMBER.fullmatch(text):
         return None
     number = float(text)
-    return number if abs(number) != float("inf") else None
+    return number if abs(number) <= _LARGEST else None
 
 
 def table_of_csv(source: Source, text: str) -> Table:

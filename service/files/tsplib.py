@@ -23,6 +23,7 @@ _LAYOUTS = {
     "LOWER_DIAG_ROW": "lower diagonal",
     "UPPER_DIAG_COL": "lower diagonal",
 }
+_LARGEST = 1e150  # whose square is a number
 _TELLING = ("EDGE_WEIGHT_TYPE", "NODE_COORD_SECTION", "EDGE_WEIGHT_SECTION", "EDGE_DATA_FORMAT")
 _NOT_PLANNED = {"SOP": "an order of cities", "HCP": "no costs", "TOUR": "a tour, and no costs"}
 
@@ -124,8 +125,8 @@ def costs(file: TsplibFile) -> Array:
     file.source.check_count("cities whose costs are written out", limit, file.dimension)
     if file.kind in DIMENSIONS:
         found = places(file)
-        if not np.isfinite(found).all():
-            raise file.source.refusal("NODE_COORD_SECTION must hold finite numbers")
+        if not (np.abs(found) <= _LARGEST).all():
+            raise file.source.refusal(f"NODE_COORD_SECTION must hold numbers up to {_LARGEST:g}")
         return distances(file.kind, found)
     if file.kind != "EXPLICIT":
         known = ", ".join(("EXPLICIT", *DIMENSIONS))

@@ -11,8 +11,10 @@ from service.files.reading import quoted
 from service.files.table_columns import Columns
 from service.files.tables import number_in
 
-_TIME = re.compile(r"(?:\d{4}-\d\d-\d\d[ T])?(\d{1,2}):(\d\d)(?::(\d\d)(?:\.0+)?)?", re.ASCII)
+_TIME = re.compile(r"(?:(\d{4}-\d\d-\d\d)[ T])?(\d{1,2}):(\d\d)(?::(\d\d)(?:\.0+)?)?", re.ASCII)
 _BETWEEN = re.compile(r"\s*(?:[-/\u2013\u2014]|\bto\b|\bbis\b)\s*", re.IGNORECASE)
+_MOST = 1e6  # of demands
+_ROUNDING = 1e-6
 _MOST_DECIMALS = 3  # of demands, which become whole numbers
 
 
@@ -46,26 +48,20 @@ def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> Non
             for row in range(len(stops))
         ]
     )
-    decimals = next(
-        (
-            k
-            for k in range(_MOST_DECIMALS + 1)
-            if (np.abs(rows * 10**k - np.rint(rows * 10**k)) < 1e-6).all()
-        ),
-        None,
-    )
-    wrong = (rows < 0).any(axis=1)
-    if decimals is None or wrong.any():
-        row = int(np.argmax(wrong))
-        demand = f"must be 0 or more, with at most {_MOST_DECIMALS} decimals"
-        raise columns.source.refusal(
-            f"{columns.where(row, demands[0])} {demand}, got {rows[row].tolist()}"
-        )
+    finer = [rows * 10**decimals for decimals in range(_MOST_DECIMALS + 1)]
+    whole = [np.abs(each - np.rint(each)) < _ROUNDING for each in finer]
+    right = ((rows >= 0) & (rows <= _MOST) & whole[-1]).all(axis=1)
+    if not right.all():
+        row = int(np.argmin(right))
+        demand = f"must be 0 to {_MOST:g}, with at most {_MOST_DECIMALS} decimals"
+        came = ", ".join(f"{each:g}" for each in rows[row])
+        raise columns.source.refusal(f"{columns.where(row, demands[0])} {demand}, got {came}")
+    decimals = next(at for at, each in enumerate(whole) if each.all())
     if decimals:
         columns.source.note(
             "demand", f"Demands are whole numbers, so they are in 1/{10**decimals} here."
         )
-    for stop, amounts in zip(stops, np.rint(rows * 10**decimals).astype(int).tolist(), strict=True):
+    for stop, amounts in zip(stops, np.rint(finer[decimals]).astype(int).tolist(), strict=True):
         stop["demand"] = amounts
 
 
@@ -98,7 +94,10 @@ def _seconds(columns: Columns, row: int, at: int, text: str | None = None) -> fl
     """Return a time in seconds: hours and minutes, or a number in the unit of its heading."""
     text = columns.text(row, at) if text is None else text.strip()
     if time := _TIME.fullmatch(text):
-        hours, minutes, seconds = (int(each or 0) for each in time.groups())
+        date, *parts = time.groups()
+        if date and not any(note.code == "dates" for note in columns.source.notes):
+            columns.source.note("dates", f"Dates, as {date}, were not used: only times of day.")
+        hours, minutes, seconds = (int(each or 0) for each in parts)
         return 3600 * hours + 60 * minutes + seconds
     number = number_in(text)
     if number is None or number < 0:

@@ -39,17 +39,18 @@ def harmless(text: str) -> bool:
 def test_a_broken_file_is_read_or_refused_in_a_sentence() -> None:
     refused = 0
     for number in range(COUNT):
-        files = [broken(number), *([broken(-number - 1)] if number % 3 == 0 else [])]
+        files = [broken(number), *([broken(-number - 1)] if number % 10 == 0 else [])]
         try:
             reading = read_files(files, BOUNDS, wanted=None)
         except UnreadableFile as error:
             refused += 1
-            assert harmless(str(error)), number
-            assert len(str(error)) < 2000, number
-            continue
-        to_json(reading.document)
-        assert all(harmless(note.text) for note in reading.notes), number
-    assert 200 < refused < 1800
+            said = str(error)
+        else:
+            to_json(reading.document)
+            said = "".join(note.text for note in reading.notes)
+        assert harmless(said), number
+        assert len(said) < 4000, number
+    assert 200 < refused < 1900
 
 
 def test_the_command_says_what_is_wrong_with_a_broken_file(
@@ -59,6 +60,7 @@ def test_the_command_says_what_is_wrong_with_a_broken_file(
         file = broken(number)
         path = tmp_path / file.name
         path.write_bytes(file.data)
+        code = 2
         try:
             with exit_on_error():
                 if number % 3 == 0:
@@ -68,5 +70,6 @@ def test_the_command_says_what_is_wrong_with_a_broken_file(
                 else:
                     plan_map(path, None, {"cell_size": 1, "spacing": 1})
         except typer.Exit as ended:
-            assert ended.exit_code == 2, number
+            code = ended.exit_code
+        assert code == 2, number
         assert harmless(capsys.readouterr().err), number
