@@ -18,8 +18,8 @@ TOP_LEVEL = {"pyproject.toml", "Dockerfile", "README.md", "LICENSE"} | {
 }
 
 MOST_AT_THE_TOP = 12  # Python files of service/ itself
-MOST_IN_A_FOLDER = 16  # modules, beside the __init__.py
-MOST_LINES = 280
+MOST_IN_A_FOLDER = 24  # modules, beside the __init__.py
+MOST_LINES = 400
 CODE = ("service", "models", "export")
 RIDDLES = re.compile(r"(What|Who|Whatever|Whichever|How|Where|When)\b")
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from service.files.places import great_circle
-from service.files.reading import Request, Source
+from service.files.reading import Request, Source, quoted
 
 Stop = dict[str, Any]
 _SPEED = 30 / 3.6  # metres a second, of a van in a city
@@ -63,7 +63,9 @@ def with_one_vehicle(source: Source, stops: list[Stop], objectives: list[Any]) -
         stops = [kept, *stops[1:]]
     if demands:
         vehicle["capacity"] = [sum(each) for each in zip(*demands, strict=True)]
-    where = f"from and to the first stop, {first['id']!r}," if depot else "from any stop to any"
+    where = (
+        f"from and to the first stop, {quoted(first['id'])}," if depot else "from any stop to any"
+    )
     holds = f" It holds all demand, {vehicle['capacity']}." if demands else ""
     source.note("vehicle", f"The file names no vehicles: one drives {where} was added.{holds}")
     request: Request = {"stops": stops, "vehicles": [vehicle], "objectives": objectives}

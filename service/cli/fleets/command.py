@@ -4,22 +4,16 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, cast
 
-from typer import Argument, Option, echo
+from typer import Option, echo
 
-from service.cli.options import ApiKey, AsJson, Seed, TimeLimit, Url
+from service.cli.options import ApiKey, AsJson, FleetFile, Seed, TimeLimit, Url
 
 if TYPE_CHECKING:
     from paretour import Plan
 
 
 def fleet(  # noqa: PLR0913  an option each
-    file: Annotated[
-        Path,
-        Argument(
-            help="A request in JSON, as for POST /fleet; or CSV or XLSX of stops with demands or"
-            " windows, VROOM's JSON, CVRPLIB, Solomon's, or Li and Lim's. - is standard input."
-        ),
-    ],
+    file: FleetFile,
     time_limit: TimeLimit = None,
     size: Annotated[int | None, Option(help="The most plans to give.", show_default="100")] = None,
     seed: Seed = None,
