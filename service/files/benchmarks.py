@@ -56,10 +56,9 @@ def _optional(file: TsplibFile, section: str, columns: int) -> list[list[float]]
 
 
 def _header(file: TsplibFile, name: str) -> Any:
-    number = number_in(file.header.get(name, ""))
+    number = number_in(file.word(name))
     if number is None:
-        came = quoted(file.header.get(name, "nothing"))
-        raise file.source.refusal(f"{name} must be a number, got {came}")
+        raise file.source.refusal(f"{name} must be a number, got {quoted(file.word(name))}")
     return int(number) if number.is_integer() else number
 
 

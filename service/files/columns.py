@@ -1,16 +1,17 @@
-"""What a heading says of its column: the field of a stop that it is taken for, and its unit."""
+"""Headings of columns: the field of a stop that each stands for, and its unit."""
 
 import re
 import unicodedata
 
 # By field, the names that people give it, without accents, units and signs; the first names first.
 _NAMES = {
-    "id": "id orderid stopid orderno ordernumber ordernr order jobid nodeid customerid customerno"
-    " custno deliveryid shipmentid bestellnummer auftragsnummer kundennummer auftrag stop ref"
-    " reference code key name stopname customer kunde node city label site no nr number",
+    "id": "id orderid stopid stringid orderno ordernumber ordernr order jobid nodeid customerid"
+    " customerno custno deliveryid shipmentid bestellnummer auftragsnummer kundennummer auftrag stop"
+    " ref reference code key name stopname customer kunde node city label site no nr number",
     "longitude": "longitude lon lng long longitud laengengrad langengrad laenge lange lond",
     "latitude": "latitude lat latitud breitengrad breite latd",
-    "place": "wkt wktgeom geom geometry thegeom point",
+    "place": "wkt wktgeom geom geometry thegeom point location coordinates coords coordinate latlon"
+    " latlng latlong position gps",
     "x": "x xcoord coordx xcoordinate xc xpos posx easting rechtswert ost",
     "y": "y ycoord coordy ycoordinate yc ypos posy northing hochwert nord",
     "demand": "demand qty quantity load amount pallets parcels boxes items weight volume menge"
@@ -20,8 +21,8 @@ _NAMES = {
     "window_to": "windowto windowend timewindowend timewindowto timeto endtime twend twto twclose"
     " duedate duetime due latest close closes closing to until end bis",
     "window": "window timewindow tw deliverywindow zeitfenster",
-    "service": "service servicetime serviceduration stoptime handlingtime dwell servicezeit"
-    " standzeit",
+    "service": "service duration servicetime serviceduration stoptime handlingtime dwell"
+    " servicezeit standzeit",
     "skills": "skills skill",
     "prize": "prize",
     "cost": "cost costs risk danger exposure co2 emissions kosten risiko",

@@ -1,4 +1,4 @@
-"""Where stops lie on the earth: distances, and places that look mistaken."""
+"""Places on the earth: the distances between them, and those that look mistaken."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""What the reader takes and makes: named bytes under bounds, a request, notes, and refusals."""
+"""Files and readings: named bytes under bounds; a request, notes and columns; refusals."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field

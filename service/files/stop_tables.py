@@ -11,7 +11,7 @@ from service.files.columns import FLEET
 from service.files.fleets import Stop, measured, planar, timed, with_one_vehicle
 from service.files.places import check_range, note_places, weighted
 from service.files.reading import Reading, Source, quoted
-from service.files.table_columns import POINT, Columns, columns_of, ids_of
+from service.files.table_columns import Columns, columns_of, ids_of, place_in
 from service.files.tables import Table, number_in
 from service.files.visits import add_visits
 
@@ -141,9 +141,7 @@ def _places(columns: Columns) -> list[list[float]]:
         for name in ("longitude", "latitude"):
             if (other := columns.find(name)) is not None:
                 columns.fields[other] = None
-        found = [POINT.match(row[at]) for _, row in columns.table.rows]
-        pairs = [tuple(map(number_in, each.group(1, 2))) if each else () for each in found]
-        places, column = [[x or 0.0 for x in pair[:2]] for pair in pairs], at
+        places, column = [place_in(row[at]) for _, row in columns.table.rows], at
     for row, place in enumerate(places):
         check_range(columns.source, place, columns.where(row, column))
     return places

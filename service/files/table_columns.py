@@ -8,10 +8,12 @@ from service.files.reading import Column, Source, quoted
 from service.files.tables import Table, number_in
 
 _DEGREES = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)"
-POINT = re.compile(
+_POINT = re.compile(
     rf"(?:SRID=4326;)?\s*POINT\s*Z?M?\s*\(\s*{_DEGREES}\s+{_DEGREES}(?:\s+{_DEGREES}){{0,2}}\s*\)",
     re.ASCII | re.IGNORECASE,
 )
+# As maps on the web show a place: latitude first.
+_PAIR = re.compile(rf"\(?\s*{_DEGREES}°?\s*,\s*{_DEGREES}°?\s*\)?", re.ASCII | re.IGNORECASE)
 _INDEX = ("", "index", "unnamed: 0")
 
 
@@ -82,10 +84,8 @@ def columns_of(source: Source, table: Table) -> Columns:
     fields: list[str | None] = fields_of(names) if table.heading else [None] * table.width
     columns = Columns(source, table, names, fields)
     for at in range(table.width):
-        if fields[at] in (None, "place") and all(POINT.match(row[at]) for _, row in table.rows):
-            fields[at] = "place"
-        elif fields[at] == "place":
-            fields[at] = None
+        if fields[at] in (None, "place"):
+            fields[at] = _place_column(columns, at)
     if "id" not in fields and fields[0] is None and table.width > 1:
         first = table.rows[0][1][0]
         # Without a heading, as where a square has names of its rows, the first row tells.
@@ -93,6 +93,29 @@ def columns_of(source: Source, table: Table) -> Columns:
         if (named and number_in(first) is None) or _is_index(table):
             fields[0] = "id"
     return columns
+
+
+def _place_column(columns: Columns, at: int) -> str | None:
+    """Return `place` for a column of points of WKT, or by its heading of pairs; else None."""
+    texts = [row[at] for _, row in columns.table.rows]
+    if all(map(_POINT.fullmatch, texts)):
+        return "place"
+    located = {"longitude", "latitude"} <= set(columns.fields)
+    paired = columns.fields[at] == "place" and all("." in text for text in texts)
+    if located or not paired or not all(map(_PAIR.fullmatch, texts)):
+        return None
+    name = quoted(columns.names[at])
+    columns.source.note("place", f"{name} is taken to be latitude, then longitude.")
+    return "place"
+
+
+def place_in(text: str) -> list[float]:
+    """Return the longitude and latitude in a point of WKT, or in a pair, latitude first."""
+    if point := _POINT.fullmatch(text):
+        return [float(each) for each in point.group(1, 2)]
+    pair = _PAIR.fullmatch(text)
+    assert pair is not None
+    return [float(each) for each in pair.group(2, 1)]
 
 
 def _is_index(table: Table) -> bool:

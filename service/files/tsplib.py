@@ -39,7 +39,11 @@ class TsplibFile:
     @property
     def kind(self) -> str:
         """The kind of its distances."""
-        return self.header.get("EDGE_WEIGHT_TYPE", "nothing").upper()
+        return self.word("EDGE_WEIGHT_TYPE").upper()
+
+    def word(self, keyword: str) -> str:
+        """Return the first word of a keyword's value; comments may follow it."""
+        return (self.header.get(keyword, "").split() or ["nothing"])[0]
 
     @property
     def dimension(self) -> int:
@@ -48,7 +52,7 @@ class TsplibFile:
         Raises:
             UnreadableFile: It is not said, or more than the bounds allow.
         """
-        value = self.header.get("DIMENSION", "nothing")
+        value = self.word("DIMENSION")
         if not re.fullmatch("[1-9][0-9]{0,8}", value):
             raise self.source.refusal(f"DIMENSION must be a whole number, got {quoted(value)}")
         self.source.check_count("cities", self.source.bounds.cities, int(value))
@@ -82,7 +86,7 @@ def split_tsplib(source: Source, text: str) -> TsplibFile:
     """Return the keywords and sections of a text: a section ends where the next keyword stands."""
     file = TsplibFile(source)
     _fill(file, text)
-    kind = file.header.get("TYPE", "").upper().split(" ")[0]
+    kind = file.word("TYPE").upper()
     if kind in _NOT_PLANNED:
         raise source.refusal(f"TYPE must be TSP, ATSP or CVRP, got {kind}: {_NOT_PLANNED[kind]}")
     if file.sections.get("FIXED_EDGES_SECTION", ["-1"]) != ["-1"]:
@@ -136,7 +140,9 @@ def costs(file: TsplibFile) -> Array:
 
 
 def _explicit(file: TsplibFile) -> Array:
-    named = file.header.get("EDGE_WEIGHT_FORMAT", "FULL_MATRIX").upper()
+    named = file.word("EDGE_WEIGHT_FORMAT").upper()
+    if named == "NOTHING":
+        named = "FULL_MATRIX"
     layout = _LAYOUTS.get(named)
     if layout is None:
         demand = f"EDGE_WEIGHT_FORMAT must be one of {', '.join(_LAYOUTS)}"

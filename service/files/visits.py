@@ -1,4 +1,4 @@
-"""What columns of a table say of visits: demands, windows, service times and prizes."""
+"""Visits in a table: demands, windows, service times and prizes, from their columns."""
 
 import re
 from functools import partial
@@ -11,7 +11,10 @@ from service.files.reading import quoted
 from service.files.table_columns import Columns
 from service.files.tables import number_in
 
-_TIME = re.compile(r"(?:(\d{4}-\d\d-\d\d)[ T])?(\d{1,2}):(\d\d)(?::(\d\d)(?:\.0+)?)?", re.ASCII)
+_TIME = re.compile(
+    r"(?:(\d{4}-\d\d-\d\d)[ T])?(\d{1,2}):(\d\d)(?::(\d\d)(?:\.0+)?)?(?:Z|[-+]\d\d:\d\d)?",
+    re.ASCII,
+)
 _BETWEEN = re.compile(r"\s*(?:[-/\u2013\u2014]|\bto\b|\bbis\b)\s*", re.IGNORECASE)
 _MOST = 1e6  # of demands
 _ROUNDING = 1e-6

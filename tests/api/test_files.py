@@ -3,12 +3,14 @@
 import io
 import zipfile
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import httpx
+import openpyxl
 import pytest
 
-from tests.helpers.serving import app_of, serving
+from tests.helpers.serving import LIMITS, app_of, serving
 
 ORDERS = "Order ID;Breitengrad;Längengrad;demand\ndepot;60,1;24,9;0\n#1001;60,2;24,95;3\n"
 
@@ -16,6 +18,13 @@ ORDERS = "Order ID;Breitengrad;Längengrad;demand\ndepot;60,1;24,9;0\n#1001;60,2
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
     with serving(app_of()) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def roomy() -> Iterator[str]:
+    """A service that takes long bodies."""
+    with serving(app_of(limits=replace(LIMITS, body_bytes=2**24))) as address:
         yield address
 
 
@@ -38,16 +47,47 @@ def test_two_tables_are_an_objective_each(address: str) -> None:
     assert answer["request"] == {"matrices": [[[0, 1], [2, 0]], [[0, None], [2, 0]]]}
 
 
-def bomb() -> bytes:
-    """A spreadsheet whose one sheet unpacks to 2 GB."""
+def spreadsheet(sheet: bytes, times: int = 1) -> bytes:
+    """A spreadsheet whose one sheet has these bytes, so many times."""
     packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as file:
-        file.writestr("xl/workbook.xml", b"<workbook/>")
+    book = openpyxl.Workbook()
+    book.save(packed)
+    parts = zipfile.ZipFile(packed)
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as file:
+        for name in parts.namelist():
+            if "sheet1" not in name:
+                file.writestr(name, parts.read(name))
         with file.open("xl/worksheets/sheet1.xml", "w", force_zip64=True) as part:
-            for _ in range(20):
-                part.write(bytes(2**20))
-    content = bytearray(packed.getvalue())
-    return bytes(content)
+            for _ in range(times):
+                part.write(sheet)
+    return made.getvalue()
+
+
+SHEET = '<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"><sheetData>'
+CELLS = (f'<row r="{row}"><c r="XFD{row}"><v>1</v></c></row>' for row in range(1, 9999))
+WIDE = f"{SHEET}{''.join(CELLS)}"
+LAUGHS = "".join(f'<!ENTITY a{i} "{f"&a{i - 1};" * 10}">' for i in range(1, 12))
+LAUGHING = (
+    f'<!DOCTYPE x [<!ENTITY a0 "ha">{LAUGHS}]>{SHEET}<row><c t="str"><v>&a11;</v></c></row>'
+    "</sheetData></worksheet>"
+)
+
+
+@pytest.mark.parametrize(
+    ("data", "status"),
+    [
+        (spreadsheet(bytes(2**20), 200), 413),
+        (spreadsheet(f"{WIDE}</sheetData></worksheet>".encode()), 413),
+        (spreadsheet(LAUGHING.encode()), 422),
+    ],
+    ids=["unpacks to 200 MB", "160 million fields", "entities"],
+)
+def test_a_spreadsheet_that_would_fill_the_memory_is_refused(
+    roomy: str, data: bytes, status: int
+) -> None:
+    answer = sent(roomy, ("a.xlsx", data))
+    assert answer.status_code == status, answer.text
 
 
 @pytest.mark.parametrize(

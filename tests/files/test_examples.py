@@ -5,10 +5,19 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic_core import to_json
 
+from service.errors import Refusal
 from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile, Reading, UnreadableFile
+from service.requests.task import TaskSource, parse_task
+from tests.helpers.actors import info_of
+from tests.helpers.serving import LIMITS
 
+ACTORS = {
+    "pa-one": info_of("pa-one", "coordinates"),
+    "pa-one-matrix": info_of("pa-one-matrix", "matrices"),
+}
 FOLDER = Path(__file__).parent / "examples"
 HELSINKI = [[24.94, 60.17], [24.95, 60.18]]
 
@@ -61,6 +70,8 @@ EARTH = {
     "upper-case-xy.csv": ids("1 2", [[24.9384, 60.1699], [24.9521, 60.1721]], "place"),
     "wkt-from-qgis.csv": ids("a b"),
     "phone-is-not-a-cost.csv": ids("a b"),
+    "pairs.csv": ids("a b", notes="place"),
+    "semicolon-in-one-row.csv": ids("a b"),
     "risk.csv": ids("a b c", None, "objectives"),
     "second-plane.csv": ids("depot shop"),
     "zero-zero.csv": ids("a b c", None, "place"),
@@ -87,6 +98,7 @@ OTHERS = {
     "service-in-minutes.csv": fleet("depot a", clock="time"),
     "demand-with-decimals.csv": fleet("depot a b", "demand", vehicles=van(capacity=[35])),
     "two-demands.csv": fleet("depot a b", vehicles=van(capacity=[3, 12])),
+    "rfc3339.csv": fleet("job1 job2", "dates", vehicles=[{"id": "vehicle", "capacity": [3]}]),
     "skills.csv": fleet("depot a", "left-out"),
     "plane-with-demand.csv": fleet("depot a b", "objectives", vehicles=van(capacity=[3])),
     "first-stop-has-demand.csv": fleet("a b", vehicles=[{"id": "vehicle", "capacity": [5]}]),
@@ -118,6 +130,7 @@ OTHERS = {
     "matrix-no-way.csv matrix-plain.csv": named([[0, 1, None], [3, 0, None], [5, None, 0]], PLAIN),
     "matrix-names.csv matrix-plain.csv": ids("A B C", None),
     "plane-a.csv matrix-plain.csv": ids("a b c", None),
+    "comments-behind.tsp comments-behind.tsp": named(*[[[0, 5, 8], [5, 0, 5], [8, 5, 0]]] * 2),
     "upper-row.tsp lower-diag-row.tsp": named(*[[[0, 5, 6], [5, 0, 7], [6, 7, 0]]] * 2),
     "asymmetric.atsp att.TSP": named(
         [[9999, 1, 2], [3, 9999, 4], [5, 6, 9999]], [[0, 4, 4], [4, 0, 1], [4, 1, 0]]
@@ -168,6 +181,19 @@ def test_every_example_becomes_what_it_must(names: str, expected: Becomes) -> No
         assert [stop["location"] for stop in stops] == expected.places
     assert {name: request[name] for name in expected.members} == expected.members
     assert set(expected.notes.split()) <= {note.code for note in reading.notes}
+
+
+@pytest.mark.parametrize("names", [*EARTH, *OTHERS])
+def test_what_an_example_becomes_is_a_request_that_the_service_takes(names: str) -> None:
+    reading = read(names)
+    if reading.kind == "coverage":
+        return  # which lacks a spacing and a second objective
+    body = to_json(reading.request)
+    try:
+        parse_task(TaskSource(reading.kind, body), LIMITS, ACTORS)
+    except Refusal as refusal:
+        assert refusal.code == "no-router", refusal.detail
+        assert "by road" in "".join(note.text for note in reading.notes)
 
 
 @pytest.mark.parametrize(("name", "sentence"), REFUSED.items())
