@@ -6,8 +6,8 @@ import unicodedata
 # By field, the names that people give it, without accents, units and signs; the first names first.
 _NAMES = {
     "id": "id orderid stopid stringid orderno ordernumber ordernr order jobid nodeid customerid"
-    " customerno custno deliveryid shipmentid bestellnummer auftragsnummer kundennummer auftrag stop"
-    " ref reference code key name stopname customer kunde node city label site no nr number",
+    " customerno custno deliveryid shipmentid bestellnummer auftragsnummer kundennummer auftrag"
+    " stop ref reference code key name stopname customer kunde node city label site no nr number",
     "longitude": "longitude lon lng long longitud laengengrad langengrad laenge lange lond",
     "latitude": "latitude lat latitud breitengrad breite latd",
     "place": "wkt wktgeom geom geometry thegeom point location coordinates coords coordinate latlon"
