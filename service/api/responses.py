@@ -14,6 +14,7 @@ from pydantic_core import to_json
 from starlette.responses import Response
 
 from service.errors import Refusal
+from service.files.reading import Kind
 from service.fleet.fleet import Over
 from service.instance import OBJECTIVES
 from service.jobs.record import Status
@@ -235,6 +236,38 @@ class ActorsAnswer(BaseModel):
     """The networks to choose from."""
 
     actors: list[ActorItem]
+
+
+class NoteItem(BaseModel):
+    """One thing that was taken for granted."""
+
+    file: str
+    text: str
+    code: str = Field(description="tells notes apart")
+
+
+class ColumnItem(BaseModel):
+    """A column of a table."""
+
+    name: str
+    taken_for: str = Field(description="a field of stops, or `ignored`")
+
+
+class FileAnswer(BaseModel):
+    """The request that files are, and what was taken for granted."""
+
+    kind: Kind = Field(description="the operation that takes the request")
+    request: dict[str, Any]
+    notes: list[NoteItem]
+    columns: list[ColumnItem] | SkipJsonSchema[None] = Field(
+        default=None, description="of a table with a heading"
+    )
+    planes: list[list[float]] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="of two files EUC_2D: x and y of each city in both planes, of whose distances"
+        " the matrices in the request are the rounded ones",
+    )
+    name: str
 
 
 class HealthAnswer(BaseModel):

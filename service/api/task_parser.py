@@ -5,7 +5,7 @@ import logging
 import os
 import resource
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, NamedTuple, TypeVar
@@ -14,6 +14,8 @@ from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
 
 from service.actor_info import ActorInfo
 from service.errors import QueueFull, Refusal
+from service.files.reading import NamedFile
+from service.files.upload import read_upload
 from service.requests.limits import Limits, check_structure
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.parser import ReplanSource, parse_replan
@@ -141,6 +143,15 @@ class TaskParser:
         check_structure(body, self._limits)
         if len(body) <= _MEDIUM:
             check_json(body)
+
+    async def read_files(self, files: Sequence[NamedFile]) -> bytes:
+        """Return what the reader makes of files, as JSON; never here, whatever their length.
+
+        Raises:
+            Refusal: They cannot be read, or hold too much.
+            QueueFull: Too many bodies wait to be parsed.
+        """
+        return await self._in_turn(read_upload, files, sum(len(file.data) for file in files))
 
     async def _in_turn(self, parse: _Parse[S, T], source: S, length: int) -> T:
         lane = self._medium if length <= _MEDIUM else self._long

@@ -7,6 +7,8 @@ import httpx
 import typer
 from paretour import Refused, UnexpectedAnswer
 
+from service.files.reading import UnreadableFile
+
 EXIT_STALLED = 1  # of `paretour work --alive`
 EXIT_USAGE = 2
 EXIT_UNAVAILABLE = 3
@@ -15,10 +17,6 @@ _NOT_THE_REQUEST = (401, 403, 408, 429)  # refusals that another request would m
 
 class UsageError(Exception):
     """A mistake of the caller: an option, a request, or a setting."""
-
-
-class UnreadableFile(ValueError):
-    """A file that is not of its format, or of a kind that is not supported."""
 
 
 @contextmanager

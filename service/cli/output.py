@@ -19,7 +19,7 @@ from typer import echo
 
 from service.cli.backends import Backend
 from service.cli.errors import UsageError, exit_on_error
-from service.cli.inputs.csv_tables import Ids
+from service.cli.inputs import Ids
 from service.cli.labels import columns_of, ids_of, labels_of, lengths_as_text
 from service.cli.terminal_chart import LABELS, draw_front
 
