@@ -74,7 +74,9 @@ def _request(
 
 def is_customers(text: str) -> bool:
     """Return whether a text is customers with windows as Solomon or Li and Lim write them."""
-    if re.search(r"^\s*VEHICLE\s*$", text, re.MULTILINE) and re.search(r"^\s*CUST", text, re.M):
+    if re.search(r"^[ \t]*VEHICLE[ \t]*$", text, re.MULTILINE) and re.search(
+        r"^[ \t]*CUST", text, re.M
+    ):
         return True
     rows = [line.split() for line in text[:2000].splitlines() if line.strip()][:2]
     return [len(row) for row in rows] == [3, _WITH_PAIRS] and _numeric([w for r in rows for w in r])

@@ -12,7 +12,7 @@ from service.files.fleets import Stop, measured, planar, timed, with_one_vehicle
 from service.files.places import check_range, note_places, weighted
 from service.files.reading import Reading, Source, quoted
 from service.files.table_columns import Columns, columns_of, ids_of, place_in
-from service.files.tables import Table, number_in
+from service.files.tables import Table, number_in, plain_numbers
 from service.files.visits import add_visits
 
 Array = NDArray[np.float64]
@@ -212,8 +212,10 @@ def _costs(columns: Columns, free: list[int]) -> list[list[float | None]]:
     """Return costs, None where a field says that there is no way."""
     costs: list[list[float | None]] = []
     for row, (_, texts) in enumerate(columns.table.rows):
+        fields = [texts[at] for at in free]
         costs.append(
-            [None if texts[at].casefold() in _NO_WAY else columns.number(row, at) for at in free]
+            [*(plain_numbers(fields) or ())]
+            or [None if texts[at].casefold() in _NO_WAY else columns.number(row, at) for at in free]
         )
     missing = sum(
         cost is None for row, each in enumerate(costs) for at, cost in enumerate(each) if at != row

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from service.files.columns import fields_of
 from service.files.reading import Column, Source, quoted
-from service.files.tables import Table, number_in
+from service.files.tables import Table, number_in, plain_numbers
 
 _DEGREES = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)"
 _POINT = re.compile(
@@ -53,7 +53,11 @@ class Columns:
 
     def numbers(self, columns: list[int]) -> list[list[float]]:
         """Return the numbers of columns, row by row."""
-        return [[self.number(row, at) for at in columns] for row in range(len(self.table.rows))]
+        rows = enumerate(self.table.rows)
+        return [
+            plain_numbers([texts[at] for at in columns]) or [self.number(row, at) for at in columns]
+            for row, (_, texts) in rows
+        ]
 
     def are_numbers(self, column: int) -> bool:
         """Return whether all fields of a column are numbers."""

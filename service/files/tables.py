@@ -15,6 +15,7 @@ _SAMPLE = 2**16  # characters that a separator is told by
 _SAMPLE_ROWS = 50
 _LARGEST = 1e150  # as in requests
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
+_PLAIN = re.compile(r"[-+0-9.eE ]+", re.ASCII)
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
 _MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\xa0": "", "\u202f": ""})
 
@@ -41,6 +42,17 @@ def number_in(field: str) -> float | None:
         return None
     number = float(text)
     return number if abs(number) <= _LARGEST else None
+
+
+def plain_numbers(fields: Sequence[str]) -> list[float] | None:
+    """Return the numbers of fields with decimal points alone, faster; None where any is not so."""
+    if not _PLAIN.fullmatch(" ".join(fields)):
+        return None
+    try:
+        numbers = list(map(float, fields))
+    except ValueError:
+        return None
+    return numbers if all(-_LARGEST <= number <= _LARGEST for number in numbers) else None
 
 
 def table_of_csv(source: Source, text: str) -> Table:

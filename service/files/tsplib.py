@@ -11,7 +11,7 @@ from service.files.reading import Source, quoted
 from service.files.tsplib_distances import DIMENSIONS, distances
 
 Array = NDArray[np.float64]
-_KEYWORD = re.compile(r"\s*([A-Za-z][A-Za-z0-9_]*)\s*(?::\s*(.*?)\s*)?$")
+_KEYWORD = re.compile(r"([A-Za-z][A-Za-z0-9_]*)[ \t]*(?::(.*))?")
 _LAYOUTS = {
     "FULL_MATRIX": "full",
     "UPPER_ROW": "upper",
@@ -79,7 +79,7 @@ class TsplibFile:
 
 def is_tsplib(text: str) -> bool:
     """Return whether a text has the keywords of TSPLIB at the beginning of a line."""
-    return any(re.search(rf"^\s*{word}\b", text, re.MULTILINE) for word in _TELLING)
+    return any(re.search(rf"^[ \t]*{word}\b", text, re.MULTILINE) for word in _TELLING)
 
 
 def split_tsplib(source: Source, text: str) -> TsplibFile:
@@ -98,7 +98,7 @@ def _fill(file: TsplibFile, text: str) -> None:
     """Read the lines of a text into the keywords and sections of a file."""
     words: list[str] | None = None  # of the section that a line is in
     for line in text.splitlines():
-        keyword = _KEYWORD.match(line)
+        keyword = _KEYWORD.fullmatch(line.strip())
         if keyword is None or keyword[1].casefold() in ("inf", "infinity", "nan"):
             if words is not None:
                 words.extend(line.split())
@@ -108,7 +108,7 @@ def _fill(file: TsplibFile, text: str) -> None:
             break
         words = file.sections.setdefault(name, []) if name.endswith("_SECTION") else None
         if words is None:
-            file.header.setdefault(name, keyword[2] or "")
+            file.header.setdefault(name, (keyword[2] or "").strip())
         elif keyword[2]:
             words.extend(keyword[2].split())
 

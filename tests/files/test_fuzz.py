@@ -73,3 +73,9 @@ def test_the_command_says_what_is_wrong_with_a_broken_file(
             code = ended.exit_code
         assert code == 2, number
         assert harmless(capsys.readouterr().err), number
+
+
+@pytest.mark.parametrize("piece", [b"\n", b" ", b"A:\n", b";\n", b"1,", b"[", b'"', b"POINT("])
+def test_a_long_file_of_one_thing_takes_no_square_of_its_length(piece: bytes) -> None:
+    with pytest.raises(UnreadableFile):
+        read_files([NamedFile("a.csv", piece * 2**20)], Bounds())
