@@ -90,7 +90,7 @@ OTHERS = {
     "numbers.XLSX": rows([1, 2, 3, 4], [5, 6.5, 7, 8]),
     "pandas-index.csv": ids("0 1", None),
     "no-heading-ids.csv": ids("depot b", None),
-    "infinity.json": named([[0, None], [1, 0]], [[0, 1], [1, 0]]),
+    "infinity.json": named([[0, None, 2], [1, 0, 3], [4, 5, 0]], PLAIN),
     "demand.csv": fleet("depot a b", "vehicle", vehicles=van(capacity=[7]), clock="time"),
     "windows-as-times.csv": fleet("depot a b", vehicles=van(shift=[28800, 64800])),
     "windows-as-seconds.csv": fleet("depot a", vehicles=van()),
@@ -127,7 +127,7 @@ OTHERS = {
         "coverage", members={"grid": [[0, 1, 1]], "cell_size": 0.05, "origin": [-1, -2, 0]}
     ),
     "matrix-plain.csv matrix-plain.csv": named(PLAIN, PLAIN),
-    "matrix-no-way.csv matrix-plain.csv": named([[0, 1, None], [3, 0, None], [5, None, 0]], PLAIN),
+    "matrix-no-way.csv matrix-plain.csv": named([[0, 1, None], [3, 0, 7], [5, None, 0]], PLAIN),
     "matrix-names.csv matrix-plain.csv": ids("A B C", None),
     "plane-a.csv matrix-plain.csv": ids("a b c", None),
     "comments-behind.tsp comments-behind.tsp": named(*[[[0, 5, 8], [5, 0, 5], [8, 5, 0]]] * 2),
@@ -141,7 +141,6 @@ OTHERS = {
     ),
     "fixed-edges.tsp upper-row.tsp": Becomes("front", notes="left-out rounded"),
 }
-WITH_NO_WAY = {"infinity.json", "matrix-no-way.csv matrix-plain.csv"}  # null in matrices
 REFUSED = {
     "swapped-out-of-range.csv": "row 2, column 'lat' must have a latitude of -90 to 90, got 139.7",
     "metres.csv": "degrees (WGS84, EPSG:4326)",
@@ -184,7 +183,7 @@ def test_every_example_becomes_what_it_must(names: str, expected: Becomes) -> No
     assert set(expected.notes.split()) <= {note.code for note in reading.notes}
 
 
-@pytest.mark.parametrize("names", sorted({*EARTH, *OTHERS} - WITH_NO_WAY))
+@pytest.mark.parametrize("names", sorted({*EARTH, *OTHERS}))
 def test_what_an_example_becomes_is_a_request_that_the_service_takes(names: str) -> None:
     reading = read(names)
     if reading.kind == "coverage":
