@@ -109,7 +109,7 @@ class FrontAnswer(BaseModel):
     actor: ActorName | None = Field(description="null where no network built tours, or none yet")
     timings_ms: dict[str, float]
     terminated: Termination | None = Field(
-        description="how the search ended, null while it goes on. `converged`: up to nine cities"
+        description="how the search ended, null while it goes on. `converged`: up to eleven cities"
         " all tours were compared, and the front is exact; beyond, the search has long found"
         " nothing better in its neighbourhoods, which proves nothing. Where `time_limit` is 0 there"
         " was no search, and it says that all tours asked for were built"

@@ -119,7 +119,7 @@ class Front:
         actor: The name of the network; None where it built no tours.
         terminated: Why the search ended: `converged`, `time_limit` or `cancelled`, or what a later
             service says; None while it runs. `converged` proves that nothing is better only up to
-            nine cities.
+            eleven cities.
         places: Over a map, the row and column of each city, shape (n, 2).
         paths: Over a map, the way of each tour, where the request asked for paths.
         document: The answer as it came, with every member.
