@@ -11,6 +11,7 @@ from threading import Event, Thread
 from typing import Any, TypeVar
 
 from service.errors import Refusal
+from service.errors.printable import printable_lines
 
 T = TypeVar("T")
 _POLL_SECONDS = 0.2  # between two questions whether the search is loaded
@@ -31,7 +32,7 @@ class PlainFormatter(logging.Formatter):
         """Return the line."""
         added = {name: value for name, value in vars(record).items() if name not in _KNOWN}
         members = "".join(f" {name}={_short(value)}" for name, value in added.items())
-        return super().format(record) + members
+        return printable_lines(super().format(record) + members)
 
 
 def _short(value: object) -> str:

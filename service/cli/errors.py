@@ -7,6 +7,7 @@ import httpx
 import typer
 from paretour import Refused, UnexpectedAnswer
 
+from service.errors.printable import printable
 from service.files.reading import UnreadableFile
 
 EXIT_STALLED = 1  # of `paretour work --alive`
@@ -30,7 +31,9 @@ def exit_on_error() -> Iterator[None]:
         yield
     except (UsageError, UnreadableFile) as error:
         raise exit_with(str(error), EXIT_USAGE) from None
-    except (FileNotFoundError, PermissionError, IsADirectoryError) as error:
+    except OSError as error:
+        if error.filename is None:  # of no file
+            raise
         raise exit_with(f"{error.filename}: {error.strerror}", EXIT_USAGE) from None
     except Refused as error:
         faulty = 400 <= error.status < 500 and error.status not in _NOT_THE_REQUEST
@@ -43,5 +46,5 @@ def exit_on_error() -> Iterator[None]:
 
 def exit_with(sentence: str, code: int) -> typer.Exit:
     """Print a sentence on stderr; return the exception that ends the command with a code."""
-    typer.echo(f"paretour: {sentence}", err=True)
+    typer.echo(f"paretour: {printable(sentence)}", err=True)
     return typer.Exit(code)

@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from service.files.stop_tables import numbers_of
 Array = NDArray[np.float64]
 Ids = tuple[str, ...]
 STANDARD_INPUT = Path("-")
+_MOST_BYTES = 2**28  # of a file
 _MATRIX_CITIES = 3000  # whose costs are written out here; the service may allow fewer
 
 
@@ -109,8 +111,16 @@ def _bounds() -> Bounds:
 
 def _content(path: Path) -> NamedFile:
     if path == STANDARD_INPUT:
-        return NamedFile("standard input", sys.stdin.buffer.read())
-    return NamedFile(str(path), path.read_bytes())
+        return NamedFile("standard input", _bounded(sys.stdin.buffer, "standard input"))
+    with path.open("rb") as file:
+        return NamedFile(str(path), _bounded(file, str(path)))
+
+
+def _bounded(file: BinaryIO, name: str) -> bytes:
+    data = file.read(_MOST_BYTES + 1)
+    if len(data) > _MOST_BYTES:
+        raise UnreadableFile(f"{name} must have at most {_MOST_BYTES} bytes, got more")
+    return data
 
 
 def _has_id(stop: object) -> bool:

@@ -4,23 +4,26 @@ from paretour import FleetFront, Front, RobotFront
 
 from service.cli.inputs import Ids
 from service.cli.terminal_chart import LABELS
+from service.errors.printable import printable
 
 AnyFront = Front | FleetFront | RobotFront
 
 
 def labels_of(front: AnyFront) -> tuple[str, ...]:
     """Return the label of either length: the name of its objective with the unit, if it has any."""
-    if front.objectives is None:
-        return LABELS
-    return tuple(
+    return LABELS if front.objectives is None else tuple(map(printable, _names(front)))
+
+
+def _names(front: AnyFront) -> list[str]:
+    return [
         each.name if each.unit is None else f"{each.name} ({each.unit})"
-        for each in front.objectives
-    )
+        for each in front.objectives or ()
+    ]
 
 
 def columns_of(front: Front) -> tuple[str, ...]:
     """Return the headings of both lengths in a table for other programs."""
-    return ("length_1", "length_2") if front.objectives is None else labels_of(front)
+    return ("length_1", "length_2") if front.objectives is None else tuple(_names(front))
 
 
 def lengths_as_text(front: AnyFront, lengths: tuple[float, float]) -> str:
@@ -29,12 +32,15 @@ def lengths_as_text(front: AnyFront, lengths: tuple[float, float]) -> str:
     if front.objectives is None:
         return f"lengths {first} and {second}"
     return ", ".join(
-        " ".join(filter(None, (each.name, length, each.unit)))
+        printable(" ".join(filter(None, (each.name, length, each.unit))))
         for each, length in zip(front.objectives, (first, second), strict=True)
     )
 
 
 def ids_of(front: Front) -> Ids | None:
-    """Return the id of each stop, by its index; None where the request had none."""
+    """Return the id of each stop, by its index; None where the answer does not name all."""
     stops = front.document.get("stops")
-    return None if stops is None else tuple(stop["id"] for stop in stops)
+    if not isinstance(stops, list) or len(stops) < front.tours.shape[1]:
+        return None
+    ids = [stop.get("id") if isinstance(stop, dict) else None for stop in stops]
+    return tuple(map(str, ids)) if all(isinstance(each, str) for each in ids) else None

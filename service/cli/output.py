@@ -1,7 +1,5 @@
 """Run the commands that plan, and print results: data on stdout, a line about it on stderr."""
 
-import csv
-import io
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -15,13 +13,14 @@ from paretour.choice import the_way
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
-from typer import echo
 
 from service.cli.backends import Backend
+from service.cli.data import csv_text, print_data
 from service.cli.errors import UsageError, exit_on_error
 from service.cli.inputs import Ids
 from service.cli.labels import columns_of, ids_of, labels_of, lengths_as_text
 from service.cli.terminal_chart import LABELS, draw_front
+from service.errors.printable import printable
 
 BuildPlan = Callable[[], tuple[Plan, Ids | None]]
 
@@ -63,7 +62,7 @@ def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> 
         _print(front, ids or ids_of(front), output, Console())
         if draw is not None:
             draw(front, plan)
-    _STDERR.print(front_summary(front), highlight=False)
+    _STDERR.print(front_summary(front), highlight=False, markup=False)
 
 
 def run_tour(
@@ -77,7 +76,7 @@ def run_tour(
         front = backend.front(plan, _STDERR)
         with _usage_errors():
             tour = front.choose(angle, **choice)
-    echo(tour_as_json(tour) if as_json else tour_as_text(tour.tour, ids or ids_of(front)))
+    print_data(tour_as_json(tour) if as_json else tour_as_text(tour.tour, ids or ids_of(front)))
     _STDERR.print(tour_summary(front, tour), highlight=False, markup=False)
 
 
@@ -95,7 +94,7 @@ def run_actors(backend: Backend, as_json: bool) -> None:
     with exit_on_error():
         actors = backend.actors()
     if as_json:
-        echo(actors_as_json(actors))
+        print_data(actors_as_json(actors))
     else:
         Console().print(actors_as_table(actors))
 
@@ -107,12 +106,11 @@ def front_as_json(front: Front) -> str:
 
 def front_as_csv(front: Front, ids: Ids | None = None) -> str:
     """Return a line for each tour, with spaces between its cities, or between their ids."""
-    text = io.StringIO()
-    lines = csv.writer(text, lineterminator="\n")
-    lines.writerow(("angle", *columns_of(front), "tour"))
-    for angle, lengths, tour in zip(front.angles, front.lengths, front.tours, strict=True):
-        lines.writerow((float(angle), *lengths.tolist(), tour_as_text(tour, ids)))
-    return text.getvalue().rstrip()
+    found = zip(front.angles, front.lengths, front.tours, strict=True)
+    rows = [
+        (float(angle), *lengths.tolist(), tour_as_text(tour, ids)) for angle, lengths, tour in found
+    ]
+    return csv_text([("angle", *columns_of(front), "tour"), *rows])
 
 
 def front_as_table(front: Front) -> Table:
@@ -134,7 +132,8 @@ def print_chart(front: Front, console: Console) -> None:
     table = Table("tour", "balance", "angle", *map(escape, labels))
     for column in table.columns[1:]:
         column.justify = "right"
-    names = None if front.objectives is None else [each.name for each in front.objectives]
+    named = front.objectives
+    names = None if named is None else [printable(each.name) for each in named]
     for name, i in three_tours(front.lengths, names or LABELS).items():
         lengths = (f"{length:.6g}" for length in front.lengths[i])
         balance, angle = f"{front.balances[i]:.3f}", f"{front.angles[i]:.2f}"
@@ -171,10 +170,7 @@ def tour_as_text(tour: NDArray[np.int64], ids: Ids | None = None) -> str:
 
     Cities with ids go by them; one with a space or a quotation mark in it is quoted, as in CSV.
     """
-    text = io.StringIO()
-    names = tour.tolist() if ids is None else [ids[city] for city in tour]
-    csv.writer(text, delimiter=" ", lineterminator="").writerow(names)
-    return text.getvalue()
+    return csv_text([tour.tolist() if ids is None else [ids[city] for city in tour]], delimiter=" ")
 
 
 def tour_summary(front: Front, tour: Tour) -> str:
@@ -193,7 +189,8 @@ def actors_as_table(actors: Iterable[Actor]) -> Table:
     """Return a table with a row for each actor."""
     table = Table("name", "reads", "trained on cities", "digest")
     for actor in actors:
-        table.add_row(actor.name, actor.inputs, str(actor.sizes), actor.digest[:12])
+        texts = actor.name, actor.inputs, str(actor.sizes), actor.digest[:12]
+        table.add_row(*(escape(printable(text)) for text in texts))
     return table
 
 
@@ -211,9 +208,9 @@ def three_tours(lengths: NDArray[np.float64], names: Sequence[str] = LABELS) -> 
 
 def _print(front: Front, ids: Ids | None, output: OutputFormat, console: Console) -> None:
     if output.as_json:
-        echo(front_as_json(front))
+        print_data(front_as_json(front))
     elif output.as_csv:
-        echo(front_as_csv(front, ids))
+        print_data(front_as_csv(front, ids))
     elif console.is_terminal and len(front.tours) and not output.as_table:
         print_chart(front, console)
         _STDERR.print("--table prints every tour, --csv its cities too", highlight=False)

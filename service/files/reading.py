@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
+from service.errors.printable import printable
+
 Kind = Literal["front", "fleet", "coverage"]
 Request = dict[str, Any]
 _PICTURES = (b"\x89PNG", b"P5", b"P2")
@@ -107,15 +109,15 @@ class Source:
     @property
     def name(self) -> str:
         """The file's name without characters that no terminal shows."""
-        return _printable(self.file.name)
+        return printable(self.file.name)
 
     def note(self, code: str, text: str) -> None:
         """Note what is taken for granted."""
-        self.notes.append(Note(self.name, _printable(text), code))
+        self.notes.append(Note(self.name, printable(text), code))
 
     def refusal(self, reason: str) -> UnreadableFile:
         """Return the exception that says why the file cannot be read."""
-        return UnreadableFile(f"{self.name}: {_printable(reason)}")
+        return UnreadableFile(f"{self.name}: {printable(reason)}")
 
     def check_count(self, noun: str, limit: int, actual: int) -> None:
         """Raise FileTooLarge where there are more than the limit."""
@@ -125,10 +127,6 @@ class Source:
     def reading(self, kind: Kind, request: Request) -> Reading:
         """Return the reading of this file alone."""
         return Reading(kind, request, self.name, tuple(self.notes), tuple(self.columns))
-
-
-def _printable(text: str) -> str:
-    return "".join(each if each.isprintable() else "?" for each in text)
 
 
 def quoted(text: object) -> str:

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, cast
 
-from typer import Option, echo
+from typer import Option
 
 from service.cli.options import ApiKey, AsJson, FleetFile, Seed, TimeLimit, Url
 
@@ -26,6 +26,7 @@ def fleet(  # noqa: PLR0913  an option each
     from rich.console import Console
 
     from service.cli.backends import backend_for
+    from service.cli.data import print_data
     from service.cli.errors import UsageError, exit_on_error
     from service.cli.fleets.output import plans_as_csv, plans_as_table
 
@@ -36,9 +37,9 @@ def fleet(  # noqa: PLR0913  an option each
         plan = read_fleet(file, {"time_limit": time_limit, "size": size, "seed": seed})
         front = backend_for(url, api_key).fleet(plan, console)
     if as_json:
-        echo(json.dumps(front.document))
+        print_data(json.dumps(front.document))
     elif as_csv:
-        echo(plans_as_csv(front))
+        print_data(plans_as_csv(front))
     else:
         Console().print(plans_as_table(front))
     found = f"{len(front.plans)} of {front.points} plans, hypervolume {front.hypervolume:.6g}"

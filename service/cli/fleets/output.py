@@ -1,13 +1,12 @@
 """Print fronts of plans: as CSV, a line for each route, and as a table, a row for each plan."""
 
-import csv
-import io
 from collections.abc import Sequence
 
 from paretour import FleetFront, FleetPlan, FleetRoute, RobotFront, RobotPlan, RobotRoute
 from rich.markup import escape
 from rich.table import Table
 
+from service.cli.data import csv_text
 from service.cli.labels import labels_of
 
 FrontOfPlans = FleetFront | RobotFront
@@ -15,17 +14,17 @@ FrontOfPlans = FleetFront | RobotFront
 
 def plans_as_csv(front: FrontOfPlans) -> str:
     """Return a line for each route: its plan, the plan's lengths, who goes it, and its stops."""
-    text = io.StringIO()
-    lines = csv.writer(text, lineterminator="\n")
     names = [each.name for each in front.objectives]
     who, where = ("robot", "places") if isinstance(front, RobotFront) else ("vehicle", "stops")
-    lines.writerow(("plan", "balance", *names, who, *(f"route {name}" for name in names), where))
+    rows: list[tuple[object, ...]] = [
+        ("plan", "balance", *names, who, *(f"route {name}" for name in names), where)
+    ]
     for number, plan in enumerate(_plans(front)):
         for route in plan.routes:
             mover, stops = _members(route)
             lengths = (*plan.lengths.tolist(), mover, *route.lengths.tolist())
-            lines.writerow((number, plan.balance, *lengths, stops))
-    return text.getvalue().rstrip()
+            rows.append((number, plan.balance, *lengths, stops))
+    return csv_text(rows)
 
 
 def _plans(front: FrontOfPlans) -> Sequence[FleetPlan | RobotPlan]:
@@ -36,7 +35,7 @@ def _members(route: FleetRoute | RobotRoute) -> tuple[str, str]:
     """Return who goes a route, and its stops with spaces between."""
     if isinstance(route, RobotRoute):
         return route.robot, " ".join(map(str, route.tour))
-    return route.vehicle, " ".join(route.stops)
+    return route.vehicle, csv_text([route.stops], delimiter=" ")
 
 
 def plans_as_table(front: FrontOfPlans) -> Table:

@@ -4,9 +4,9 @@ import json
 
 from paretour import Plan, RobotFront
 from rich.console import Console
-from typer import echo
 
 from service.cli.backends import Backend
+from service.cli.data import print_data
 from service.cli.errors import exit_on_error
 from service.cli.fleets.output import plans_as_csv, plans_as_table
 from service.cli.labels import labels_of
@@ -29,14 +29,14 @@ def run_robots(plan: Plan, backend: Backend, output: OutputFormat) -> None:
             plot_robots(front, plan, output.plot, three_tours(front.lengths, names))
     found = f"{len(front.plans)} of {front.points} plans found"
     ended = f"hypervolume {front.hypervolume:.2%}; {end_of_search(front.terminated)}"
-    stderr.print(f"{found}, {ended}", highlight=False)
+    stderr.print(f"{found}, {ended}", highlight=False, markup=False)
 
 
 def _print(front: RobotFront, output: OutputFormat, console: Console) -> None:
     if output.as_json:
-        echo(json.dumps(front.document))
+        print_data(json.dumps(front.document))
     elif output.as_csv:
-        echo(plans_as_csv(front))
+        print_data(plans_as_csv(front))
     else:
         if console.is_terminal and not output.as_table:
             _print_chart(front, console)

@@ -1,5 +1,8 @@
 """Read the maps of ROS, a map.yaml and the picture that it names, as a request for coverage."""
 
+import math
+import os
+import stat
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast
@@ -7,6 +10,9 @@ from typing import Any, cast
 from paretour.members import CoverageRequest
 
 _MOST_BYTES = 2**16  # of a map.yaml, which has some hundred
+_MOST_PICTURE = 2**30  # bytes; the service allows far fewer
+_MOST_BRACKETS = 100  # of a map.yaml, which has two
+_SHOWN = 80  # characters of what was wrong
 _REQUIRED = ("image", "resolution", "origin", "occupied_thresh", "free_thresh", "negate")
 
 
@@ -24,53 +30,89 @@ def read_ros_map(path: str | Path) -> tuple[CoverageRequest, bytes]:
         OSError: It, or its picture, cannot be read.
         ModuleNotFoundError: PyYAML is not installed.
     """
-    yaml_path = Path(path).expanduser()
-    keys = _parse(yaml_path)
+    yaml_path = Path(path)
+    keys = _parse(read_bounded(yaml_path, _MOST_BYTES))
     if missing := [name for name in _REQUIRED if name not in keys]:
         raise ValueError(f"a map.yaml must have {', '.join(missing)}")
     request = {
         "cell_size": _number(keys, "resolution"),
         "origin": _origin(keys),
-        "mode": str(keys.get("mode", "trinary")).lower(),
+        "mode": _text(keys, "mode", "trinary").lower(),
         "negate": _flag(keys),
         "occupied_thresh": _number(keys, "occupied_thresh"),
         "free_thresh": _number(keys, "free_thresh"),
     }
-    picture = yaml_path.parent / Path(str(keys["image"])).expanduser()
-    return cast(CoverageRequest, request), picture.read_bytes()
+    picture = yaml_path.parent / _text(keys, "image")
+    return cast(CoverageRequest, request), read_bounded(picture, _MOST_PICTURE)
 
 
-def _parse(path: Path) -> Mapping[str, Any]:
+def read_bounded(path: Path, most: int) -> bytes:
+    """Return the bytes of a regular file; never wait for one that is none, as a pipe is.
+
+    Raises:
+        ValueError: It is no regular file, has more bytes than that, or no file can have its name.
+        OSError: It cannot be read.
+    """
+    descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
+    with os.fdopen(descriptor, "rb") as file:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise ValueError(f"{str(path)[:_SHOWN]!r} must be a regular file")
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise ValueError(f"{str(path)[:_SHOWN]!r} must have at most {most} bytes, got more")
+    return content
+
+
+def _parse(content: bytes) -> Mapping[str, Any]:
+    """Return the values of a map.yaml, each a text or a list of texts."""
     import yaml
 
-    with path.open("rb") as file:
-        content = file.read(_MOST_BYTES + 1)
-    if len(content) > _MOST_BYTES:
-        raise ValueError(f"a map.yaml must have at most {_MOST_BYTES} bytes, got more")
+    # Whoever parses YAML goes down a level for each bracket, and PyYAML takes a square of them.
+    if content.count(b"[") + content.count(b"{") > _MOST_BRACKETS:
+        raise ValueError(f"a map.yaml must have at most {_MOST_BRACKETS} brackets, got more")
     try:
-        # An alias may stand for what fills the memory, and a map.yaml needs none.
-        if any(isinstance(token, yaml.AliasToken) for token in yaml.scan(content, yaml.SafeLoader)):
-            raise ValueError("a map.yaml must have no aliases")
-        keys = yaml.safe_load(content)
-    except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
+        root = yaml.compose(content, yaml.SafeLoader)
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise ValueError(f"a map.yaml must be YAML: {' '.join(str(error).split())}") from None
-    if not isinstance(keys, dict):
+    if not isinstance(root, yaml.MappingNode):
         raise ValueError("a map.yaml must be keys with values")
-    return keys
+    return {str(key.value): _value(value) for key, value in root.value}
+
+
+def _value(node: Any) -> str | list[str] | None:
+    """Return what a node of YAML says, as text: whoever needs a number reads one from it."""
+    if isinstance(node.value, str):
+        return node.value
+    if all(isinstance(each.value, str) for each in node.value if hasattr(each, "value")):
+        return [getattr(each, "value", "") for each in node.value]
+    return None
+
+
+def _text(keys: Mapping[str, Any], name: str, default: str = "") -> str:
+    text = keys.get(name, default)
+    if not isinstance(text, str) or not text or "\0" in text:
+        raise ValueError(f"{name} must be a text, got {_shown(text)}")
+    return text
+
+
+def _shown(value: object) -> str:
+    return repr(value)[:_SHOWN]
 
 
 def _origin(keys: Mapping[str, Any]) -> list[float]:
     values = keys["origin"]
     if not isinstance(values, list) or len(values) != 3:
-        raise ValueError(f"origin must be x, y and yaw, got {str(values)[:80]}")
+        raise ValueError(f"origin must be x, y and yaw, got {_shown(values)}")
     return [_as_number(value, "origin") for value in values]
 
 
 def _flag(keys: Mapping[str, Any]) -> bool:
-    """Return negate, which is 0 or 1, or a truth value."""
-    if keys["negate"] not in (0, 1):
-        raise ValueError(f"negate must be 0 or 1, got {str(keys['negate'])[:80]}")
-    return bool(keys["negate"])
+    """Return negate, which is 0 or 1, or a truth value of YAML."""
+    flags = {"0": False, "false": False, "no": False, "1": True, "true": True, "yes": True}
+    value = keys["negate"]
+    if not isinstance(value, str) or value.lower() not in flags:
+        raise ValueError(f"negate must be 0 or 1, got {_shown(value)}")
+    return flags[value.lower()]
 
 
 def _number(keys: Mapping[str, Any], name: str) -> float:
@@ -78,8 +120,11 @@ def _number(keys: Mapping[str, Any], name: str) -> float:
 
 
 def _as_number(value: Any, name: str) -> float:
-    """Return a number; PyYAML takes 5e-2, which is one in YAML 1.2, for a string."""
+    """Return a finite number, as YAML 1.2 writes it: 5e-2 is one."""
     try:
-        return float(value)
+        number = float(value)
     except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name} must be a number, got {str(value)[:80]}") from None
+        raise ValueError(f"{name} must be a number, got {_shown(value)}") from None
+    if not math.isfinite(number):
+        raise ValueError(f"{name} must be a finite number, got {_shown(value)}")
+    return number

@@ -1,0 +1,37 @@
+"""Print data on stdout: as it is for another program, and harmless on a terminal."""
+
+import csv
+import io
+import sys
+from collections.abc import Iterable
+from typing import Literal
+
+from service.errors.printable import printable_lines
+
+
+def print_data(text: str) -> None:
+    """Print a text and the end of its line."""
+    # Not by typer.echo: it takes out what looks like an escape sequence from what goes to a file.
+    shown = printable_lines(text) if sys.stdout.isatty() else text
+    sys.stdout.write(shown + "\n")
+    sys.stdout.flush()
+
+
+def csv_text(rows: Iterable[Iterable[object]], delimiter: str = ",") -> str:
+    """Return rows as CSV, without the end of the last line.
+
+    A field is quoted where it has a quotation mark, a delimiter or the end of a line in it: Python
+    3.11 does not quote a carriage return, which other programs read as the end of a line.
+    """
+    text = io.StringIO()
+    for row in rows:
+        text.write(delimiter.join(_field(each, delimiter) for each in row) + "\n")
+    return text.getvalue().removesuffix("\n")
+
+
+def _field(value: object, delimiter: str) -> str:
+    line = io.StringIO()
+    special = isinstance(value, str) and any(each in value for each in (delimiter, "\r", "\n"))
+    quoting: Literal[0, 1] = csv.QUOTE_ALL if special else csv.QUOTE_MINIMAL
+    csv.writer(line, delimiter=delimiter, lineterminator="", quoting=quoting).writerow([value])
+    return line.getvalue()
