@@ -79,10 +79,11 @@ def main(arguments: list[str] | None = None, counts: dict[int, int] = COUNTS) ->
 
 def _begun_or_resumed(options: argparse.Namespace, device: torch.device) -> Run:
     saved = options.out / "run.pt"
-    if saved.exists():
-        return resume(saved, device)
     network = from_options(NetworkConfig, options)
-    run = new_run(from_options(TrainingConfig, options, network=network), device)
+    config = from_options(TrainingConfig, options, network=network)
+    if saved.exists():
+        return _resumed(saved, config, options, device)
+    run = new_run(config, device)
     if options.initial:
         start_from(run, load_weights(options.initial).actor)
     return run
