@@ -138,7 +138,7 @@ def test_the_body_of_a_job_counts_until_the_job_has_ended(
         problem(refused, 503, "bodies-full")
         # A repeat holds nothing of its own.
         if headers:
-            assert client.post("/front", content=REQUEST, headers=later).status_code == 409
+            assert client.post("/front", content=REQUEST, headers=later).status_code == 422
         actor.open()
         while client.get(accepted.headers["location"]).json()["status"] != "done":
             time.sleep(0.02)
