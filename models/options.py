@@ -1,6 +1,6 @@
 """Configurations on the command line: an option for each setting of a dataclass."""
 
-from argparse import ArgumentParser, Namespace
+from argparse import SUPPRESS, ArgumentParser, Namespace
 from dataclasses import Field, field, fields
 from typing import Any, TypeVar
 
@@ -17,14 +17,19 @@ def add_options(parser: ArgumentParser, kind: type[Any]) -> None:
     for declared in _settings(kind):
         option = "--" + declared.name.replace("_", "-")
         meaning = f"{declared.metadata['meaning']} (default {declared.default})"
-        default = declared.default
-        parser.add_argument(option, type=type(default), default=default, help=meaning)
+        kind_of_value = type(declared.default)
+        parser.add_argument(option, type=kind_of_value, default=SUPPRESS, help=meaning)
 
 
 def from_options(kind: type[T], options: Namespace, **others: Any) -> T:
     """Return the configuration that the options describe; fields without option come by name."""
-    values = {declared.name: getattr(options, declared.name) for declared in _settings(kind)}
-    return kind(**values, **others)
+    return kind(**given_options(kind, options), **others)
+
+
+def given_options(kind: type[Any], options: Namespace) -> dict[str, Any]:
+    """Return the settings that were given as options, by name; the others have their defaults."""
+    names = [declared.name for declared in _settings(kind)]
+    return {name: getattr(options, name) for name in names if name in options}
 
 
 def _settings(kind: type[Any]) -> list[Field[Any]]:
