@@ -28,7 +28,16 @@ from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, repla
 from paretour.robots import RobotFront, RobotPlan, RobotRoute
 from paretour.ros_maps import read_ros_map
 from paretour.sync import Client, Job
-from paretour.values import Actor, Front, Objective, Path, Progress, Tour
+from paretour.values import (
+    Actor,
+    Front,
+    Objective,
+    Path,
+    Progress,
+    Tour,
+    Uncovered,
+    UncoveredRegion,
+)
 
 __all__ = [
     "Actor",
@@ -58,6 +67,8 @@ __all__ = [
     "RobotsRequest",
     "StopRequest",
     "Tour",
+    "Uncovered",
+    "UncoveredRegion",
     "coverage_plan",
     "fleet_plan",
     "front_plan",

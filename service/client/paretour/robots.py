@@ -11,8 +11,10 @@ from paretour.values import (
     Objective,
     Path,
     Status,
+    Uncovered,
     objectives_of,
     parse_path,
+    parse_uncovered,
     read_only_floats,
     read_only_integers,
 )
@@ -65,6 +67,7 @@ class RobotFront:
         objectives: Both objectives, as the service names them.
         terminated: Why the search ended; None while it runs.
         document: The answer as it came, with every member.
+        uncovered: The free cells of the map that no path leads to.
     """
 
     id: str
@@ -77,6 +80,7 @@ class RobotFront:
     objectives: tuple[Objective, ...]
     terminated: Literal["converged", "time_limit", "cancelled"] | None
     document: Mapping[str, Any]
+    uncovered: Uncovered | None = None
 
 
 def parse_robots(document: Mapping[str, Any]) -> RobotFront:
@@ -93,6 +97,7 @@ def parse_robots(document: Mapping[str, Any]) -> RobotFront:
         objectives=objectives_of(document) or (),
         terminated=document["terminated"],
         document=document,
+        uncovered=parse_uncovered(document),
     )
 
 

@@ -48,6 +48,36 @@ class Path:
     points: Array | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class UncoveredRegion:
+    """A region of free cells that no path leads to.
+
+    Attributes:
+        cells: How many cells it has.
+        cell: The row and column of one of them.
+        box: The row and column of the first and of the last cell of its bounding box.
+    """
+
+    cells: int
+    cell: tuple[int, int]
+    box: tuple[tuple[int, int], tuple[int, int]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Uncovered:
+    """The free cells of a map that no path leads to, as a room that is closed off.
+
+    Attributes:
+        cells: How many there are.
+        square_metres: Their area.
+        regions: The largest regions that they form, at most 20, the largest first.
+    """
+
+    cells: int
+    square_metres: float
+    regions: tuple[UncoveredRegion, ...]
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Tour:
     """A tour of a front.
@@ -102,6 +132,7 @@ class Front:
         objectives: Both objectives, where the request named them.
         kept: The share of the driven tour's remaining legs that each tour keeps, shape (m,), where
             it was replanned.
+        uncovered: Over a map, the free cells that no path leads to.
     """
 
     id: str
@@ -123,6 +154,7 @@ class Front:
     stops: tuple[tuple[str, ...], ...] | None = None
     objectives: tuple[Objective, ...] | None = None
     kept: Array | None = None
+    uncovered: Uncovered | None = None
 
     def nearest(self, angle: float) -> Tour:
         """Return the tour whose direction is nearest to an angle in degrees.
@@ -211,6 +243,7 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         stops=tuple(tuple(item["stops"]) for item in items) if "stops" in document else None,
         objectives=objectives_of(document),
         kept=read_only_floats([item["kept"] for item in items]) if _is_replanned(items) else None,
+        uncovered=parse_uncovered(document),
     )
 
 
@@ -242,6 +275,30 @@ def objectives_of(document: Mapping[str, Any]) -> tuple[Objective, ...] | None:
     if "objectives" not in document:
         return None
     return tuple(Objective(each["name"], each.get("unit")) for each in document["objectives"])
+
+
+def parse_uncovered(document: Mapping[str, Any]) -> Uncovered | None:
+    """Return what is uncovered of the map in a JSON answer; None where it does not say so."""
+    if "uncovered" not in document:
+        return None
+    found = document["uncovered"]
+    return Uncovered(
+        cells=found["cells"],
+        square_metres=found["square_metres"],
+        regions=tuple(
+            UncoveredRegion(
+                cells=region["cells"],
+                cell=_pair(region["cell"]),
+                box=(_pair(region["box"][0]), _pair(region["box"][1])),
+            )
+            for region in found["regions"]
+        ),
+    )
+
+
+def _pair(cell: Sequence[int]) -> tuple[int, int]:
+    row, column = cell
+    return row, column
 
 
 def parse_path(item: Mapping[str, Any]) -> Path | None:
