@@ -156,7 +156,8 @@ def print_uncovered(uncovered: Uncovered | None, console: Console) -> None:
     if uncovered is None or not uncovered.cells:
         return
     row, column = uncovered.regions[0].cell
-    size = f"{uncovered.cells} free cells, {uncovered.square_metres:.6g} m²"
+    cells = "cell" if uncovered.cells == 1 else "cells"
+    size = f"{uncovered.cells} free {cells}, {uncovered.square_metres:.6g} m²"
     line = (
         f"not covered, as no path leads there: {size}; the largest part is around [{row}, {column}]"
     )
