@@ -98,7 +98,8 @@ class Instance:
         if self.coordinates is not None:
             ordinary = np.stack([np.ptp(box, axis=0).max() for box in self._ordinary_boxes])
         else:
-            ordinary = self._ordinary_costs
+            assert self.matrices is not None
+            ordinary = ordinary_costs(self.matrices)
         return np.where(ordinary > 0, ordinary, 1.0)
 
     @cached_property
@@ -115,7 +116,8 @@ class Instance:
         if self.coordinates is not None:
             sides = np.ptp(self.coordinates, axis=0).reshape(OBJECTIVES, PLANE)
             return common + np.where(self.extents > self.scale, 2 * sides.sum(axis=1), 0.0)
-        least = np.concatenate(_least_steps(self), axis=1)
+        assert self.matrices is not None
+        least = np.concatenate(least_steps(self.matrices), axis=1)
         outlying = np.isfinite(least) & (least > self.scale[:, np.newaxis])
         return common + least.sum(axis=1, where=outlying)
 
@@ -192,25 +194,13 @@ class Instance:
         return boxes
 
     @cached_property
-    def _ordinary_costs(self) -> Array:
-        """The largest finite cost of each matrix without outliers, shape (2,)."""
-        assert self.matrices is not None
-        step = -(-self.n // SAMPLED)
-        largest = self.extents.copy()
-        for m, matrix in enumerate(self.matrices):
-            limit = OUTLYING * _median_positive(matrix[::step, ::step])
-            if largest[m] > limit:
-                largest[m] = matrix.max(where=matrix <= limit, initial=0.0)
-        return largest
-
-    @cached_property
     def extents(self) -> Array:
         """The longer side of each plane's bounding box, or each matrix's largest finite cost."""
         if self.coordinates is not None:
             with np.errstate(over="ignore"):
                 return np.ptp(self.coordinates, axis=0).reshape(OBJECTIVES, PLANE).max(axis=1)
         assert self.matrices is not None
-        return self.matrices.max(axis=(1, 2), where=np.isfinite(self.matrices), initial=0.0)
+        return largest_costs(self.matrices)
 
     @property
     def ends(self) -> RouteEnds:
@@ -296,17 +286,35 @@ def least_lengths(instance: Instance) -> Array:
     assert instance.matrices is not None
     if instance.n == 1:
         return np.zeros(OBJECTIVES)
-    leaving, entering = _least_steps(instance)
+    leaving, entering = least_steps(instance.matrices)
     if not instance.closed:
         leaving, entering = (np.sort(least)[:, :-1] for least in (leaving, entering))
     return np.maximum(leaving.sum(axis=1), entering.sum(axis=1))
 
 
-def _least_steps(instance: Instance) -> tuple[Array, Array]:
+def least_steps(matrices: Array) -> tuple[Array, Array]:
     """Return the least costs of leaving each city, and of reaching it, shape (2, n) each."""
-    assert instance.matrices is not None
-    steps = np.where(np.eye(instance.n, dtype=bool), np.inf, instance.matrices)
+    steps = np.where(np.eye(matrices.shape[1], dtype=bool), np.inf, matrices)
     return steps.min(axis=2), steps.min(axis=1)
+
+
+def largest_costs(matrices: Array) -> Array:
+    """Return the largest finite cost of each matrix, shape (2,); 0 where there is none."""
+    return matrices.max(axis=(1, 2), where=np.isfinite(matrices), initial=0.0)
+
+
+def ordinary_costs(matrices: Array) -> Array:
+    """Return the largest cost of each matrix that is not an outlier, shape (2,).
+
+    An outlier is a cost of more than 100 times the median positive one, among a hundred cities.
+    """
+    step = -(-matrices.shape[1] // SAMPLED)
+    largest = largest_costs(matrices)
+    for m, matrix in enumerate(matrices):
+        limit = OUTLYING * _median_positive(matrix[::step, ::step])
+        if largest[m] > limit:
+            largest[m] = matrix.max(where=matrix <= limit, initial=0.0)
+    return largest
 
 
 def _median_positive(costs: Array) -> float:

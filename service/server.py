@@ -42,7 +42,7 @@ from service.requests.task import parse_task
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 from service.settings import Settings
-from service.telemetry import configure_logging, log_loading, logged, trace
+from service.telemetry import configure_logging, log_loading, logged, logging_every, trace
 
 
 class Ending:
@@ -175,7 +175,8 @@ def build_worker(settings: Settings) -> Callable[[], int]:
 
     def run() -> int:
         # Before the first fork, so that every process has the compiled search at once.
-        warm_up()
+        with logging_every("the search is being loaded or compiled"):
+            warm_up()
         return worker.run()
 
     return run

@@ -5,8 +5,9 @@ import logging
 import logging.config
 import sys
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
+from contextlib import AbstractAsyncContextManager, asynccontextmanager, contextmanager
+from threading import Event, Thread
 from typing import Any, TypeVar
 
 from service.errors import Refusal
@@ -94,6 +95,27 @@ async def _log_until_ready(check_ready: Callable[[], Awaitable[None]]) -> None:
         else:
             log.info("ready after %.1f s", seconds)
             return
+
+
+@contextmanager
+def logging_every(sentence: str, seconds: float = _SAY_SECONDS) -> Iterator[None]:
+    """Log a sentence now and every so many seconds until the block ends, with the time so far."""
+    ended = Event()
+    began = time.monotonic()
+
+    def log() -> None:
+        while True:
+            logging.getLogger("paretour").info("%s, %.0f s", sentence, time.monotonic() - began)
+            if ended.wait(seconds):
+                return
+
+    thread = Thread(target=log, name="log", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
 
 
 def configure_logging(plain: bool = False) -> None:

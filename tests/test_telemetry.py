@@ -5,6 +5,7 @@ import logging
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -14,7 +15,7 @@ import pytest
 from fastapi import FastAPI
 from opentelemetry.proto.collector.trace.v1.trace_service_pb2 import ExportTraceServiceRequest
 
-from service.telemetry import PlainFormatter, trace
+from service.telemetry import PlainFormatter, logging_every, trace
 from tests.helpers.processes import serve_process
 
 
@@ -104,3 +105,12 @@ def test_a_plain_line_has_the_members_of_a_record_behind_its_message() -> None:
     record.color_message = "coloured"
     line = PlainFormatter("%(message)s").format(record)
     assert line == "request status=200 seconds=0.0123"
+
+
+def test_while_something_takes_long_the_log_says_so_again(caplog: pytest.LogCaptureFixture) -> None:
+    with caplog.at_level(logging.INFO, "paretour"), logging_every("it goes on", seconds=0.01):
+        while sum("it goes on" in line for line in caplog.messages) < 3:
+            time.sleep(0.005)
+    said = len(caplog.messages)
+    time.sleep(0.05)
+    assert len(caplog.messages) == said

@@ -7,7 +7,7 @@ from starlette.requests import Request
 
 from service.api.body_budget import BodyAllowance
 from service.errors import Refusal
-from service.requests.multipart import split_parts
+from service.requests.multipart import split_files, split_parts
 from service.requests.task import TaskKind, TaskSource
 
 _MULTIPART = "multipart/form-data"
@@ -37,6 +37,21 @@ async def receive_source(
     # In a thread, beside the event loop: of many megabytes it takes a tenth of a second.
     parts = await asyncio.to_thread(split_parts, content_type, body, ("request", upload))
     return TaskSource(kind, parts["request"], parts[upload])
+
+
+async def receive_files(
+    request: Request, most_bytes: int, allowance: BodyAllowance
+) -> list[tuple[str, bytes]]:
+    """Receive the files of a request, each with its name: the parts `file` of a form.
+
+    Raises:
+        Refusal: As of receive_source.
+    """
+    content_type = _checked_content_type(request)
+    if not content_type.lower().startswith(_MULTIPART):
+        raise Refusal("not-files", came=content_type)
+    body = await _receive(request, most_bytes, allowance)
+    return await asyncio.to_thread(split_files, content_type, body)
 
 
 def _checked_content_type(request: Request) -> str:

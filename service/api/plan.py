@@ -77,9 +77,9 @@ class PlanRoutes:
         self._store = store
         self._limits = limits
         self._seconds = seconds
-        self._budget = BodyBudget(bodies.under_way, bodies.share)
+        self.budget = BodyBudget(bodies.under_way, bodies.share)
         self._answers = answers
-        self._parser = TaskParser(limits, actors, bodies.parser)
+        self.parser = TaskParser(limits, actors, bodies.parser)
         self._held: set[asyncio.Task[None]] = set()
 
     def router(self) -> APIRouter:
@@ -166,11 +166,11 @@ class PlanRoutes:
     async def _plan(self, request: Request, kind: TaskKind, front: str | None = None) -> Response:
         await self._check_place(request)
         # Until there is an answer: what waits for a worker, or is planned, has its body as well.
-        with self._budget.open(client_of(request)) as allowance:
+        with self.budget.open(client_of(request)) as allowance:
             received = await receive_source(request, kind, self._limits.body_bytes, allowance)
             body = _Body(received, front, time.monotonic())
             if front is None:
-                task = await self._parser.parse(received)
+                task = await self.parser.parse(received)
                 source = replace(received, task=task)
             else:
                 source = await self._rest(request, received, front)
@@ -182,7 +182,7 @@ class PlanRoutes:
         Raises:
             Refusal: There is no such front, it cannot be replanned, or not as the body says.
         """
-        self._parser.check_replan(body.body)
+        self.parser.check_replan(body.body)
         record = await find_record(self._store, request, front)
         if not record.finished:
             raise not_replannable(record.id, "it is still being planned")
@@ -191,7 +191,7 @@ class PlanRoutes:
             reason = "what it was planned from is not kept; plan what is left with POST /front"
             raise not_replannable(record.id, reason)
         stored = StoredFront(record.id, source, record.front.tours, record.front.places)
-        return await self._parser.replan(ReplanSource(body.body, stored))
+        return await self.parser.replan(ReplanSource(body.body, stored))
 
     async def _planned(
         self, request: Request, source: TaskSource, body: _Body, allowance: BodyAllowance

@@ -14,6 +14,7 @@ from pydantic_core import to_json
 from starlette.responses import Response
 
 from service.errors import Refusal
+from service.files.reading import Kind
 from service.fleet.fleet import Over
 from service.instance import OBJECTIVES
 from service.jobs.record import Status
@@ -108,7 +109,7 @@ class FrontAnswer(BaseModel):
     actor: ActorName | None = Field(description="null where no network built tours, or none yet")
     timings_ms: dict[str, float]
     terminated: Termination | None = Field(
-        description="how the search ended, null while it goes on. `converged`: up to nine cities"
+        description="how the search ended, null while it goes on. `converged`: up to eleven cities"
         " all tours were compared, and the front is exact; beyond, the search has long found"
         " nothing better in its neighbourhoods, which proves nothing. Where `time_limit` is 0 there"
         " was no search, and it says that all tours asked for were built"
@@ -261,6 +262,38 @@ class ActorsAnswer(BaseModel):
     """The networks to choose from."""
 
     actors: list[ActorItem]
+
+
+class NoteItem(BaseModel):
+    """One thing that was taken for granted."""
+
+    file: str
+    text: str
+    code: str = Field(description="tells notes apart")
+
+
+class ColumnItem(BaseModel):
+    """A column of a table."""
+
+    name: str
+    taken_for: str = Field(description="a field of stops, or `ignored`")
+
+
+class FileAnswer(BaseModel):
+    """The request that files are, and what was taken for granted."""
+
+    kind: Kind = Field(description="the operation that takes the request")
+    request: dict[str, Any]
+    notes: list[NoteItem]
+    columns: list[ColumnItem] | SkipJsonSchema[None] = Field(
+        default=None, description="of a table with a heading"
+    )
+    planes: list[list[float]] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="of two files EUC_2D: x and y of each city in both planes, of whose distances"
+        " the matrices in the request are the rounded ones",
+    )
+    name: str
 
 
 class HealthAnswer(BaseModel):

@@ -5,7 +5,7 @@ import logging
 import os
 import resource
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, NamedTuple, TypeVar
@@ -14,11 +14,13 @@ from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
 
 from service.actor_info import ActorInfo
 from service.errors import QueueFull, Refusal
+from service.files.reading import NamedFile
+from service.files.upload import read_upload
 from service.requests.limits import Limits, check_structure
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.task import Task, TaskSource, parse_task
-from service.requests.validation import parse_json
+from service.requests.validation import check_json, parse_json
 
 _SHORT = 2**17  # bytes that are parsed here, in a few milliseconds
 _FEW_QUOTES = 2000  # those of 300 stops; as many faults take a few milliseconds
@@ -117,12 +119,12 @@ class TaskParser:
         short = length <= _SHORT and source.upload is None
         if short and source.body.count(b'"') <= _FEW_QUOTES:
             return parse_task(source, self._limits, self._actors)
-        check_structure(source.body, self._limits)
+        self._check(source.body)
         return await self._in_turn(parse_task, source, length)
 
     def check_replan(self, body: bytes) -> None:
         """Raise a refusal where a short body is no request to replan; others are parsed later."""
-        check_structure(body, self._limits)
+        self._check(body)
         if len(body) <= _SHORT and body.count(b'"') <= _FEW_QUOTES:
             parse_json(ReplanRequest, body)
 
@@ -132,6 +134,24 @@ class TaskParser:
         if source.length <= _SHORT and quotes <= _FEW_QUOTES:
             return parse_replan(source, self._limits, self._actors)
         return await self._in_turn(parse_replan, source, source.length)
+
+    def _check(self, body: bytes) -> None:
+        """Raise a refusal where a body is too complex or, unless it is long, is not JSON.
+
+        JSON that is too deep is refused here: it need not wait until a process is started.
+        """
+        check_structure(body, self._limits)
+        if len(body) <= _MEDIUM:
+            check_json(body)
+
+    async def read_files(self, files: Sequence[NamedFile]) -> bytes:
+        """Return what the reader makes of files, as JSON; never here, whatever their length.
+
+        Raises:
+            Refusal: They cannot be read, or hold too much.
+            QueueFull: Too many bodies wait to be parsed.
+        """
+        return await self._in_turn(read_upload, files, sum(len(file.data) for file in files))
 
     async def _in_turn(self, parse: _Parse[S, T], source: S, length: int) -> T:
         lane = self._medium if length <= _MEDIUM else self._long

@@ -5,7 +5,9 @@ from contextlib import contextmanager
 
 import httpx
 import typer
-from paretour import Refused
+from paretour import Refused, UnexpectedAnswer
+
+from service.files.reading import UnreadableFile
 
 EXIT_STALLED = 1  # of `paretour work --alive`
 EXIT_USAGE = 2
@@ -15,10 +17,6 @@ _NOT_THE_REQUEST = (401, 403, 408, 429)  # refusals that another request would m
 
 class UsageError(Exception):
     """A mistake of the caller: an option, a request, or a setting."""
-
-
-class UnreadableFile(ValueError):
-    """A file that is not of its format, or of a kind that is not supported."""
 
 
 @contextmanager
@@ -37,6 +35,8 @@ def exit_on_error() -> Iterator[None]:
     except Refused as error:
         faulty = 400 <= error.status < 500 and error.status not in _NOT_THE_REQUEST
         raise exit_with(str(error), EXIT_USAGE if faulty else EXIT_UNAVAILABLE) from None
+    except UnexpectedAnswer as error:
+        raise exit_with(f"the service answers oddly: {error}", EXIT_UNAVAILABLE) from None
     except httpx.TransportError as error:
         raise exit_with(f"the service does not answer: {error}", EXIT_UNAVAILABLE) from None
 

@@ -2,7 +2,7 @@
 
 from paretour import FleetFront, Front, RobotFront
 
-from service.cli.inputs.csv_tables import Ids
+from service.cli.inputs import Ids
 from service.cli.terminal_chart import LABELS
 
 AnyFront = Front | FleetFront | RobotFront

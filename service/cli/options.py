@@ -11,16 +11,24 @@ ANY = "any"  # the value of --start where any city will do: null in a request
 File = Annotated[
     Path,
     Argument(
-        help="JSON: a request, or its coordinates. GeoJSON: stops, as points. CSV: four numbers for"
-        " each city, x and y in the plane of either objective, maybe after a column id. Or, with a"
-        " second file, the first objective. - is standard input."
+        help="JSON: a request, or its coordinates. GeoJSON: stops, as points. CSV or XLSX: stops"
+        " with columns lon and lat, or four numbers for each city, x and y in the plane of either"
+        " objective. Or, with a second file, the first objective. - is standard input."
     ),
 ]
 SecondFile = Annotated[
     Path | None,
     Argument(
-        help="The second objective. Both are CSV, x and y for each city or a matrix of costs, or"
-        " both are TSPLIB's, EUC_2D or a FULL_MATRIX."
+        help="The second objective. Either file is a table, x and y for each city or a matrix of"
+        " costs, or TSPLIB's."
+    ),
+]
+FleetFile = Annotated[
+    Path,
+    Argument(
+        metavar="FILE",
+        help="JSON: a request, as for POST /fleet, or VROOM's. CSV or XLSX: stops with demands or"
+        " windows. CVRPLIB, Solomon's, Li and Lim's. - is standard input.",
     ),
 ]
 TimeLimit = Annotated[

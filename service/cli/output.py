@@ -19,7 +19,7 @@ from typer import echo
 
 from service.cli.backends import Backend
 from service.cli.errors import UsageError, exit_on_error
-from service.cli.inputs.csv_tables import Ids
+from service.cli.inputs import Ids
 from service.cli.labels import columns_of, ids_of, labels_of, lengths_as_text
 from service.cli.terminal_chart import LABELS, draw_front
 
@@ -153,7 +153,7 @@ def front_summary(front: Front) -> str:
 
 def print_uncovered(uncovered: Uncovered | None, console: Console) -> None:
     """Print a line about the cells of a map that no path leads to, if there are any."""
-    if uncovered is None or not uncovered.cells:
+    if uncovered is None or not uncovered.regions:
         return
     row, column = uncovered.regions[0].cell
     cells = "cell" if uncovered.cells == 1 else "cells"
@@ -166,7 +166,7 @@ def print_uncovered(uncovered: Uncovered | None, console: Console) -> None:
 
 def end_of_search(terminated: str | None) -> str:
     """Return why a search ended, in words."""
-    return _TERMINATED[terminated]
+    return _TERMINATED.get(terminated, f"ended: {terminated!r:.80}")
 
 
 def tour_as_json(tour: Tour) -> str:

@@ -15,8 +15,7 @@ from paretour import (
 )
 
 from service.cli.errors import UsageError
-from service.cli.inputs.csv_tables import Ids
-from service.cli.inputs.files import read_layer, read_map, read_object, read_request
+from service.cli.inputs import Ids, read_layer, read_map, read_object, read_request
 from service.cli.options import ANY
 
 _SECOND_OBJECTIVES = ("second_matrix", "cost_layer", "second_coordinates")

@@ -13,6 +13,8 @@ _REPLAN = ("POST /front/{id}/replan",)
 _FLEET = ("POST /fleet",)
 _PLANNED = ("POST /front", "POST /coverage", *_REPLAN)
 _PLANS = (*_PLANNED, *_FLEET)
+_FILES = ("POST /files",)
+_BODIES = (*_PLANS, *_FILES)
 _TOUR = ("GET /tour",)
 _STORED = "GET /front/{id}"
 _ROADS = ("POST /front", *_FLEET, *_REPLAN, _STORED, *_TOUR)
@@ -33,7 +35,7 @@ class Problem(NamedTuple):
 PROBLEMS: Mapping[str, Problem] = {
     "malformed-http": Problem(400, "the request must be HTTP/1.1: {reason}", _NONE),
     "malformed-json": Problem(400, "the body must be JSON: {reason}", _PLANS),
-    "malformed-multipart": Problem(400, "the body must be multipart/form-data: {reason}", _PLANS),
+    "malformed-multipart": Problem(400, "the body must be multipart/form-data: {reason}", _BODIES),
     "unauthorized": Problem(401, "Authorization must be {demand}"),
     "no-front": Problem(404, "a tour is of a front: plan one with POST /front first", _TOUR),
     "no-such-path": Problem(404, "there is nothing at {path}; /docs says what is", _NONE),
@@ -64,7 +66,8 @@ PROBLEMS: Mapping[str, Problem] = {
         410, "front {front} was kept for a while and is no more: plan it again"
     ),
     "body-too-long": Problem(413, "the body must have at most {limit} bytes, got {came}"),
-    "body-too-complex": Problem(413, "the body must {demand}", _PLANS),
+    "body-too-complex": Problem(413, "the body must {demand}", _BODIES),
+    "file-too-large": Problem(413, "{detail}", _FILES),
     "too-many-cells": Problem(
         413, "grid must have at most {limit} cells, got {came}", ("POST /coverage",)
     ),
@@ -78,13 +81,14 @@ PROBLEMS: Mapping[str, Problem] = {
     "not-json": Problem(
         415, "Content-Type must be application/json or multipart/form-data, got {came}"
     ),
+    "not-files": Problem(415, "Content-Type must be multipart/form-data, got {came}", _FILES),
     "not-plain": Problem(415, "Content-Encoding must be identity, got {came}"),
     "unsatisfiable-range": Problem(416, "the range must be within the file", _NONE),
     "idempotency-mismatch": Problem(
         422, "an Idempotency-Key must be of one body, got another", _PLANS
     ),
     "invalid-instance": Problem(422, "{reason}", _PLANS),
-    "invalid-parts": Problem(422, "{reason}", _PLANS),
+    "invalid-parts": Problem(422, "{reason}", _BODIES),
     "invalid-request": Problem(422, "{detail}", (*_PLANS, _STORED, *_TOUR)),
     "no-plan": Problem(422, "{reason}", _PLANS),
     "no-actor": Problem(422, "{kind} need an actor that reads them, and none is loaded", _PLANS),
@@ -112,6 +116,7 @@ PROBLEMS: Mapping[str, Problem] = {
         "a tour must keep at least {limit:.6g} of the driven one's legs: the most is {actual:.6g}",
         _REPLAN,
     ),
+    "unreadable-file": Problem(422, "{detail}", _FILES),
     "unfit-actor": Problem(
         422, "actor must read {kind}, as {among}; {name} reads {inputs} alone", _PLANS
     ),
@@ -128,13 +133,13 @@ PROBLEMS: Mapping[str, Problem] = {
         502, "the routing engine must answer as documented, and does not: {reason}", _ROADS
     ),
     "bodies-full": Problem(
-        503, "all bodies under way must fit {limit} bytes: ask again", (*_PLANS, _STORED)
+        503, "all bodies under way must fit {limit} bytes: ask again", (*_BODIES, _STORED)
     ),
     "no-worker": Problem(
         503, "a worker must be running, and none is: {reason}", ("GET /health/ready", *_PLANS)
     ),
     "queue-full": Problem(
-        503, "the queue must have a free place, and all are taken: ask again", _PLANS
+        503, "the queue must have a free place, and all are taken: ask again", _BODIES
     ),
     "router-unavailable": Problem(
         503, "the routing engine must answer, and does not: ask again", _ROADS

@@ -47,7 +47,7 @@ class RouterUnavailable(Refusal):
 
 
 class RouterUnusable(Refusal):
-    """The routing engine answers something else than it should; the reason quotes none of it."""
+    """The routing engine answers something else than it should; the reason quotes no text of it."""
 
     def __init__(self, reason: str) -> None:
         super().__init__("router-unusable", reason=reason)

@@ -6,6 +6,7 @@ from operator import neg
 
 import pyvrp
 
+from service.fleet.evaluation import violations
 from service.fleet.translation import Translation
 
 Point = tuple[float, float]
@@ -71,6 +72,10 @@ class SolutionArchive:
         first, second = self._point(solution, weights)
         place = bisect_right(self._firsts, first)
         if place and self._seconds[place - 1] <= second:
+            return
+        if self._translation.is_rounded and violations(
+            self._translation.fleet, self._translation.plan(solution)
+        ):
             return
         begin = bisect_left(self._firsts, first)
         end = begin

@@ -5,7 +5,7 @@ of the partial plans that visit the same stops those that are dominated are drop
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from itertools import permutations
 from typing import NamedTuple
 
@@ -39,25 +39,37 @@ def is_enumerable(rules: Rules) -> bool:
     return stops <= MOST_STOPS and vehicles <= _MOST_VEHICLES
 
 
-def exact_plans(fleet: Fleet) -> list[Plan]:
-    """Return a plan for each point of the exact front, and others that are dominated."""
+class _Ended(Exception):
+    """There is no time left."""
+
+
+def exact_plans(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> list[Plan] | None:
+    """Return a plan for each point of the exact front, and others that are dominated.
+
+    None where `ended`, which is called every few milliseconds, returned True before all were tried.
+    """
     rules = fleet.rules
     partials: Partials = {frozenset(): [_Partial(0.0, 0.0, ())]}
-    for index, vehicle in enumerate(rules.vehicles):
-        routes = _routes(fleet, index)
-        for _ in range(min(vehicle.count, len(rules.clients))):
-            partials = _with_another(rules, partials, routes)
+    try:
+        for index, vehicle in enumerate(rules.vehicles):
+            routes = _routes(fleet, index, ended)
+            for _ in range(min(vehicle.count, len(rules.clients))):
+                partials = _with_another(rules, partials, routes, ended)
+    except _Ended:
+        return None
     plans = [Plan(partial.routes) for each in partials.values() for partial in each]
     return [plan for plan in plans if not violations(fleet, plan)]
 
 
-def _routes(fleet: Fleet, vehicle: int) -> Partials:
+def _routes(fleet: Fleet, vehicle: int, ended: Callable[[], bool]) -> Partials:
     """Return the routes of a vehicle that break no rule, by the stops that they visit."""
     rules = fleet.rules
     fixed = rules.vehicles[vehicle].fixed
     found: dict[Stops, list[_Partial]] = defaultdict(list)
     for most in range(1, len(rules.clients) + 1):
         for stops in permutations(rules.clients, most):
+            if ended():
+                raise _Ended
             route = Route(vehicle, stops)
             if _ships_in_order(rules, stops) and not any(route_violations(fleet, route)):
                 first, second = route_lengths(fleet, route)
@@ -76,11 +88,15 @@ def _ships_in_order(rules: Rules, stops: tuple[int, ...]) -> bool:
     )
 
 
-def _with_another(rules: Rules, partials: Partials, routes: Partials) -> Partials:
+def _with_another(
+    rules: Rules, partials: Partials, routes: Partials, ended: Callable[[], bool]
+) -> Partials:
     """Return the partial plans in which one more vehicle takes one of these routes, or none."""
     found = {visited: list(each) for visited, each in partials.items()}
     for visited, before in partials.items():
         for added, each in routes.items():
+            if ended():
+                raise _Ended
             if not visited & added:
                 joined = (_joined(rules, a, b) for a in before for b in each)
                 found.setdefault(visited | added, []).extend(joined)

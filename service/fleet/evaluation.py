@@ -188,6 +188,9 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
     """Yield a sentence for each rule that a route breaks by itself."""
     rules = fleet.rules
     vehicle = rules.vehicles[route.vehicle]
+    if fleet.forbids and inf in legs(fleet, route, 0):
+        yield f"a vehicle of type {route.vehicle} takes a leg where there is no way"
+        return
     for dimension, capacity in enumerate(vehicle.capacity):
         if (most := max(_loads(rules, route, dimension))) > capacity:
             yield f"a vehicle of type {route.vehicle} holds {most} of {capacity}"

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import Refusal
-from service.instance import OBJECTIVES
+from service.instance import OBJECTIVES, largest_costs, least_steps, ordinary_costs
 
 Array = NDArray[np.float64]
 Over = Literal["sum", "max"]
 Span = tuple[float, float]
 ALWAYS: Span = (0.0, inf)
+_LEAST_LEGS = 10  # the largest, whose sum no leg is counted above
 
 
 def invalid(part: str, demand: str) -> Refusal:
@@ -143,7 +144,8 @@ class Rules:
 class Fleet:
     """Rules, and under each of two objectives the costs between the stops, shape (2, n, n).
 
-    The costs are copied, with a diagonal of 0, and made read-only.
+    The costs are copied, with a diagonal of 0, and made read-only. An infinite cost is a forbidden
+    leg, and infinite in both objectives.
     """
 
     rules: Rules
@@ -154,10 +156,39 @@ class Fleet:
         if self.costs.shape != shape:
             raise ValueError(f"costs must have shape {shape}, got {self.costs.shape}")
         costs = np.where(np.eye(self.rules.n, dtype=np.bool_), 0.0, self.costs)
-        if not (np.isfinite(costs) & (costs >= 0)).all():
-            raise ValueError("costs must be finite and not negative")
+        if not (costs >= 0).all():
+            raise ValueError("costs must be numbers and not negative")
+        costs[:, np.isinf(costs).any(axis=0)] = inf
         costs.flags.writeable = False
         object.__setattr__(self, "costs", costs)
+
+    @cached_property
+    def forbids(self) -> bool:
+        """Whether some leg is forbidden."""
+        return bool(np.isinf(self.costs[0]).any())
+
+    @cached_property
+    def largest_legs(self) -> Array:
+        """The largest cost of a leg that plans are made of, in each objective, shape (2,).
+
+        Outliers do not count, but for those without which a stop cannot be left or reached.
+        """
+        ordinary = ordinary_costs(self.costs)
+        least = np.concatenate(least_steps(self.costs), axis=1)
+        needed = least.max(axis=1, where=np.isfinite(least), initial=0.0)
+        legs: Array = np.where(needed > ordinary, needed + ordinary, ordinary)
+        return np.minimum(legs, largest_costs(self.costs))
+
+    @cached_property
+    def bounded_costs(self) -> Array:
+        """Costs in which no leg costs much more than plans do, shape (2, n, n).
+
+        A leg that costs more than so many of the largest legs as there are stops costs as much, and
+        a forbidden one four times that. What a plan then has is no longer its true length.
+        """
+        most = max(self.rules.n, _LEAST_LEGS) * self.largest_legs[:, np.newaxis, np.newaxis]
+        bounded: Array = np.where(np.isinf(self.costs), 4 * most, np.minimum(self.costs, most))
+        return bounded
 
 
 def _check_objectives(rules: Rules) -> None:
@@ -204,9 +235,13 @@ def _check_visit(rules: Rules, visit: Visit, index: int) -> None:
 
 
 def _check_depot(visit: Visit, part: str) -> None:
-    for name, default in (("demand", ()), ("service", 0.0), ("window", ALWAYS), ("prize", None)):
+    demand = "must not be given for a stop at which vehicles start or end"
+    if any(visit.demand):
+        raise invalid(f"{part}/demand", demand)
+    if visit.window != ALWAYS:
+        raise invalid(f"{part}/window", f"{demand}: say in their shift when they may be on the way")
+    for name, default in (("service", 0.0), ("prize", None)):
         if getattr(visit, name) != default:
-            demand = "must not be given for a stop at which vehicles start or end"
             raise invalid(f"{part}/{name}", demand)
 
 

@@ -90,7 +90,7 @@ class LimitSteps:
     def _least_limit(self) -> int:
         """Return about the least limit that lets each stop be visited at all."""
         fleet = self._translation.fleet
-        rules, costs = fleet.rules, fleet.costs[self._maximum]
+        rules, costs = fleet.rules, fleet.bounded_costs[self._maximum]
         alone = np.full(rules.n, np.inf)
         for vehicle in rules.vehicles:
             there = 0.0 if vehicle.start is None else _shortest(costs, vehicle.start)

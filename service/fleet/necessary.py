@@ -1,6 +1,7 @@
 """Conditions that every feasible plan needs: the first that fails names what to change."""
 
 from collections.abc import Iterator
+from functools import cache, partial
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from service.errors import Refusal
 from service.fleet.evaluation import route_violations
 from service.fleet.fleet import Array, Fleet, Rules, VehicleType
 from service.fleet.plans import Route
+from service.instance import least_steps
 
 
 def check_necessary(fleet: Fleet) -> None:
@@ -85,14 +87,41 @@ def _unreachable(fleet: Fleet) -> Iterator[str]:
     Where a detour over another stop may be shorter, that is no necessary condition.
     """
     rules = fleet.rules
+    yield from _without_ways(fleet)
+    yield from _shipped_too_late(rules)
+    triangle = cache(partial(_triangle_holds, fleet))
     deliveries = {each.pickup: (each.pickup, each.delivery) for each in rules.shipments}
     for stop in _required(rules):
         stops = deliveries.get(stop, (stop,))
         served = any(_serves(fleet, vehicle, stops) for vehicle in range(len(rules.vehicles)))
-        if not served and _triangle_holds(fleet):
+        if not served and triangle():
             yield (
                 f"stops/{stop} cannot be reached within its window, the shift and the longest"
                 " route of any vehicle, even on a route of its own"
+            )
+
+
+def _without_ways(fleet: Fleet) -> Iterator[str]:
+    """Name a stop that must be visited and that no way leads to, or away from."""
+    if not fleet.forbids:
+        return
+    leaving, entering = (least[0] for least in least_steps(fleet.costs))
+    vehicles = fleet.rules.vehicles
+    for stop in _required(fleet.rules):
+        if np.isinf(entering[stop]) and all(each.start is not None for each in vehicles):
+            yield f"no way leads to stops/{stop} from any other stop"
+        if np.isinf(leaving[stop]) and all(each.end is not None for each in vehicles):
+            yield f"no way leads from stops/{stop} to any other stop"
+
+
+def _shipped_too_late(rules: Rules) -> Iterator[str]:
+    """Name a shipment that must be delivered before it can be picked up."""
+    for each in rules.shipments:
+        pickup, delivery = rules.visits[each.pickup], rules.visits[each.delivery]
+        if pickup.prize is None and delivery.window[1] < pickup.window[0] + pickup.service:
+            yield (
+                f"the window of stops/{each.delivery}, where a shipment is delivered, closes before"
+                f" it can be picked up at stops/{each.pickup}"
             )
 
 
@@ -102,11 +131,16 @@ def _serves(fleet: Fleet, vehicle: int, stops: tuple[int, ...]) -> bool:
 
 
 def _triangle_holds(fleet: Fleet) -> bool:
-    """Return whether no detour over a stop is shorter, in the objective that is limited."""
+    """Return whether no detour over a stop is shorter, in the objective that is limited.
+
+    Where legs are forbidden, it may be that only a detour leads to a stop.
+    """
     rules = fleet.rules
     objective = rules.maximum if rules.clock is None else rules.clock
+    if fleet.forbids:
+        return False
     if objective is None:
         return True
     costs = fleet.costs[objective]
-    slack = 1e-9 * costs.max(initial=0.0)
+    slack = 1e-9 * fleet.largest_legs[objective]
     return all((costs[:, [k]] + costs[[k]] >= costs - slack).all() for k in range(rules.n))

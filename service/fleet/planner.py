@@ -13,7 +13,7 @@ from service.errors import Cancelled, Refusal
 from service.fleet.archive import SolutionArchive
 from service.fleet.enumeration import exact_plans, is_enumerable
 from service.fleet.evaluation import points_of, violations
-from service.fleet.fleet import Array, Fleet
+from service.fleet.fleet import ALWAYS, Array, Fleet, Rules
 from service.fleet.necessary import check_necessary
 from service.fleet.plans import FleetFront, Plan
 from service.fleet.scales import Units
@@ -29,6 +29,8 @@ from service.search.improve import Progress, Termination
 _REPORT_EVERY = 0.1  # seconds
 _NO_LIMIT = 2**62
 _FORGOTTEN = 0.9  # of the longest pause between two checks of the time, with each check
+_ENUMERATING = 0.5  # of the time limit, after which the search takes over from enumeration
+_BRIEF = 0.25  # seconds for it without a time limit
 _CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
 
 
@@ -83,10 +85,12 @@ def plan_fleet(
     began = time.monotonic()
     check_necessary(fleet)
     if is_enumerable(fleet.rules):
-        plans = exact_plans(fleet)
-        if not plans:
-            raise Refusal("no-plan", reason="no plan keeps every rule: all were tried")
-        return _front(fleet, options, plans, terminated="converged", began=began)
+        until = began + (_ENUMERATING * options.time_limit or _BRIEF)
+        all_plans = exact_plans(fleet, lambda: stop() or time.monotonic() > until)
+        if all_plans is not None:
+            if not all_plans:
+                raise Refusal("no-plan", reason="no plan keeps every rule: all were tried")
+            return _front(fleet, options, all_plans, terminated="converged", began=began)
     if options.time_limit == 0:
         plans = _constructed(fleet, constructor, stop)
         constructed = _front(fleet, options, plans, terminated="converged", began=began)
@@ -95,7 +99,15 @@ def plan_fleet(
     if constructor is not None and not fleet.rules.shipments:
         search.begin_at(constructor)
     terminated = search.run()
+    if not search.found and terminated != "cancelled" and _is_bounded(fleet.rules):
+        search = _Search(fleet, options, stop, report, began, loose=True)
+        terminated = search.run()
     return search.front(options.size, terminated)
+
+
+def _is_bounded(rules: Rules) -> bool:
+    """Return whether rounding up times or lengths could leave out a plan that keeps every rule."""
+    return rules.has_spans or any(vehicle.longest < inf for vehicle in rules.vehicles)
 
 
 def _constructed(
@@ -115,7 +127,12 @@ def _constructed(
 
 
 class _Search:
-    """The search for a front: PyVRP, sweeping, into an archive."""
+    """The search for a front: PyVRP, sweeping, into an archive.
+
+    In whole numbers rounded up a plan that just keeps every rule may seem to break one. So where
+    nothing is found in half of the time, there is another search whose bounds are `loose` by as
+    much, and each of its solutions is checked.
+    """
 
     def __init__(
         self,
@@ -124,6 +141,7 @@ class _Search:
         stop: Callable[[], bool],
         report: Report,
         began: float,
+        loose: bool = False,
     ) -> None:
         self._fleet = fleet
         self._options = options
@@ -133,7 +151,9 @@ class _Search:
         self._deadline = self._began + options.time_limit
         units = Units.of(fleet)
         self._reference_point = units.points(reference_point_of(fleet, options))
-        self._translation = Translation(units.fleet)
+        self._translation = Translation(units.fleet, loose)
+        give_up = not loose and _is_bounded(fleet.rules)
+        self._gives_up = began + options.time_limit / 2 if give_up else inf
         self._archive = SolutionArchive(self._translation)
         self._constructed = 0
         self._iterations = 0
@@ -162,6 +182,11 @@ class _Search:
         for plan in first_plans(self._fleet, cutter):
             self._constructed += 1
             self._archive.offer(self._translation.solution(data, plan), FREE.weights)
+
+    @property
+    def found(self) -> bool:
+        """Whether a plan was found."""
+        return len(self._archive) > 0
 
     def run(self) -> Termination:
         """Search until nothing is left to do, or the time is over, or it is told to stop."""
@@ -211,6 +236,8 @@ class _Search:
         if self._stop():
             self._cancelled = True
             return True
+        if now > self._gives_up and not self.found:
+            return True
         left = self._deadline - now
         if now - self._reported >= _REPORT_EVERY and left > _REPORT_EVERY and len(self._archive):
             self._reported = now
@@ -258,16 +285,16 @@ def _front(
 
 
 def scale_of(fleet: Fleet) -> Array:
-    """Return the unit of each objective, shape (2,): its largest cost, 1 where that is 0."""
-    largest = fleet.costs.max(axis=(1, 2), initial=0.0)
-    return np.where(largest > 0, largest, 1.0)
+    """Return the unit of each objective, shape (2,): its largest leg, 1 where that is 0."""
+    return np.where(fleet.largest_legs > 0, fleet.largest_legs, 1.0)
 
 
 def reference_point_of(fleet: Fleet, options: FleetOptions) -> Array:
     """Return the reference point asked for; by default lengths above those of sensible plans.
 
     These are the number of stops times the scale, with all prizes and fixed costs in the first
-    objective, and in the clock's the time from the first shift or window to the end of the last.
+    objective, and in the clock's the time from the first shift or window to the end of the last,
+    for each vehicle where times are summed: so long it may be on its way and wait.
     """
     if options.reference_point is not None:
         return options.reference_point
@@ -277,4 +304,15 @@ def reference_point_of(fleet: Fleet, options: FleetOptions) -> Array:
     point[0] += sum(vehicle.fixed * min(vehicle.count, rules.n) for vehicle in rules.vehicles)
     if rules.clock is not None:
         point[rules.clock] += sum(visit.service for visit in rules.visits)
+        vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
+        times = vehicles if rules.over[rules.clock] == "sum" else 1
+        point[rules.clock] += times * _span(rules)
     return point
+
+
+def _span(rules: Rules) -> float:
+    """Return the time from the first shift or window to the end of the last; 0 without any."""
+    spans = [*(visit.window for visit in rules.visits), *(each.shift for each in rules.vehicles)]
+    bounded = [span for span in spans if span != ALWAYS]
+    times = [time for span in bounded for time in span if time < inf]
+    return max(times, default=0.0) - min(times, default=0.0)

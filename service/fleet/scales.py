@@ -13,6 +13,7 @@ from service.instance import OBJECTIVES
 _LARGEST = 2.0**61  # that a penalty for all routes together may be: PyVRP's integers have 64 bits
 _COARSEST = 1000  # units of the longest leg, at least
 _ROUNDING = 1e-12  # relative, of what a float has too much or too little
+STEEPEST = 1000  # weight of one of two sums, with 1 of the other
 _HARDEST = 10  # costs of the longest leg, for one unit over a limit or a capacity
 _TINY = 2.0**-900  # of the longest leg: the power of ten that scales a much shorter one is infinite
 
@@ -54,7 +55,7 @@ def _longest_route(fleet: Fleet, objective: int) -> float:
     """Return a bound on the length of a route without waiting."""
     timed = objective == fleet.rules.clock
     services = sum(visit.service for visit in fleet.rules.visits) if timed else 0.0
-    return float(fleet.costs[objective].max(axis=1).sum()) + services
+    return float(fleet.bounded_costs[objective].max(axis=1).sum()) + services
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +77,7 @@ class Units:
         Raises:
             Refusal: In such units a prize or a time would overflow.
         """
-        largest = fleet.costs.max(axis=(1, 2), initial=0.0)
+        largest = fleet.largest_legs
         tiny = (largest > 0) & (largest < _TINY)
         shifts = np.where(tiny, 1 - np.frexp(largest)[1], 0)
         if not tiny.any():
@@ -143,13 +144,15 @@ def scales_of(fleet: Fleet, horizon: Horizon) -> tuple[list[float], float]:
     Raises:
         Refusal: Times, prizes and costs are too far apart.
     """
-    largest = [float(costs.max(initial=0.0)) or 1.0 for costs in fleet.costs]
+    largest = [float(leg) or 1.0 for leg in fleet.largest_legs]
     totals = [_largest_total(fleet, objective, horizon) for objective in range(OBJECTIVES)]
     most = max(1.0, *(total / leg for total, leg in zip(totals, largest, strict=True)))
-    finest = math.sqrt(_LARGEST / (_HARDEST * fleet.rules.n)) / math.sqrt(most)
+    # Penalties are multiplied by weights, as costs are.
+    heaviest = STEEPEST if fleet.rules.maximum is None else 1
+    finest = math.sqrt(_LARGEST / (_HARDEST * heaviest * fleet.rules.n)) / math.sqrt(most)
     if finest < _COARSEST:
         reason = "costs, prizes and times must not be farther apart than {:.1e}, and are {:.1e}"
-        allowed = _LARGEST / (_HARDEST * fleet.rules.n * _COARSEST**2)
+        allowed = _LARGEST / (_HARDEST * heaviest * fleet.rules.n * _COARSEST**2)
         raise Refusal("invalid-instance", reason=reason.format(allowed, most))
     digits = [math.floor(math.log10(finest) - math.log10(leg)) for leg in largest]
     scales = [float(f"1e{each}") for each in digits]

@@ -70,7 +70,9 @@ class Solver:
         goal = step.goal
         data = self._translation.data(goal)
         local_search = self._local_search(data, goal)
-        parameters = PenaltyParams(max_penalty=self._translation.max_penalty)
+        # A unit over a capacity must cost more than a leg, under the weights as well.
+        max_penalty = self._translation.max_penalty * max(goal.weights)
+        parameters = PenaltyParams(max_penalty=max_penalty)
         penalties = parameters.midpoint_penalties(data)
         manager = PenaltyManager(penalties, parameters)
         initial = self._initial(data, step.start, local_search, manager)

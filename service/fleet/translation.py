@@ -56,10 +56,18 @@ class _Roles:
 
 
 class Translation:
-    """Translates a fleet to PyVRP's data, and PyVRP's solutions back to plans."""
+    """Translates a fleet to PyVRP's data, and PyVRP's solutions back to plans.
 
-    def __init__(self, fleet: Fleet) -> None:
+    Args:
+        fleet: The fleet.
+        loose: Whether times and lengths may exceed their bounds by what rounding adds. Solutions
+            then need not keep every rule.
+    """
+
+    def __init__(self, fleet: Fleet, loose: bool = False) -> None:
         self.fleet = fleet
+        # Each leg and each service may be rounded up by one.
+        self._slack = 2 * (fleet.rules.n + 1) if loose else 0
         self.roles = _Roles.of(fleet)
         rules = fleet.rules
         # A location for each stop, and one more that is anywhere: open routes start or end there.
@@ -76,10 +84,10 @@ class Translation:
     @cached_property
     def _matrices(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         distance, duration = self.roles.distance, self.roles.duration
-        distances = self._matrix(self.fleet.costs[distance], self.distance_scale)
+        distances = self._matrix(self.fleet.bounded_costs[distance], self.distance_scale)
         if duration is None:
             return distances, np.zeros_like(distances)
-        return distances, self._matrix(self.fleet.costs[duration], self.duration_scale)
+        return distances, self._matrix(self.fleet.bounded_costs[duration], self.duration_scale)
 
     def _matrix(self, costs: Array, scale: float) -> NDArray[np.int64]:
         padded = np.zeros((len(costs) + 1, len(costs) + 1), np.int64)
@@ -159,6 +167,14 @@ class Translation:
             found[each.delivery] = pyvrp.Activity(kinds.DELIVERY, index)
         return found
 
+    @cached_property
+    def is_rounded(self) -> bool:
+        """Whether a solution that keeps PyVRP's rules may break one of the fleet's."""
+        rules = self.fleet.rules
+        pairs = ((rules.visits[s.pickup], rules.visits[s.delivery]) for s in rules.shipments)
+        too_late = any(later.window[1] < earlier.window[0] for earlier, later in pairs)
+        return self._slack > 0 or self.fleet.forbids or too_late
+
     def _stop(self, activity: pyvrp.Activity) -> int:
         if activity.is_client():
             return self._singles[activity.idx]
@@ -185,7 +201,7 @@ class Translation:
                 each.pickup,
                 each.delivery,
                 *self._times(each.pickup),
-                *self._times(each.delivery),
+                *self._times_after(each.delivery, each.pickup),
                 self._load(self.fleet.rules.visits[each.pickup].demand),
                 self._extra(self.fleet.rules.visits[each.pickup].prize or 0.0, goal),
                 self.fleet.rules.visits[each.pickup].prize is None,
@@ -217,7 +233,7 @@ class Translation:
         scale = self.duration_scale if timed else self.limit_scale
         longest = UNBOUNDED
         if vehicle.longest < UNBOUNDED / scale:
-            longest = int(round_down(vehicle.longest * scale))
+            longest = int(round_down(vehicle.longest * scale)) + self._slack
         if timed and not self._limits_duration:
             return limit, longest
         limit = min(limit, longest)
@@ -243,13 +259,18 @@ class Translation:
         early = self._early(visit.window[0])
         return early, max(early, self._late(visit.window[1])), service
 
+    def _times_after(self, stop: int, earlier: int) -> tuple[int, int, int]:
+        """Return the same of a delivery: PyVRP refuses one that ends before its pick-up opens."""
+        early, late, service = self._times(stop)
+        return early, max(late, self._times(earlier)[0]), service
+
     def _early(self, time: float) -> int:
         return int(round_up(self._since_begin(time) * self.duration_scale))
 
     def _late(self, time: float) -> int:
         if time >= self._horizon.end:
             return UNBOUNDED
-        return int(round_down(self._since_begin(time) * self.duration_scale))
+        return int(round_down(self._since_begin(time) * self.duration_scale)) + self._slack
 
     def _since_begin(self, time: float) -> float:
         return max(0.0, time - self._horizon.begin)

@@ -10,17 +10,16 @@ from itertools import pairwise
 import numpy as np
 
 from service.fleet.archive import Point, SolutionArchive
+from service.fleet.scales import STEEPEST
 from service.fleet.solver import Step
 from service.fleet.translation import Goal, Translation
-
-_STEEPEST = 1000  # weight of one objective, with 1 of the other
 
 
 def weight_steps(
     translation: Translation, archive: SolutionArchive, iterations: int
 ) -> Iterator[Step]:
     """Yield searches under the weights of both ends of the front, and of all edges of its hull."""
-    for weights in ((_STEEPEST, 1), (1, _STEEPEST)):
+    for weights in ((STEEPEST, 1), (1, STEEPEST)):
         yield _weighted(archive, weights, translation, iterations)
     done: set[tuple[Point, Point]] = set()
     while True:
@@ -43,7 +42,7 @@ def _weighted(
     """Return a search under weights of both objectives, from the solution that is best there."""
     points = np.array(_in_units(archive.points, translation))
     start = archive.solutions[int((points @ np.array(weights)).argmin())]
-    first, second = (max(1, round(_STEEPEST * each / max(weights))) for each in weights)
+    first, second = (max(1, round(STEEPEST * each / max(weights))) for each in weights)
     whole = (first, second) if translation.roles.distance == 0 else (second, first)
     return Step(Goal(weights=whole), start, iterations)
 

@@ -4,6 +4,7 @@ The body is all there, so that boundaries are searched for at the speed of memor
 beside the contents is bounded: the boundary, the headers of a part and the number of parts.
 """
 
+import re
 from collections.abc import Collection, Iterator
 
 from python_multipart.multipart import parse_options_header
@@ -13,6 +14,9 @@ from service.requests.validation import shorten
 
 _LONGEST_BOUNDARY = 70  # bytes (RFC 2046)
 _LONGEST_HEADERS = 4096  # bytes of all headers of one part
+_LONGEST_FILENAME = 200  # characters
+_MOST_FILES = 8
+_NAMES = (b"name", b"filename")
 _PIECE = 2**20  # bytes that are searched at once, which takes ten milliseconds at most
 _BREAK = b"\r\n"
 
@@ -24,7 +28,7 @@ def split_parts(content_type: str, body: bytes, expected: Collection[str]) -> di
         Refusal: The body is malformed, or its parts are not those expected, once each.
     """
     contents: dict[str, bytes] = {}
-    for name, content in _parts(_delimiter(content_type), body):
+    for name, content, _ in _parts(_delimiter(content_type), body):
         if name not in expected or name in contents:
             among = " and ".join(expected)
             raise _invalid(f"the parts must be {among}, once each, got {shorten(name)!r}")
@@ -32,6 +36,27 @@ def split_parts(content_type: str, body: bytes, expected: Collection[str]) -> di
     if missing := [name for name in expected if name not in contents]:
         raise _invalid(f"the part {missing[0]} is required")
     return contents
+
+
+def split_files(content_type: str, body: bytes) -> list[tuple[str, bytes]]:
+    """Return the name and the content of each file of a multipart/form-data body, in order.
+
+    Each is a part `file` with a filename.
+
+    Raises:
+        Refusal: The body is malformed, of other parts, or of too many.
+    """
+    files: list[tuple[str, bytes]] = []
+    for name, content, filename in _parts(_delimiter(content_type), body):
+        if name != "file" or not filename:
+            came = shorten(name)
+            raise _invalid(f"each part must be named file and have a filename, got {came!r}")
+        if len(files) == _MOST_FILES:
+            raise _invalid(f"there must be at most {_MOST_FILES} parts, got more")
+        files.append((filename, content))
+    if not files:
+        raise _invalid("the part file is required")
+    return files
 
 
 def _delimiter(content_type: str) -> bytes:
@@ -43,8 +68,8 @@ def _delimiter(content_type: str) -> bytes:
     return b"--" + boundary
 
 
-def _parts(delimiter: bytes, body: bytes) -> Iterator[tuple[str, bytes]]:
-    """Yield the name and the content of each part, in order."""
+def _parts(delimiter: bytes, body: bytes) -> Iterator[tuple[str, bytes, str]]:
+    """Yield the name, the content and the filename of each part, in order."""
     at = body.startswith(_BREAK) * len(_BREAK)
     if not body.startswith(delimiter, at):
         raise _malformed("it must begin with its boundary")
@@ -56,10 +81,10 @@ def _parts(delimiter: bytes, body: bytes) -> Iterator[tuple[str, bytes]]:
         end = body.find(2 * _BREAK, begin, begin + _LONGEST_HEADERS)
         if end < 0:
             raise _malformed(f"a part must have headers of at most {_LONGEST_HEADERS} bytes")
-        name = _name(body[begin:end])
+        name, filename = _names(body[begin:end])
         content = end + 2 * len(_BREAK)
         next_one = _find(_BREAK + delimiter, body, content)
-        yield name, body[content:next_one]
+        yield name, body[content:next_one], filename
         at = next_one + len(_BREAK + delimiter)
 
 
@@ -72,14 +97,15 @@ def _find(delimiter: bytes, body: bytes, start: int) -> int:
     raise _malformed("it ends before its last boundary")
 
 
-def _name(headers: bytes) -> str:
-    """Return the name of a part with these headers."""
+def _names(headers: bytes) -> tuple[str, str]:
+    """Return the name of a part with these headers, and the filename without folders."""
     for line in headers.split(_BREAK):
         header, _, value = line.partition(b":")
         if header.strip().lower() == b"content-disposition":
             _, options = parse_options_header(value)
-            return options.get(b"name", b"").decode(errors="replace")
-    return ""
+            name, path = (options.get(key, b"").decode(errors="replace") for key in _NAMES)
+            return name, re.split(r"[\\/]", path)[-1][:_LONGEST_FILENAME]
+    return "", ""
 
 
 def _malformed(reason: str) -> Refusal:

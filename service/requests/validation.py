@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
-from pydantic_core import ErrorDetails, to_json
+from pydantic_core import ErrorDetails, from_json, to_json
 
 from service.errors import MOST_FAULTS, Fault, Refusal
 
@@ -29,6 +29,18 @@ def parse_json(model: type[Model], body: bytes) -> Model:
             reason = errors[0]["ctx"]["error"]
             raise Refusal("malformed-json", reason=reason) from None
         raise refusal_of(errors, schema=_schema_of(model)) from None
+
+
+def check_json(body: bytes) -> None:
+    """Raise a refusal where a body is not JSON, or is nested more deeply than parse_json takes.
+
+    Raises:
+        Refusal: It is not.
+    """
+    try:
+        from_json(body)
+    except ValueError as error:
+        raise Refusal("malformed-json", reason=str(error)) from None
 
 
 def refusal_of(

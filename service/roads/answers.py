@@ -4,10 +4,12 @@ An answer is bounded in bytes before it is parsed, so that parsing takes millise
 a thread would hold the interpreter's lock as long.
 """
 
+import re
 from typing import Annotated, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, Field, ValidationError
+from pydantic_core import ErrorDetails, to_json
 
 from service.roads.router import Array, Unintelligible
 
@@ -33,9 +35,31 @@ def read(model: type[_Model], content: bytes) -> _Model:
     try:
         return model.model_validate_json(content)
     except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False, include_context=False)[0]
-        where = "/".join(map(str, first["loc"]))[:80] or "it"
-        raise Unintelligible(f"{where}: {first['type']}") from None
+        raise Unintelligible(_sentence(error.errors(include_url=False)[0])) from None
+
+
+def _sentence(error: ErrorDetails) -> str:
+    """Return what an answer must be and what came, as far as that cannot be a place or a name."""
+    where = "/".join(map(str, error["loc"]))[:80] or "it"
+    if error["type"] == "json_invalid":
+        return f"it must be JSON: {error['ctx']['error']}"
+    if error["type"] == "missing":
+        return f"{where} is missing"
+    # Pydantic's own: Input should be a valid list, String should match pattern and so on.
+    demand = re.sub(r"^\w+ should ", "must ", error["msg"])
+    return f"{where} {demand}, got {_show(error['input'])}"
+
+
+def _show(value: object) -> str:
+    match value:
+        case dict():
+            return "an object"
+        case list():
+            return f"a list of {len(value)}"
+        case str():
+            return f"a text of {len(value)}"
+        case _:
+            return to_json(value, inf_nan_mode="constants").decode()[:40]
 
 
 def costs_of(seconds: Rows, metres: Rows, shape: tuple[int, int]) -> Array:

@@ -83,8 +83,9 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
     """Return the front that a search finds; it dominates or equals each of the given tours.
 
     No tour has a forbidden leg; where none without one was found, the front is empty.
-    Up to nine cities it is the exact front, by enumeration. Beyond, `converged` says that for
-    1,000 iterations per city no new tour was found: it is no proof that there is none.
+    Up to eleven cities, ten of an open route, `converged` says that the front is exact, by
+    enumeration. Beyond, it says that for 1,000 iterations per city no new tour was found: that does
+    not prove that there is none.
 
     Args:
         instance: The instance.

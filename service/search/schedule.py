@@ -57,7 +57,7 @@ LARGE_DESCENTS = 25  # of a large instance: weights descended to before others f
 BLOCK = 300  # iterations between two checks of the deadline, some milliseconds
 FULL_BLOCK = 1_000  # cities beyond which iterations take longer, and fewer are a block
 EXPLORE_EVERY = 10  # turns, of which one goes to what has lately gained less
-MAX_PROVED = 12  # cities, the invented one among them, up to which convergence is proved
+MAX_PROVED = 11  # cities, the invented one among them, up to which convergence is proved
 PATIENCE = 1_000  # iterations per city without a new tour, after which the search has converged
 
 

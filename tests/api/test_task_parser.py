@@ -150,3 +150,33 @@ def test_an_initial_tour_of_countless_faults_is_refused_at_the_first() -> None:
     body = b'{"coordinates":[[0,0,0,0]],"initial_tours":[[' + tour + b"]]}"
     refused = refusal(TaskSource("front", body), parser())
     assert refused.detail == "initial_tours/0/0 must be at least 0, got -1"
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        b'{"stops":' + 1000 * b'[{"a":' + b"1" + 1000 * b"}]" + b"}",
+        b'{"coordinates":' + 300_000 * b"[",
+        b'{"actor":"' + 200_000 * b'\\"' + b'","x":' + 1000 * b'{"x":',
+    ],
+    ids=["balanced", "arrays", "objects behind a text"],
+)
+@pytest.mark.parametrize("replanned", [False, True])
+def test_json_that_is_too_deep_is_refused_before_a_process_is_started(
+    body: bytes, replanned: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def start(*_: object, **__: object) -> None:
+        raise AssertionError("a process was asked for")
+
+    monkeypatch.setattr("service.api.task_parser.to_process.run_sync", start)
+    task_parser = TaskParser(replace(LARGE, cities=200_000), INFO)
+
+    async def parse() -> None:
+        if replanned:
+            task_parser.check_replan(body)
+        else:
+            await task_parser.parse(TaskSource("front", body))
+
+    with pytest.raises(Refusal, match="recursion limit") as refused:
+        asyncio.run(parse())
+    assert refused.value.code == "malformed-json"

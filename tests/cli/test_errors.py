@@ -5,9 +5,10 @@ from pathlib import Path
 import httpx
 import pytest
 import typer
-from paretour import Refused
+from paretour import Refused, UnexpectedAnswer
 
 from service.cli.errors import UnreadableFile, UsageError, exit_on_error
+from service.cli.output import end_of_search
 from tests.helpers.command import EXAMPLE, paretour
 
 
@@ -23,6 +24,7 @@ EXITS = [
     (refused(401), 3, "paretour: a sentence (a-code)\n"),
     (refused(429), 3, "paretour: a sentence (a-code)\n"),
     (refused(503), 3, "paretour: a sentence (a-code)\n"),
+    (UnexpectedAnswer("a sentence"), 3, "paretour: the service answers oddly: a sentence\n"),
     (httpx.ConnectError("refused"), 3, "paretour: the service does not answer: refused\n"),
 ]
 
@@ -40,6 +42,10 @@ def test_an_expected_error_is_a_sentence_and_an_exit_code(
 def test_a_fault_of_the_program_stays_an_exception() -> None:
     with pytest.raises(KeyError), exit_on_error():
         raise KeyError("city")
+
+
+def test_an_end_that_only_a_later_service_knows_is_told() -> None:
+    assert end_of_search("bore\x1bdom") == r"ended: 'bore\x1bdom'"
 
 
 def test_what_the_service_refuses_ends_with_2(url: str) -> None:

@@ -3,10 +3,13 @@
 import csv
 import io
 import json
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from service.cli.fleets.command import read_fleet
 from tests.helpers.command import paretour
 from tests.helpers.fleet_requests import fleet_request
 
@@ -37,10 +40,36 @@ def test_this_process_plans_a_fleet_as_a_table(file: Path, quick_actors: dict[st
     assert "hypervolume" in ended.stderr
 
 
+ORDERS = (
+    "id,lat,lon,demand,service\ndepot,60.17,24.94,0,0\na,60.18,24.95,3,60\nb,60.16,24.93,2,60\n"
+)
+
+
+def test_a_table_with_demands_is_planned_as_a_fleet_and_not_as_a_front(
+    tmp_path: Path, quick_actors: dict[str, str]
+) -> None:
+    orders = tmp_path / "orders.csv"
+    orders.write_text(ORDERS)
+    ended = paretour("fleet", orders, "--csv", "--time-limit", 0.1, **quick_actors)
+    assert ended.returncode == 0, ended.stderr
+    assert "depot a b depot" in ended.stdout or "depot b a depot" in ended.stdout
+    assert "'demand' (demand)" in ended.stderr
+    refused = paretour("front", orders)
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert "`paretour fleet` plans that" in refused.stderr
+
+
+def test_a_fleet_may_be_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(ORDERS.encode())))
+    request = read_fleet(Path("-"), {"size": 3}).request
+    assert [stop["id"] for stop in request["stops"]] == ["depot", "a", "b"]
+    assert (request["size"], request["vehicles"][0]["capacity"]) == (3, [5])
+
+
 def test_a_file_that_is_no_request_and_two_formats_are_refused(file: Path) -> None:
     both = paretour("fleet", file, "--json", "--csv")
     assert (both.returncode, both.stdout) == (2, "")
     file.write_text("[1]")
     ended = paretour("fleet", file)
     assert (ended.returncode, ended.stdout) == (2, "")
-    assert "must hold an object" in ended.stderr
+    assert "must be a list of rows, or of objects, got 1" in ended.stderr

@@ -111,5 +111,5 @@ def test_a_request_with_stops_is_a_plan(tmp_path: Path) -> None:
     request = {"stops": [{"id": "depot"}], "objectives": [{"name": "a"}, {"name": "b"}]}
     (tmp_path / "stops.json").write_text(json.dumps(request))
     plan, ids = plan_cities(tmp_path / "stops.json", options={"start": "depot"})
-    assert ids is None
-    assert json.loads(plan.json) == {**request, "start": "depot"}
+    assert ids == ("depot",)
+    assert json.loads(plan.json) == {**request, "start": 0}

@@ -50,6 +50,7 @@ for module in modules:
         runpy.run_module(module, run_name="__main__")
 """
 COMMAND_LINE = GUIDE / "use-the-command-line.md"
+FILES = GUIDE / "which-files-can-i-bring.md"
 FROM_PYTHON = GUIDE / "call-it-from-python.md"
 RUNNABLE = [
     page
@@ -92,6 +93,13 @@ def test_the_command_line_writes_a_table_and_a_picture(released: str, tmp_path: 
     assert any(line.startswith("depot order-") for line in printed)
     assert (tmp_path / "front.csv").read_text().startswith("angle,")
     assert (tmp_path / "front.png").exists()
+
+
+@needs_curl
+def test_files_become_what_their_page_says(released: str, tmp_path: Path) -> None:
+    [plans, *_, answer] = run_page(FILES, tmp_path, released)
+    assert "vehicles" in plans
+    assert json.loads(answer)["kind"] == "fleet"
 
 
 @needs_curl

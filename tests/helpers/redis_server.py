@@ -9,9 +9,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-import pytest
-
 from tests.helpers.ports import free_port
+from tests.helpers.required import give_up
 
 FORGETFUL = ("redis-server", "--save", "", "--appendonly", "no")
 LASTING = ("redis-server", "--save", "", "--appendonly", "yes")
@@ -50,7 +49,7 @@ class Redis:
 def redis_server(folder: Path, command: Sequence[str] = FORGETFUL) -> Iterator[Redis]:
     """Run redis-server with these options until the block ends; skip where it is not installed."""
     if shutil.which("redis-server") is None:
-        pytest.skip("redis-server is not installed")
+        give_up("redis-server is not installed")
     port = free_port()
     redis = Redis(port, folder, command)
     try:

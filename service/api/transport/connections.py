@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from service.api.transport.addresses import network_of, proxies_of
+from service.api.transport.turns import Turns
 
 _REFUSED_AT_ONCE = 32  # connections beyond the limits that are told so, at a time
 _LOG_EVERY = 1.0  # seconds between two lines about connections that make way
@@ -51,6 +52,9 @@ class Connections:
     One that is idle makes way for a new one when there are too many, in all or from its address:
     the one of these that has waited longest for a request. Where none is idle, the new one is
     refused.
+
+    Attributes:
+        turns: The turns in which these connections parse what came at once.
     """
 
     def __init__(self, limits: ConnectionLimits) -> None:
@@ -61,10 +65,10 @@ class Connections:
         self._idle: dict[OpenConnection, None] = {}  # the first has been idle longest
         self._refused: dict[OpenConnection, None] = {}
         self._next_line = 0.0
+        self.turns = Turns()
 
-    def admit(self, connection: OpenConnection, peer: str) -> bool:
-        """Take in a new connection of a peer, and return whether there is room for it."""
-        network = self.network_of_peer(peer)
+    def admit(self, connection: OpenConnection, network: str) -> bool:
+        """Take in a new connection of a network, and return whether there is room for it."""
         if self._has_place(network) and self._has_room():
             self._open[connection] = network
             self._held[network] += 1

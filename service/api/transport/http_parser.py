@@ -1,21 +1,50 @@
-"""A parser of HTTP/1.1 that refuses requests whose end is in doubt."""
+"""A parser of HTTP/1.1: refuses requests whose end is in doubt, and parses a little at a time."""
 
 from typing import Any
 
 import h11
+
+_EVENTS_AT_ONCE = 32  # chunks of a body, mostly: as many take a third of a millisecond
+_READ_AHEAD = 2**13  # bytes of requests behind the one that is not answered yet
 
 
 class StrictParser(h11.Connection):
     """A parser of requests that refuses two framings of one body, and keeps what it refused.
 
     A proxy that believes the other of the two would take the end of the body for a request.
+
+    Attributes:
+        error: What was refused.
+        method: The method of the latest request.
+        cut_off: Whether there is more to parse, which waits until begin_turn is called.
     """
 
     error: h11.RemoteProtocolError | None = None
     method = b""
+    cut_off = False
+    _left = _EVENTS_AT_ONCE
+    _paused = False
+
+    def begin_turn(self) -> None:
+        """Allow for as many events as may come at once."""
+        self._left = _EVENTS_AT_ONCE
+
+    @property
+    def has_more(self) -> bool:
+        """Whether bytes have come that are not parsed."""
+        return bool(self.trailing_data[0])
+
+    @property
+    def has_enough(self) -> bool:
+        """Whether no more should be read until what was read is parsed."""
+        return self.cut_off or (self._paused and len(self.trailing_data[0]) > _READ_AHEAD)
 
     def next_event(self) -> Any:
-        """Return the next event, as h11.Connection does."""
+        """Return the next event, as h11.Connection does; NEED_DATA where no more may come now."""
+        self.cut_off = not self._left
+        if self.cut_off:
+            return h11.NEED_DATA
+        self._left -= 1
         try:
             event = super().next_event()
             if isinstance(event, h11.Request):
@@ -24,6 +53,7 @@ class StrictParser(h11.Connection):
         except h11.RemoteProtocolError as error:
             self.error = error
             raise
+        self._paused = event is h11.PAUSED
         return event
 
 

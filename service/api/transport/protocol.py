@@ -1,6 +1,7 @@
 """The protocol of a connection: how long it may be silent or slow, and how it is closed."""
 
 import asyncio
+import socket
 import uuid
 from asyncio import TimerHandle, Transport
 from http import HTTPStatus
@@ -17,7 +18,9 @@ from service.errors import Refusal
 _LINGER_SECONDS = 10.0  # that the rest of a refused body is read and dropped
 _LINGER_BYTES = 2**26  # of that rest: four times the longest body
 _STALL_SECONDS = 30.0  # after which a client must have read some of its answer
-_LONG = 2**16  # bytes that are sent at once
+_READ_AT_ONCE = 2**16  # bytes
+_HALF_CLOSED_SECONDS = 0.1  # between two looks at whether a client that sends no more still reads
+_EVERY_ANSWER = b"HTTP/1.1 "
 _NO_MORE_BODY = (h11.IDLE, h11.DONE, h11.MUST_CLOSE, h11.CLOSED)
 
 
@@ -27,6 +30,13 @@ class Connection(H11Protocol):
     A refusal may be sent before the body is read. To close the connection then would be to reset
     it, and the client would lose the answer: the rest of the body is read and dropped first, up to
     a limit of bytes and seconds.
+
+    A client may send many requests, or many chunks of a body, at once. They are parsed a little in
+    each turn of the event loop, and no more of them is read meanwhile.
+
+    A client that has ended its side of the connection may still read: it is answered. Whether it
+    has gone altogether, its machine says only where something is sent. Every answer begins with
+    `HTTP/1.1 `: letters of that are sent ahead, one at a time.
     """
 
     def __init__(self, connections: Connections, **arguments: Any) -> None:
@@ -38,16 +48,22 @@ class Connection(H11Protocol):
         self._head_timer: TimerHandle | None = None
         self._linger_timer: TimerHandle | None = None
         self._stall_timer: TimerHandle | None = None
+        self._half_closed_timer: TimerHandle | None = None
         self._dropped = 0
+        self._network = ""
+        self._waits_for_turn = False
+        self.half_closed = False
         self.lingering = False
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         """Begin to wait for a request, or refuse the connection where there are too many."""
         self._socket = transport
+        transport.max_size = _READ_AT_ONCE  # type: ignore[attr-defined]  # asyncio's is 256 KiB
         self._output = _Output(transport, self)
         super().connection_made(cast(Transport, self._output))
         peer = self.client[0] if self.client else ""
-        if self._connections.admit(self, peer):
+        self._network = self._connections.network_of_peer(peer)
+        if self._connections.admit(self, self._network):
             self._note_idle()
         else:
             self._send_problem(Refusal("too-many-connections"))
@@ -56,7 +72,8 @@ class Connection(H11Protocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """Forget the connection."""
         self._connections.remove(self)
-        for timer in (self._head_timer, self._linger_timer, self._stall_timer):
+        timers = (self._head_timer, self._linger_timer, self._stall_timer, self._half_closed_timer)
+        for timer in timers:
             if timer is not None:
                 timer.cancel()
         self._unset_keepalive_if_required()
@@ -72,10 +89,34 @@ class Connection(H11Protocol):
             super().data_received(data)
             self._note_idle()
 
+    def eof_received(self) -> bool:  # type: ignore[override]
+        """Keep the connection for a client that sends no more, but waits for an answer."""
+        if self.lingering or not self._owes_answer:
+            return False
+        if not self.half_closed:
+            self.half_closed = True
+            self._half_closed_timer = self.loop.call_later(
+                _HALF_CLOSED_SECONDS, self._check_half_closed
+            )
+        return True
+
+    def handle_events(self) -> None:
+        """Parse a little of what came; at once, or where more waits, at the turn of its network."""
+        if self._waits_for_turn:
+            return
+        self.conn.begin_turn()
+        super().handle_events()
+        if self.conn.cut_off:
+            self._wait_for_turn()
+        self._output.update_reading()
+
     def on_response_complete(self) -> None:
-        """Begin to wait for the next request."""
+        """Begin to wait for the next request; one that has come already waits for its turn."""
+        if self.conn.has_more:
+            self._wait_for_turn()
         super().on_response_complete()
         self._note_idle()
+        self._close_if_answered()
 
     def send_400_response(self, msg: str) -> None:
         """Refuse a request that is not HTTP."""
@@ -105,7 +146,6 @@ class Connection(H11Protocol):
         """Close the connection, in peace where the client is still sending."""
         if self.lingering or self._socket.is_closing():
             return
-        self._output.flush()
         if self.conn.their_state in _NO_MORE_BODY:
             self._socket.close()
             self._expect_reading()
@@ -116,6 +156,43 @@ class Connection(H11Protocol):
         """Close the connection at once, whatever is under way."""
         self._connections.remove(self)
         self._socket.abort()
+
+    @property
+    def _owes_answer(self) -> bool:
+        """Whether a request has come as a whole that is not answered, or may be among what came."""
+        answering = self.cycle is not None and not self.cycle.response_complete
+        return self._waits_for_turn or (answering and not self.cycle.more_body)
+
+    def _wait_for_turn(self) -> None:
+        if not self._waits_for_turn:
+            self._waits_for_turn = True
+            self._connections.turns.wait(self._network, self._take_turn)
+
+    def _take_turn(self) -> None:
+        self._waits_for_turn = False
+        if not self.lingering and not self._socket.is_closing():
+            self.handle_events()
+            self._note_idle()
+            self._close_if_answered()
+
+    def _close_if_answered(self) -> None:
+        """Close the connection of a client that sends no more, once it has all its answers."""
+        if self.half_closed and not self._owes_answer:
+            self._socket.close()
+
+    def _check_half_closed(self, count: int = 1) -> None:
+        """Close the connection where the client has gone, as far as its machine has said so.
+
+        A letter is sent ahead at the 1st, 2nd, 4th, 8th check and so on: nine last for 26 seconds.
+        """
+        if self._socket.get_extra_info("socket").getsockopt(socket.SOL_SOCKET, socket.SO_ERROR):
+            self.abort()
+            return
+        if count.bit_count() == 1 and not self.cycle.response_started:
+            self._output.send_ahead()
+        self._half_closed_timer = self.loop.call_later(
+            _HALF_CLOSED_SECONDS, self._check_half_closed, count + 1
+        )
 
     @property
     def _rest_follows(self) -> bool:
@@ -170,7 +247,6 @@ class Connection(H11Protocol):
         """Send no more, and drop what comes until the client has read its answer and closes."""
         if self.lingering or self._socket.is_closing():
             return
-        self._output.flush()
         self.lingering = True
         self._unset_keepalive_if_required()
         try:
@@ -197,35 +273,44 @@ class Connection(H11Protocol):
 
 
 class _Output:
-    """The transport of a connection, which the connection closes in its own way.
-
-    What is written in one turn of the event loop is sent at its end, an answer's head with its
-    body: to send takes longer than all else that is done with them. Long parts are sent at once.
-    """
+    """The transport of a connection, which the connection closes and reads in its own way."""
 
     def __init__(self, transport: asyncio.Transport, connection: Connection) -> None:
         self._transport = transport
         self._connection = connection
-        self._unsent: list[bytes] = []
+        self._reading = True
+        self._ahead = 0  # bytes of the next answer that are sent
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._transport, name)
 
-    def write(self, data: bytes) -> None:
-        """Send some bytes soon."""
-        if not data:
-            return
-        if not self._unsent:
-            self._connection.loop.call_soon(self.flush)
-        self._unsent.append(data)
-        if len(data) > _LONG:
-            self.flush()
+    def pause_reading(self) -> None:
+        """Read no more for now."""
+        self._reading = False
+        self.update_reading()
 
-    def flush(self) -> None:
-        """Send what was written."""
-        unsent, self._unsent = self._unsent, []
-        if unsent and not self._transport.is_closing():
-            self._transport.write(b"".join(unsent))
+    def resume_reading(self) -> None:
+        """Read on, once what was read is parsed."""
+        self._reading = True
+        self.update_reading()
+
+    def update_reading(self) -> None:
+        """Read, or do not, as was asked last and as much as the parser holds."""
+        if not self._reading or self._connection.conn.has_enough:
+            self._transport.pause_reading()
+        elif not self._connection.half_closed:
+            self._transport.resume_reading()
+
+    def write(self, data: bytes) -> None:
+        """Send some bytes of an answer, but for those that were sent ahead."""
+        if data:
+            self._transport.write(data[self._ahead :])
+            self._ahead = 0
+
+    def send_ahead(self) -> None:
+        """Send a letter of what every answer begins with, while there is one."""
+        self._transport.write(_EVERY_ANSWER[self._ahead : self._ahead + 1])
+        self._ahead = min(self._ahead + 1, len(_EVERY_ANSWER))
 
     def is_closing(self) -> bool:
         """Return whether nothing more can be sent."""

@@ -4,16 +4,16 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, cast
 
-from typer import Argument, Option, echo
+from typer import Option, echo
 
-from service.cli.options import ApiKey, AsJson, Seed, TimeLimit, Url
+from service.cli.options import ApiKey, AsJson, FleetFile, Seed, TimeLimit, Url
 
 if TYPE_CHECKING:
     from paretour import Plan
 
 
 def fleet(  # noqa: PLR0913  an option each
-    file: Annotated[Path, Argument(help="A request in JSON, as for POST /fleet.")],
+    file: FleetFile,
     time_limit: TimeLimit = None,
     size: Annotated[int | None, Option(help="The most plans to give.", show_default="100")] = None,
     seed: Seed = None,
@@ -46,21 +46,17 @@ def fleet(  # noqa: PLR0913  an option each
 
 
 def read_fleet(file: Path, options: dict[str, Any]) -> "Plan":
-    """Return the plan in a file of JSON, with options that were given in place of its members.
+    """Return the plan in a file, with options that were given in place of its members.
 
     Raises:
-        UnreadableFile: It is no JSON object.
+        UnreadableFile: It cannot be read.
+        UsageError: It is of another command.
         OSError: There is no such file.
     """
     from paretour import FleetRequest, fleet_plan
 
-    from service.cli.errors import UnreadableFile
+    from service.cli.inputs import read_request
 
-    try:
-        request = json.loads(file.read_text())
-    except (ValueError, RecursionError) as error:
-        raise UnreadableFile(f"{file} must be JSON: {error}") from None
-    if not isinstance(request, dict):
-        raise UnreadableFile(f"{file} must hold an object, as a request is")
+    request, _ = read_request([file], "fleet")
     given = {name: value for name, value in options.items() if value is not None}
     return fleet_plan(cast(FleetRequest, {**request, **given}))

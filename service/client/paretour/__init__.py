@@ -13,6 +13,7 @@ events of `events`; neither needs anything of the service but its address.
 from paretour.asynchronous import AsyncClient, AsyncJob
 from paretour.choice import Choice
 from paretour.errors import Refused
+from paretour.expect import UnexpectedAnswer
 from paretour.fleets import FleetFront, FleetPlan, FleetRoute
 from paretour.members import (
     CoverageRequest,
@@ -69,6 +70,7 @@ __all__ = [
     "Tour",
     "Uncovered",
     "UncoveredRegion",
+    "UnexpectedAnswer",
     "coverage_plan",
     "fleet_plan",
     "front_plan",

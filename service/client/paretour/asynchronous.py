@@ -5,7 +5,8 @@ from collections.abc import AsyncIterator
 from typing import Any, Generic, Self, TypeVar, Unpack
 
 import httpx
-from paretour.calls import AnyFront, Call, Calls, Geometry, Parse, auth_headers
+from paretour.bodies import MOST_BYTES, Body
+from paretour.calls import AnyFront, Call, Calls, Geometry, Parse, client_headers
 from paretour.choice import Choice
 from paretour.events import JobEvents
 from paretour.fleets import FleetFront, parse_fleet
@@ -30,6 +31,7 @@ class AsyncClient:
 
     Raises:
         Refused: By any call, where the service answers with a refusal.
+        UnexpectedAnswer: By any call, where an answer is not as the service gives it.
         httpx.TransportError: By any call, where there is no answer.
     """
 
@@ -40,10 +42,11 @@ class AsyncClient:
         api_key: str | None = None,
         timeout: float = 30.0,
         patience: float = 60.0,
+        most_bytes: int = MOST_BYTES,
         transport: httpx.AsyncBaseTransport | None = None,
     ) -> None:
-        http = httpx.AsyncClient(base_url=url, headers=auth_headers(api_key), transport=transport)
-        self._connection = _Connection(http)
+        http = httpx.AsyncClient(base_url=url, headers=client_headers(api_key), transport=transport)
+        self._connection = _Connection(http, most_bytes)
         self._calls = Calls(timeout=timeout, patience=patience)
 
     async def front(self, **request: Unpack[FrontRequest]) -> Front:
@@ -213,15 +216,17 @@ class AsyncJob(Generic[AnyFront]):
 class _Connection:
     """An httpx.AsyncClient that runs calls and follows jobs."""
 
-    def __init__(self, http: httpx.AsyncClient) -> None:
+    def __init__(self, http: httpx.AsyncClient, most_bytes: int) -> None:
         self._http = http
+        self._most_bytes = most_bytes
         self.close = http.aclose
 
     async def run(self, call: Call[T]) -> T:
         request = next(call)
         while True:
             await asyncio.sleep(request.delay)
-            response = await self._http.request(**request.arguments)
+            async with self._http.stream(**request.arguments) as streamed:
+                response = await self._read(streamed, request.timeout)
             try:
                 request = call.send(response)
             except StopIteration as finished:
@@ -232,14 +237,28 @@ class _Connection:
             await asyncio.sleep(events.delay)
             try:
                 async with self._http.stream(**events.arguments) as response:
-                    if response.is_error:
-                        await response.aread()
-                        events.retry_refusal(response)
+                    if not response.is_success:
+                        events.retry_refusal(await self._read(response, events.timeout))
                         continue
                     events.begin(response)
-                    async for chunk in response.aiter_bytes():
+                    async for chunk in _chunks(response):
                         for progress in events.read(chunk):
                             yield progress
                 events.finish()
             except httpx.TransportError as error:
                 events.retry_error(error)
+
+    async def _read(self, response: httpx.Response, seconds: float) -> httpx.Response:
+        body = Body(response, self._most_bytes, seconds)
+        async for chunk in _chunks(response):
+            body.feed(chunk)
+        return body.response()
+
+
+async def _chunks(response: httpx.Response) -> AsyncIterator[bytes]:
+    """Yield the body as it comes, or the content of one that was consumed already."""
+    if response.is_stream_consumed:
+        yield response.content
+    else:
+        async for chunk in response.aiter_raw():
+            yield chunk

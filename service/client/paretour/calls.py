@@ -9,11 +9,13 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeVar
 
 import httpx
+from paretour.bodies import ACCEPTED
 from paretour.choice import Choice, parameters
 from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
+from paretour.expect import Members, UnexpectedAnswer, each, members, parse_json, text, unexpected
 from paretour.fleets import FleetFront, parse_fleet
-from paretour.requests import Plan
+from paretour.requests import Plan, front_path
 from paretour.robots import RobotFront, parse_robots
 from paretour.values import FINAL_STATUSES, Actor, Front, Tour, parse_actor, parse_front, parse_tour
 
@@ -60,24 +62,30 @@ class Calls:
 
     def plan(self, plan: Plan) -> Call[Front]:
         """Plan a front and wait for it."""
-        return parse_front((yield from self._post(plan, self.timeout + plan.seconds)).json())
+        return parse_front(
+            _answer((yield from self._post(plan, self.timeout + plan.seconds))).document
+        )
 
     def plan_fleet(self, plan: Plan) -> Call[FleetFront]:
         """Plan a front of plans for a fleet and wait for it."""
-        return parse_fleet((yield from self._post(plan, self.timeout + plan.seconds)).json())
+        return parse_fleet(
+            _answer((yield from self._post(plan, self.timeout + plan.seconds))).document
+        )
 
     def plan_robots(self, plan: Plan) -> Call[RobotFront]:
         """Plan a front of plans for several robots and wait for it."""
-        return parse_robots((yield from self._post(plan, self.timeout + plan.seconds)).json())
+        return parse_robots(
+            _answer((yield from self._post(plan, self.timeout + plan.seconds))).document
+        )
 
     def submit(self, plan: Plan) -> Call[str]:
         """Submit a job that plans a front; return the front's id."""
         response = yield from self._post(plan, self.timeout, Prefer="respond-async")
-        return response.json()["id"]
+        return _answer(response).read("id", text)
 
     def stored(self, front_id: str, parse: Parse[AnyFront]) -> Call[AnyFront]:
         """Return a front as it is now, parsed so."""
-        return parse((yield from self._get(_path(front_id))).json())
+        return parse(_answer((yield from self._get(front_path(front_id)))).document)
 
     def result(self, front_id: str, parse: Parse[AnyFront]) -> Call[AnyFront]:
         """Return the front of a job that has ended, parsed so.
@@ -85,10 +93,10 @@ class Calls:
         Raises:
             Refused: The job failed.
         """
-        response = yield from self._get(_path(front_id))
-        if response.json()["status"] == "failed":
-            raise Refused(response.json()["problem"])
-        return parse(response.json())
+        answer = _answer((yield from self._get(front_path(front_id))))
+        if answer.read("status", text) == "failed":
+            raise Refused(answer.read("problem", members).document)
+        return parse(answer.document)
 
     def cancel(self, front_id: str, parse: Parse[AnyFront]) -> Call[AnyFront]:
         """Cancel a job; return its front, as the job ended, parsed so."""
@@ -98,7 +106,7 @@ class Calls:
         response = yield from self._send(self._delete(front_id))
         if response.status_code == httpx.codes.NO_CONTENT:  # it ended meanwhile
             return front
-        return parse(response.json())
+        return parse(_answer(response).document)
 
     def forget(self, front_id: str) -> Call[None]:
         """Delete the front of a job that has ended."""
@@ -107,19 +115,20 @@ class Calls:
     def tour(self, angle: float | None, front_id: str | None, choice: Choice) -> Call[Tour]:
         """Return a tour at an angle in degrees, or of another choice."""
         params = parameters(angle, choice) | ({} if front_id is None else {"front": front_id})
-        return parse_tour((yield from self._get("/tour", params)).json())
+        return parse_tour(_answer((yield from self._get("/tour", params))).document)
 
     def geojson(self, front_id: str, geometry: Geometry, plan: int | None) -> Call[dict[str, Any]]:
         """Return a front, or one plan of it, as GeoJSON."""
         headers = {"Accept": "application/geo+json"}
         query = {"geometry": geometry} if plan is None else {"geometry": geometry, "plan": plan}
-        response = yield from self._get(_path(front_id), query, headers)
-        return response.json()
+        answer = _answer((yield from self._get(front_path(front_id), query, headers)))
+        if (kind := answer.read("type", text)) != "FeatureCollection":
+            raise unexpected("answer/type", "FeatureCollection", kind)
+        return dict(answer.document)
 
     def actors(self) -> Call[tuple[Actor, ...]]:
         """Return the actors that the service has loaded."""
-        response = yield from self._get("/actors")
-        return tuple(map(parse_actor, response.json()["actors"]))
+        return _answer((yield from self._get("/actors"))).read("actors", each(parse_actor))
 
     def events(self, front_id: str) -> JobEvents:
         """Return the events of a job, none of them read yet."""
@@ -152,7 +161,7 @@ class Calls:
         return (yield from self._send(request))
 
     def _delete(self, front_id: str) -> HttpRequest:
-        path = _path(front_id)
+        path = front_path(front_id)
         return HttpRequest(method="DELETE", path=path, content={}, timeout=self.timeout)
 
     def _post(self, plan: Plan, timeout: float, **headers: str) -> Call[httpx.Response]:
@@ -162,10 +171,19 @@ class Calls:
         return (yield from self._send(request))
 
 
-def auth_headers(api_key: str | None) -> dict[str, str]:
-    """Return the headers that carry an API key."""
-    return {} if api_key is None else {"Authorization": f"Bearer {api_key}"}
+def client_headers(api_key: str | None) -> dict[str, str]:
+    """Return the headers of every request: the encoding that is read, and the API key if any."""
+    return ACCEPTED if api_key is None else {**ACCEPTED, "Authorization": f"Bearer {api_key}"}
 
 
-def _path(front_id: str) -> str:
-    return f"/front/{front_id}"
+def _answer(response: httpx.Response) -> Members:
+    """Return the members of the JSON object that a response holds.
+
+    Raises:
+        UnexpectedAnswer: It holds none.
+    """
+    content_type = response.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if content_type and not content_type.endswith("json"):
+        start = f"{content_type!r:.80} with {response.content[:60]!r}"
+        raise UnexpectedAnswer(f"answer must be JSON, got {start}")
+    return parse_json(response.content, "answer")

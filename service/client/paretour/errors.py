@@ -1,14 +1,17 @@
 """The exception for a refusal of the service, and the seconds to wait before a retry."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 from typing import Any
 
 import httpx
+from paretour.expect import UnexpectedAnswer, count, each, members, number, parse_json, text
 
 RETRY_STATUSES = (429, 503)
 _LEAST_SECONDS = 0.1  # between two tries, even where Retry-After is 0
+_MOST_SECONDS = 86400.0
 _DEFAULT_SECONDS = 1.0
 
 
@@ -27,35 +30,43 @@ class Refused(Exception):
     """
 
     def __init__(self, document: Mapping[str, Any]) -> None:
-        super().__init__(document["detail"])
-        self.status: int = document["status"]
-        self.code: str = document["code"]
-        self.detail: str = document["detail"]
-        self.request_id: str | None = document.get("request_id")
-        self.errors: tuple[Mapping[str, str], ...] = tuple(document.get("errors", ()))
-        self.limit: float | None = document.get("limit")
-        self.actual: float | None = document.get("actual")
+        problem = members(document, "problem")
+        self.detail: str = problem.read("detail", text)
+        super().__init__(self.detail)
+        self.status: int = problem.read("status", count)
+        self.code: str = problem.read("code", text)
+        self.request_id: str | None = problem.maybe("request_id", text)
+        faults = problem.maybe("errors", each(members)) or ()
+        self.errors: tuple[Mapping[str, str], ...] = tuple(fault.document for fault in faults)
+        self.limit: float | None = problem.maybe("limit", number)
+        self.actual: float | None = problem.maybe("actual", number)
 
     def __str__(self) -> str:
         return f"{self.detail} ({self.code})"
 
 
 def refused(response: httpx.Response) -> Refused:
-    """Return the exception for an error response that has been read."""
+    """Return the exception for a response that is no success, and has been read."""
     content_type = response.headers.get("content-type", "").partition(";")[0]
     if content_type == "application/problem+json":
-        return Refused(response.json())
+        with suppress(UnexpectedAnswer):
+            return Refused(parse_json(response.content, "problem").document)
     detail = f"{response.url} answered {response.status_code} {response.reason_phrase}"
+    if response.has_redirect_location:
+        detail += f", to {response.headers['location']}"
     return Refused({"status": response.status_code, "code": "unknown", "detail": detail})
 
 
 def retry_after(response: httpx.Response) -> float:
-    """Return the seconds that Retry-After asks for, as a number or as a date."""
+    """Return the seconds that Retry-After asks for, as a number or as a date, at most a day."""
     header = response.headers.get("retry-after", str(int(_DEFAULT_SECONDS)))
     if header.strip().isdecimal():
-        return max(float(header), _LEAST_SECONDS)
-    try:
-        date = parsedate_to_datetime(header)
-    except ValueError:
-        return _DEFAULT_SECONDS
-    return max((date - datetime.now(UTC)).total_seconds(), _LEAST_SECONDS)
+        seconds = float(header)
+    else:
+        try:
+            date = parsedate_to_datetime(header)
+        except (ValueError, TypeError, IndexError, OverflowError):
+            return _DEFAULT_SECONDS
+        known = date if date.tzinfo else date.replace(tzinfo=UTC)
+        seconds = (known - datetime.now(UTC)).total_seconds()
+    return min(max(seconds, _LEAST_SECONDS), _MOST_SECONDS)

@@ -1,10 +1,12 @@
 """Follow a job's progress over as many connections as it takes."""
 
-import json
 from typing import Any
 
 import httpx
+from paretour.bodies import Decoder
 from paretour.errors import RETRY_STATUSES, refused, retry_after
+from paretour.expect import parse_json, text
+from paretour.requests import front_path
 from paretour.server_sent_events import EventParser, ServerSentEvent
 from paretour.values import FINAL_STATUSES, Progress
 
@@ -23,7 +25,7 @@ class JobEvents:
         self.ended = False
         self.delay = 0.0  # seconds before the next connection
         self._front_id = front_id
-        self._timeout = timeout
+        self.timeout = timeout
         self._patience = patience
         self._waited = 0.0
         self._parser = EventParser()
@@ -33,33 +35,45 @@ class JobEvents:
         """The keyword arguments of httpx.Client.stream for a connection."""
         return {
             "method": "GET",
-            "url": f"/front/{self._front_id}/events",
-            "headers": {"Accept": "text/event-stream", "Cache-Control": "no-store"},
-            "timeout": httpx.Timeout(self._timeout, read=self._timeout + HEARTBEAT_SECONDS),
+            "url": f"{front_path(self._front_id)}/events",
+            "headers": {
+                "Accept": "text/event-stream",
+                "Accept-Encoding": "identity",
+                "Cache-Control": "no-store",
+            },
+            "timeout": httpx.Timeout(self.timeout, read=self.timeout + HEARTBEAT_SECONDS),
         }
 
     def begin(self, response: httpx.Response) -> None:
-        """Begin to read a response that is no error.
+        """Begin to read a response that is a success.
 
         Raises:
             httpx.RemoteProtocolError: It is no stream of events.
+            UnexpectedAnswer: It has an encoding that was not accepted.
         """
         self._parser = EventParser()
+        self._decoder = Decoder(response)
         content_type = response.headers.get("content-type", "")
         if "text/event-stream" not in content_type.partition(";")[0]:
             demand = "Content-Type must be text/event-stream"
             raise httpx.RemoteProtocolError(f"{demand}, got {content_type!r}")
 
     def read(self, chunk: bytes) -> list[Progress]:
-        """Return the progress that a chunk of the stream reports."""
-        events = self._parser.feed(chunk)
+        """Return the progress that a chunk of the stream reports.
+
+        Raises:
+            UnexpectedAnswer: An event is wrong, or too long.
+        """
+        events = [
+            event for piece in self._decoder.decoded(chunk) for event in self._parser.feed(piece)
+        ]
         return [progress for event in events if (progress := self._read(event)) is not None]
 
     def _read(self, event: ServerSentEvent) -> Progress | None:
         self._waited = 0.0
         if event.type == "status":
-            self.ended = json.loads(event.data)["status"] in FINAL_STATUSES
-        return Progress(**json.loads(event.data)) if event.type == "progress" else None
+            self.ended = parse_json(event.data, "status").read("status", text) in FINAL_STATUSES
+        return Progress.of(parse_json(event.data, "progress")) if event.type == "progress" else None
 
     def finish(self) -> None:
         """Check that a stream which is over did not end before the job.

@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
-from paretour.values import Array, Objective, Status, objectives_of, read_only_floats
+from paretour.expect import count, each, floats, members, number, text
+from paretour.values import PAIR, Array, Objective, lengths_of, objectives_of
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -53,54 +54,62 @@ class FleetFront:
         lengths: Their lengths, shape (m, 2).
         points: The number of nondominated plans found, of which these are returned.
         hypervolume: The share of the box at the reference point that the plans dominate.
-        reference_point: The reference point of the hypervolume, shape (2,).
+        reference_point: The reference point of the hypervolume, shape (2,); None while it is not
+            known.
         objectives: Both objectives, as the request named them.
         terminated: Why the search ended; None while it runs.
         document: The answer as it came, with every member.
     """
 
     id: str
-    status: Status
+    status: str
     plans: tuple[FleetPlan, ...]
     lengths: Array
     points: int
     hypervolume: float
-    reference_point: Array
+    reference_point: Array | None
     objectives: tuple[Objective, ...]
-    terminated: Literal["converged", "time_limit", "cancelled"] | None
+    terminated: str | None
     document: Mapping[str, Any]
 
 
 def parse_fleet(document: Mapping[str, Any]) -> FleetFront:
-    """Return the front of plans in a JSON answer."""
-    items = document["front"]
+    """Return the front of plans in a JSON answer.
+
+    Raises:
+        UnexpectedAnswer: A member is missing or wrong.
+    """
+    answer = members(document, "answer")
     return FleetFront(
-        id=document["id"],
-        status=document["status"],
-        plans=tuple(_parse_plan(item) for item in items),
-        lengths=read_only_floats([item["lengths"] for item in items]).reshape(-1, 2),
-        points=document["points"],
-        hypervolume=document["hypervolume"],
-        reference_point=read_only_floats(document["reference_point"]),
-        objectives=objectives_of(document) or (),
-        terminated=document["terminated"],
+        id=answer.read("id", text),
+        status=answer.read("status", text),
+        plans=answer.read("front", each(_parse_plan)),
+        lengths=lengths_of(answer.read("front", each(members))),
+        points=answer.read("points", count),
+        hypervolume=answer.read("hypervolume", number),
+        reference_point=answer.maybe("reference_point", floats(PAIR)),
+        objectives=objectives_of(answer) or (),
+        terminated=answer.maybe("terminated", text),
         document=document,
     )
 
 
-def _parse_plan(item: Mapping[str, Any]) -> FleetPlan:
+def _parse_plan(value: Any, where: str) -> FleetPlan:
+    plan = members(value, where)
     return FleetPlan(
-        balance=item["balance"],
-        lengths=read_only_floats(item["lengths"]),
-        routes=tuple(_parse_route(route) for route in item["routes"]),
-        unassigned=tuple(item["unassigned"]),
+        balance=plan.read("balance", number),
+        lengths=plan.read("lengths", floats(PAIR)),
+        routes=plan.read("routes", each(_parse_route)),
+        unassigned=plan.read("unassigned", each(text)),
     )
 
 
-def _parse_route(route: Mapping[str, Any]) -> FleetRoute:
+def _parse_route(value: Any, where: str) -> FleetRoute:
+    route = members(value, where)
+    stops = route.read("stops", each(text))
     return FleetRoute(
-        vehicle=route["vehicle"],
-        stops=tuple(route["stops"]),
-        lengths=read_only_floats(route["lengths"]),
-        arrivals=read_only_floats(route["arrivals"]) if "arrivals" in route else None,
+        vehicle=route.read("vehicle", text),
+        stops=stops,
+        lengths=route.read("lengths", floats(PAIR)),
+        arrivals=route.maybe("arrivals", floats(len(stops))),
     )

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,7 +106,13 @@ def coverage_plan(request: CoverageRequest | RobotsRequest, png: bytes | None) -
 
 def replan_plan(front: Front | str, request: ReplanRequest) -> Plan:
     """Return the request to replan a front, or the one with this id."""
-    return Plan(f"/front/{front.id if isinstance(front, Front) else front}/replan", request)
+    path = front_path(front.id if isinstance(front, Front) else front)
+    return Plan(f"{path}/replan", request)
+
+
+def front_path(front_id: str) -> str:
+    """Return the path of a front, whatever its id holds."""
+    return f"/front/{quote(front_id, safe='')}"
 
 
 def fleet_plan(request: FleetRequest) -> Plan:

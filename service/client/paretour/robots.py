@@ -2,21 +2,22 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.expect import count, each, floats, indexes, members, number, text
 from paretour.values import (
+    PAIR,
     Array,
     Objective,
     Path,
-    Status,
     Uncovered,
+    lengths_of,
     objectives_of,
     parse_path,
     parse_uncovered,
-    read_only_floats,
-    read_only_integers,
 )
 
 
@@ -71,48 +72,55 @@ class RobotFront:
     """
 
     id: str
-    status: Status
+    status: str
     plans: tuple[RobotPlan, ...]
     lengths: Array
     places: NDArray[np.int64]
     points: int
     hypervolume: float
     objectives: tuple[Objective, ...]
-    terminated: Literal["converged", "time_limit", "cancelled"] | None
+    terminated: str | None
     document: Mapping[str, Any]
     uncovered: Uncovered | None = None
 
 
 def parse_robots(document: Mapping[str, Any]) -> RobotFront:
-    """Return the front of plans for robots in a JSON answer."""
-    items = document["front"]
+    """Return the front of plans for robots in a JSON answer.
+
+    Raises:
+        UnexpectedAnswer: A member is missing or wrong.
+    """
+    answer = members(document, "answer")
+    places = indexes(None, PAIR)(answer.document.get("places") or [], "answer/places")
     return RobotFront(
-        id=document["id"],
-        status=document["status"],
-        plans=tuple(_parse_plan(item) for item in items),
-        lengths=read_only_floats([item["lengths"] for item in items]).reshape(-1, 2),
-        places=read_only_integers(document["places"]).reshape(-1, 2),
-        points=document["points"],
-        hypervolume=document["hypervolume"],
-        objectives=objectives_of(document) or (),
-        terminated=document["terminated"],
+        id=answer.read("id", text),
+        status=answer.read("status", text),
+        plans=answer.read("front", each(partial(_parse_plan, places=len(places)))),
+        lengths=lengths_of(answer.read("front", each(members))),
+        places=places,
+        points=answer.read("points", count),
+        hypervolume=answer.read("hypervolume", number),
+        objectives=objectives_of(answer) or (),
+        terminated=answer.maybe("terminated", text),
         document=document,
-        uncovered=parse_uncovered(document),
+        uncovered=answer.maybe("uncovered", parse_uncovered),
     )
 
 
-def _parse_plan(item: Mapping[str, Any]) -> RobotPlan:
+def _parse_plan(value: Any, where: str, places: int) -> RobotPlan:
+    plan = members(value, where)
     return RobotPlan(
-        balance=item["balance"],
-        lengths=read_only_floats(item["lengths"]),
-        routes=tuple(_parse_route(route) for route in item["routes"]),
+        balance=plan.read("balance", number),
+        lengths=plan.read("lengths", floats(PAIR)),
+        routes=plan.read("routes", each(partial(_parse_route, places=places))),
     )
 
 
-def _parse_route(route: Mapping[str, Any]) -> RobotRoute:
+def _parse_route(value: Any, where: str, places: int) -> RobotRoute:
+    route = members(value, where)
     return RobotRoute(
-        robot=route["robot"],
-        tour=read_only_integers(route["tour"]),
-        lengths=read_only_floats(route["lengths"]),
-        path=parse_path(route),
+        robot=route.read("robot", text),
+        tour=route.read("tour", indexes(None, below=places)),
+        lengths=route.read("lengths", floats(PAIR)),
+        path=route.maybe("path", parse_path),
     )

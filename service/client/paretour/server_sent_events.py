@@ -7,6 +7,9 @@ import codecs
 import re
 from dataclasses import dataclass
 
+from paretour.expect import UnexpectedAnswer
+
+_LONGEST = 2**18  # characters of an event
 _LINE_END = re.compile("\r\n|\r|\n")
 
 
@@ -28,9 +31,14 @@ class EventParser:
         self._line = ""
         self._type = ""
         self._data: list[str] = []
+        self._length = 0  # of the data
 
     def feed(self, chunk: bytes) -> list[ServerSentEvent]:
-        """Return the events that end in a chunk."""
+        """Return the events that end in a chunk.
+
+        Raises:
+            UnexpectedAnswer: An event is too long.
+        """
         text = self._decoder.decode(chunk)
         if not text:
             return []
@@ -38,7 +46,10 @@ class EventParser:
             text = text.removeprefix("\n")
         self._after_return = text.endswith("\r")
         *lines, self._line = _LINE_END.split(self._line + text)
-        return [event for line in lines if (event := self._read(line)) is not None]
+        events = [event for line in lines if (event := self._read(line)) is not None]
+        if max(len(self._line), self._length) > _LONGEST:
+            raise UnexpectedAnswer(f"an event must have at most {_LONGEST} characters, got more")
+        return events
 
     def _read(self, line: str) -> ServerSentEvent | None:
         """Return the event that a line ends, an empty one after data."""
@@ -50,10 +61,11 @@ class EventParser:
             self._type = value
         elif field == "data":
             self._data.append(value)
+            self._length += len(value) + 1
         return None
 
     def _dispatch(self) -> ServerSentEvent | None:
         event = ServerSentEvent(self._type or "message", "\n".join(self._data))
         ended = bool(self._data)
-        self._type, self._data = "", []
+        self._type, self._data, self._length = "", [], 0
         return event if ended else None

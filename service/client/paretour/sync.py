@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from typing import Any, Generic, Self, TypeVar, Unpack
 
 import httpx
-from paretour.calls import AnyFront, Call, Calls, Geometry, Parse, auth_headers
+from paretour.bodies import MOST_BYTES, Body
+from paretour.calls import AnyFront, Call, Calls, Geometry, Parse, client_headers
 from paretour.choice import Choice
 from paretour.events import JobEvents
 from paretour.fleets import FleetFront, parse_fleet
@@ -32,10 +33,12 @@ class Client:
         timeout: Seconds to wait for a response, beyond those that the search may take.
         patience: Seconds, in all, to wait and retry a call where the service asks for it (429,
             503) before Refused is raised.
+        most_bytes: The most bytes that an answer may have, decompressed.
         transport: A transport of httpx in place of the network.
 
     Raises:
         Refused: By any call, where the service answers with a refusal.
+        UnexpectedAnswer: By any call, where an answer is not as the service gives it.
         httpx.TransportError: By any call, where there is no answer.
     """
 
@@ -46,10 +49,11 @@ class Client:
         api_key: str | None = None,
         timeout: float = 30.0,
         patience: float = 60.0,
+        most_bytes: int = MOST_BYTES,
         transport: httpx.BaseTransport | None = None,
     ) -> None:
-        http = httpx.Client(base_url=url, headers=auth_headers(api_key), transport=transport)
-        self._connection = _Connection(http)
+        http = httpx.Client(base_url=url, headers=client_headers(api_key), transport=transport)
+        self._connection = _Connection(http, most_bytes)
         self._calls = Calls(timeout=timeout, patience=patience)
 
     def front(self, **request: Unpack[FrontRequest]) -> Front:
@@ -215,15 +219,17 @@ class Job(Generic[AnyFront]):
 class _Connection:
     """An httpx.Client that runs calls and follows jobs."""
 
-    def __init__(self, http: httpx.Client) -> None:
+    def __init__(self, http: httpx.Client, most_bytes: int) -> None:
         self._http = http
+        self._most_bytes = most_bytes
         self.close = http.close
 
     def run(self, call: Call[T]) -> T:
         request = next(call)
         while True:
             time.sleep(request.delay)
-            response = self._http.request(**request.arguments)
+            with self._http.stream(**request.arguments) as streamed:
+                response = self._read(streamed, request.timeout)
             try:
                 request = call.send(response)
             except StopIteration as finished:
@@ -234,13 +240,26 @@ class _Connection:
             time.sleep(events.delay)
             try:
                 with self._http.stream(**events.arguments) as response:
-                    if response.is_error:
-                        response.read()
-                        events.retry_refusal(response)
+                    if not response.is_success:
+                        events.retry_refusal(self._read(response, events.timeout))
                         continue
                     events.begin(response)
-                    for chunk in response.iter_bytes():
+                    for chunk in _chunks(response):
                         yield from events.read(chunk)
                 events.finish()
             except httpx.TransportError as error:
                 events.retry_error(error)
+
+    def _read(self, response: httpx.Response, seconds: float) -> httpx.Response:
+        body = Body(response, self._most_bytes, seconds)
+        for chunk in _chunks(response):
+            body.feed(chunk)
+        return body.response()
+
+
+def _chunks(response: httpx.Response) -> Iterator[bytes]:
+    """Yield the body as it comes, or the content of one that was consumed already."""
+    if response.is_stream_consumed:
+        yield response.content
+    else:
+        yield from response.iter_raw()

@@ -1,17 +1,31 @@
 """Answers as immutable values with arrays."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
-from typing import Any, Literal, TypeVar, Unpack
+from dataclasses import dataclass
+from typing import Any, Self, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 from paretour.choice import Choice, choose
+from paretour.expect import (
+    Members,
+    Read,
+    anything,
+    count,
+    each,
+    flag,
+    floats,
+    indexes,
+    members,
+    number,
+    read_only,
+    text,
+)
 
+T = TypeVar("T")
 Array = NDArray[np.float64]
-AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
 FINAL_STATUSES = ("done", "cancelled", "failed")
-Status = Literal["queued", "running", "done", "cancelled", "failed"]
+PAIR = 2  # numbers of an item, one for each objective
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,6 +35,15 @@ class Progress:
     seconds: float
     hypervolume: float
     points: int
+
+    @classmethod
+    def of(cls, event: Members) -> Self:
+        """Return the progress in the data of an event."""
+        return cls(
+            seconds=event.read("seconds", number),
+            hypervolume=event.read("hypervolume", number),
+            points=event.read("points", count),
+        )
 
 
 @dataclass(frozen=True)
@@ -112,7 +135,7 @@ class Front:
 
     Attributes:
         id: The id under which the service stores the front.
-        status: The status of its job.
+        status: The status of its job: queued, running, done, cancelled or failed.
         tours: The cities of each tour in order, shape (m, n).
         lengths: The lengths of each tour, shape (m, 2).
         angles: The direction of the lengths of each tour, in degrees, shape (m,).
@@ -120,11 +143,13 @@ class Front:
         points: The number of nondominated tours found, of which these are returned.
         hypervolume: The share of the box at the reference point that the points found dominate.
         hypervolume_bound: The most that any front can have, where a bound was asked for.
-        reference_point: The reference point of the hypervolume, shape (2,).
-        scale: The length that is 1 in scaled objectives, shape (2,).
+        reference_point: The reference point of the hypervolume, shape (2,); None while it is not
+            known.
+        scale: The length that is 1 in scaled objectives, shape (2,); likewise.
         actor: The name of the network; None where it built no tours.
-        terminated: Why the search ended; None while it runs. `converged` proves that nothing is
-            better only up to nine cities.
+        terminated: Why the search ended: `converged`, `time_limit` or `cancelled`, or what a later
+            service says; None while it runs. `converged` proves that nothing is better only up to
+            eleven cities.
         places: Over a map, the row and column of each city, shape (n, 2).
         paths: Over a map, the way of each tour, where the request asked for paths.
         document: The answer as it came, with every member.
@@ -132,11 +157,13 @@ class Front:
         objectives: Both objectives, where the request named them.
         kept: The share of the driven tour's remaining legs that each tour keeps, shape (m,), where
             it was replanned.
+        arrivals: Both lengths of each tour up to each of its cities, where the request asked for
+            them.
         uncovered: Over a map, the free cells that no path leads to.
     """
 
     id: str
-    status: Status
+    status: str
     tours: NDArray[np.int64]
     lengths: Array
     angles: Array
@@ -144,16 +171,17 @@ class Front:
     points: int
     hypervolume: float
     hypervolume_bound: float | None
-    reference_point: Array
-    scale: Array
+    reference_point: Array | None
+    scale: Array | None
     actor: str | None
-    terminated: Literal["converged", "time_limit", "cancelled"] | None
+    terminated: str | None
     places: NDArray[np.int64] | None
     paths: tuple[Path, ...] | None
     document: Mapping[str, Any]
     stops: tuple[tuple[str, ...], ...] | None = None
     objectives: tuple[Objective, ...] | None = None
     kept: Array | None = None
+    arrivals: tuple[Array, ...] | None = None
     uncovered: Uncovered | None = None
 
     def nearest(self, angle: float) -> Tour:
@@ -178,7 +206,7 @@ class Front:
             balance=float(self.balances[index]),
             lengths=self.lengths[index],
             tour=self.tours[index],
-            arrivals=_arrivals(self.document["front"][index]),
+            arrivals=None if self.arrivals is None else self.arrivals[index],
             path=None if self.paths is None else self.paths[index],
             stops=None if self.stops is None else self.stops[index],
             kept=None if self.kept is None else float(self.kept[index]),
@@ -212,114 +240,127 @@ class Actor:
     repairs: bool = False
 
 
-def parse_actor(document: Mapping[str, Any]) -> Actor:
-    """Return the actor in a JSON answer, of which members that are not known are left out."""
-    known = {field.name for field in fields(Actor)}
-    return Actor(**{name: value for name, value in document.items() if name in known})
+def parse_actor(value: Any, where: str) -> Actor:
+    """Read an actor."""
+    actor = members(value, where)
+    return Actor(
+        name=actor.read("name", text),
+        digest=actor.read("digest", text),
+        inputs=actor.read("inputs", text),
+        commit=actor.read("commit", text),
+        sizes=actor.read("sizes", anything),
+        angles=actor.read("angles", anything),
+        config=actor.read("config", anything),
+        figures=actor.read("figures", anything),
+        repairs=actor.maybe("repairs", flag) or False,
+    )
 
 
 def parse_front(document: Mapping[str, Any]) -> Front:
-    """Return the front in a JSON answer."""
-    items: Sequence[Mapping[str, Any]] = document["front"]
-    tours = read_only_integers([item["tour"] for item in items])
-    paths = tuple(path for item in items if (path := parse_path(item)) is not None)
+    """Return the front in a JSON answer.
+
+    Raises:
+        UnexpectedAnswer: A member is missing or wrong; so do the functions below.
+    """
+    answer = members(document, "answer")
+    cities = answer.read("cities", count)
+    items = answer.read("front", each(members))
+    tour = indexes(cities, below=cities)
+    actor = answer.maybe("actor", members)
+    named = answer.maybe("stops", each(members, cities)) is not None
     return Front(
-        id=document["id"],
-        status=document["status"],
-        tours=tours.reshape(len(items), document["cities"]),
-        lengths=read_only_floats([item["lengths"] for item in items]).reshape(-1, 2),
-        angles=read_only_floats([item["angle"] for item in items]),
-        balances=read_only_floats([item["balance"] for item in items]),
-        points=document["points"],
-        hypervolume=document["hypervolume"],
-        hypervolume_bound=document["hypervolume_bound"],
-        reference_point=read_only_floats(document["reference_point"]),
-        scale=read_only_floats(document["scale"]),
-        actor=(document["actor"] or {}).get("name"),
-        terminated=document["terminated"],
-        places=read_only_integers(document["places"]) if "places" in document else None,
-        paths=paths or None,
+        id=answer.read("id", text),
+        status=answer.read("status", text),
+        tours=_stacked([item.read("tour", tour) for item in items], (cities,), np.int64),
+        lengths=lengths_of(items),
+        angles=_stacked([item.read("angle", number) for item in items]),
+        balances=_stacked([item.read("balance", number) for item in items]),
+        points=answer.read("points", count),
+        hypervolume=answer.read("hypervolume", number),
+        hypervolume_bound=answer.maybe("hypervolume_bound", number),
+        reference_point=answer.maybe("reference_point", floats(PAIR)),
+        scale=answer.maybe("scale", floats(PAIR)),
+        actor=None if actor is None else actor.read("name", text),
+        terminated=answer.maybe("terminated", text),
+        places=answer.maybe("places", indexes(cities, PAIR)),
+        paths=of_all(items, "path", parse_path),
         document=document,
-        stops=tuple(tuple(item["stops"]) for item in items) if "stops" in document else None,
-        objectives=objectives_of(document),
-        kept=read_only_floats([item["kept"] for item in items]) if _is_replanned(items) else None,
-        uncovered=parse_uncovered(document),
+        stops=tuple(item.read("stops", each(text, cities)) for item in items) if named else None,
+        objectives=objectives_of(answer),
+        kept=None if (kept := of_all(items, "kept", number)) is None else _stacked(kept),
+        arrivals=of_all(items, "arrivals", floats(None, PAIR)),
+        uncovered=answer.maybe("uncovered", parse_uncovered),
     )
 
 
 def parse_tour(document: Mapping[str, Any]) -> Tour:
     """Return the tour in a JSON answer."""
+    answer = members(document, "answer")
+    tour = answer.read("tour", indexes(None))
     return Tour(
-        front=document["front"],
-        angle=document["angle"],
-        balance=document["balance"],
-        lengths=read_only_floats(document["lengths"]),
-        tour=read_only_integers(document["tour"]),
-        arrivals=_arrivals(document),
-        path=parse_path(document),
-        stops=tuple(document["stops"]) if "stops" in document else None,
-        kept=document.get("kept"),
+        front=answer.read("front", text),
+        angle=answer.read("angle", number),
+        balance=answer.read("balance", number),
+        lengths=answer.read("lengths", floats(PAIR)),
+        tour=tour,
+        arrivals=answer.maybe("arrivals", floats(None, PAIR)),
+        path=answer.maybe("path", parse_path),
+        stops=answer.maybe("stops", each(text, len(tour))),
+        kept=answer.maybe("kept", number),
     )
 
 
-def _is_replanned(items: Sequence[Mapping[str, Any]]) -> bool:
-    return bool(items) and "kept" in items[0]
-
-
-def _arrivals(item: Mapping[str, Any]) -> Array | None:
-    return read_only_floats(item["arrivals"]) if "arrivals" in item else None
-
-
-def objectives_of(document: Mapping[str, Any]) -> tuple[Objective, ...] | None:
-    """Return the objectives of a JSON answer, where the request named them."""
-    if "objectives" not in document:
+def of_all(items: Sequence[Members], name: str, read: Read[T]) -> tuple[T, ...] | None:
+    """Return a member of all items, or None where the first has none."""
+    if not items or items[0].maybe(name, anything) is None:
         return None
-    return tuple(Objective(each["name"], each.get("unit")) for each in document["objectives"])
+    return tuple(item.read(name, read) for item in items)
 
 
-def parse_uncovered(document: Mapping[str, Any]) -> Uncovered | None:
-    """Return what is uncovered of the map in a JSON answer; None where it does not say so."""
-    if "uncovered" not in document:
-        return None
-    found = document["uncovered"]
+def parse_uncovered(value: Any, where: str) -> Uncovered:
+    """Read what is uncovered of a map."""
+    found = members(value, where)
     return Uncovered(
-        cells=found["cells"],
-        square_metres=found["square_metres"],
-        regions=tuple(
-            UncoveredRegion(
-                cells=region["cells"],
-                cell=_pair(region["cell"]),
-                box=(_pair(region["box"][0]), _pair(region["box"][1])),
-            )
-            for region in found["regions"]
-        ),
+        cells=found.read("cells", count),
+        square_metres=found.read("square_metres", number),
+        regions=found.read("regions", each(_parse_region)),
     )
 
 
-def _pair(cell: Sequence[int]) -> tuple[int, int]:
-    row, column = cell
-    return row, column
+def _parse_region(value: Any, where: str) -> UncoveredRegion:
+    region = members(value, where)
+    row, column = region.read("cell", indexes(PAIR)).tolist()
+    first, last = region.read("box", indexes(PAIR, PAIR)).tolist()
+    return UncoveredRegion(
+        cells=region.read("cells", count), cell=(row, column), box=(tuple(first), tuple(last))
+    )
 
 
-def parse_path(item: Mapping[str, Any]) -> Path | None:
-    """Return the path of a tour or route in a JSON answer, where the request asked for paths."""
-    if "path" not in item:
-        return None
-    path = item["path"]
-    points = read_only_floats(path["points"]) if "points" in path else None
-    return Path(read_only_integers(path["cells"]), path["metres"], points)
+def lengths_of(items: Sequence[Members]) -> Array:
+    """Return both lengths of all items of a front, shape (m, 2)."""
+    return _stacked([item.read("lengths", floats(PAIR)) for item in items], (PAIR,))
 
 
-def read_only_integers(values: Any) -> NDArray[np.int64]:
-    """Return integers as an array that cannot be changed."""
-    return _read_only(np.array(values, dtype=np.int64))
+def objectives_of(answer: Members) -> tuple[Objective, ...] | None:
+    """Return the objectives of an answer, where the request named them."""
+    return answer.maybe("objectives", each(_parse_objective, PAIR))
 
 
-def read_only_floats(values: Any) -> Array:
-    """Return numbers as an array that cannot be changed."""
-    return _read_only(np.array(values, dtype=np.float64))
+def _parse_objective(value: Any, where: str) -> Objective:
+    objective = members(value, where)
+    return Objective(objective.read("name", text), objective.maybe("unit", text))
 
 
-def _read_only(array: AnyArray) -> AnyArray:
-    array.setflags(write=False)
-    return array
+def parse_path(value: Any, where: str) -> Path:
+    """Read the path of a tour or route."""
+    path = members(value, where)
+    cells = path.read("cells", indexes(None, PAIR))
+    points = path.maybe("points", floats(len(cells), PAIR))
+    return Path(cells, path.read("metres", number), points)
+
+
+def _stacked(
+    values: Sequence[Any], shape: tuple[int, ...] = (), dtype: type = np.float64
+) -> NDArray[Any]:
+    """Return one value an item as an array, where there are no items too."""
+    return read_only(np.array(values, dtype=dtype).reshape(len(values), *shape))

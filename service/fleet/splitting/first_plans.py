@@ -50,7 +50,7 @@ def _under_limits(cutter: Cutter, maximum: int) -> Iterator[Plan]:
 
 def _under_weights(fleet: Fleet, cutter: Cutter) -> Iterator[Plan]:
     """Yield the plans at both ends, and those on the hull between them, widest edges first."""
-    scale = fleet.costs.max(axis=(1, 2))
+    scale = fleet.largest_legs
     scale = np.maximum(scale / (scale.max() or 1.0), _LEAST_SCALE)
     steepest = np.array([[_STEEPEST, 1.0], [1.0, _STEEPEST]]) / scale
     ends = [cut.plan for weights in steepest if (cut := cutter.best(cutter.costs(weights)))]

@@ -349,13 +349,6 @@ def test_an_upgrade_is_no_reason_to_warn(url: str, caplog: pytest.LogCaptureFixt
     assert "pgrade" not in caplog.text
 
 
-def test_the_head_of_an_answer_comes_with_its_body(url: str) -> None:
-    with connected(url) as connection:
-        connection.sendall(b"GET /health/live HTTP/1.1\r\nHost: x\r\n\r\n")
-        _, _, body = connection.recv(2**16).partition(b"\r\n\r\n")
-        assert json.loads(body) == {"status": "live"}
-
-
 def test_requests_that_come_together_are_answered_one_after_another(url: str) -> None:
     request = b"GET /health/live HTTP/1.1\r\nHost: x\r\n"
     with connected(url) as connection:

@@ -1,0 +1,126 @@
+"""Read the files that a command is given, and say what was taken for granted."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from paretour import read_ros_map
+from typer import echo
+
+from service.cli.errors import UsageError
+from service.files.json_files import read_object as object_in
+from service.files.reader import read_files, read_table
+from service.files.reading import Bounds, Kind, NamedFile, Request, Source, UnreadableFile
+from service.files.stop_tables import numbers_of
+
+Array = NDArray[np.float64]
+Ids = tuple[str, ...]
+STANDARD_INPUT = Path("-")
+_MATRIX_CITIES = 3000  # whose costs are written out here; the service may allow fewer
+
+
+def read_request(
+    files: Sequence[Path], kind: Kind = "front", *, unrounded: bool = False
+) -> tuple[Request, Ids | None]:
+    """Return the request of a kind in one file, or in two, with one objective each; and its ids.
+
+    Notes on what was taken for granted go to stderr. A file named - is standard input.
+
+    Raises:
+        UnreadableFile: A file cannot be read; the message names it.
+        UsageError: It holds what another command plans.
+        OSError: There is no such file.
+    """
+    if len(files) > 1 and files[0] == files[1] == STANDARD_INPUT:
+        raise UnreadableFile("standard input can be one of both files, not both")
+    request = _request_in([_content(path) for path in files], kind, unrounded)
+    stops = request.get("stops")
+    if not isinstance(stops, list) or not all(_has_id(stop) for stop in stops):
+        return request, None
+    return request, tuple(stop["id"] for stop in stops)
+
+
+def _request_in(files: Sequence[NamedFile], kind: Kind, unrounded: bool = False) -> Request:
+    """Return the request of a kind in files, and print what was taken for granted."""
+    reading = read_files(files, _bounds(), wanted=kind, unrounded=unrounded)
+    for note in reading.notes:
+        echo(f"{note.file}: {note.text}", err=True)
+    if reading.kind != kind:
+        noun = {"front": "one tour", "fleet": "vehicles", "coverage": "a map"}[reading.kind]
+        sentence = f"{reading.name} is about {noun}: `paretour {reading.kind}` plans that"
+        raise UsageError(f"{sentence}, not `paretour {kind}`")
+    request = reading.request
+    if "matrices" in request:
+        return {**request, "matrices": _as_arrays(request["matrices"])}
+    return request
+
+
+def read_map(path: Path) -> tuple[Request, bytes | None]:
+    """Return the request in a JSON file, or what goes beside a picture, and the picture.
+
+    A picture is a PNG or PGM file, or that of a map.yaml of ROS, which says how to read it. JSON
+    may be a message nav_msgs/OccupancyGrid as well. Standard input, a file named -, is a picture or
+    JSON.
+
+    Raises:
+        UnreadableFile: The file is none of these; the message names it.
+        UsageError: It holds what another command plans.
+        OSError: There is no such file.
+    """
+    if NamedFile(path.name, b"").is_yaml:
+        try:
+            request, picture = read_ros_map(path)
+        except ValueError as error:
+            raise UnreadableFile(f"{path}: {error}") from None
+        return {**request}, picture
+    file = _content(path)
+    if file.is_picture:
+        return {}, file.data
+    return _request_in([file], "coverage"), None
+
+
+def read_object(path: Path) -> Request:
+    """Return the members of a request in a JSON file, or in standard input for a file named -.
+
+    Raises:
+        UnreadableFile: The file is no JSON object; the message names it.
+        OSError: There is no such file.
+    """
+    return object_in(Source(_content(path), _bounds()))
+
+
+def read_layer(path: Path) -> Array:
+    """Return the costs on a map in a CSV file, a row for each row of its cells.
+
+    Raises:
+        UnreadableFile: The file is no table of numbers; the message names it.
+        OSError: There is no such file.
+    """
+    return np.array(numbers_of(*read_table(_content(path), _bounds())))
+
+
+def _bounds() -> Bounds:
+    from service.cli.configuration import load_settings
+
+    return Bounds(matrix_cities=_MATRIX_CITIES, roads=load_settings().limits.roads)
+
+
+def _content(path: Path) -> NamedFile:
+    if path == STANDARD_INPUT:
+        return NamedFile("standard input", sys.stdin.buffer.read())
+    return NamedFile(str(path), path.read_bytes())
+
+
+def _has_id(stop: object) -> bool:
+    return isinstance(stop, dict) and isinstance(stop.get("id"), str)
+
+
+def _as_arrays(matrices: object) -> object:
+    """Return matrices as an array, which is sent as a file, where it can hold all their costs."""
+    try:
+        array = np.array(matrices, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        return matrices  # with null in it, or whatever the service refuses
+    return array if array.ndim == 3 and np.isfinite(array).all() else matrices

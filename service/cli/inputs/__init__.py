@@ -1,1 +1,0 @@
-"""The files that the command reads, as members of a request."""

@@ -1,0 +1,209 @@
+"""Read JSON answers member by member, each as the type that the client expects.
+
+Whatever is wrong raises UnexpectedAnswer, whose sentence names the member, what it must be, and
+what came. Members that are not asked for are left alone, so a later service may have more of them.
+"""
+
+import json
+import math
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+from reprlib import Repr
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+T = TypeVar("T")
+Read = Callable[[Any, str], T]  # from a value, and what to call it, to the value as its type
+AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
+_GREATEST = sys.float_info.max
+_COUNTS = 2**53  # counts and indexes are less, as JSON numbers of all languages are
+_SHOWN = Repr()
+_SHOWN.maxlevel, _SHOWN.maxlist, _SHOWN.maxdict, _SHOWN.maxstring = 2, 3, 3, 60
+
+
+class UnexpectedAnswer(Exception):
+    """An answer that is not what the service promises: of another program, or a broken one."""
+
+
+def unexpected(where: str, demand: str, value: Any) -> UnexpectedAnswer:
+    """Return the exception for a value that is not as demanded."""
+    return UnexpectedAnswer(f"{where} must be {demand}, got {_SHOWN.repr(value)}")
+
+
+@dataclass(frozen=True)
+class Members:
+    """The members of a JSON object, to be read one by one.
+
+    Attributes:
+        document: The object.
+        where: What to call it in a sentence, as `front/0`.
+    """
+
+    document: Mapping[str, Any]
+    where: str
+
+    def read(self, name: str, read: Read[T]) -> T:
+        """Return a member that must be there."""
+        if name not in self.document:
+            raise UnexpectedAnswer(f"{self.where} must have a member {name}, got none")
+        return read(self.document[name], f"{self.where}/{name}")
+
+    def maybe(self, name: str, read: Read[T]) -> T | None:
+        """Return a member, or None where it is missing or null."""
+        value = self.document.get(name)
+        return None if value is None else read(value, f"{self.where}/{name}")
+
+
+def parse_json(content: str | bytes, where: str) -> Members:
+    """Return the members of the JSON object that a text holds, or bytes in UTF-8."""
+    try:
+        text = content if isinstance(content, str) else content.decode("utf-8-sig")
+        document = json.loads(
+            text,
+            object_pairs_hook=_without_repeats,
+            parse_float=_finite,
+            parse_constant=_finite,
+        )
+    except (ValueError, RecursionError) as error:
+        start = _SHOWN.repr(content[:60])
+        raise UnexpectedAnswer(f"{where} must be JSON, got {start}: {error}") from None
+    return members(document, where)
+
+
+def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    document = dict(pairs)
+    if len(document) != len(pairs):
+        raise ValueError("an object names a member twice")
+    return document
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError("a number is not finite")
+    return value
+
+
+def members(value: Any, where: str) -> Members:
+    """Read an object."""
+    if not isinstance(value, Mapping):
+        raise unexpected(where, "an object", value)
+    return Members(value, where)
+
+
+def text(value: Any, where: str) -> str:
+    """Read text."""
+    try:
+        value.encode()
+    except (AttributeError, UnicodeEncodeError):  # as of "\ud800" alone, which is no character
+        raise unexpected(where, "text", value) from None
+    return value
+
+
+def flag(value: Any, where: str) -> bool:
+    """Read true or false."""
+    if not isinstance(value, bool):
+        raise unexpected(where, "true or false", value)
+    return value
+
+
+def number(value: Any, where: str) -> float:
+    """Read a finite number."""
+    if type(value) not in (int, float) or not -_GREATEST <= value <= _GREATEST:
+        raise unexpected(where, "a finite number", value)
+    return value
+
+
+def count(value: Any, where: str) -> int:
+    """Read a whole number from 0."""
+    if type(value) is not int or not 0 <= value < _COUNTS:
+        raise unexpected(where, "a whole number from 0", value)
+    return value
+
+
+def anything(value: Any, _where: str) -> Any:
+    """Read what is not looked at."""
+    return value
+
+
+def each(read: Read[T], length: int | None = None) -> Read[tuple[T, ...]]:
+    """Return a reader of lists, of one length if that is given, whose items are read so."""
+
+    def read_list(value: Any, where: str) -> tuple[T, ...]:
+        if not isinstance(value, list) or length not in (None, len(value)):
+            raise unexpected(where, f"a list{_items(length)}", value)
+        return tuple(read(item, f"{where}/{i}") for i, item in enumerate(value))
+
+    return read_list
+
+
+def floats(*shape: int | None) -> Read[NDArray[np.float64]]:
+    """Return a reader of finite numbers in one dimension or two; None is any length."""
+
+    def read(value: Any, where: str) -> NDArray[np.float64]:
+        array = _array(value, where, (int, float), np.float64, shape)
+        if not np.isfinite(array).all():
+            raise unexpected(where, "finite numbers", value)
+        return array
+
+    return read
+
+
+def indexes(*shape: int | None, below: int = _COUNTS) -> Read[NDArray[np.int64]]:
+    """Return a reader of whole numbers from 0 in one dimension or two; None is any length."""
+
+    def read(value: Any, where: str) -> NDArray[np.int64]:
+        array = _array(value, where, (int,), np.int64, shape)
+        if array.size and not 0 <= array.min() <= array.max() < below:
+            most = "" if below == _COUNTS else f" to {below - 1}"
+            raise unexpected(where, f"whole numbers from 0{most}", value)
+        return array
+
+    return read
+
+
+def _array(
+    value: Any, where: str, types: tuple[type, ...], dtype: type, shape: Sequence[int | None]
+) -> Any:
+    """Return numbers of these types as an array of this shape, which cannot be changed.
+
+    Nested lists are flattened before NumPy sees them, and types are checked: it would take text
+    for numbers.
+    """
+    length, *width = shape
+    rows = value if width else [value]
+    numbers = list(chain.from_iterable(rows)) if _are_lists(rows, *(width or [length])) else None
+    if (
+        numbers is None
+        or (width and length not in (None, len(rows)))
+        or not set(map(type, numbers)) <= set(types)
+    ):
+        kind = "numbers" if float in types else "whole numbers"
+        pairs = f" lists of {width[0]}" if width else ""
+        raise unexpected(where, f"a list{_items(length)} of{pairs} {kind}", value)
+    try:
+        array = np.array(numbers, dtype=dtype)
+    except OverflowError:
+        raise unexpected(where, "numbers of 64 bits", value) from None
+    return read_only(array.reshape(-1, *width) if width else array)
+
+
+def _are_lists(rows: Any, length: int | None) -> bool:
+    """Return whether rows are a list of lists, of one length if that is given."""
+    if not isinstance(rows, list) or not set(map(type, rows)) <= {list}:
+        return False
+    return length is None or set(map(len, rows)) <= {length}
+
+
+def _items(length: int | None) -> str:
+    return "" if length is None else f" of length {length}"
+
+
+def read_only(array: AnyArray) -> AnyArray:
+    """Return an array that cannot be changed any more."""
+    array.setflags(write=False)
+    return array

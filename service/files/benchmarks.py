@@ -1,0 +1,136 @@
+"""Benchmarks of vehicle routing: CVRPLIB, Solomon, Gehring and Homberger, Li and Lim."""
+
+import re
+from typing import Any
+
+from service.files.fleets import planar, timed
+from service.files.reading import Reading, Request, Source, quoted
+from service.files.tables import number_in
+from service.files.tsplib import TsplibFile, costs, plain
+
+Rows = list[tuple[int, list[float]]]
+_WITH_TIMES = 7  # numbers of a customer: id, x, y, demand, ready, due, service
+_WITH_PAIRS = 9  # and the ids of its pick-up and delivery
+_DEMAND = "DEMAND_SECTION"
+
+
+def is_cvrp(file: TsplibFile) -> bool:
+    """Return whether a file of TSPLIB is about vehicles."""
+    return _DEMAND in file.sections or "CVRP" in file.header.get("TYPE", "").upper()
+
+
+def read_cvrp(file: TsplibFile) -> Reading:
+    """Return the request of a file of CVRPLIB: total against longest route.
+
+    Raises:
+        UnreadableFile: A keyword or a section is missing, or not as DIMENSION says.
+    """
+    source, n = file.source, file.dimension
+    demands = file.numbers(_DEMAND, n, 2)[:, 1].tolist()
+    words = [word for word in file.sections.get("DEPOT_SECTION", ["1"]) if word != "-1"]
+    if len(words) != 1 or not words[0].isdecimal() or not 1 <= int(words[0]) <= n:
+        raise source.refusal(f"DEPOT_SECTION must have one depot, got {quoted(' '.join(words))}")
+    depot = int(words[0]) - 1
+    windows = _optional(file, "TIME_WINDOW_SECTION", 3)
+    services = _optional(file, "SERVICE_TIME_SECTION", 2)
+    stops: list[dict[str, Any]] = [{"id": str(number)} for number in range(1, n + 1)]
+    for at in {*range(n)} - {depot}:
+        stops[at]["demand"] = [_whole(source, demands[at], f"{_DEMAND}, stop {at + 1}")]
+        stops[at] |= {"window": windows[at][1:]} if windows else {}
+        stops[at] |= {"service": services[at][1]} if services else {}
+    vehicle = {"capacity": [_header(file, "CAPACITY")]}
+    vehicle |= {"shift": windows[depot][1:]} if windows else {}
+    vehicle |= {"longest": _header(file, "DISTANCE")} if "DISTANCE" in file.header else {}
+    count = _header(file, "VEHICLES") if "VEHICLES" in file.header else max(1, n - 1)
+    if "VEHICLES" not in file.header:
+        source.note("vehicle", "The file does not say how many vehicles: as many as needed.")
+    objectives = planar({"matrix": plain(costs(file))})
+    return source.reading("fleet", _request(stops, stops[depot]["id"], count, vehicle, objectives))
+
+
+def _optional(file: TsplibFile, section: str, columns: int) -> list[list[float]]:
+    if section not in file.sections:
+        return []
+    rows: list[list[float]] = file.numbers(section, file.dimension, columns).tolist()
+    return rows
+
+
+def _header(file: TsplibFile, name: str) -> Any:
+    number = number_in(file.word(name))
+    if number is None:
+        raise file.source.refusal(f"{name} must be a number, got {quoted(file.word(name))}")
+    return int(number) if number.is_integer() else number
+
+
+def _request(
+    stops: list[dict[str, Any]], depot: str, count: Any, vehicle: dict[str, Any], objectives: Any
+) -> Request:
+    fleet = {"id": "vehicle", "count": count, "start": depot, "end": depot, **vehicle}
+    request: Request = {"stops": stops, "vehicles": [fleet], "objectives": objectives}
+    if timed(stops) or "shift" in vehicle:
+        request["clock"] = objectives[1]["name"]
+    return request
+
+
+def is_customers(text: str) -> bool:
+    """Return whether a text is customers with windows as Solomon or Li and Lim write them."""
+    if re.search(r"^[ \t]*VEHICLE[ \t]*$", text, re.MULTILINE) and re.search(
+        r"^[ \t]*CUST", text, re.M
+    ):
+        return True
+    rows = [line.split() for line in text[:2000].splitlines() if line.strip()][:2]
+    return [len(row) for row in rows] == [3, _WITH_PAIRS] and _numeric([w for r in rows for w in r])
+
+
+def read_customers(source: Source, text: str) -> Reading:
+    """Return the request of customers in a plane, whose distances are time as well.
+
+    Raises:
+        UnreadableFile: A row has other numbers than it must have.
+    """
+    rows = [
+        (at, [number_in(word) or 0.0 for word in line.split()])
+        for at, line in enumerate(text.splitlines(), 1)
+        if line.strip() and _numeric(line.split())
+    ]
+    if len(rows) < 2 or len(rows[0][1]) not in (2, 3):
+        raise source.refusal("must have a row of vehicles and capacity, and one for each customer")
+    (_, (count, capacity, *_)), *customers = rows
+    width = len(customers[0][1])
+    for number, row in customers:
+        if len(row) != width or width not in (_WITH_TIMES, _WITH_PAIRS):
+            demand = f"row {number} must have {_WITH_TIMES} numbers, or {_WITH_PAIRS} with pairs"
+            raise source.refusal(f"{demand}, got {len(row)}")
+    source.check_count("stops", source.bounds.cities, len(customers))
+    depot, *others = [row for _, row in customers]
+    names = [f"{row[0]:g}" for _, row in customers]
+    stops = [{"id": names[0]}, *(_customer(source, row) for row in others)]
+    vehicle: dict[str, Any] = {
+        "capacity": [_whole(source, capacity, "capacity")],
+        "shift": depot[4:6],
+    }
+    objectives = planar({"coordinates": [row[1:3] for _, row in customers]})
+    request = _request(stops, names[0], int(count), vehicle, objectives)
+    if width == _WITH_PAIRS:
+        pairs = [(f"{row[0]:g}", f"{row[8]:g}") for row in others if row[8]]
+        request["shipments"] = [{"pickup": one, "delivery": other} for one, other in pairs]
+    source.note("objectives", "Distances are time as well, and are not rounded.")
+    return source.reading("fleet", request)
+
+
+def _customer(source: Source, row: list[float]) -> dict[str, Any]:
+    name = f"{row[0]:g}"
+    stop: dict[str, Any] = {"id": name, "window": row[4:6], "service": row[6]}
+    if row[3] >= 0:  # the delivery of a pair has what its pick-up takes on
+        stop["demand"] = [_whole(source, row[3], f"the demand of {name}")]
+    return stop
+
+
+def _whole(source: Source, number: float, what: str) -> int:
+    if not number.is_integer() if isinstance(number, float) else False:
+        raise source.refusal(f"{what} must be a whole number, got {number:g}")
+    return int(number)
+
+
+def _numeric(words: list[str]) -> bool:
+    return all(number_in(word) is not None for word in words)

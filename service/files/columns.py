@@ -1,0 +1,74 @@
+"""Headings of columns: the field of a stop that each stands for, and its unit."""
+
+import re
+import unicodedata
+
+# By field, the names that people give it, without accents, units and signs; the first names first.
+_NAMES = {
+    "id": "id orderid stopid stringid orderno ordernumber ordernr order jobid nodeid customerid"
+    " customerno custno deliveryid shipmentid bestellnummer auftragsnummer kundennummer auftrag"
+    " stop ref reference code key name stopname customer kunde node city label site no nr number",
+    "longitude": "longitude lon lng long longitud laengengrad langengrad laenge lange lond",
+    "latitude": "latitude lat latitud breitengrad breite latd",
+    "place": "wkt wktgeom geom geometry thegeom point location coordinates coords coordinate latlon"
+    " latlng latlong position gps",
+    "x": "x xcoord coordx xcoordinate xc xpos posx easting rechtswert ost",
+    "y": "y ycoord coordy ycoordinate yc ypos posy northing hochwert nord",
+    "demand": "demand qty quantity load amount pallets parcels boxes items weight volume menge"
+    " bedarf gewicht demanda cantidad kg",
+    "window_from": "windowfrom windowstart timewindowstart timewindowfrom timefrom starttime "
+    " twstart twfrom twopen readytime ready earliest open opens opening from begin von start",
+    "window_to": "windowto windowend timewindowend timewindowto timeto endtime twend twto twclose"
+    " duedate duetime due latest close closes closing to until end bis",
+    "window": "window timewindow tw deliverywindow zeitfenster",
+    "service": "service duration servicetime serviceduration stoptime handlingtime dwell"
+    " servicezeit standzeit",
+    "skills": "skills skill",
+    "prize": "prize",
+    "cost": "cost costs risk danger exposure co2 emissions kosten risiko",
+}
+_PLACES = ("longitude", "latitude", "x", "y")
+_BEFORE = re.compile(r"^(stop|geo|gps|location|customer|address|position|pos|point)(?=l)")
+_AFTER = re.compile(r"(deg|degree|degrees|wgs84|dd|decimal)$")
+_UNIT = re.compile(r"[\[(](.*?)[\])]")
+_SECONDS = {"s": 1, "sec": 1, "min": 60, "mins": 60, "minutes": 60, "h": 3600, "hours": 3600}
+FLEET = ("demand", "window_from", "window_to", "window", "service", "skills", "prize")
+
+
+def fields_of(heading: list[str]) -> list[str | None]:
+    """Return what each column of a heading may be taken for; of the fields but demand one each.
+
+    Of two columns for one field, that has it whose name comes first among its names. Of names for
+    stops that are left, none is taken.
+    """
+    ranks = [_rank(_plain(name)) for name in heading]
+    taken: list[str | None] = [None] * len(heading)
+    for at in sorted(range(len(heading)), key=lambda at: (ranks[at][1], at)):
+        field = ranks[at][0]
+        if field == "demand" or field not in taken:
+            taken[at] = field
+    return taken
+
+
+def seconds_of(name: str) -> int | None:
+    """Return how many seconds the unit in a heading has, as in `service [min]`; else None."""
+    unit = _UNIT.search(name)
+    plain = unit[1].strip().casefold() if unit else re.split(r"[\s_]", name.casefold())[-1]
+    return _SECONDS.get(plain)
+
+
+def _rank(plain: str) -> tuple[str | None, int]:
+    for field, names in _NAMES.items():
+        known = names.split()
+        for name in (plain, _AFTER.sub("", _BEFORE.sub("", plain))):
+            if name in known and (name == plain or field in _PLACES):
+                return field, known.index(name)
+    return None, 0
+
+
+def _plain(name: str) -> str:
+    """Return a heading in small letters and digits alone, without the unit in it."""
+    decomposed = unicodedata.normalize("NFKD", _UNIT.sub("", name).casefold()[:200])
+    words = re.sub(r"[^a-z0-9]+", " ", re.sub(r"[\u0300-\u036f]", "", decomposed)).split()
+    kept = words[:-1] if len(words) > 1 and words[-1] in _SECONDS else words
+    return "".join(kept)

@@ -1,0 +1,213 @@
+"""Requests of JSON: our own bodies, GeoJSON, records with columns by name, and rows of cities."""
+
+import json
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from service.files.reading import Kind, Reading, Source, quoted
+from service.files.stop_tables import reading_of
+from service.files.tables import table_of
+from service.files.texts import text_of
+from service.files.vroom import is_vroom, read_vroom
+
+_STRUCTURE = ("type", "features", "bbox", "name", "crs", "metadata", "xy_coordinate_resolution")
+_OBJECTS = {"stops", "vehicles", "robots", "shipments", "objectives"}
+_ROWS = {"coordinates", "grid", "cost_layer"}
+_DEGREES = re.compile(r"(OGC:.*CRS84$|EPSG:+4326$|CRS84$|WGS ?84)", re.IGNORECASE)
+_PAIRS = {"latitude": ("lat", "latitude"), "longitude": ("lon", "lng", "long", "longitude")}
+
+
+def looks_like_json(text: str) -> bool:
+    """Return whether a text begins as an object or an array does."""
+    return text.lstrip()[:1] in ("{", "[")
+
+
+def read_json(source: Source, text: str, wanted: Kind | None) -> Reading:
+    """Return the request that a text of JSON is, or becomes.
+
+    Args:
+        source: The file.
+        text: What it holds.
+        wanted: The kind of an object that does not tell its own; None refuses it.
+
+    Raises:
+        UnreadableFile: It is no JSON, or nothing that the reader knows.
+    """
+    value = _parsed(source, text)
+    if isinstance(value, list):
+        return _read_list(source, value)
+    if not isinstance(value, dict):
+        raise source.refusal("must be a request, an object, or its coordinates, a list")
+    if value.get("type") in ("FeatureCollection", "Feature"):
+        return _read_geojson(source, value)
+    if is_vroom(value):
+        return read_vroom(source, value)
+    if value.get("type") == "Topology":
+        raise source.refusal("must be GeoJSON, got TopoJSON: export it as GeoJSON")
+    if {"info", "data"} <= value.keys():
+        return source.reading("coverage", {"occupancy_grid": value})
+    _check_lists(source, value)
+    kind = _kind_of(value) or wanted
+    if kind is None:
+        names = ", ".join(map(quoted, list(value)[:5])) or "none"
+        raise source.refusal(f"must be a request, GeoJSON or VROOM's, got members {names}")
+    return source.reading(kind, value)
+
+
+def read_object(source: Source) -> dict[str, Any]:
+    """Return the object that a file of JSON is.
+
+    Raises:
+        UnreadableFile: It is none.
+    """
+    value = _parsed(source, text_of(source))
+    if not isinstance(value, dict):
+        raise source.refusal("must be a request, an object")
+    return value
+
+
+def _parsed(source: Source, text: str) -> Any:
+    try:
+        # Some write Infinity for no way, which JSON does not know; null says the same in a request.
+        return json.loads(text, parse_constant=lambda _: None)
+    except (ValueError, RecursionError) as error:
+        raise source.refusal(f"must be JSON: {str(error)[:200]}") from None
+
+
+def _kind_of(request: dict[str, Any]) -> Kind | None:
+    if request.keys() & {"vehicles", "shipments"}:
+        return "fleet"
+    if request.keys() & {"grid", "occupancy_grid", "robots", "cost_layer"}:
+        return "coverage"
+    return "front" if request.keys() & {"coordinates", "matrices", "stops"} else None
+
+
+def _check_lists(source: Source, request: dict[str, Any]) -> None:
+    """Raise UnreadableFile where what is drawn of a request is no list, of objects or of rows."""
+    for names, kind, what in ((_OBJECTS, dict, "objects"), (_ROWS, list, "rows")):
+        for name in names & request.keys():
+            items = request[name]
+            if not isinstance(items, list) or not all(isinstance(each, kind) for each in items):
+                raise source.refusal(f"{name} must be a list of {what}, got {quoted(items)}")
+
+
+def _read_list(source: Source, value: list[Any]) -> Reading:
+    """Return the request of rows of four numbers, or of records."""
+    if value and all(isinstance(each, dict) for each in value):
+        return reading_of(source, table_of(source, _records(value)))
+    source.check_count("cities", source.bounds.cities, len(value))
+    for each in value:
+        if not isinstance(each, list):
+            raise source.refusal(f"must be a list of rows, or of objects, got {quoted(each)[1:-1]}")
+    return source.reading("front", {"coordinates": value})
+
+
+def _records(records: list[dict[str, Any]]) -> Iterator[list[str]]:
+    """Yield the names of all members of records as a heading, and the members of each."""
+    flat = [dict(_members(record)) for record in records]
+    names = list(dict.fromkeys(name for record in flat for name in record))
+    yield names
+    for record in flat:
+        yield [record.get(name, "") for name in names]
+
+
+def _members(record: dict[str, Any], depth: int = 0) -> Iterator[tuple[str, str]]:
+    """Yield the members of a record as text, with those of objects in it, and pairs of a place."""
+    for name, value in record.items():
+        if isinstance(value, dict) and depth < 2:
+            yield from _members(value, depth + 1)
+        elif name in ("location", "coordinates") and _is_place(value):
+            yield "longitude", str(value[0])
+            yield "latitude", str(value[1])
+        elif name in ("window", "time_window") and _is_place(value):
+            yield name, f"{value[0]}-{value[1]}"
+        elif isinstance(value, list) and len(value) == 1:
+            yield name, _text(value[0])
+        else:
+            yield name, _text(value)
+
+
+def _is_place(value: Any) -> bool:
+    return (
+        isinstance(value, list)
+        and len(value) >= 2
+        and all(isinstance(each, int | float) and not isinstance(each, bool) for each in value[:2])
+    )
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return ""
+    return value if isinstance(value, str) else json.dumps(value)
+
+
+def _read_geojson(source: Source, value: dict[str, Any]) -> Reading:
+    """Return the request whose stops are points; what GeoJSON does not know is the request's."""
+    _check_crs(source, value)
+    features = [value] if value["type"] == "Feature" else value.get("features")
+    if not isinstance(features, list):
+        raise source.refusal("a FeatureCollection must have a list of features")
+    records = [each for at, feature in enumerate(features) for each in _points(source, feature, at)]
+    if any(_id(each, _properties(each)) is None for each in features):
+        source.note("ids", "Features without an id, or a property id or name, are numbered from 1.")
+    if not records:
+        raise source.refusal("a FeatureCollection must have a point for each stop, got none")
+    rest = (
+        {}
+        if value["type"] == "Feature"
+        else {k: v for k, v in value.items() if k not in _STRUCTURE}
+    )
+    if "objectives" in rest and "vehicles" not in rest:
+        stops = [{"id": each["id"], "location": each["location"]} for each in records]
+        return source.reading("front", {**rest, "stops": stops})
+    reading = reading_of(source, table_of(source, _records(records)))
+    return source.reading(reading.kind, {**reading.request, **rest})
+
+
+def _check_crs(source: Source, value: dict[str, Any]) -> None:
+    """Raise UnreadableFile where places are in another system than degrees of WGS84."""
+    match value.get("crs"):
+        case None | {"properties": {"name": None}}:
+            return
+        case {"properties": {"name": str(name)}} if _DEGREES.search(name):
+            return
+        case {"properties": {"name": name}}:
+            came = quoted(name)
+        case other:
+            came = quoted(other)
+    demand = "crs must be WGS 84 (EPSG:4326 or CRS84)"
+    raise source.refusal(f"{demand}, got {came}: export it in EPSG:4326, as RFC 7946 demands")
+
+
+def _points(source: Source, feature: Any, at: int) -> Iterator[dict[str, Any]]:
+    """Yield a record for each point of a feature."""
+    match feature:
+        case {"geometry": {"type": "Point", "coordinates": [x, y, *_]}}:
+            places = [(x, y)]
+        case {"geometry": {"type": "MultiPoint", "coordinates": [*several]}} if several:
+            places = [tuple(each[:2]) if isinstance(each, list) else () for each in several]
+        case {"geometry": {"type": kind}}:
+            raise source.refusal(f"features/{at} must be a Point, got {quoted(kind)}")
+        case _:
+            raise source.refusal(f"features/{at} must be a Point with a longitude and a latitude")
+    named = _properties(feature)
+    for number, place in enumerate(places, 1):
+        if not _is_place(list(place)):
+            raise source.refusal(f"features/{at} must have a place of numbers, got {quoted(place)}")
+        name = _id(feature, named) or str(at + 1)
+        kept = {k: v for k, v in named.items() if k != "id"}
+        several_id = name if len(places) == 1 else f"{name}-{number}"
+        yield {"id": several_id, "location": list(place), **kept}
+
+
+def _id(feature: dict[str, Any], named: dict[str, Any]) -> str | None:
+    for found in (feature.get("id"), named.get("id"), named.get("name")):
+        if isinstance(found, str | int | float) and not isinstance(found, bool):
+            return str(found)
+    return None
+
+
+def _properties(feature: dict[str, Any]) -> dict[str, Any]:
+    properties = feature.get("properties")
+    return properties if isinstance(properties, dict) else {}

@@ -1,0 +1,73 @@
+"""Maps of robots as requests: a picture alone, or with its map.yaml of ROS."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from pydantic_core import to_json
+
+from service.errors import Refusal
+from service.files.reading import FileTooLarge, Reading, Request, Source, UnreadableFile
+from service.requests.maps.fields import MapRequest
+from service.requests.validation import parse_json
+
+_CELL = 0.05  # metres, as the maps of robots mostly have it
+_OF_YAML = ("resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
+_MOST_BYTES = 2**16  # of a map.yaml
+_OTHER_PICTURES = {b"\xff\xd8\xff": "JPEG", b"GIF8": "GIF", b"RIFF": "WebP", b"BM": "BMP"}
+
+
+def read_map(sources: Sequence[Source]) -> Reading:
+    """Return the request of a picture, or of one and its map.yaml, as a grid.
+
+    Raises:
+        UnreadableFile: There is no picture or more than one, or one of both cannot be read.
+    """
+    pictures = [source for source in sources if not source.file.is_yaml]
+    said = [source for source in sources if source.file.is_yaml]
+    if len(pictures) != 1 or len(said) > 1:
+        demand = "a map is a picture, or a map.yaml and its picture: open both together"
+        raise UnreadableFile(f"{sources[0].name}: {demand}, got {len(sources)} files")
+    [picture] = pictures
+    for begin, named in _OTHER_PICTURES.items():
+        if picture.file.data.startswith(begin):
+            raise picture.refusal(f"must be PNG or PGM, got {named}: save it as PNG, without loss")
+    if said:
+        how = _interpretation(said[0], picture.file.data)
+    else:
+        how = {"cell_size": _CELL}
+        picture.note("cell-size", f"A cell is taken to be {_CELL} m wide, and dark to be blocked.")
+    try:
+        read = parse_json(MapRequest, to_json(how)).with_map(
+            picture.file.data, picture.bounds.cells
+        )
+    except Refusal as refusal:
+        kind = FileTooLarge if refusal.status == 413 else UnreadableFile
+        raise kind(f"{picture.name}: {refusal.detail}") from None
+    request: Request = {"grid": (read.grid > 0).astype(int).tolist(), "cell_size": read.cell_size}
+    if read.origin:
+        request["origin"] = read.origin
+    notes = tuple(note for source in sources for note in source.notes)
+    return Reading("coverage", request, (said or pictures)[0].name, notes)
+
+
+def _interpretation(source: Source, picture: bytes) -> dict[str, Any]:
+    """Return what a map.yaml says of its picture, which is the one that came with it."""
+    import yaml
+    from paretour import read_ros_map
+
+    if len(source.file.data) > _MOST_BYTES:
+        raise source.refusal(f"a map.yaml must have at most {_MOST_BYTES} bytes")
+    try:
+        keys = yaml.safe_load(source.file.data)
+        kept = {name: keys[name] for name in _OF_YAML if name in keys}
+        with TemporaryDirectory() as folder:
+            # Whatever file it names: none of this machine is read.
+            (Path(folder) / "picture").write_bytes(picture)
+            (Path(folder) / "map.yaml").write_text(yaml.safe_dump({**kept, "image": "picture"}))
+            members, _ = read_ros_map(Path(folder) / "map.yaml")
+    except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:
+        came = " ".join(str(error).split())[:200]
+        raise source.refusal(f"must be a map.yaml of ROS: {came}") from None
+    return {**members}

@@ -1,0 +1,80 @@
+"""Places on the earth: the distances between them, and those that look mistaken."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.files.reading import Source, quoted
+
+Array = NDArray[np.float64]
+_RADIUS = 6371008.8  # metres, the earth's mean one, as the service takes it
+_FAR = 1_000_000.0  # metres, that no van drives from stop to stop
+_NEAR = 300_000.0
+_MOST_NAMED = 3
+
+
+def great_circle(places: Array, other: Array | None = None) -> Array:
+    """Return the metres from each place (longitude, latitude) to each one, or to each other one."""
+    from_, to = np.radians(places)[:, np.newaxis], np.radians(places if other is None else other)
+    half = np.sin((from_ - to) / 2) ** 2
+    level = np.cos(from_[..., 1]) * np.cos(to[..., 1])
+    return 2 * _RADIUS * np.arcsin(np.sqrt(np.minimum(1, half[..., 1] + level * half[..., 0])))
+
+
+def weighted(places: Array, weights: Array) -> list[list[float]]:
+    """Return the metres from each place to each, times the mean of the weights of both."""
+    costs = great_circle(places) * (weights[:, np.newaxis] + weights) / 2
+    return [[float(f"{cost:.7g}") for cost in row] for row in costs.tolist()]
+
+
+def check_range(source: Source, place: Sequence[float], where: str) -> None:
+    """Raise UnreadableFile where a longitude or a latitude is none."""
+    for name, value, most in (("longitude", place[0], 180), ("latitude", place[1], 90)):
+        if not -most <= value <= most:
+            hint = ""
+            if name == "latitude" and abs(value) <= 180 and abs(place[0]) <= 90:
+                hint = "; latitude and longitude look swapped"
+            elif max(abs(place[0]), abs(place[1])) > 180:
+                hint = "; places must be in degrees (WGS84, EPSG:4326): convert them from metres"
+            raise source.refusal(
+                f"{where} must have a {name} of -{most} to {most}, got {value:g}{hint}"
+            )
+
+
+def note_places(source: Source, stops: Sequence[dict[str, Any]]) -> None:
+    """Note stops that lie at (0, 0), or so far from the rest that they look swapped."""
+    places = np.array([stop["location"] for stop in stops])
+    ids = [stop["id"] for stop in stops]
+    nowhere: NDArray[np.bool_] = np.all(places == 0, axis=1)
+    if nowhere.any() and not nowhere.all():
+        text = f"{_named(ids, nowhere)} at longitude 0 and latitude 0: was the address not found?"
+        source.note("place", text)
+    if len(places) < 2:
+        return
+    swapped = places[:, ::-1]
+    possible = np.abs(places[:, 0]) <= 90
+    middle = np.median(places, axis=0)[np.newaxis]
+    for anchor, whose in ((middle, "most others"), (places[:1], "the first stop")):
+        far = great_circle(places, anchor)[:, 0] > _FAR
+        near = (
+            great_circle(np.where(possible[:, np.newaxis], swapped, places), anchor)[:, 0] < _NEAR
+        )
+        mistaken = far & near & possible
+        if mistaken.any():
+            text = f"{_named(ids, mistaken)} far from {whose}, and near with latitude and longitude"
+            source.note("swapped", f"{text} swapped: compare them on the map.")
+            return
+    far = ~nowhere & (great_circle(places, middle)[:, 0] > _FAR)
+    if far.any():
+        text = f"{_named(ids, far)} more than 1000 km from the middle of all: are latitude and"
+        source.note("far", f"{text} longitude in the right order?")
+
+
+def _named(ids: Sequence[str], which: NDArray[np.bool_]) -> str:
+    """Return the stops that a mask picks, with a verb."""
+    picked = [ids[at] for at in np.flatnonzero(which).tolist()]
+    shown = ", ".join(quoted(each) for each in picked[:_MOST_NAMED])
+    more = f" and {len(picked) - _MOST_NAMED} more" if len(picked) > _MOST_NAMED else ""
+    return f"Stop {shown} lies" if len(picked) == 1 else f"Stops {shown}{more} lie"

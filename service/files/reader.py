@@ -1,0 +1,155 @@
+"""Read what people bring, one file or two: told by content, then by ending."""
+
+from collections.abc import Sequence
+
+from service.files.benchmarks import is_customers, is_cvrp, read_customers, read_cvrp
+from service.files.json_files import looks_like_json, read_json
+from service.files.reading import (
+    Bounds,
+    Kind,
+    NamedFile,
+    Reading,
+    Request,
+    Source,
+    UnreadableFile,
+)
+from service.files.spreadsheets import is_spreadsheet, rows_of
+from service.files.stop_tables import Part, part_of, reading_of
+from service.files.tables import Table, table_of, table_of_csv
+from service.files.texts import text_of
+from service.files.tsplib import costs, is_tsplib, places, plain, split_tsplib
+
+_BINARY = {
+    b"%PDF": "a PDF",
+    b"\xd0\xcf\x11\xe0": "an old spreadsheet (.xls): save it as .xlsx or CSV",
+    b"\x1f\x8b": "a gzip file: unpack it first",
+    b"PAR1": "a Parquet file: save it as CSV",
+    b"\x93NUMPY": "a NumPy file: send it as the part `matrices` of POST /front",
+}
+
+
+def read_files(
+    files: Sequence[NamedFile],
+    bounds: Bounds,
+    *,
+    wanted: Kind | None = "front",
+    unrounded: bool = False,
+) -> Reading:
+    """Return the request that one file is, or two are with one objective each.
+
+    Args:
+        files: In the order of their objectives.
+        bounds: What they may hold.
+        wanted: The kind of a request that does not tell its own; None refuses it.
+        unrounded: Whether EUC_2D of TSPLIB means planes, not distances rounded as it says.
+
+    Raises:
+        UnreadableFile: A file is nothing that the reader knows; the message names it.
+    """
+    sources = [Source(file, bounds) for file in files]
+    if any(file.is_picture or file.is_yaml for file in files):
+        from service.files.maps import read_map  # which takes a while to load
+
+        return read_map(sources)
+    if len(sources) == 1:
+        return _read(sources[0], wanted)
+    if len(sources) != 2:
+        raise UnreadableFile(f"one file is wanted, or two with an objective each, got {len(files)}")
+    first, second = (_part(source, unrounded) for source in sources)
+    request = _joined(first, second)
+    planes = None
+    if first.plane and second.plane:
+        planes = [[*one, *other] for one, other in zip(first.plane, second.plane, strict=True)]
+    notes = tuple(note for source in sources for note in source.notes)
+    columns = tuple(column for source in sources for column in source.columns)
+    return Reading("front", request, f"{first.name}, {second.name}", notes, columns, planes)
+
+
+def _read(source: Source, wanted: Kind | None) -> Reading:
+    """Return the request in a file that holds both objectives, or a fleet, or a map."""
+    if is_spreadsheet(source.file.data):
+        return reading_of(source, table_of(source, rows_of(source)))
+    text = _text(source)
+    if looks_like_json(text):
+        return read_json(source, text, wanted)
+    if is_tsplib(text):
+        file = split_tsplib(source, text)
+        if is_cvrp(file):
+            return read_cvrp(file)
+        raise source.refusal("a file of TSPLIB is one objective: name another for the other one")
+    if is_customers(text):
+        return read_customers(source, text)
+    if source.name.casefold().endswith((".json", ".geojson")):
+        return read_json(source, text, wanted)
+    return reading_of(source, table_of_csv(source, text))
+
+
+def _text(source: Source) -> str:
+    for begin, named in _BINARY.items():
+        if source.file.data.startswith(begin):
+            raise source.refusal(f"must be a file of stops, got {named}")
+    return text_of(source)
+
+
+def read_table(file: NamedFile, bounds: Bounds) -> tuple[Source, Table]:
+    """Return the table in CSV or XLSX, and its source."""
+    source = Source(file, bounds)
+    if is_spreadsheet(file.data):
+        return source, table_of(source, rows_of(source))
+    return source, table_of_csv(source, _text(source))
+
+
+def _part(source: Source, unrounded: bool) -> Part:
+    """Return what one file of two says."""
+    if not is_spreadsheet(source.file.data):
+        text = _text(source)
+        if is_tsplib(text):
+            return _tsplib_part(source, text, unrounded)
+        if looks_like_json(text):
+            raise source.refusal("must be a table or TSPLIB where two files are an objective each")
+        return part_of(source, table_of_csv(source, text))
+    return part_of(source, table_of(source, rows_of(source)))
+
+
+def _tsplib_part(source: Source, text: str, unrounded: bool) -> Part:
+    file = split_tsplib(source, text)
+    if unrounded:
+        if file.kind != "EUC_2D":
+            raise source.refusal(f"EDGE_WEIGHT_TYPE must be EUC_2D, got {file.kind}")
+        return Part(source.name, file.dimension, None, {"coordinates": places(file).tolist()})
+    found = costs(file)
+    if file.kind != "EXPLICIT":
+        source.note("rounded", f"Distances are whole numbers, as TSPLIB defines {file.kind}.")
+    plane = places(file).tolist() if file.kind == "EUC_2D" else None
+    return Part(source.name, len(found), None, {"matrix": plain(found)}, plane=plane)
+
+
+def _joined(first: Part, second: Part) -> Request:
+    """Return the request of two files about the same stops.
+
+    Raises:
+        UnreadableFile: They are about others, or both say where stops lie.
+    """
+    if first.count != second.count:
+        came = f"{first.count} of {first.name} and {second.count} of {second.name}"
+        raise UnreadableFile(f"both files must have as many stops, got {came}")
+    if first.ids and second.ids and first.ids != second.ids:
+        raise UnreadableFile("both files must have the same ids, in the same order")
+    ids = first.ids or second.ids
+    located = first.stops or second.stops
+    if first.stops and second.stops:
+        raise UnreadableFile("only one of both files may have longitudes and latitudes")
+    if not ids and first.costs.keys() == second.costs.keys():
+        if "matrix" in first.costs:
+            return {"matrices": [first.costs["matrix"], second.costs["matrix"]]}
+        planes = zip(first.costs["coordinates"], second.costs["coordinates"], strict=True)
+        return {"coordinates": [[*one, *other] for one, other in planes]}
+    names = [part.name.rpartition(".")[0][:80] or part.name[:80] for part in (first, second)]
+    if names[0] == names[1]:
+        names = ["first length", "second length"]
+    objectives = [
+        {"name": name, **(part.costs or {"from": "great_circle"})}
+        for name, part in zip(names, (first, second), strict=True)
+    ]
+    stops = located or [{"id": each} for each in ids or map(str, range(1, first.count + 1))]
+    return {"stops": stops, "objectives": objectives}

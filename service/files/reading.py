@@ -1,0 +1,136 @@
+"""Files and readings: named bytes under bounds; a request, notes and columns; refusals."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
+
+Kind = Literal["front", "fleet", "coverage"]
+Request = dict[str, Any]
+_PICTURES = (b"\x89PNG", b"P5", b"P2")
+_PICTURE_NAMES = (".png", ".pgm", ".jpg", ".jpeg", ".gif", ".webp", ".bmp")
+_LONGEST_SHOWN = 80  # characters of a file that a sentence quotes
+
+
+class UnreadableFile(ValueError):
+    """A file that is not of its format, or of a kind that is not supported."""
+
+
+class FileTooLarge(UnreadableFile):
+    """A file that holds more than the reader takes."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bounds:
+    """What a file may hold, and what its request may ask for.
+
+    Args:
+        cities: Cities in planes, or stops.
+        matrix_cities: Cities between which costs are written out.
+        cells: Fields of a table, or cells of a map.
+        roads: Whether times by road can be asked for.
+    """
+
+    cities: int = 100_000
+    matrix_cities: int = 1000
+    cells: int = 2**22
+    roads: bool = False
+
+
+@dataclass(frozen=True)
+class NamedFile:
+    """A file by its name, without a folder, and what it holds."""
+
+    name: str
+    data: bytes
+
+    @property
+    def is_picture(self) -> bool:
+        """Whether it is PNG or PGM, by its first bytes, or another picture by its ending."""
+        return self.data.startswith(_PICTURES) or self._ends_with(_PICTURE_NAMES)
+
+    @property
+    def is_yaml(self) -> bool:
+        """Whether it is YAML, by its ending."""
+        return self._ends_with((".yaml", ".yml"))
+
+    def _ends_with(self, endings: tuple[str, ...]) -> bool:
+        return self.name.casefold().endswith(endings)
+
+
+@dataclass(frozen=True)
+class Note:
+    """One thing that was taken for granted, with a code for programs."""
+
+    file: str
+    text: str
+    code: str
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table, and what it was taken for: a field of stops, or `ignored`."""
+
+    name: str
+    taken_for: str
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A request, of which operation it is, and what was taken for granted."""
+
+    kind: Kind
+    request: Request
+    name: str
+    notes: tuple[Note, ...] = ()
+    columns: tuple[Column, ...] = ()
+    planes: list[list[float]] | None = None  # rows of x, y, x, y, whose rounded distances are asked
+
+    @property
+    def document(self) -> Mapping[str, Any]:
+        """The reading as members of JSON, with arrays in the request."""
+        columns = {"columns": [asdict(each) for each in self.columns]} if self.columns else {}
+        notes = [asdict(note) for note in self.notes]
+        members = {"kind": self.kind, "request": self.request, "notes": notes}
+        planes = {} if self.planes is None else {"planes": self.planes}
+        return {**members, **columns, **planes, "name": self.name}
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file that is being read, and the notes and columns that come of it."""
+
+    file: NamedFile
+    bounds: Bounds
+    notes: list[Note] = field(default_factory=list)
+    columns: list[Column] = field(default_factory=list)
+
+    @property
+    def name(self) -> str:
+        """The file's name without characters that no terminal shows."""
+        return _printable(self.file.name)
+
+    def note(self, code: str, text: str) -> None:
+        """Note what is taken for granted."""
+        self.notes.append(Note(self.name, _printable(text), code))
+
+    def refusal(self, reason: str) -> UnreadableFile:
+        """Return the exception that says why the file cannot be read."""
+        return UnreadableFile(f"{self.name}: {_printable(reason)}")
+
+    def check_count(self, noun: str, limit: int, actual: int) -> None:
+        """Raise FileTooLarge where there are more than the limit."""
+        if actual > limit:
+            raise FileTooLarge(f"{self.name}: must have at most {limit} {noun}, got {actual}")
+
+    def reading(self, kind: Kind, request: Request) -> Reading:
+        """Return the reading of this file alone."""
+        return Reading(kind, request, self.name, tuple(self.notes), tuple(self.columns))
+
+
+def _printable(text: str) -> str:
+    return "".join(each if each.isprintable() else "?" for each in text)
+
+
+def quoted(text: object) -> str:
+    """Return the beginning of a text, in quotation marks and without control characters."""
+    return repr(str(text)[:_LONGEST_SHOWN])

@@ -1,0 +1,81 @@
+"""The rows of a spreadsheet in XLSX: of its first sheet that holds anything."""
+
+import io
+import zipfile
+from datetime import datetime, time
+from typing import Any
+
+from service.files.reading import FileTooLarge, Source
+
+_MOST_BYTES = 2**27  # of all parts, once they are unpacked
+_MOST_PARTS = 2000
+
+
+def is_spreadsheet(data: bytes) -> bool:
+    """Return whether bytes are those of a zip file, as XLSX is."""
+    return data.startswith(b"PK\x03\x04")
+
+
+def rows_of(source: Source) -> list[list[str]]:
+    """Return the fields of each row, as text.
+
+    Raises:
+        UnreadableFile: It is no XLSX, has no row, or is too large unpacked.
+    """
+    _check_size(source)
+    import openpyxl
+
+    try:
+        book = openpyxl.load_workbook(
+            io.BytesIO(source.file.data), read_only=True, data_only=True, keep_links=False
+        )
+        sheets = [sheet for sheet in book.worksheets if sheet.sheet_state == "visible"]
+        return _first_with_rows(source, sheets)
+    except FileTooLarge:
+        raise
+    except Exception as error:  # whatever a part that is not as it should be leads to
+        if isinstance(error, MemoryError):
+            raise
+        raise source.refusal(f"must be XLSX: {type(error).__name__}") from None
+
+
+def _check_size(source: Source) -> None:
+    """Raise a refusal where a zip file unpacks to too much; no part grows beyond what it says."""
+    try:
+        parts = zipfile.ZipFile(io.BytesIO(source.file.data)).infolist()
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
+        raise source.refusal(f"must be XLSX: {error}") from None
+    source.check_count("parts", _MOST_PARTS, len(parts))
+    source.check_count("bytes unpacked", _MOST_BYTES, sum(part.file_size for part in parts))
+    if not any(part.filename.endswith("workbook.xml") for part in parts):
+        raise source.refusal("must be XLSX, got another zip file: unpack it first")
+
+
+def _first_with_rows(source: Source, sheets: list[Any]) -> list[list[str]]:
+    """Return the rows of the first sheet that has any, and note that there are others."""
+    for sheet in sheets:
+        sheet.reset_dimensions()  # else a wrong one makes rows short, and a huge one long
+        rows: list[list[str]] = []
+        count = 0
+        for row in sheet.iter_rows(values_only=True):
+            count += 1 + len(row)
+            source.check_count("fields and rows", source.bounds.cells, count)
+            rows.append([_text(value) for value in row])
+        if any(any(row) for row in rows):
+            if len(sheets) > 1:
+                source.note("sheet", f"Only the sheet {sheet.title!r} of {len(sheets)} was read.")
+            width = max(map(len, rows))  # a row ends with its last field that holds something
+            source.check_count("fields", source.bounds.cells, width * len(rows))
+            return [row + [""] * (width - len(row)) for row in rows]
+    return []
+
+
+def _text(value: Any) -> str:
+    """Return the value of a cell as a field of CSV would have it."""
+    if value is None:
+        return ""
+    if isinstance(value, time | datetime):
+        return value.isoformat(sep=" ") if isinstance(value, datetime) else value.isoformat()
+    if isinstance(value, float) and value.is_integer() and abs(value) < 2**53:
+        return str(int(value))
+    return str(value)

@@ -1,0 +1,235 @@
+"""Requests of tables: stops with places, two planes, or one objective of two."""
+
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.files.columns import FLEET
+from service.files.fleets import Stop, measured, planar, timed, with_one_vehicle
+from service.files.places import check_range, note_places, weighted
+from service.files.reading import Reading, Source, quoted
+from service.files.table_columns import Columns, columns_of, ids_of, place_in
+from service.files.tables import Table, number_in, plain_numbers
+from service.files.visits import add_visits
+
+Array = NDArray[np.float64]
+_NO_WAY = {"", "-", "inf", "+inf", "infinity", "nan", "na", "n/a", "null", "none", "x", "∞"}
+
+
+@dataclass(frozen=True)
+class Part:
+    """What one file says of the stops of two: ids, and costs, a plane, or places on the earth."""
+
+    name: str
+    count: int
+    ids: list[str] | None = None
+    costs: dict[str, Any] = field(default_factory=dict)  # a member of an objective
+    stops: list[Stop] | None = None  # that have locations
+    plane: list[list[float]] | None = None  # whose distances, rounded, are the costs
+
+
+def reading_of(source: Source, table: Table) -> Reading:
+    """Return the request of a table that holds both objectives, or stops where they lie.
+
+    Raises:
+        UnreadableFile: A field is not what its column asks for, or columns are missing.
+    """
+    columns = columns_of(source, table)
+    fields = columns.fields
+    if "place" in fields or {"longitude", "latitude"} <= set(fields) or _degrees(columns):
+        return _located(columns)
+    fleet = [name for name, each in zip(columns.names, fields, strict=True) if each in FLEET]
+    if fleet and {"x", "y"} <= set(fields):
+        return _planar_fleet(columns)
+    if fleet:
+        demand = "must have places, in columns lon and lat or x and y, beside"
+        raise source.refusal(f"{demand} {', '.join(map(quoted, fleet))}")
+    return _two_planes(columns)
+
+
+def _degrees(columns: Columns) -> bool:
+    """Return whether columns x and y alone are degrees, as QGIS writes them, and take them so."""
+    x, y = columns.find("x"), columns.find("y")
+    if x is None or y is None or any("x" in each or "y" in each for each in _others(columns)):
+        return False
+    rows = [row for _, row in columns.table.rows]
+    exact = all(re.search(r"[.,]\d{3}", row[at]) for row in rows for at in (x, y))
+    numbers = [(number_in(row[x]), number_in(row[y])) for row in rows]
+    if not exact or not all(
+        a is not None and b is not None and abs(a) <= 180 and abs(b) <= 90 for a, b in numbers
+    ):
+        return False
+    columns.fields[x], columns.fields[y] = "longitude", "latitude"
+    columns.source.note("place", "x and y look like degrees: taken for longitude and latitude.")
+    return True
+
+
+def _others(columns: Columns) -> list[str]:
+    """Return the names of columns of numbers that are taken for nothing, in small letters."""
+    pairs = enumerate(zip(columns.names, columns.fields, strict=True))
+    return [
+        name.casefold() for at, (name, each) in pairs if each is None and columns.are_numbers(at)
+    ]
+
+
+def _two_planes(columns: Columns) -> Reading:
+    """Return the request of four columns of numbers, x and y in either plane."""
+    source, table = columns.source, columns.table
+    free = [at for at, each in enumerate(columns.fields) if each != "id"]
+    if table.heading and len(free) > 4:
+        free = [at for at in free if columns.are_numbers(at)]
+    named = [columns.fields[at] for at in free]
+    planes = len(free) == 4 and set(named) <= {None, "x", "y"}
+    if planes and {"x", "y"} <= set(named):
+        planes = all(re.match("[xy]|x?lon|y?lat", name) for name in _others(columns))
+    if not planes:
+        came = f"{len(free)} columns: {', '.join(quoted(columns.names[at]) for at in free[:8])}"
+        demand = "must have 4 columns, x and y in either plane, or columns named lon and lat"
+        hint = "; one plane needs a second file with the other" if len(free) == 2 else ""
+        raise source.refusal(f"{demand}, got {came}{hint}")
+    for at, name in zip(free, ("x", "y", "second x", "second y"), strict=True):
+        columns.fields[at] = name
+    rows = columns.numbers(free)
+    ids = ids_of(columns) if "id" in columns.fields else None
+    columns.tell()
+    if ids is None:
+        return source.reading("front", {"coordinates": rows})
+    names = ("first length", "second length")
+    planes_of = [[row[at : at + 2] for row in rows] for at in (0, 2)]
+    pairs = zip(names, planes_of, strict=True)
+    objectives = [{"name": name, "coordinates": plane} for name, plane in pairs]
+    stops = [{"id": each} for each in ids]
+    return source.reading("front", {"stops": stops, "objectives": objectives})
+
+
+def _located(columns: Columns) -> Reading:
+    """Return the request for stops on the earth, a fleet's where there are demands or windows."""
+    source = columns.source
+    stops = _stops(columns, _places(columns))
+    note_places(source, stops)
+    if any(each in FLEET for each in columns.fields):
+        add_visits(columns, stops)
+        columns.tell()
+        objectives = measured(source, stops, timed(stops))
+        return source.reading("fleet", with_one_vehicle(source, stops, objectives))
+    second = _second(columns, stops)
+    columns.tell()
+    distance = {"name": "distance", "from": "great_circle"}
+    return source.reading("front", {"stops": stops, "objectives": [distance, second]})
+
+
+def _planar_fleet(columns: Columns) -> Reading:
+    source = columns.source
+    xy = columns.numbers([columns.fields.index("x"), columns.fields.index("y")])
+    stops = _stops(columns, None)
+    add_visits(columns, stops)
+    columns.tell()
+    source.note("objectives", "Distances in the plane of x and y are time as well.")
+    return source.reading("fleet", with_one_vehicle(source, stops, planar({"coordinates": xy})))
+
+
+def _places(columns: Columns) -> list[list[float]]:
+    """Return the longitude and latitude of each row."""
+    at = columns.find("place")
+    if at is None:
+        longitude, latitude = columns.fields.index("longitude"), columns.fields.index("latitude")
+        places, column = columns.numbers([longitude, latitude]), latitude
+    else:
+        for name in ("longitude", "latitude"):
+            if (other := columns.find(name)) is not None:
+                columns.fields[other] = None
+        places, column = [place_in(row[at]) for _, row in columns.table.rows], at
+    for row, place in enumerate(places):
+        check_range(columns.source, place, columns.where(row, column))
+    return places
+
+
+def _stops(columns: Columns, places: list[list[float]] | None) -> list[Stop]:
+    if "id" in columns.fields:
+        ids = ids_of(columns)
+    else:
+        ids = [str(number) for number in range(1, len(columns.table.rows) + 1)]
+        columns.source.note("ids", "No column has names of stops: they are numbered from 1.")
+    columns.source.check_count("stops", columns.source.bounds.cities, len(ids))
+    if places is None:
+        return [{"id": each} for each in ids]
+    return [{"id": each, "location": place} for each, place in zip(ids, places, strict=True)]
+
+
+def _second(columns: Columns, stops: list[Stop]) -> dict[str, Any]:
+    """Return the second objective: the plane of x and y, a cost of each metre, or time by road."""
+    x, y, cost = (columns.find(name) for name in ("x", "y", "cost"))
+    if x is not None and y is not None:
+        return {"name": "second length", "coordinates": columns.numbers([x, y])}
+    if cost is not None:
+        source = columns.source
+        source.check_count("stops with a cost", source.bounds.matrix_cities, len(stops))
+        weights = np.array([each for (each,) in columns.numbers([cost])])
+        if (weights < 0).any():
+            row = int(np.argmax(weights < 0))
+            raise source.refusal(f"{columns.where(row, cost)} must not be negative")
+        name = quoted(columns.names[cost])
+        source.note(
+            "objectives", f"{name} is what a metre costs near a stop: the second objective."
+        )
+        places = np.array([stop["location"] for stop in stops])
+        return {"name": columns.names[cost][:100], "matrix": weighted(places, weights)}
+    columns.source.note("objectives", "The second objective is time by road, of a routing engine.")
+    return {"name": "time", "from": "road_time"}
+
+
+def part_of(source: Source, table: Table) -> Part:
+    """Return what one table of two says: stops, a plane, or costs from each row to each column.
+
+    Raises:
+        UnreadableFile: It is none of these.
+    """
+    columns = columns_of(source, table)
+    name, count = source.name, len(table.rows)
+    if "place" in columns.fields or {"longitude", "latitude"} <= set(columns.fields):
+        stops = _stops(columns, _places(columns))
+        note_places(source, stops)
+        columns.tell()
+        return Part(name, count, [stop["id"] for stop in stops], stops=stops)
+    free = [at for at, each in enumerate(columns.fields) if each != "id"]
+    if len(free) not in (2, count) and table.width == count and columns.are_numbers(0):
+        free = list(range(count))
+        columns.fields[0] = None
+    if len(free) not in (2, count):
+        demand = "must have 2 columns, x and y, or as many as rows"
+        raise source.refusal(f"{demand}, got {count} rows of {len(free)}")
+    ids = ids_of(columns) if "id" in columns.fields else None
+    if len(free) == 2 != count:
+        return Part(name, count, ids, {"coordinates": columns.numbers(free)})
+    source.check_count("cities", source.bounds.matrix_cities, count)
+    return Part(name, count, ids, {"matrix": _costs(columns, free)})
+
+
+def _costs(columns: Columns, free: list[int]) -> list[list[float | None]]:
+    """Return costs, None where a field says that there is no way."""
+    costs: list[list[float | None]] = []
+    for row, (_, texts) in enumerate(columns.table.rows):
+        fields = [texts[at] for at in free]
+        costs.append(
+            [*(plain_numbers(fields) or ())]
+            or [None if texts[at].casefold() in _NO_WAY else columns.number(row, at) for at in free]
+        )
+    missing = sum(
+        cost is None for row, each in enumerate(costs) for at, cost in enumerate(each) if at != row
+    )
+    if missing:
+        columns.source.note(
+            "no-way", f"{missing} fields without a number mean that there is no way."
+        )
+    return costs
+
+
+def numbers_of(source: Source, table: Table) -> list[list[float]]:
+    """Return the numbers of a table that holds nothing else, as costs of cells do."""
+    columns = Columns(
+        source, table, [f"{at}" for at in range(1, table.width + 1)], [None] * table.width
+    )
+    return columns.numbers(list(range(table.width)))

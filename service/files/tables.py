@@ -1,0 +1,182 @@
+"""Tables of fields: from CSV of any separator, from XLSX, and from records of JSON."""
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+
+from service.files.reading import Source, quoted
+
+Row = tuple[int, list[str]]  # its number, as a spreadsheet counts, and its fields
+_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas"}
+_SAMPLE = 2**16  # characters that a separator is told by
+_SAMPLE_ROWS = 50
+_LARGEST = 1e150  # as in requests
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
+_PLAIN = re.compile(r"[-+0-9.eE ]+", re.ASCII)
+_DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
+_MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\xa0": "", "\u202f": ""})
+
+
+@dataclass(frozen=True)
+class Table:
+    """The rows below a heading, all of as many fields, and the heading if there is one."""
+
+    heading: list[str] | None
+    rows: list[Row]
+
+    @property
+    def width(self) -> int:
+        """How many fields each row has."""
+        return len(self.rows[0][1])
+
+
+def number_in(field: str) -> float | None:
+    """Return the number that a field is, with a point or a comma as its decimal sign."""
+    text = field.translate(_MINUS)
+    if _DECIMAL_COMMA.fullmatch(text):
+        text = text.replace(",", ".")
+    if not _NUMBER.fullmatch(text):
+        return None
+    number = float(text)
+    return number if abs(number) <= _LARGEST else None
+
+
+def plain_numbers(fields: Sequence[str]) -> list[float] | None:
+    """Return the numbers of fields with decimal points alone, faster; None where any is not so."""
+    if not _PLAIN.fullmatch(" ".join(fields)):
+        return None
+    try:
+        numbers = list(map(float, fields))
+    except ValueError:
+        return None
+    return numbers if all(-_LARGEST <= number <= _LARGEST for number in numbers) else None
+
+
+def table_of_csv(source: Source, text: str) -> Table:
+    """Return the table in a text of CSV.
+
+    Raises:
+        UnreadableFile: It is none, or has too many fields.
+    """
+    first, _, rest = text.partition("\n")
+    told = re.fullmatch(r"\s*\"?sep=(.)\"?\s*", first)
+    body = rest if told else text
+    separator = told[1] if told else _separator(body)
+    if separator not in (",", None):
+        named = _SEPARATORS.get(separator, quoted(separator))
+        source.note("separator", f"Fields are separated by {named}.")
+    if separator is None:
+        rows: Iterable[list[str]] = (line.split() for line in body.splitlines())
+    else:
+        rows = _csv_rows(source, body, separator)
+    return table_of(source, rows, 2 if told else 1)
+
+
+def table_of(source: Source, fields: Iterable[Sequence[str]], first: int = 1) -> Table:
+    """Return the table of rows of fields, the first of which has this number.
+
+    Rows without any text are left out, which is noted.
+
+    Raises:
+        UnreadableFile: It has no rows, rows of other lengths, or too many fields.
+    """
+    rows: list[Row] = []
+    count, empty = 0, 0
+    for number, row in enumerate(fields, first):
+        stripped = [field.strip() for field in row]
+        count += 1 + len(stripped)
+        source.check_count("fields and rows", source.bounds.cells, count)
+        if any(stripped):
+            rows.append((number, stripped))
+        else:
+            empty += bool(stripped)
+    if empty:
+        source.note("empty-rows", f"{_counted(empty, 'row')} without text left out.")
+    if not rows:
+        raise source.refusal("must have a row for each stop, got none")
+    heading = _take_heading(source, rows)
+    if not rows:
+        raise source.refusal("must have a row for each stop below its heading, got none")
+    return Table(heading, _squared(source, heading, rows))
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun} was" if count == 1 else f"{count} {noun}s were"
+
+
+def _separator(text: str) -> str | None:
+    """Return what separates all rows of a sample alike; None where white space does."""
+    lines = text[:_SAMPLE].splitlines()
+    sample = "\n".join(lines[:_SAMPLE_ROWS] if len(text) <= _SAMPLE else lines[:-1][:_SAMPLE_ROWS])
+    widths: dict[str, list[int]] = {}
+    for separator in _SEPARATORS:
+        rows = csv.reader(io.StringIO(sample, newline=""), delimiter=separator)
+        try:
+            widths[separator] = [len(row) for row in islice(rows, _SAMPLE_ROWS) if row]
+        except csv.Error:
+            widths[separator] = []
+    for separator, found in widths.items():
+        if found and found[0] > 1 and len(set(found)) == 1:
+            return separator
+    most = max(_SEPARATORS, key=lambda each: max(widths[each], default=0))
+    return most if max(widths[most], default=0) > 1 else None
+
+
+def _csv_rows(source: Source, text: str, separator: str) -> Iterator[list[str]]:
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
+    try:
+        yield from reader
+    except csv.Error as error:
+        raise source.refusal(f"must be CSV: {error}, at line {reader.line_num}") from None
+
+
+def _take_heading(source: Source, rows: list[Row]) -> list[str] | None:
+    """Take the heading off rows that have one, and return it."""
+    fields = rows[0][1]
+    if _counts_up(fields):
+        # A square of numbers is one of costs, whatever its first row.
+        if len(rows) == len(fields) != 4 or len(fields) < 2:
+            return None
+        source.note("heading", "The first row counts the columns, so it is taken for a heading.")
+    elif not _is_heading(fields, rows):
+        return None
+    return rows.pop(0)[1]
+
+
+def _counts_up(fields: Sequence[str]) -> bool:
+    """Return whether fields are a heading as pandas writes it where columns have no names."""
+    numbers = fields[1:] if fields[0] == "" else fields
+    return list(numbers) == [str(number) for number in range(len(numbers))]
+
+
+def _is_heading(fields: Sequence[str], rows: Sequence[Row]) -> bool:
+    """Return whether a row names columns: by words alone, after `id`, or as the rows are named."""
+    if any(field.lower().startswith("point") for field in fields[1:]):
+        return any(not field.lower().startswith("point") and "(" in field for field in fields)
+    numbers = [number_in(field) is not None for field in fields]
+    if not any(numbers) or fields[0].strip("#").casefold() == "id":
+        return True
+    labels = [row[0] for _, row in rows[1:]]
+    return fields[0] == "" and len(labels) > 1 and list(fields[1:]) == labels
+
+
+def _squared(source: Source, heading: list[str] | None, rows: list[Row]) -> list[Row]:
+    """Return rows of as many fields as the heading, or the first row; others are refused.
+
+    Beside a heading a row may leave its last fields out, and any may have empty ones more.
+    """
+    width = len(rows[0][1] if heading is None else heading)
+    if heading is not None and all(len(row) == width + 1 for _, row in rows):
+        heading.insert(0, "")  # as R writes tables with names of rows
+        width += 1
+    squared = []
+    for number, row in rows:
+        short = width - len(row)
+        if any(row[width:]) or (short > 0 and heading is None):
+            demand = f"row {number} must have {width} fields, as the first row"
+            raise source.refusal(f"{demand}, got {len(row)}")
+        squared.append((number, row[:width] + [""] * short))
+    return squared

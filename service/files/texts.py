@@ -1,0 +1,59 @@
+"""Decode the bytes of a text file: UTF-8, UTF-16, or what else they look like."""
+
+import codecs
+
+from service.files.reading import Source
+
+_BOMS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+# What spreadsheets of the last decades wrote.
+_LATIN = ("cp1252", "cp1250", "cp1254")
+_LEGACY = [*_LATIN, "cp1251", "cp1253", "cp932", "gb18030", "big5", "cp949"]
+_SAMPLE = 2**14  # bytes that an encoding is told by
+
+
+def text_of(source: Source) -> str:
+    """Return the text of a file, with a note where it is not UTF-8.
+
+    Raises:
+        UnreadableFile: The bytes are no text.
+    """
+    data = source.file.data
+    encoding = next((name for bom, name in _BOMS if data.startswith(bom)), None) or _told(data)
+    try:
+        text = data.decode(encoding)
+    except UnicodeDecodeError as error:
+        raise source.refusal(f"must be text, and is not {encoding} at byte {error.start}") from None
+    if "\0" in text:
+        raise source.refusal("must be text, got bytes that are zero")
+    if not encoding.startswith("utf"):
+        said = f"The text was read as {encoding}, as it is not UTF-8"
+        source.note("encoding", f"{said}: if letters look wrong, save the file as UTF-8.")
+    return text
+
+
+def _told(data: bytes) -> str:
+    """Return the encoding of bytes that no mark begins."""
+    even, odd = data[:_SAMPLE:2].count(0), data[1:_SAMPLE:2].count(0)
+    if even + odd > min(len(data), _SAMPLE) // 4:  # every other byte of Latin text in UTF-16
+        return "utf-16-le" if odd > even else "utf-16-be"
+    try:
+        data.decode()
+    except UnicodeDecodeError as error:
+        return _legacy(data, error.start)
+    return "utf-8"
+
+
+def _legacy(data: bytes, first: int) -> str:
+    """Return the encoding of bytes whose first one beyond ASCII is here."""
+    from charset_normalizer import from_bytes
+
+    begin = max(0, first - _SAMPLE // 2)
+    best = from_bytes(data[begin : begin + _SAMPLE], cp_isolation=_LEGACY).best()
+    # Pages of Latin letters differ in a few signs, by which short texts tell none from another.
+    return "cp1252" if best is None or best.encoding in _LATIN else best.encoding

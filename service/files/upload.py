@@ -1,0 +1,49 @@
+"""Read files that came over HTTP, within the limits of a service, as JSON."""
+
+from collections.abc import Mapping, Sequence
+
+from pydantic_core import to_json
+
+from service.actor_info import ActorInfo
+from service.errors import Refusal
+from service.files.reader import read_files
+from service.files.reading import Bounds, FileTooLarge, NamedFile, UnreadableFile
+from service.files.spreadsheets import is_spreadsheet
+from service.requests.limits import Limits, check_structure
+
+_CELL_BYTES = 8  # of a field of a table at most, where all of a body are fields
+
+
+def bounds_of(limits: Limits) -> Bounds:
+    """Return the bounds of files that a service can plan."""
+    return Bounds(
+        cities=limits.cities,
+        matrix_cities=limits.matrix_cities,
+        cells=max(limits.cells, limits.body_bytes // _CELL_BYTES),
+        roads=limits.roads,
+    )
+
+
+def read_upload(
+    files: Sequence[NamedFile], limits: Limits, actors: Mapping[str, ActorInfo]
+) -> bytes:
+    """Return the document of a reading as JSON.
+
+    Raises:
+        Refusal: A file cannot be read, or holds or becomes too much.
+    """
+    del actors  # whoever plans it
+    for file in files:
+        if not is_spreadsheet(file.data):  # whose bytes are compressed
+            check_structure(file.data, limits)
+    try:
+        reading = read_files(files, bounds_of(limits), wanted=None)
+    except FileTooLarge as error:
+        raise Refusal("file-too-large", detail=str(error)) from None
+    except UnreadableFile as error:
+        raise Refusal("unreadable-file", detail=str(error)) from None
+    answer = to_json(reading.document, inf_nan_mode="null")
+    if len(answer) > limits.body_bytes:
+        detail = f"{reading.name}: must become a request of at most {limits.body_bytes} bytes"
+        raise Refusal("file-too-large", detail=f"{detail}, got {len(answer)}")
+    return answer

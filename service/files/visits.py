@@ -1,0 +1,109 @@
+"""Visits in a table: demands, windows, service times and prizes, from their columns."""
+
+import re
+from functools import partial
+
+import numpy as np
+
+from service.files.columns import seconds_of
+from service.files.fleets import Stop, note_left_out
+from service.files.reading import quoted
+from service.files.table_columns import Columns
+from service.files.tables import number_in
+
+_TIME = re.compile(
+    r"(?:(\d{4}-\d\d-\d\d)[ T])?(\d{1,2}):(\d\d)(?::(\d\d)(?:\.0+)?)?(?:Z|[-+]\d\d:\d\d)?",
+    re.ASCII,
+)
+_BETWEEN = re.compile(r"\s*(?:[-/\u2013\u2014]|\bto\b|\bbis\b)\s*", re.IGNORECASE)
+_MOST = 1e6  # of demands
+_ROUNDING = 1e-6
+_MOST_DECIMALS = 3  # of demands, which become whole numbers
+
+
+def add_visits(columns: Columns, stops: list[Stop]) -> None:
+    """Add what a vehicle's visit needs to stops: demand, window, service and prize."""
+    demands = [at for at, each in enumerate(columns.fields) if each == "demand"]
+    if (at := columns.find("skills")) is not None:
+        columns.fields[at] = None
+        note_left_out(columns.source, quoted(columns.names[at]))
+    for name, read in (("service", partial(_seconds, columns)), ("prize", columns.number)):
+        if (at := columns.find(name)) is not None:
+            for row in _filled(columns, at):
+                stops[row][name] = read(row, at)
+    if demands:
+        _add_demands(columns, demands, stops)
+    for row, stop in enumerate(stops):
+        if window := _window(columns, row):
+            stop["window"] = window
+
+
+def _filled(columns: Columns, at: int) -> list[int]:
+    """Return the rows where a column has text."""
+    return [row for row in range(len(columns.table.rows)) if columns.text(row, at)]
+
+
+def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> None:
+    """Add demands as whole numbers, of fractions in smaller units."""
+    rows = np.array(
+        [
+            [columns.number(row, at) if columns.text(row, at) else 0.0 for at in demands]
+            for row in range(len(stops))
+        ]
+    )
+    finer = [rows * 10**decimals for decimals in range(_MOST_DECIMALS + 1)]
+    whole = [np.abs(each - np.rint(each)) < _ROUNDING for each in finer]
+    right = ((rows >= 0) & (rows <= _MOST) & whole[-1]).all(axis=1)
+    if not right.all():
+        row = int(np.argmin(right))
+        demand = f"must be 0 to {_MOST:g}, with at most {_MOST_DECIMALS} decimals"
+        came = ", ".join(f"{each:g}" for each in rows[row])
+        raise columns.source.refusal(f"{columns.where(row, demands[0])} {demand}, got {came}")
+    decimals = next(at for at, each in enumerate(whole) if each.all())
+    if decimals:
+        columns.source.note(
+            "demand", f"Demands are whole numbers, so they are in 1/{10**decimals} here."
+        )
+    for stop, amounts in zip(stops, np.rint(finer[decimals]).astype(int).tolist(), strict=True):
+        stop["demand"] = amounts
+
+
+def _window(columns: Columns, row: int) -> list[float] | None:
+    """Return when a visit may begin, in seconds; None where the fields are empty."""
+    both = columns.find("window")
+    if both is not None:
+        text = columns.text(row, both)
+        bounds = _BETWEEN.split(text.strip("[]() "))
+        if text and len(bounds) != 2:
+            demand = f"{columns.where(row, both)} must be two times, as 8:00-12:30"
+            raise columns.source.refusal(f"{demand}, got {quoted(text)}")
+        return [_seconds(columns, row, both, each) for each in bounds] if text else None
+    ends = [columns.find("window_from"), columns.find("window_to")]
+    texts = ["" if at is None else columns.text(row, at) for at in ends]
+    if not any(texts):
+        return None
+    earliest, latest = ends
+    if latest is None or not texts[1]:
+        at = latest if latest is not None else earliest
+        assert at is not None
+        raise columns.source.refusal(
+            f"{columns.where(row, at)} must say when the window ends, got none"
+        )
+    start = 0.0 if earliest is None or not texts[0] else _seconds(columns, row, earliest)
+    return [start, _seconds(columns, row, latest)]
+
+
+def _seconds(columns: Columns, row: int, at: int, text: str | None = None) -> float:
+    """Return a time in seconds: hours and minutes, or a number in the unit of its heading."""
+    text = columns.text(row, at) if text is None else text.strip()
+    if time := _TIME.fullmatch(text):
+        date, *parts = time.groups()
+        if date and not any(note.code == "dates" for note in columns.source.notes):
+            columns.source.note("dates", f"Dates, as {date}, were not used: only times of day.")
+        hours, minutes, seconds = (int(each or 0) for each in parts)
+        return 3600 * hours + 60 * minutes + seconds
+    number = number_in(text)
+    if number is None or number < 0:
+        demand = f"{columns.where(row, at)} must be seconds, or a time as 10:30"
+        raise columns.source.refusal(f"{demand}, got {quoted(text)}")
+    return number * (seconds_of(columns.names[at]) or 1)

@@ -1,0 +1,122 @@
+"""`POST /files`: files become requests that the service plans, or are refused with a code."""
+
+import io
+import zipfile
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import httpx
+import openpyxl
+import pytest
+
+from tests.helpers.serving import LIMITS, app_of, serving
+
+ORDERS = "Order ID;Breitengrad;Längengrad;demand\ndepot;60,1;24,9;0\n#1001;60,2;24,95;3\n"
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    with serving(app_of()) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def roomy() -> Iterator[str]:
+    """A service that takes long bodies."""
+    with serving(app_of(limits=replace(LIMITS, body_bytes=2**24))) as address:
+        yield address
+
+
+def sent(address: str, *files: tuple[str, bytes]) -> httpx.Response:
+    return httpx.post(f"{address}/files", files=[("file", each) for each in files], timeout=60)
+
+
+def test_a_table_becomes_a_fleet_that_the_service_plans(address: str) -> None:
+    answer = sent(address, ("ORDERS.CSV", ORDERS.encode("cp1252"))).json()
+    assert (answer["kind"], answer["name"]) == ("fleet", "ORDERS.CSV")
+    assert [stop["id"] for stop in answer["request"]["stops"]] == ["depot", "#1001"]
+    assert {"name": "Breitengrad", "taken_for": "latitude"} in answer["columns"]
+    assert {"encoding", "separator", "vehicle", "columns"} <= {n["code"] for n in answer["notes"]}
+    planned = httpx.post(f"{address}/fleet", json=answer["request"], timeout=60)
+    assert planned.status_code == 200, planned.text
+
+
+def test_two_tables_are_an_objective_each(address: str) -> None:
+    answer = sent(address, ("a.csv", b"0,1\n2,0\n"), ("b.csv", b"0,\n2,0\n")).json()
+    assert answer["request"] == {"matrices": [[[0, 1], [2, 0]], [[0, None], [2, 0]]]}
+
+
+def spreadsheet(sheet: bytes, times: int = 1) -> bytes:
+    """A spreadsheet whose one sheet has these bytes, so many times."""
+    packed = io.BytesIO()
+    book = openpyxl.Workbook()
+    book.save(packed)
+    parts = zipfile.ZipFile(packed)
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as file:
+        for name in parts.namelist():
+            if "sheet1" not in name:
+                file.writestr(name, parts.read(name))
+        with file.open("xl/worksheets/sheet1.xml", "w", force_zip64=True) as part:
+            for _ in range(times):
+                part.write(sheet)
+    return made.getvalue()
+
+
+SHEET = '<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"><sheetData>'
+CELLS = (f'<row r="{row}"><c r="XFD{row}"><v>1</v></c></row>' for row in range(1, 9999))
+WIDE = f"{SHEET}{''.join(CELLS)}"
+LAUGHS = "".join(f'<!ENTITY a{i} "{f"&a{i - 1};" * 10}">' for i in range(1, 12))
+LAUGHING = (
+    f'<!DOCTYPE x [<!ENTITY a0 "ha">{LAUGHS}]>{SHEET}<row><c t="str"><v>&a11;</v></c></row>'
+    "</sheetData></worksheet>"
+)
+
+
+@pytest.mark.parametrize(
+    ("data", "status"),
+    [
+        (spreadsheet(bytes(2**20), 200), 413),
+        (spreadsheet(f"{WIDE}</sheetData></worksheet>".encode()), 413),
+        (spreadsheet(LAUGHING.encode()), 422),
+    ],
+    ids=["unpacks to 200 MB", "160 million fields", "entities"],
+)
+def test_a_spreadsheet_that_would_fill_the_memory_is_refused(
+    roomy: str, data: bytes, status: int
+) -> None:
+    answer = sent(roomy, ("a.xlsx", data))
+    assert answer.status_code == status, answer.text
+
+
+@pytest.mark.parametrize(
+    ("files", "status", "code", "sentence"),
+    [
+        ([("a.csv", b"id,lat,lon\na,1,2\nb,north,3\n")], 422, "unreadable-file", "row 3"),
+        ([("a.csv", b"")], 422, "unreadable-file", "a.csv"),
+        ([("../../etc/x\x1b.csv", b"1,2\n")], 422, "unreadable-file", "4 columns"),
+        (
+            [("a.tsp", b"DIMENSION: 20000\nEDGE_WEIGHT_TYPE: EUC_2D\n")] * 2,
+            413,
+            "file-too-large",
+            "20000",
+        ),
+        ([("a.xlsx", b"PK\x03\x04")], 422, "unreadable-file", "XLSX"),
+        ([("a.csv", b"1,2,3,4\n")] * 9, 422, "invalid-parts", "8 parts"),
+    ],
+)
+def test_what_cannot_be_read_is_refused(
+    address: str, files: Any, status: int, code: str, sentence: str
+) -> None:
+    answer = sent(address, *files)
+    assert (answer.status_code, answer.json()["code"]) == (status, code)
+    assert sentence in answer.json()["detail"]
+    assert "\x1b" not in answer.text
+
+
+def test_other_bodies_are_refused(address: str) -> None:
+    answer = httpx.post(f"{address}/files", json={})
+    assert (answer.status_code, answer.json()["code"]) == (415, "not-files")
+    answer = httpx.post(f"{address}/files", files=[("map", ("a.csv", b"1"))])
+    assert (answer.status_code, answer.json()["code"]) == (422, "invalid-parts")

@@ -1,0 +1,212 @@
+"""Files become requests, and what is no such file is refused with a sentence that names it."""
+
+import io
+import sys
+from pathlib import Path
+
+import pytest
+
+from service.cli.errors import UnreadableFile
+from service.cli.inputs import read_layer, read_map, read_request
+from tests.helpers.tsplib_files import EUCLIDEAN, EXPLICIT
+
+
+def written(folder: Path, *texts: tuple[str, str]) -> list[Path]:
+    paths = [folder / name for name, _ in texts]
+    for path, (_, text) in zip(paths, texts, strict=True):
+        path.write_text(text)
+    return paths
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["1,2,3,4\n5,6,7,8.5\n", "x1;y1;x2;y2\n1;2;3;4\n\n5;6;7;8.5", "1\t2\t3\t4\r\n5\t6\t7\t8.5\r\n"],
+)
+def test_four_columns_are_coordinates(tmp_path: Path, text: str) -> None:
+    files = written(tmp_path, ("a.csv", text))
+    assert read_request(files)[0] == {"coordinates": [[1, 2, 3, 4], [5, 6, 7, 8.5]]}
+
+
+def test_two_columns_in_two_files_are_a_plane_each(tmp_path: Path) -> None:
+    files = written(tmp_path, ("a.csv", "1,2\n5,6\n0,0\n"), ("b.csv", "x,y\n3,4\n7,8\n0,0\n"))
+    expected = [[1, 2, 3, 4], [5, 6, 7, 8], [0, 0, 0, 0]]
+    assert read_request(files)[0] == {"coordinates": expected}
+
+
+def test_square_tables_in_two_files_are_matrices(tmp_path: Path) -> None:
+    rows = "0,1,2\n3,0,4\n5,6,0\n"
+    matrix = [[0, 1, 2], [3, 0, 4], [5, 6, 0]]
+    files = written(tmp_path, ("a.csv", rows), ("b.csv", rows))
+    assert read_request(files)[0]["matrices"].tolist() == [matrix, matrix]
+
+
+def test_json_is_a_request_or_its_coordinates(tmp_path: Path) -> None:
+    request = '{"coordinates": [[1, 2, 3, 4]], "seed": 3}'
+    whole, alone = written(tmp_path, ("a.json", request), ("b.json", "[[1, 2, 3, 4]]"))
+    assert read_request([whole]) == ({"coordinates": [[1, 2, 3, 4]], "seed": 3}, None)
+    assert read_request([alone])[0] == {"coordinates": [[1, 2, 3, 4]]}
+
+
+def test_files_of_tsplib_are_matrices_with_euclidean_distances_rounded(tmp_path: Path) -> None:
+    files = written(tmp_path, ("a.tsp", EUCLIDEAN), ("b.atsp", EXPLICIT))
+    rounded = [[0, 3, 1], [3, 0, 3], [1, 3, 0]]
+    explicit = [[0, 1, 2], [3, 0, 4], [5, 6, 0]]
+    assert read_request(files)[0]["matrices"].tolist() == [rounded, explicit]
+
+
+def test_files_of_tsplib_are_planes_where_that_is_asked_for(tmp_path: Path) -> None:
+    files = written(tmp_path, ("a.tsp", EUCLIDEAN), ("b.tsp", EUCLIDEAN))
+    expected = [[0, 0, 0, 0], [3.4, 0, 3.4, 0], [0, 0.5, 0, 0.5]]
+    assert read_request(files, unrounded=True)[0] == {"coordinates": expected}
+
+
+def test_a_map_is_read_by_its_suffix(tmp_path: Path) -> None:
+    pgm = b"P5 1 1 255\n\xfe"
+    (tmp_path / "map.pgm").write_bytes(pgm)
+    (tmp_path / "map.yaml").write_text(
+        "{image: map.pgm, resolution: 1, origin: [0, 0, 0], negate: 0, occupied_thresh: 0.65,"
+        " free_thresh: 0.196}"
+    )
+    assert read_map(tmp_path / "map.pgm") == ({}, pgm)
+    members, picture = read_map(tmp_path / "map.yaml")
+    assert (members["cell_size"], members["free_thresh"], picture) == (1.0, 0.196, pgm)
+    (tmp_path / "broken.yml").write_text("1")
+    with pytest.raises(UnreadableFile, match=r"broken\.yml: a map.yaml must be keys with values"):
+        read_map(tmp_path / "broken.yml")
+
+
+WRONG = [
+    ("a.csv", "", "must have a row for each stop, got none"),
+    ("a.csv", "a,b,c,d\n", "must have a row for each stop below its heading"),
+    ("a.csv", "1,2,3\n", "must have 4 columns, x and y in either plane, or"),
+    ("a.csv", "1,2,3,4\n1,2,3\n", "row 2 must have 4 fields, as the first row, got 3"),
+    ("a.csv", "1,2,3,4\n1,2,x,4\n", "row 2, column '3' must be a number, got 'x'"),
+    ("a.csv", "1,2,3,nan\n", "row 1, column '4' must be a number, got 'nan'"),
+    ("a.json", "{", "must be JSON"),
+    ("a.json", "[" * 100_000, "must be JSON"),
+    ("a.csv", '1,"2', "must be CSV: unexpected end of data"),
+    ("a.csv", "1,5;2;3;4\n1.234,5;2;3;4\n", "row 2, column '1' must be a number, got '1.234,5'"),
+    ("a.csv", "id,1,2,3\n1,2,3,4\n", "or columns named lon and lat, got 3"),
+    ("a.csv", "a,1,2,3,4\nb,1,2,3,4\na,5,6,7,8\n", "row 3, column '1' must be an id of its own"),
+    ("a.csv", "id,1,1,1,1\n ,1,2,3,4\n", "row 2, column 'id' must be an id, got none"),
+    ("a.json", "3", "must be a request, an object, or its coordinates, a list"),
+    ("a.tsp", EUCLIDEAN, "one objective: name another"),
+]
+
+
+@pytest.mark.parametrize(("name", "text", "sentence"), WRONG)
+def test_a_file_that_cannot_be_read_is_named(
+    tmp_path: Path, name: str, text: str, sentence: str
+) -> None:
+    files = written(tmp_path, (name, text))
+    with pytest.raises(UnreadableFile) as error:
+        read_request(files)
+    assert str(error.value).startswith(f"{files[0]}: ")
+    assert sentence in str(error.value)
+
+
+def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_bytes(b"\xff\xfe1")
+    with pytest.raises(UnreadableFile, match=r"a\.csv"):
+        read_request([path])
+
+
+WRONG_PAIRS = [
+    ("a.tsp", "", "b.tsp", EXPLICIT, "a.tsp: must have a row for each stop"),
+    ("a.csv", "1,2\n3,4\n5,6\n", "b.csv", "1,2\n3,4\n", "as many stops, got 3 of"),
+    ("a.csv", "1,2,3\n", "b.csv", "1,2\n", "must have 2 columns, x and y, or as many as rows"),
+]
+
+
+@pytest.mark.parametrize(("first", "text", "second", "other", "sentence"), WRONG_PAIRS)
+def test_two_files_that_do_not_go_together_are_refused(
+    tmp_path: Path, first: str, text: str, second: str, other: str, sentence: str
+) -> None:
+    with pytest.raises(UnreadableFile) as error:
+        read_request(written(tmp_path, (first, text), (second, other)))
+    assert sentence in str(error.value)
+
+
+def test_numbers_may_have_decimal_commas(tmp_path: Path) -> None:
+    files = written(tmp_path, ("a.csv", "x1;y1;x2;y2\n1,5;-2;3e1;4\n,5;6;7.25;8\n"))
+    assert read_request(files)[0] == {"coordinates": [[1.5, -2, 30, 4], [0.5, 6, 7.25, 8]]}
+
+
+@pytest.mark.parametrize(
+    ("text", "ids"),
+    [
+        ("id,x1,y1,x2,y2\ndepot,1,2,3,4\nb 2,5,6,7,8\n", ("depot", "b 2")),
+        ("ID;x1;y1;x2;y2\n17;1,0;2;3;4\n18;5;6;7;8\n", ("17", "18")),
+        ("depot,1,2,3,4\n2,5,6,7,8\n", ("depot", "2")),
+        ("1,2,3,4\n5,6,7,8\n", None),
+    ],
+)
+def test_a_first_column_may_hold_ids(
+    tmp_path: Path, text: str, ids: tuple[str, ...] | None
+) -> None:
+    request, found = read_request(written(tmp_path, ("a.csv", text)))
+    assert found == ids
+    planes = [[[1, 2], [5, 6]], [[3, 4], [7, 8]]]
+    if ids is None:
+        assert request == {"coordinates": [[1, 2, 3, 4], [5, 6, 7, 8]]}
+    else:
+        assert [each["coordinates"] for each in request["objectives"]] == planes
+
+
+def test_the_ids_of_two_files_are_the_same(tmp_path: Path) -> None:
+    named, other, plain = "id,a,b\na,0,1\nb,2,0\n", "id,a,b\nb,0,1\na,2,0\n", "0,1\n2,0\n"
+    files = written(tmp_path, ("a.csv", named), ("b.csv", plain), ("c.csv", other))
+    assert read_request([files[1], files[0]])[1] == ("a", "b")
+    with pytest.raises(UnreadableFile, match="the same ids, in the same order"):
+        read_request([files[0], files[2]])
+
+
+class Piped:
+    """Standard input with these bytes in it."""
+
+    def __init__(self, data: bytes) -> None:
+        self.buffer = io.BytesIO(data)
+
+
+@pytest.mark.parametrize(
+    "data", [b' {"coordinates": [[1, 2, 3, 4]]}', b"[[1, 2, 3, 4]]", b"x;x;x;x\n1;2;3;4\n"]
+)
+def test_a_file_may_be_standard_input(data: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", Piped(data))
+    assert read_request([Path("-")])[0] == {"coordinates": [[1, 2, 3, 4]]}
+
+
+def test_one_of_two_files_may_be_standard_input(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    [file] = written(tmp_path, ("a.csv", "1,2\n3,4\n5,6\n"))
+    monkeypatch.setattr(sys, "stdin", Piped(b"0,0\n1,1\n2,2\n"))
+    expected = [[1, 2, 0, 0], [3, 4, 1, 1], [5, 6, 2, 2]]
+    assert read_request([file, Path("-")])[0] == {"coordinates": expected}
+    with pytest.raises(UnreadableFile, match="one of both files"):
+        read_request([Path("-"), Path("-")])
+
+
+def test_standard_input_is_named_where_it_cannot_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", Piped(b"1,2,3\n"))
+    with pytest.raises(UnreadableFile, match="standard input: must have 4 columns"):
+        read_request([Path("-")])
+
+
+def test_a_map_may_be_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", Piped(b"\x89PNG..."))
+    assert read_map(Path("-")) == ({}, b"\x89PNG...")
+    monkeypatch.setattr(sys, "stdin", Piped(b'{"grid": [[0]]}'))
+    assert read_map(Path("-")) == ({"grid": [[0]]}, None)
+
+
+def test_a_map_is_a_request_or_a_picture(tmp_path: Path) -> None:
+    written(tmp_path, ("map.json", '{"grid": [[0]]}'), ("map.png", "PNG"))
+    assert read_map(tmp_path / "map.json") == ({"grid": [[0]]}, None)
+    assert read_map(tmp_path / "map.png") == ({}, b"PNG")
+
+
+def test_costs_on_a_map_are_a_table(tmp_path: Path) -> None:
+    [file] = written(tmp_path, ("people.csv", "1,2,3\n4,5,6\n"))
+    assert read_layer(file).tolist() == [[1, 2, 3], [4, 5, 6]]

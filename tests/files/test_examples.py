@@ -1,0 +1,232 @@
+"""The folder of examples: files as people have them, and what each must become."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pydantic_core import to_json
+
+from service.errors import Refusal
+from service.files.reader import read_files
+from service.files.reading import Bounds, NamedFile, Reading, UnreadableFile
+from service.requests.task import TaskSource, parse_task
+from tests.helpers.actors import info_of
+from tests.helpers.serving import LIMITS
+
+ACTORS = {
+    "pa-one": info_of("pa-one", "coordinates"),
+    "pa-one-matrix": info_of("pa-one-matrix", "matrices"),
+}
+FOLDER = Path(__file__).parent / "examples"
+HELSINKI = [[24.94, 60.17], [24.95, 60.18]]
+
+
+@dataclass(frozen=True)
+class Becomes:
+    """What files must become: ids with spaces between, other members, and codes of notes."""
+
+    kind: str
+    ids: str = ""
+    places: list[list[float]] | None = None
+    members: dict[str, Any] = field(default_factory=dict)
+    notes: str = ""
+
+
+def ids(names: str, places: Any = HELSINKI, notes: str = "", **members: Any) -> Becomes:
+    return Becomes("front", names, places, members, notes)
+
+
+def fleet(names: str, notes: str = "", **members: Any) -> Becomes:
+    return Becomes("fleet", names, None, members, notes)
+
+
+def rows(*coordinates: list[float], notes: str = "") -> Becomes:
+    return Becomes("front", members={"coordinates": list(coordinates)}, notes=notes)
+
+
+def van(**members: Any) -> list[dict[str, Any]]:
+    return [{"id": "vehicle", "start": "depot", "end": "depot", **members}]
+
+
+def named(*matrices: list[list[Any]]) -> Becomes:
+    return Becomes("front", members={"matrices": list(matrices)})
+
+
+PLAIN = [[0, 1, 2], [1, 0, 3], [2, 3, 0]]
+EARTH = {
+    "orders-with-hashes.csv": ids("#1001 #1002 #1003 #1004 #1005 #1006", None),
+    "excel-german.CSV": ids(
+        "München Köln", [[11.575, 48.137], [6.96, 50.938]], "encoding separator empty-rows"
+    ),
+    "excel-sep-line.csv": ids("depot shop", notes="separator"),
+    "utf16-from-excel.txt": ids("zażółć b", notes="separator"),
+    "utf8-bom.csv": ids("a b"),
+    "bars.csv": ids("a b", notes="separator"),
+    "pandas-unnamed.csv": ids("0 1"),
+    "quoted-line-breaks.csv": ids('Main_Street_5_back_door Say_"hello"'),
+    "units-in-headings.csv": ids("a b"),
+    "gtfs-stops.txt": ids("S1 S2"),
+    "upper-case-xy.csv": ids("1 2", [[24.9384, 60.1699], [24.9521, 60.1721]], "place"),
+    "wkt-from-qgis.csv": ids("a b"),
+    "phone-is-not-a-cost.csv": ids("a b"),
+    "pairs.csv": ids("a b", notes="place"),
+    "semicolon-in-one-row.csv": ids("a b"),
+    "risk.csv": ids("a b c", None, "objectives"),
+    "second-plane.csv": ids("depot shop"),
+    "zero-zero.csv": ids("a b c", None, "place"),
+    "one-swapped.csv": ids("a b c", None, "swapped"),
+    "far.csv": ids("a b c", None, "far"),
+    "qgis.geojson": ids("depot shop"),
+    "geojson-io.geojson": ids("0 2", notes="ids"),
+    "records.json": ids("a b"),
+}
+OTHERS = {
+    "pandas-heading.csv": rows([0.5, 1, 2, 3], [4, 5, 6, 7], [8, 9, 10, 11], notes="heading"),
+    "no-heading.csv": rows([1, 2, 3, 4], [5, 6, 7, 8]),
+    "white-space.txt": rows([1, 2, 3, 4], [5, 6, 7, 8]),
+    "rows.json": rows([1, 2, 3, 4], [5, 6, 7, 8]),
+    "bom.json": rows([1, 2, 3, 4]),
+    "numbers.XLSX": rows([1, 2, 3, 4], [5, 6.5, 7, 8]),
+    "pandas-index.csv": ids("0 1", None),
+    "no-heading-ids.csv": ids("depot b", None),
+    "infinity.json": named([[0, None, 2], [1, 0, 3], [4, 5, 0]], PLAIN),
+    "demand.csv": fleet("depot a b", "vehicle", vehicles=van(capacity=[7]), clock="time"),
+    "windows-as-times.csv": fleet("depot a b", vehicles=van(shift=[28800, 64800])),
+    "windows-as-seconds.csv": fleet("depot a", vehicles=van()),
+    "window-in-one-column.csv": fleet("depot a", vehicles=van()),
+    "service-in-minutes.csv": fleet("depot a", clock="time"),
+    "demand-with-decimals.csv": fleet("depot a b", "demand", vehicles=van(capacity=[35])),
+    "two-demands.csv": fleet("depot a b", vehicles=van(capacity=[3, 12])),
+    "rfc3339.csv": fleet("job1 job2", "dates", vehicles=[{"id": "vehicle", "capacity": [3]}]),
+    "skills.csv": fleet("depot a", "left-out"),
+    "plane-with-demand.csv": fleet("depot a b", "objectives", vehicles=van(capacity=[3])),
+    "first-stop-has-demand.csv": fleet("a b", vehicles=[{"id": "vehicle", "capacity": [5]}]),
+    "ogr2ogr-3d.GEOJSON": fleet("7 8", vehicles=[{"id": "vehicle", "capacity": [7]}]),
+    "nested-records.json": fleet("a b", vehicles=[{"id": "vehicle", "capacity": [3]}]),
+    "orders.xlsx": fleet("depot #1001", "sheet", vehicles=van(shift=[28800, 64800], capacity=[2])),
+    "vroom.json": fleet(
+        "depot_1 14 pickup_4 delivery_5",
+        "left-out",
+        shipments=[{"pickup": "pickup 4", "delivery": "delivery 5"}],
+    ),
+    "vroom-matrix.json": fleet(
+        "depot_1 depot_2 1414 1515",
+        vehicles=[{"id": "0", "start": "depot 1", "end": "depot 2"}],
+    ),
+    "cvrp.vrp": fleet(
+        "1 2 3 4",
+        "vehicle",
+        vehicles=[{"id": "vehicle", "count": 3, "start": "1", "end": "1", "capacity": [5]}],
+    ),
+    "solomon.txt": fleet("0 1 2", "objectives", clock="longest route"),
+    "li-lim.txt": fleet("0 1 2", shipments=[{"pickup": "1", "delivery": "2"}]),
+    "occupancy-grid.json": Becomes("coverage"),
+    "map.pgm": Becomes("coverage", members={"grid": [[0, 0, 1]]}, notes="cell-size"),
+    "map.yaml map.pgm": Becomes(
+        "coverage", members={"grid": [[0, 1, 1]], "cell_size": 0.05, "origin": [-1, -2, 0]}
+    ),
+    "matrix-plain.csv matrix-plain.csv": named(PLAIN, PLAIN),
+    "matrix-no-way.csv matrix-plain.csv": named([[0, 1, None], [3, 0, 7], [5, None, 0]], PLAIN),
+    "matrix-names.csv matrix-plain.csv": ids("A B C", None),
+    "plane-a.csv matrix-plain.csv": ids("a b c", None),
+    "comments-behind.tsp comments-behind.tsp": named(*[[[0, 5, 8], [5, 0, 5], [8, 5, 0]]] * 2),
+    "upper-row.tsp lower-diag-row.tsp": named(*[[[0, 5, 6], [5, 0, 7], [6, 7, 0]]] * 2),
+    "asymmetric.atsp att.TSP": named(
+        [[9999, 1, 2], [3, 9999, 4], [5, 6, 9999]], [[0, 4, 4], [4, 0, 1], [4, 1, 0]]
+    ),
+    # The first distances of ulysses16, whose places these are.
+    "geo.tsp asymmetric.atsp": named(
+        [[0, 509, 501], [509, 0, 126], [501, 126, 0]], [[9999, 1, 2], [3, 9999, 4], [5, 6, 9999]]
+    ),
+    "fixed-edges.tsp upper-row.tsp": Becomes("front", notes="left-out rounded"),
+}
+REFUSED = {
+    "swapped-out-of-range.csv": "row 2, column 'lat' must have a latitude of -90 to 90, got 139.7",
+    "metres.csv": "degrees (WGS84, EPSG:4326)",
+    "lat-is-text.csv": "row 3, column 'lat' must be a number, got 'north'",
+    "lat-is-empty.csv": "row 3, column 'lat' must be a number, got ''",
+    "same-id-twice.csv": "row 3, column 'id' must be an id of its own, got 'a' as row 2 has it",
+    "open-quote.csv": "must be CSV",
+    "ragged.csv": "row 2 must have 4 fields, as the first row, got 3",
+    "thousands.csv": "row 2, column 'x1' must be a number, got '1.234,5'",
+    "nothing.csv": "must have a row for each stop, got none",
+    "demand-without-place.csv": "must have places, in columns lon and lat or x and y",
+    "one-plane.csv": "needs a second file",
+    "picture.pdf": "got a PDF",
+    "old.xls": "save it as .xlsx or CSV",
+    "utm.geojson": "export it in EPSG:4326",
+    "line.geojson": "features/0 must be a Point, got 'LineString'",
+    "cut-off.json": "must be JSON",
+    "vroom-two-windows.json": "jobs/0/time_windows must be one window",
+    "order.sop": "an order of cities",
+    "att.TSP": "one objective: name another",
+    "map.yaml": "open both together",
+}
+
+
+def read(names: str) -> Reading:
+    files = [NamedFile(name, (FOLDER / name).read_bytes()) for name in names.split()]
+    return read_files(files, Bounds(), wanted=None)
+
+
+@pytest.mark.parametrize(("names", "expected"), [*EARTH.items(), *OTHERS.items()])
+def test_every_example_becomes_what_it_must(names: str, expected: Becomes) -> None:
+    reading = read(names)
+    request = reading.request
+    stops = request.get("stops", [])
+    assert reading.kind == expected.kind
+    assert [stop["id"].replace(" ", "_") for stop in stops] == expected.ids.split()
+    if expected.places:
+        assert [stop["location"] for stop in stops] == expected.places
+    assert {name: request[name] for name in expected.members} == expected.members
+    assert set(expected.notes.split()) <= {note.code for note in reading.notes}
+
+
+@pytest.mark.parametrize("names", sorted({*EARTH, *OTHERS}))
+def test_what_an_example_becomes_is_a_request_that_the_service_takes(names: str) -> None:
+    reading = read(names)
+    if reading.kind == "coverage":
+        return  # which lacks a spacing and a second objective
+    body = to_json(reading.request)
+    if "by road" in "".join(note.text for note in reading.notes):
+        with pytest.raises(Refusal, match="needs a routing engine"):
+            parse_task(TaskSource(reading.kind, body), LIMITS, ACTORS)
+    else:
+        parse_task(TaskSource(reading.kind, body), LIMITS, ACTORS)
+
+
+@pytest.mark.parametrize(("name", "sentence"), REFUSED.items())
+def test_what_is_no_request_is_refused_by_name(name: str, sentence: str) -> None:
+    with pytest.raises(UnreadableFile) as refused:
+        read(name)
+    assert str(refused.value).startswith(f"{name}: ")
+    assert sentence in str(refused.value)
+
+
+def test_every_example_is_in_the_table() -> None:
+    known = {name for names in [*EARTH, *OTHERS, *REFUSED] for name in names.split()}
+    assert known == {path.name for path in FOLDER.iterdir()}
+    assert len(known) >= 60
+
+
+def test_visits_of_a_table_are_those_of_its_columns() -> None:
+    [depot, visit, other] = read("windows-as-times.csv").request["stops"]
+    assert depot.keys() == {"id", "location"}
+    assert visit["window"] == [34200, 37830]
+    assert "window" not in other
+    [_, timed] = read("window-in-one-column.csv").request["stops"]
+    assert timed["window"] == [28800, 45000]
+    [_, slow] = read("service-in-minutes.csv").request["stops"]
+    assert slow["service"] == 300
+    [_, loaded, _] = read("demand-with-decimals.csv").request["stops"]
+    assert loaded["demand"] == [25]
+
+
+def test_a_column_is_ignored_or_a_cost_by_its_heading_alone() -> None:
+    ignored = read("phone-is-not-a-cost.csv")
+    assert ignored.columns[-1].taken_for == "ignored"
+    assert ignored.request["objectives"][1]["from"] == "road_time"
+    risk = read("risk.csv").request["objectives"][1]
+    assert risk["name"] == "risk"
+    assert risk["matrix"][0][1] == pytest.approx(3 * 111195.08, rel=1e-6)
