@@ -23,10 +23,19 @@ def add_options(parser: ArgumentParser, kind: type[Any]) -> None:
 
 def from_options(kind: type[T], options: Namespace, **others: Any) -> T:
     """Return the configuration that the options describe; fields without option come by name."""
-    return kind(**given_options(kind, options), **others)
+    return kind(**_given(kind, options), **others)
 
 
-def given_options(kind: type[Any], options: Namespace) -> dict[str, Any]:
+def differences(config: Any, options: Namespace) -> list[str]:
+    """Return what options that were given differ in from a configuration, a phrase for each."""
+    return [
+        f"--{name.replace('_', '-')} {value}, which has {getattr(config, name)}"
+        for name, value in _given(type(config), options).items()
+        if value != getattr(config, name)
+    ]
+
+
+def _given(kind: type[Any], options: Namespace) -> dict[str, Any]:
     """Return the settings that were given as options, by name; the others have their defaults."""
     names = [declared.name for declared in _settings(kind)]
     return {name: getattr(options, name) for name in names if name in options}

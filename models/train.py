@@ -23,7 +23,7 @@ from models.checkpoint import (
 )
 from models.config import NetworkConfig, TrainingConfig
 from models.data.dataset import Labels
-from models.options import add_options, from_options, given_options
+from models.options import add_options, differences, from_options
 from models.repair_steps import repair_step
 from models.steps import StepMeans, imitation_step, policy_gradient_step
 from models.training_log import TrainingLog
@@ -92,12 +92,7 @@ def _begun_or_resumed(options: argparse.Namespace, device: torch.device) -> Run:
 
 def _check_unchanged(run: Run, options: argparse.Namespace) -> None:
     """Raise ValueError where options differ from those of the run that is to be resumed."""
-    differing = [
-        f"--{name.replace('_', '-')} {value}, which has {getattr(config, name)}"
-        for config in (run.config.network, run.config)
-        for name, value in given_options(type(config), options).items()
-        if value != getattr(config, name)
-    ]
+    differing = [*differences(run.config.network, options), *differences(run.config, options)]
     if options.initial:
         differing.append(f"--initial {options.initial}, which has weights")
     if differing:
