@@ -23,7 +23,7 @@ from models.networks.pointer_network import (
     build_tours,
     log_likelihoods,
 )
-from models.options import add_options, from_options, setting
+from models.options import add_options, differences, from_options, setting
 from models.rollout import sampling
 from models.steps import descend
 from models.training_log import ProgressLog
@@ -196,8 +196,15 @@ def main(arguments: list[str] | None = None) -> None:
     add_options(parser, TransferConfig)
     options = parser.parse_args(arguments)
     saved = options.out / "run.pt"
-    config = from_options(TransferConfig, options)
-    train(resume(saved) if saved.exists() else new_run(config), options.out)
+    if not saved.exists():
+        train(new_run(from_options(TransferConfig, options)), options.out)
+        return
+    run = resume(saved)
+    if differing := differences(run.config, options):
+        raise ValueError(
+            f"the run in {options.out} must be resumed as it is, got {'; '.join(differing)}"
+        )
+    train(run, options.out)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Configurations on the command line: an option for each setting of a dataclass."""
 
-from argparse import ArgumentParser, Namespace
+from argparse import SUPPRESS, ArgumentParser, Namespace
 from dataclasses import Field, field, fields
 from typing import Any, TypeVar
 
@@ -17,14 +17,28 @@ def add_options(parser: ArgumentParser, kind: type[Any]) -> None:
     for declared in _settings(kind):
         option = "--" + declared.name.replace("_", "-")
         meaning = f"{declared.metadata['meaning']} (default {declared.default})"
-        default = declared.default
-        parser.add_argument(option, type=type(default), default=default, help=meaning)
+        kind_of_value = type(declared.default)
+        parser.add_argument(option, type=kind_of_value, default=SUPPRESS, help=meaning)
 
 
 def from_options(kind: type[T], options: Namespace, **others: Any) -> T:
     """Return the configuration that the options describe; fields without option come by name."""
-    values = {declared.name: getattr(options, declared.name) for declared in _settings(kind)}
-    return kind(**values, **others)
+    return kind(**_given(kind, options), **others)
+
+
+def differences(config: Any, options: Namespace) -> list[str]:
+    """Return what options that were given differ in from a configuration, a phrase for each."""
+    return [
+        f"--{name.replace('_', '-')} {value}, which has {getattr(config, name)}"
+        for name, value in _given(type(config), options).items()
+        if value != getattr(config, name)
+    ]
+
+
+def _given(kind: type[Any], options: Namespace) -> dict[str, Any]:
+    """Return the settings that were given as options, by name; the others have their defaults."""
+    names = [declared.name for declared in _settings(kind)]
+    return {name: getattr(options, name) for name in names if name in options}
 
 
 def _settings(kind: type[Any]) -> list[Field[Any]]:

@@ -23,7 +23,7 @@ from models.checkpoint import (
 )
 from models.config import NetworkConfig, TrainingConfig
 from models.data.dataset import Labels
-from models.options import add_options, from_options
+from models.options import add_options, differences, from_options
 from models.repair_steps import repair_step
 from models.steps import StepMeans, imitation_step, policy_gradient_step
 from models.training_log import TrainingLog
@@ -80,12 +80,25 @@ def main(arguments: list[str] | None = None, counts: dict[int, int] = COUNTS) ->
 def _begun_or_resumed(options: argparse.Namespace, device: torch.device) -> Run:
     saved = options.out / "run.pt"
     if saved.exists():
-        return resume(saved, device)
+        run = resume(saved, device)
+        _check_unchanged(run, options)
+        return run
     network = from_options(NetworkConfig, options)
     run = new_run(from_options(TrainingConfig, options, network=network), device)
     if options.initial:
         start_from(run, load_weights(options.initial).actor)
     return run
+
+
+def _check_unchanged(run: Run, options: argparse.Namespace) -> None:
+    """Raise ValueError where options differ from those of the run that is to be resumed."""
+    differing = [*differences(run.config.network, options), *differences(run.config, options)]
+    if options.initial:
+        differing.append(f"--initial {options.initial}, which has weights")
+    if differing:
+        raise ValueError(
+            f"the run in {options.out} must be resumed as it is, got {'; '.join(differing)}"
+        )
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -26,6 +26,10 @@ _RESOLUTION = 2.0**20  # of a plane: cities whose coordinates round to the same 
 _LARGEST_COST = 2.0  # scaled, of a forbidden leg or an outlier: networks were trained on up to 1
 _MARGIN = 0.25  # around the unit square, in which cities far from all others are put
 _LEAST_PREFERENCE = 1e-3  # for an objective: else all cities that coincide in the other are alike
+_JITTER = (
+    1e-6  # relative, of inputs with ties: a network joins cities in turn, not at once, by ties
+)
+_SAMPLED = 32  # rows of matrices, in which ties are looked for
 
 
 class NamedActor(Constructor, Protocol):
@@ -90,12 +94,13 @@ class OnnxActor:
             scaled = instance.scaled_matrices.clip(max=_LARGEST_COST)
             matrices = _without_zero_matrix(scaled.astype(np.float32))
             first, place = _places_by_matrices(matrices)
-            inputs: dict[str, NDArray[Any]] = {"matrices": matrices[:, first[:, np.newaxis], first]}
+            apart = _without_tied_costs(matrices[:, first[:, np.newaxis], first])
+            inputs: dict[str, NDArray[Any]] = {"matrices": apart}
         else:
             scaled = instance.scaled_coordinates.clip(-_MARGIN, 1 + _MARGIN)
             cities = _without_zero_plane(scaled.astype(np.float32))
             first, place = _places_by_coordinates(cities)
-            inputs = {"cities": cities[first]}
+            inputs = {"cities": _without_tied_cities(cities[first])}
         if len(first) < _MIN_PLACES:
             return np.tile(np.argsort(place, kind="stable"), (len(outputs) * len(preferences), 1))
         inputs["preferences"] = preferences.clip(_LEAST_PREFERENCE).astype(np.float32)
@@ -214,6 +219,25 @@ def _without_zero_matrix(matrices: NDArray[np.float32]) -> NDArray[np.float32]:
     if first and second:
         return matrices
     return matrices[[0, 0] if first else [1, 1]]
+
+
+def _without_tied_cities(cities: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return cities, shape (n, 4), moved a little where most coincide with others in one plane."""
+    planes = cities[:, :PLANE], cities[:, PLANE:]
+    if all(2 * len(np.unique(plane, axis=0)) > len(cities) for plane in planes):
+        return cities
+    moves = np.random.default_rng(0).random(cities.shape, np.float32)
+    return cities + np.float32(_JITTER) * moves
+
+
+def _without_tied_costs(matrices: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return matrices, shape (2, n, n), changed a little where most costs of a row are equal."""
+    n = matrices.shape[1]
+    rows = matrices[:, :: -(-n // _SAMPLED)]
+    if all(len(np.unique(costs)) > n for costs in rows):
+        return matrices
+    factors = np.random.default_rng(0).random(matrices.shape, np.float32)
+    return matrices * (1 + np.float32(_JITTER) * factors)
 
 
 def _open_session(content: bytes, path: Path, threads: int) -> onnxruntime.InferenceSession:

@@ -123,7 +123,7 @@ class Front:
     @cached_property
     def angles(self) -> Array:
         """The direction of each point in scaled objective space, in degrees, shape (m,)."""
-        return angles(self.points / self.scale)
+        return angles(self.points, self.scale)
 
 
 Report = Callable[[Progress, Callable[[int], Front]], None]

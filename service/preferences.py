@@ -44,17 +44,21 @@ def from_angles(degrees: Array) -> Array:
     return directions.clip(0.0, 1.0, out=directions)
 
 
-def angles(points: Array) -> Array:
-    """Return the angles in degrees, shape (k,), of scaled points, shape (k, 2).
+def angles(points: Array, scale: Array) -> Array:
+    """Return the angles in degrees, shape (k,), of points, shape (k, 2), once they are scaled.
 
-    The origin has the angle 45.
+    A point on an axis has the angle of that axis, however small it is once it is scaled. The origin
+    has the angle 45.
 
-    >>> angles(np.array([[2.0, 0.0], [1.0, 1.0], [0.0, 0.0]]))
-    array([ 0., 45., 45.])
+    >>> angles(np.array([[2.0, 0.0], [1.0, 1.0], [0.0, 0.0], [0.0, 1e-200]]), np.full(2, 1e200))
+    array([ 0., 45., 45., 90.])
     """
-    at_origin = (points == 0).all(axis=-1)
-    degrees = np.rad2deg(np.arctan2(points[:, 1], points[:, 0]))
-    return np.where(at_origin, 45.0, degrees)
+    with np.errstate(over="ignore"):
+        scaled = points / scale
+    degrees = np.rad2deg(np.arctan2(scaled[:, 1], scaled[:, 0]))
+    first, second = (points > 0).T
+    at_origin = (scaled == 0).all(axis=1)
+    return np.select([first & ~second, second & ~first, at_origin], [0.0, 90.0, 45.0], degrees)
 
 
 def weights(preferences: Array) -> Array:

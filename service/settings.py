@@ -59,12 +59,21 @@ def _checked_address(value: str) -> str:
     return value
 
 
+def _checked_network_cities(cities: int) -> int:
+    if cities > _MOST_NETWORK_CITIES:
+        raise ValueError(
+            f"must be at most {_MOST_NETWORK_CITIES}: networks number pairs of cities in 32 bits"
+        )
+    return cities
+
+
 Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)]
 KeyHashes = Annotated[
     tuple[Annotated[KeyHash, BeforeValidator(_key_hash)], ...], NoDecode, BeforeValidator(_split)
 ]
 RedisUrl = Annotated[str, AfterValidator(_checked_redis_url)]
 Rate = Annotated[str, AfterValidator(_checked_rate)]
+NetworkCities = Annotated[int, AfterValidator(_checked_network_cities)]
 Address = Annotated[str, AfterValidator(_checked_address)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,50}$")]
 
@@ -128,7 +137,9 @@ class Settings(BaseSettings):
     )
     max_cities: int = Field(10_000, ge=1, description="the most cities of an instance")
     max_matrix_cities: int = Field(1000, ge=1, description="the most where costs are matrices")
-    max_network_cities: int = Field(5000, ge=1, description="the most in tours of a network")
+    max_network_cities: NetworkCities = Field(
+        5000, ge=1, description="the most in tours of a network"
+    )
     max_fleet_stops: int = Field(
         500, ge=1, description="the most stops of a fleet, and places that robots share"
     )
@@ -254,6 +265,7 @@ class Settings(BaseSettings):
 
 
 PREFIX = "PARETOUR_"
+_MOST_NETWORK_CITIES = 46_000
 _ROUTER_SHARE = 0.9  # of a request's seconds that its costs by road may take
 # Of the command line, and what Kubernetes and Docker set for services beside ours.
 _OTHERS = re.compile(

@@ -178,6 +178,33 @@ def test_many_cities_at_one_place_take_no_longer_than_few(actor: OnnxActor) -> N
     assert time.process_time() - used < 1
 
 
+def cpu_seconds(actor: OnnxActor, instance: Instance) -> float:
+    used = time.process_time()
+    tours = actor.tours(instance, from_angles(fan(20)))
+    np.testing.assert_array_equal(np.sort(tours, axis=1), np.tile(np.arange(instance.n), (20, 1)))
+    return time.process_time() - used
+
+
+@pytest.mark.parametrize("coinciding", [1990, 1980])
+def test_cities_that_coincide_in_one_plane_take_no_longer_than_others(
+    actor: OnnxActor, coinciding: int
+) -> None:
+    cities = np.random.default_rng(9).random((2000, 4))
+    usual = cpu_seconds(actor, Instance(coordinates=cities))
+    cities[:coinciding, :2] = cities[coinciding:, 2:] = 0.5
+    assert cpu_seconds(actor, Instance(coordinates=cities)) < 4 * usual
+
+
+def test_equal_costs_take_no_longer_than_others() -> None:
+    actor = OnnxActor(RELEASED.with_name("pa-one-matrix.onnx"), threads=1)
+    random = np.random.default_rng(10)
+    costs = random.random((2, 400, 400))
+    usual = cpu_seconds(actor, Instance(matrices=costs))
+    half = np.where(random.integers(0, 2, 400) == random.integers(0, 2, (400, 1)), 1.0, 9.0)
+    for tied in (np.full_like(costs, 7.0), np.stack((half, half)), np.stack((costs[0], half))):
+        assert cpu_seconds(actor, Instance(matrices=tied)) < 4 * usual
+
+
 def test_a_call_under_way_is_terminated_and_the_next_is_not(actor: OnnxActor) -> None:
     instance = Instance(coordinates=np.random.default_rng(8).random((1000, 4)))
     actor.terminate()

@@ -4,6 +4,8 @@ import pytest
 from pydantic import ValidationError
 
 from service.__main__ import main
+from service.cli.configuration import load_settings
+from service.cli.errors import UsageError
 from service.settings import Settings
 
 
@@ -127,3 +129,13 @@ def test_a_body_holds_matrices_of_as_many_cities_as_are_allowed() -> None:
     settings = Settings()
     assert settings.limits.most_cities("coordinates") == settings.max_cities
     assert 2 * 8 * settings.limits.most_cities("matrices") ** 2 + 2**10 <= settings.max_body_bytes
+
+
+def test_networks_build_tours_of_no_more_cities_than_they_can_number(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("PARETOUR_MAX_NETWORK_CITIES", "46000")
+    assert load_settings().max_network_cities == 46_000
+    monkeypatch.setenv("PARETOUR_MAX_NETWORK_CITIES", "46001")
+    with pytest.raises(UsageError, match=r"^PARETOUR_MAX_NETWORK_CITIES: must be at most 46000"):
+        load_settings()

@@ -1,8 +1,8 @@
 """Authentication by API keys, and a rate limit for each caller.
 
 A key is 256 random bits. The settings hold its SHA-256 alone, which needs no salt: nobody guesses
-256 bits. Without keys everybody may call: as one caller, whose fronts all can see, while each
-address has a rate of its own.
+256 bits. Without keys everybody may call: as one caller, whose fronts all who know their
+ids can see, while each address has a rate and a latest front of its own.
 """
 
 import hashlib

@@ -101,6 +101,12 @@ class BodyAllowance:
         self._budget.give_back(self._client, self._held)
         self._held = 0
 
+    def hand_over(self) -> "BodyAllowance":
+        """Return an allowance that has the bytes of this one, which has none any more."""
+        other = BodyAllowance(self._budget, self._client)
+        other._held, self._held = self._held, 0
+        return other
+
     def reserve(self, declared: int) -> None:
         """Take the bytes of a body of a declared length before it comes.
 

@@ -15,7 +15,7 @@ from starlette.responses import Response
 from service.actor_info import ActorInfo
 from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
-from service.api.body_budget import BodyBounds, BodyBudget
+from service.api.body_budget import BodyAllowance, BodyBounds, BodyBudget
 from service.api.disconnect import disconnected
 from service.api.geojson.answers import CONTENT, FrontAnswers
 from service.api.request_bodies import COVERAGE_BODY, FLEET_BODY, FRONT_BODY, REPLAN_BODY
@@ -80,6 +80,7 @@ class PlanRoutes:
         self.budget = BodyBudget(bodies.under_way, bodies.share)
         self._answers = answers
         self.parser = TaskParser(limits, actors, bodies.parser)
+        self._held: set[asyncio.Task[None]] = set()
 
     def router(self) -> APIRouter:
         """Return the routes with their entries in the OpenAPI document."""
@@ -173,7 +174,7 @@ class PlanRoutes:
                 source = replace(received, task=task)
             else:
                 source = await self._rest(request, received, front)
-            return await self._planned(request, source, body)
+            return await self._planned(request, source, body, allowance)
 
     async def _rest(self, request: Request, body: TaskSource, front: str) -> TaskSource:
         """Return the rest of the way of a stored front, with its task.
@@ -192,25 +193,40 @@ class PlanRoutes:
         stored = StoredFront(record.id, source, record.front.tours, record.front.places)
         return await self.parser.replan(ReplanSource(body.body, stored))
 
-    async def _planned(self, request: Request, source: TaskSource, body: _Body) -> Response:
+    async def _planned(
+        self, request: Request, source: TaskSource, body: _Body, allowance: BodyAllowance
+    ) -> Response:
         """Have the engine plan a task, and answer as the request's headers ask for."""
         assert source.task is not None
         geometry = source.task.geometry
         record = await self._new_record(request, source, body)
         self._answers.check(request, record.front.stops, geometry)
         if prefers_async(request):
-            first = await self._engine.submit(record)
+            first = await self._submit(record, allowance)
             return _accepted_response(self._engine.state(first).record, geometry)
         if record.key is None:
             record = await self._run(request, record)
         else:
-            first = await self._engine.submit(record)
+            first = await self._submit(record, allowance)
             record = await record_in_time(self._engine, first, self._seconds)
         if record.problem is None:
             left = self._seconds - (time.monotonic() - body.received)
             return await self._answers.front(request, record, geometry, left)
         # The problem may be that of an earlier request, of which this one is a repeat.
         return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
+
+    async def _submit(self, record: Record, allowance: BodyAllowance) -> Record:
+        """Submit a job, whose body counts until the engine holds it no more."""
+        first = await self._engine.submit(record)
+        if first.id == record.id:
+            holding = asyncio.create_task(self._hold(record, allowance.hand_over()))
+            self._held.add(holding)
+            holding.add_done_callback(self._held.discard)
+        return first
+
+    async def _hold(self, record: Record, allowance: BodyAllowance) -> None:
+        with allowance:
+            await self._engine.release(record)
 
     async def _check_place(self, request: Request) -> None:
         """Raise a refusal, before the body is received, where the engine takes no more work."""

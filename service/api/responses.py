@@ -146,6 +146,26 @@ class PathItem(BaseModel):
     )
 
 
+class UncoveredRegionItem(BaseModel):
+    """A region of free cells that no path leads to."""
+
+    cells: int
+    cell: list[int] = Field(description="row and column of a cell in it")
+    box: list[list[int]] = Field(
+        description="row and column of the first and of the last cell of its bounding box"
+    )
+
+
+class UncoveredItem(BaseModel):
+    """The free cells that no path leads to, as a room that is closed off."""
+
+    cells: int
+    square_metres: float
+    regions: list[UncoveredRegionItem] = Field(
+        description="the largest, at most 20, the largest first"
+    )
+
+
 class CoverageItem(TourItem):
     """A tour through places on a map."""
 
@@ -157,6 +177,9 @@ class CoverageAnswer(FrontAnswer):
 
     front: list[CoverageItem]  # type: ignore[assignment]  # a list for reading only
     places: list[list[int]] = Field(description="row and column of each")
+    uncovered: UncoveredItem | SkipJsonSchema[None] = Field(
+        default=None, description="what no path leads to, once the map is surveyed"
+    )
 
 
 class RouteItem(BaseModel):
@@ -218,6 +241,9 @@ class RobotsAnswer(FrontAnswer):
     front: list[RobotPlanItem]  # type: ignore[assignment]  # a list for reading only
     objectives: list[FleetObjectiveName]  # type: ignore[assignment]
     places: list[list[int]] = Field(description="row and column of each")
+    uncovered: UncoveredItem | SkipJsonSchema[None] = Field(
+        default=None, description="what no path leads to, once the map is surveyed"
+    )
 
 
 class ActorItem(ActorName):

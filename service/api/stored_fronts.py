@@ -12,7 +12,7 @@ from pydantic_core import to_json
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 
-from service.api.auth import caller_of
+from service.api.auth import caller_of, client_of
 from service.api.geojson.answers import CONTENT, FrontAnswers
 from service.api.responses import (
     FleetAnswer,
@@ -119,12 +119,16 @@ class StoredFrontRoutes:
 async def find_record(store: Store, request: Request, id: str | None) -> Record:  # noqa: A002
     """Return the caller's record with an id, as it is stored; without an id its latest.
 
+    All callers without a key are one, but the latest front is that of the request's address.
+
     Raises:
         Refusal: There is none, or none any more.
     """
     caller = caller_of(request)
     try:
-        return await (store.latest(caller) if id is None else store.get(caller, id))
+        if id is None:
+            return await store.latest(caller, client_of(request))
+        return await store.get(caller, id)
     except NotFound:
         if id is None:
             raise Refusal("no-front") from None

@@ -3,17 +3,20 @@
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from functools import partial
+from http import HTTPStatus
 from typing import Any, Protocol
 
 import httpx
-from paretour import Actor, Client, FleetFront, Front, Plan, RobotFront
+from paretour import Actor, Client, FleetFront, Front, Job, Plan, Refused, RobotFront
+from paretour.calls import AnyFront
 from paretour.fleets import parse_fleet
 from paretour.robots import parse_robots
 from paretour.values import parse_front
 from rich.console import Console
 
 from service.cli.errors import UsageError
-from service.cli.progress import interrupt_flag, progress_bar
+from service.cli.progress import interrupt_flag, progress_bar, until_done
 
 LOADING = "loading the search; the first time it is compiled, for a minute or two"
 
@@ -61,27 +64,17 @@ class RemoteBackend:
             KeyboardInterrupt: Ctrl-C was pressed before there was a front.
         """
         with self._client() as client:
-            job = client.post(plan)
-            try:
-                with progress_bar(console, plan.seconds) as show:
-                    for progress in job.progress():
-                        show(progress)
-                return job.result()
-            except KeyboardInterrupt:
-                front = job.cancel()
-                if not len(front.tours):
-                    raise
-                return front
+            return _result(client.post(plan), plan, console)
 
     def fleet(self, plan: Plan, console: Console) -> FleetFront:
-        """Plan a front of plans for a fleet; Ctrl-C cancels it."""
-        with self._client() as client, console.status("planning"):
-            return client.plan_fleet(plan)
+        """Plan a front of plans for a fleet, with the same exceptions."""
+        with self._client() as client:
+            return _result(client.fleet_job(client.post(plan).id), plan, console)
 
     def robots(self, plan: Plan, console: Console) -> RobotFront:
-        """Plan a front of plans for several robots; Ctrl-C cancels it."""
-        with self._client() as client, console.status("planning"):
-            return client.plan_robots(plan)
+        """Plan a front of plans for several robots, with the same exceptions."""
+        with self._client() as client:
+            return _result(client.robots_job(client.post(plan).id), plan, console)
 
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors that the service has loaded."""
@@ -104,6 +97,8 @@ class LocalBackend:
 
         Raises:
             UsageError: The request cannot be planned.
+            Refused: A routing engine is needed, and fails.
+            KeyboardInterrupt: Ctrl-C was pressed before there was a front.
         """
         return parse_front(self._document(plan, console))
 
@@ -118,14 +113,18 @@ class LocalBackend:
     def _document(self, plan: Plan, console: Console) -> Mapping[str, Any]:
         """Return the answer to a request, as the service gives it."""
         from service.cli.configuration import load_settings, load_with
-        from service.errors import Refusal
+        from service.errors import Cancelled, Refusal
         from service.jobs.compiled_code import warm_up
         from service.jobs.runner import load_runner
         from service.requests.task import TaskKind, TaskSource
 
         runner = load_with(
             lambda settings: load_runner(
-                settings.actors, settings.threads, settings.limits, settings.own_actors
+                settings.actors,
+                settings.threads,
+                settings.limits,
+                settings.own_actors,
+                settings.roads,
             ),
             load_settings(),
         )
@@ -139,8 +138,13 @@ class LocalBackend:
                 with console.status(LOADING):
                     warm_up()
             with interrupt_flag() as interrupted, progress_bar(console, plan.seconds) as show:
-                document = runner.run(task, interrupted, lambda progress, _: show(progress))
+                run = partial(runner.run, task, interrupted, lambda progress, _: show(progress))
+                document = until_done(run, interrupted, runner.terminate)
+        except Cancelled:
+            raise KeyboardInterrupt from None
         except Refusal as error:
+            if error.status >= HTTPStatus.INTERNAL_SERVER_ERROR:
+                raise Refused(error.document("")) from None
             raise UsageError(str(error)) from None
         status = "cancelled" if interrupted() else "done"
         answer: Mapping[str, Any] = json.loads(document.json(id="", status=status))
@@ -156,6 +160,25 @@ class LocalBackend:
             load_settings(),
         )
         return tuple(Actor(**asdict(actor.info)) for _, actor in sorted(loaded.items()))
+
+
+def _result(job: Job[AnyFront], plan: Plan, console: Console) -> AnyFront:
+    """Return the front of a job, with progress until it ends; at Ctrl-C the best so far.
+
+    Raises:
+        Refused: The job failed.
+        KeyboardInterrupt: Ctrl-C was pressed before there was a front.
+    """
+    try:
+        with progress_bar(console, plan.seconds) as show:
+            for progress in job.progress():
+                show(progress)
+        return job.result()
+    except KeyboardInterrupt:
+        front = job.cancel()
+        if not len(front.lengths):
+            raise
+        return front
 
 
 def _with_scheme(url: str) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour import Actor, Choice, Front, Plan, Tour
+from paretour import Actor, Choice, Front, Plan, Tour, Uncovered
 from paretour.choice import the_way
 from rich.console import Console
 from rich.markup import escape
@@ -63,6 +63,7 @@ def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> 
         if draw is not None:
             draw(front, plan)
     _STDERR.print(front_summary(front), highlight=False, markup=False)
+    print_uncovered(front.uncovered, _STDERR)
 
 
 def run_tour(
@@ -147,6 +148,19 @@ def front_summary(front: Front) -> str:
     bound = front.hypervolume_bound
     most = "" if bound is None else f", and no front has more than {bound:.2%}"
     return f"{found}, hypervolume {front.hypervolume:.2%}{most}; {end_of_search(front.terminated)}"
+
+
+def print_uncovered(uncovered: Uncovered | None, console: Console) -> None:
+    """Print a line about the cells of a map that no path leads to, if there are any."""
+    if uncovered is None or not uncovered.regions:
+        return
+    row, column = uncovered.regions[0].cell
+    cells = "cell" if uncovered.cells == 1 else "cells"
+    size = f"{uncovered.cells} free {cells}, {uncovered.square_metres:.6g} m²"
+    line = (
+        f"not covered, as no path leads there: {size}; the largest part is around [{row}, {column}]"
+    )
+    console.print(line, highlight=False, markup=False)
 
 
 def end_of_search(terminated: str | None) -> str:

@@ -2,13 +2,17 @@
 
 import signal
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future, wait
 from contextlib import contextmanager
-from threading import Event
+from threading import Event, Thread
 from types import FrameType
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+T = TypeVar("T")
+_POLL_SECONDS = 0.02
 
 
 class SearchProgress(Protocol):
@@ -49,6 +53,31 @@ def progress_bar(console: Console, seconds: float) -> Iterator[Callable[[SearchP
             bar.update(task, completed=progress.seconds, found=found)
 
         yield show
+
+
+def until_done(
+    run: Callable[[], T], interrupted: Callable[[], bool], terminate: Callable[[], None]
+) -> T:
+    """Return what a function returns that runs in a thread, beside which Ctrl-C is heard.
+
+    Args:
+        run: The function.
+        interrupted: As `interrupt_flag` yields it.
+        terminate: Called again and again from then on: it ends the call of a network under way.
+    """
+    future: Future[T] = Future()
+
+    def compute() -> None:
+        try:
+            future.set_result(run())
+        except BaseException as error:
+            future.set_exception(error)
+
+    Thread(target=compute, daemon=True).start()  # a second Ctrl-C does not wait for it
+    while not wait((future,), _POLL_SECONDS).done:
+        if interrupted():
+            terminate()
+    return future.result()
 
 
 @contextmanager

@@ -150,6 +150,9 @@ class RedisEngine:
         """Return the present state of a job, given its record in the store."""
         return JobState(record)
 
+    async def release(self, record: Record) -> None:
+        """Return at once: what a job is planned from is in Redis."""
+
     async def watch(self, record: Record) -> AsyncIterator[JobState]:
         """Yield the state of a job now and after each change, until it is finished."""
         last = None

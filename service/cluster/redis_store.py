@@ -105,9 +105,9 @@ class RedisStore:
         """Return what a finished record was planned from; None where that is not kept."""
         return stored_source(await self.call("source", record.id))
 
-    async def latest(self, caller: str) -> Record:
-        """Return the caller's record that was finished last."""
-        return (await self.find("latest", caller)).record
+    async def latest(self, caller: str, client: str) -> Record:
+        """Return the caller's record that was finished last for this client."""
+        return (await self.find("latest", caller, client)).record
 
     async def delete(self, record: Record) -> None:
         """Delete a record, and leave no trace of it."""

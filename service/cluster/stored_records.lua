@@ -26,6 +26,7 @@ local TOTAL, COUNTED = P .. 'total', P .. 'counted'
 
 local function front_of(id) return P .. 'front:' .. id end
 local function work_of(id) return P .. 'work:' .. id end
+-- Read by replicas of earlier releases alone, which look up a caller's latest front in it.
 local function all_of(caller) return P .. 'caller:' .. caller end
 local function owned_by(client) return P .. 'client:' .. client end
 local function gone_of(caller) return P .. 'gone:' .. caller end
@@ -103,11 +104,14 @@ end
 -- Remember that a record was there, and forget all else of it.
 local function drop(id, known)
   local caller = known or redis.call('HGET', front_of(id), 'caller')
+  local client = client_of(id)
   forget(id, caller)
-  if caller then
-    redis.call('ZADD', GONE, redis.call('INCR', NUMBER), caller .. ':' .. id)
-    redis.call('SADD', gone_of(caller), id)
+  local function bury(whose)
+    redis.call('ZADD', GONE, redis.call('INCR', NUMBER), whose .. ':' .. id)
+    redis.call('SADD', gone_of(whose), id)
   end
+  if caller then bury(caller) end
+  if client and client ~= caller then bury(client) end
 end
 
 -- Count everything anew, once a minute: replicas of earlier releases do not count.

@@ -5,7 +5,7 @@ nothing from more of the network's tours (`python -m tests.benchmarks ablation`)
 """
 
 import time
-from threading import Event, Timer
+from threading import Event, Thread
 from typing import Protocol
 
 import numpy as np
@@ -23,6 +23,8 @@ MIN_CONSTRUCTED = 3  # cities: of fewer there is one tour, and no network was tr
 SHARE = 0.1  # of the time limit, after which a call that nobody asked for is ended
 _AIMED = 0.6  # of its time: what a call may take by the estimate, which may be too low
 _BUILDING = 0.5  # of that, where the tours shall be repaired as well
+_LATE_CALLS, _LATE_SECONDS = 3.0, 1.0  # after the limit: estimates, and seconds, of asked-for tours
+_TERMINATE_EVERY = 0.01  # seconds: the call may only be about to begin
 
 
 class Constructor(Protocol):
@@ -61,8 +63,9 @@ def construct(
             are estimated to fit, maybe none, and is ended if it takes longer. None honours all
             angles.
         limit: Where all angles are honoured, seconds for repairs: as many are made as are
-            estimated to fit, and a call that still takes longer is ended, and made without. None
-            makes all repairs.
+            estimated to fit, and a call that still takes longer is ended, and made without. That
+            one may exceed the limit, but is ended where it takes far longer than estimated. None
+            makes all repairs, and ends no call.
 
     Raises:
         Cancelled: The constructor was told to stop.
@@ -88,29 +91,32 @@ def _honoured(
     limit: float | None,
 ) -> Tours:
     """Return tours for all preferences, with as many repairs as fit into a limit, if any."""
-    if limit is not None:
-        fitting = constructor.estimate.fitting_repairs(instance.n, len(preferences), _AIMED * limit)
-        repairs = min(repairs, fitting)
-        if repairs > 0:
-            tours = _tours_within(constructor, instance, preferences, repairs, limit)
-            if len(tours):
-                return tours
-            repairs = 0
-    return _timed_tours(constructor, instance, preferences, repairs)
+    if limit is None:
+        return _timed_tours(constructor, instance, preferences, repairs)
+    n, k, estimate = instance.n, len(preferences), constructor.estimate
+    repairs = min(repairs, estimate.fitting_repairs(n, k, _AIMED * limit))
+    if repairs > 0:
+        tours = _tours_within(constructor, instance, preferences, repairs, limit)
+        if len(tours):
+            return tours
+    late = limit + _LATE_SECONDS + _LATE_CALLS * estimate.seconds(n, k)
+    return _tours_within(constructor, instance, preferences, 0, late)
 
 
 def _tours_within(
     constructor: Constructor, instance: Instance, preferences: Array, repairs: int, seconds: float
 ) -> Tours:
     """Return the tours of one call; none where it takes more seconds than given and is ended."""
-    ended = Event()
+    returned, ended = Event(), Event()
 
     def end() -> None:
-        ended.set()
-        constructor.terminate()
+        pause = seconds
+        while not returned.wait(pause):
+            ended.set()
+            constructor.terminate()
+            pause = _TERMINATE_EVERY
 
-    timer = Timer(seconds, end)
-    timer.daemon = True
+    timer = Thread(target=end, daemon=True)
     timer.start()
     try:
         return _timed_tours(constructor, instance, preferences, repairs)
@@ -120,7 +126,8 @@ def _tours_within(
         constructor.estimate.correct_ended()
         return np.empty((0, instance.n), np.int64)
     finally:
-        timer.cancel()
+        returned.set()
+        timer.join()
 
 
 def _timed_tours(

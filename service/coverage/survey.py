@@ -26,6 +26,7 @@ from service.coverage.shortest_paths import (
     pairwise_paths,
     trace_path,
 )
+from service.coverage.uncovered import Uncovered, uncovered
 from service.errors import Cancelled, InvalidCoverage, Refusal
 from service.instance import Instance, RouteEnds
 
@@ -53,7 +54,7 @@ class Survey:
 
     Tours are reported from the place `start`. `steps`, shape (n, n), are the numbers of steps of
     the paths between places. The frame is that of the map, where it is known. `to_visit` and
-    `robots` are as of Places.
+    `robots` are as of Places. No path leads to the cells that are uncovered.
     """
 
     places: Cells
@@ -63,6 +64,7 @@ class Survey:
     steps: NDArray[np.int32]
     frame: MapFrame | None
     to_visit: int
+    uncovered: Uncovered
     robots: tuple[RouteEnds, ...] = ()
 
     def paths(
@@ -171,6 +173,7 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
         steps,
         coverage.frame,
         places.to_visit,
+        uncovered(free, cells[0], coverage.cell_size),
         places.robots,
     )
 

@@ -81,6 +81,9 @@ class Engine(Protocol):
     def watch(self, record: Record) -> AsyncIterator[JobState]:
         """Yield the state of a job now and after each change, until it is finished."""
 
+    async def release(self, record: Record) -> None:
+        """Wait until this process no longer holds what a job that was submitted is planned from."""
+
     async def cancel(self, record: Record) -> Record:
         """End a job at once, with what was found so far, and return its final record."""
 

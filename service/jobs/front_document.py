@@ -6,14 +6,14 @@ the documents stored by earlier releases needs a default.
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
-from service.coverage.survey import CoveragePath
+from service.coverage.survey import CoveragePath, Survey
 from service.instance import OBJECTIVES, Instance
 from service.jobs.json_parts import encode_path, encode_tours, joined, split, with_member
 from service.pareto import balances
@@ -64,6 +64,7 @@ class FrontDocument:
         closed: False where tours are open routes; None where they are closed.
         objectives: Name and unit of each objective, where the caller named them.
         stops: Id and location of each stop, where the caller named them.
+        uncovered: The free cells of a map that are out of reach.
         tours: The JSON of all tours, with commas between, without brackets.
         ends: Where each tour ends in `tours`, as m native integers of 8 bytes.
         angles: The direction of each tour in degrees, as m native floats of 8 bytes.
@@ -83,6 +84,7 @@ class FrontDocument:
     closed: bool | None = None
     objectives: list[dict[str, Any]] | None = None
     stops: list[dict[str, Any]] | None = None
+    uncovered: dict[str, Any] | None = None
     tours: bytes = b""
     ends: bytes = b""
     angles: bytes = b""
@@ -171,12 +173,14 @@ def _lengths(tour: bytes) -> list[float]:
 def encode_front(
     front: Front,
     actor: Mapping[str, str],
-    places: list[list[int]] | None = None,
+    surveyed: Survey | None = None,
     paths: Iterable[CoveragePath] | None = None,
     labels: Labels | None = None,
     arrivals: NDArray[np.float64] | None = None,
 ) -> FrontDocument:
     """Write a front as JSON: its tours with the ids of labels, and with arrivals and paths if any.
+
+    Of a map it has the places and what is uncovered, as they were surveyed.
 
     The actor is left out where it built no tours. Arrivals have shape (m, stops, 2).
     """
@@ -198,7 +202,7 @@ def encode_front(
         timings_ms=Timings(front.timings),
         terminated=front.terminated,
         actor=actor if front.constructed else None,
-        places=places,
+        **on_map(surveyed),
         closed=None if front.closed else False,
         **_named(labels),
         tours=tours,
@@ -206,6 +210,13 @@ def encode_front(
         angles=front.angles.tobytes(),
         gained=front.gained,
     )
+
+
+def on_map(surveyed: Survey | None) -> dict[str, Any]:
+    """Return the members of a document that say where places lie on a map, and what is not."""
+    if surveyed is None:
+        return {}
+    return {"places": surveyed.places.tolist(), "uncovered": asdict(surveyed.uncovered)}
 
 
 def _rows(front: Front, arrivals: NDArray[np.float64] | None) -> list[dict[str, Any]]:

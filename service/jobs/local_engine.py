@@ -146,6 +146,11 @@ class LocalEngine:
             await changed.wait()
         yield job.state if job else JobState(await self._stored(record))
 
+    async def release(self, record: Record) -> None:
+        """Wait until a job is finished: until then its source is in its record."""
+        async for _ in self.watch(record):
+            pass
+
     async def cancel(self, record: Record) -> Record:
         """End a job at once, with what was found so far, and return its final record."""
         if job := self._jobs.get(record.id):

@@ -139,10 +139,9 @@ class TaskRunner:
         surveyed = survey(coverage, self.limits.most_places(shared=False), stop)
         check_instance(task, surveyed.instance)
         survey_seconds = time.perf_counter() - began
-        places = surveyed.places.tolist()
         options = within_network(task.options, surveyed.instance.n, self.limits)
         task = replace(task, options=replace(options, start=surveyed.start))
-        front = self._plan(task, surveyed.instance, stop, report, places)
+        front = self._plan(task, surveyed.instance, stop, report, surveyed)
         began = time.perf_counter()
         paths = self._paths(surveyed, front, stop) if task.paths else None
         timings = {
@@ -152,7 +151,7 @@ class TaskRunner:
         }
         front = replace(front, timings=timings)
         arrivals = _arrivals(task, surveyed.instance, front)
-        return encode_front(front, self._identity(task), places, paths, arrivals=arrivals)
+        return encode_front(front, self._identity(task), surveyed, paths, arrivals=arrivals)
 
     def _paths(
         self, surveyed: Survey, front: Front, stop: Callable[[], bool]
@@ -169,14 +168,14 @@ class TaskRunner:
         instance: Instance,
         stop: Callable[[], bool],
         report: Report,
-        places: list[list[int]] | None = None,
+        surveyed: Survey | None = None,
     ) -> Front:
         identity = self._identity(task)
 
         def report_encoded(progress: Progress, best: Callable[[int], Front]) -> None:
             report(
                 progress,
-                lambda size: encode_front(best(size), identity, places, labels=task.labels),
+                lambda size: encode_front(best(size), identity, surveyed, labels=task.labels),
             )
 
         actor = self.actors[task.actor]

@@ -39,6 +39,11 @@ STEPS = (
     DROP INDEX finished;
     CREATE INDEX finished ON front (client, number, kept, size) WHERE NOT {UNFINISHED};
     """,
+    # The latest front is that of a client.
+    """
+    ALTER TABLE gone ADD COLUMN client;
+    UPDATE gone SET client = caller;
+    """,
 )
 
 

@@ -106,9 +106,9 @@ class SqliteStore:
         """Return what a finished record was planned from; None where that is not kept."""
         return await self._in_thread(self._source, record.id)
 
-    async def latest(self, caller: str) -> Record:
-        """Return the caller's record that was finished last."""
-        return await self._found(f"caller = ? AND {FINISHED}", caller)
+    async def latest(self, caller: str, client: str) -> Record:
+        """Return the caller's record that was finished last for this client."""
+        return await self._found("caller = ? AND client = ?", caller, client, among=FINISHED)
 
     async def delete(self, record: Record) -> None:
         """Delete a record, and leave no trace of it."""
@@ -124,8 +124,8 @@ class SqliteStore:
         await loop.run_in_executor(self._thread, self._database.close)
         self._thread.shutdown()
 
-    async def _found(self, where: str, caller: str, *values: str) -> Record:
-        found = await self._in_thread(self._newest, where, caller, *values)
+    async def _found(self, where: str, *values: str, among: str = "TRUE") -> Record:
+        found = await self._in_thread(self._newest, where, among, *values)
         if isinstance(found, Record):
             return found
         raise found
@@ -200,16 +200,15 @@ class SqliteStore:
             return []
         return self._select("caller = ? AND key = ?", record.caller, record.key)
 
-    def _newest(self, where: str, caller: str, *values: str) -> Record | type[LookupError]:
+    def _newest(self, where: str, among: str, *values: str) -> Record | type[LookupError]:
         """Return the newest record, or the error to raise once the transaction is done."""
         self._evict()
-        newest = f"{where} ORDER BY number DESC LIMIT 1"
-        count = "SELECT count(*) FROM front WHERE " + where
-        while self._database.execute(count, (caller, *values)).fetchone() != (0,):
-            for record in self._select(newest, caller, *values):
+        newest = f"{where} AND {among} ORDER BY number DESC LIMIT 1"
+        count = f"SELECT count(*) FROM front WHERE {where} AND {among}"
+        while self._database.execute(count, values).fetchone() != (0,):
+            for record in self._select(newest, *values):
                 return record
-        gone = "SELECT 1 FROM gone WHERE caller = ?" + (" AND id = ?" if values else "")
-        known = self._database.execute(gone, (caller, *values)).fetchone()
+        known = self._database.execute(f"SELECT 1 FROM gone WHERE {where}", values).fetchone()
         return Expired if known else NotFound
 
     def _unfinished(self) -> list[Record]:
@@ -254,7 +253,10 @@ class SqliteStore:
 
     def _drop(self, where: str, *values: float) -> None:
         """Delete records, but remember that they were there."""
-        bury = f"INSERT INTO gone (id, caller) SELECT id, caller FROM front WHERE {where}"
+        bury = (
+            "INSERT INTO gone (id, caller, client)"
+            f" SELECT id, caller, client FROM front WHERE {where}"
+        )
         if self._database.execute(bury, values).rowcount:
             self._database.execute(f"DELETE FROM front WHERE {where}", values)
             forget = "DELETE FROM gone WHERE number <= (SELECT max(number) FROM gone) - ?"

@@ -65,11 +65,11 @@ class Store(Protocol):
         the share of a store that one source may.
         """
 
-    async def latest(self, caller: str) -> Record:
-        """Return the caller's record that was finished last.
+    async def latest(self, caller: str, client: str) -> Record:
+        """Return the caller's record that was finished last for this client.
 
         Raises:
-            NotFound: The caller never had one.
+            NotFound: The client never had one.
             Expired: It was dropped.
         """
 

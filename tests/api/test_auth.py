@@ -101,17 +101,17 @@ def test_a_caller_over_its_rate_is_told_when_to_come_back_and_others_are_not(lim
     assert httpx.get(f"{limited}/health/live").status_code == 200
 
 
-def test_without_keys_each_address_has_a_rate_and_fronts_are_everybodys() -> None:
+def test_without_keys_each_address_has_a_rate_and_a_latest_front() -> None:
     edge = Edge(access=Access((), Rates("2/hour")))
     with serving(app_of(edge=edge)) as url:
         # uvicorn trusts the header where the proxy is at 127.0.0.1.
         one, other = ({"X-Forwarded-For": f"203.0.113.{last}"} for last in (1, 2))
         assert httpx.post(f"{url}/front", json=FRONT, headers=one).status_code == 200
-        assert httpx.get(f"{url}/actors", headers=one).status_code == 200
+        assert httpx.get(f"{url}/tour?angle=30", headers=one).status_code == 200
         refused = httpx.get(f"{url}/actors", headers=one)
         assert "203.0.113.1" in problem(refused, 429, "rate-limited")["detail"]
         assert 0 < int(refused.headers["retry-after"]) <= 7200
-        assert httpx.get(f"{url}/tour?angle=30", headers=other).status_code == 200
+        problem(httpx.get(f"{url}/tour?angle=30", headers=other), 404, "no-front")
         assert httpx.get(f"{url}/health/live", headers=one).status_code == 200
 
 

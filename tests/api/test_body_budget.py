@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
 from dataclasses import replace
+from pathlib import Path
 
 import httpx
 import pytest
@@ -18,6 +19,7 @@ from service.api.body_budget import AnswerBudget, BodyBounds, BodyBudget
 from service.errors import Refusal
 from service.jobs.json_parts import joined
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
+from tests.helpers.actors import Shuffler
 from tests.helpers.scripted_runner import document
 from tests.helpers.serving import app_of, problem, serving
 from tests.helpers.stores import record
@@ -119,6 +121,29 @@ def test_small_bodies_pass_while_long_ones_stall(url: str) -> None:
             connections.enter_context(stalled(url, 80_000))
         answer = httpx.post(f"{url}/front", content=REQUEST, headers=JSON, timeout=30)
         assert answer.status_code == 200, answer.text
+
+
+@pytest.mark.parametrize("headers", [{}, {"Idempotency-Key": "k"}])
+def test_the_body_of_a_job_counts_until_the_job_has_ended(
+    headers: dict[str, str], tmp_path: Path
+) -> None:
+    actor = Shuffler(gate=tmp_path / "gate")
+    edge = Edge(bodies=BodyBounds(under_way=150_000))
+    long = 90_000 * b" " + REQUEST
+    with serving(app_of(actor, edge=edge)) as url, httpx.Client(base_url=url, timeout=30) as client:
+        later = {**JSON, "Prefer": "respond-async", **headers}
+        accepted = client.post("/front", content=long, headers=later)
+        assert accepted.status_code == 202
+        refused = client.post("/front", content=long, headers={**JSON, "Prefer": "respond-async"})
+        problem(refused, 503, "bodies-full")
+        # A repeat holds nothing of its own.
+        if headers:
+            assert client.post("/front", content=REQUEST, headers=later).status_code == 422
+        actor.open()
+        while client.get(accepted.headers["location"]).json()["status"] != "done":
+            time.sleep(0.02)
+        again = client.post("/front", content=long, headers=JSON)
+        assert again.status_code == 200
 
 
 def test_an_answer_gives_its_bytes_back_once_it_is_sent_or_has_failed() -> None:

@@ -11,6 +11,8 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
+from paretour.robots import parse_robots
+from paretour.values import parse_front
 from PIL import Image
 
 from tests.helpers.actors import Shuffler
@@ -71,6 +73,52 @@ def test_places_on_a_map_become_a_front_with_paths(client: httpx.Client) -> None
         points = np.array(POINTS)[item["tour"]]
         steps = np.roll(points, -1, axis=0) - points
         assert np.hypot(*steps.T).sum() == pytest.approx(item["lengths"][1])
+
+
+CLOSED_OFF = {
+    "cells": 4,
+    "square_metres": 1.0,
+    "regions": [
+        {"cells": 3, "cell": [3, 0], "box": [[2, 0], [3, 1]]},
+        {"cells": 1, "cell": [0, 5], "box": [[0, 5], [0, 5]]},
+    ],
+}
+WITH_ROOMS = [
+    [0, 0, 0, 0, 1, 0],
+    [1, 1, 1, 0, 1, 1],
+    [1, 0, 1, 0, 0, 0],
+    [0, 0, 1, 0, 0, 0],
+]
+
+
+@pytest.mark.parametrize(
+    "members",
+    [
+        {"places": [[0, 0], [3, 5]], "second_matrix": [[0, 1], [1, 0]]},
+        {"spacing": 1.0, "cost_layer": np.ones((4, 6)).tolist()},
+        {"places": [[0, 0], [3, 5], [2, 3]], "robots": [{"id": "a"}, {"id": "b"}]},
+    ],
+)
+def test_rooms_that_are_closed_off_are_uncovered(
+    client: httpx.Client, members: dict[str, Any]
+) -> None:
+    task = {"grid": WITH_ROOMS, "cell_size": 0.5, **members}
+    answer = client.post("/coverage", json=task).json()
+    assert answer["uncovered"] == CLOSED_OFF
+    assert client.get(f"/front/{answer['id']}").json()["uncovered"] == CLOSED_OFF
+    parse = parse_robots if "robots" in members else parse_front
+    found = parse(answer).uncovered
+    assert found is not None
+    assert (found.cells, found.square_metres) == (4, 1.0)
+    assert [(each.cells, each.cell, each.box) for each in found.regions] == [
+        (3, (3, 0), ((2, 0), (3, 1))),
+        (1, (0, 5), ((0, 5), (0, 5))),
+    ]
+
+
+def test_where_every_free_cell_is_in_reach_nothing_is_uncovered(client: httpx.Client) -> None:
+    answer = client.post("/coverage", json=TASK).json()
+    assert answer["uncovered"] == {"cells": 0, "square_metres": 0.0, "regions": []}
 
 
 def test_a_front_of_places_can_be_asked_for_again(client: httpx.Client) -> None:

@@ -9,11 +9,13 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import httpx
 import numpy as np
 import pytest
 from paretour import front_plan
+from PIL import Image
 from rich.console import Console
 
 from service.actor import load_actors
@@ -24,6 +26,7 @@ from service.cli.errors import UsageError
 from tests.helpers.actors import Shuffler
 from tests.helpers.artifacts import by_row_sums
 from tests.helpers.command import EXAMPLE, ROOT, paretour, started
+from tests.helpers.fake_router import fake_osrm, replying, road_costs
 from tests.helpers.serving import app_of, serving
 
 
@@ -56,11 +59,39 @@ def test_a_key_is_given_by_option_or_by_variable(cities: Path) -> None:
     assert "(unauthorized)" in refused.stderr
 
 
+def request_of(kind: str, folder: Path) -> list[object]:
+    """The arguments that plan something of a kind for which the time limit is never enough."""
+    if kind == "front":
+        return ["front", EXAMPLE]
+    path = folder / "request.json"
+    if kind == "fleet":
+        costs = np.random.default_rng(3).integers(1, 99, (2, 40, 40)).tolist()
+        request = {
+            "stops": [{"id": "0"}, *({"id": str(i), "demand": [1]} for i in range(1, 40))],
+            "vehicles": [{"id": "van", "count": 9, "start": 0, "end": 0, "capacity": [5]}],
+            "objectives": [
+                {"name": name, "matrix": m} for name, m in zip("ab", costs, strict=True)
+            ],
+        }
+        path.write_text(json.dumps(request))
+        return ["fleet", path]
+    Image.fromarray(np.full((60, 60), 255, np.uint8)).save(folder / "map.png")
+    ros_map = folder / "map.yaml"
+    ros_map.write_text(
+        "image: map.png\nresolution: 1.0\norigin: [0.0, 0.0, 0.0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.25\n"
+    )
+    return ["coverage", ros_map, "--spacing", 6, "--robot", "1.5,1.5", "--robot", "50.5,50.5"]
+
+
 @pytest.mark.parametrize("remote", [False, True])
-def test_ctrl_c_ends_the_search_with_the_best_front_so_far(url: str, remote: bool) -> None:
+@pytest.mark.parametrize("kind", ["front", "fleet", "robots"])
+def test_ctrl_c_ends_the_search_with_the_best_front_so_far(
+    url: str, remote: bool, kind: str, tmp_path: Path
+) -> None:
     terminal, other_end = pty.openpty()
     options = ["--url", url] if remote else []
-    arguments = ["front", EXAMPLE, "--json", "--time-limit", 60, *options]
+    arguments = [*request_of(kind, tmp_path), "--json", "--time-limit", 60, *options]
     with started(*arguments, stderr=other_end) as running:
         os.close(other_end)
         shown = b""
@@ -74,7 +105,58 @@ def test_ctrl_c_ends_the_search_with_the_best_front_so_far(url: str, remote: boo
     assert running.returncode == 0
     assert time.monotonic() - began < 30
     assert (answer["status"], answer["terminated"]) == ("cancelled", "cancelled")
-    assert len(answer["front"]) > 10
+    assert len(answer["front"]) > (10 if kind == "front" else 0)
+
+
+def test_ctrl_c_ends_a_call_of_the_network_in_this_process(tmp_path: Path) -> None:
+    cities = tmp_path / "cities.json"
+    cities.write_text(json.dumps(np.random.default_rng(4).random((3000, 4)).tolist()))
+    terminal, other_end = pty.openpty()
+    arguments = ["front", cities, "--time-limit", 0, "--repairs", 200]  # minutes
+    with started(*arguments, stderr=other_end) as running:
+        os.close(other_end)
+        shown = b""
+        while b"planning" not in shown:
+            shown += os.read(terminal, 1024)
+        running.send_signal(signal.SIGINT)
+        assert running.wait(timeout=60) == 130
+    os.close(terminal)
+
+
+@pytest.mark.parametrize("command", ["front", "fleet"])
+def test_this_process_asks_the_routing_engine_as_the_service_does(
+    command: str, tmp_path: Path
+) -> None:
+    places = [[24.9 + 0.01 * i, 60.1 + 0.007 * (i * i % 5)] for i in range(8)]
+    request: dict[str, Any] = {
+        "stops": [{"id": f"order-{i}", "location": place} for i, place in enumerate(places)],
+        "objectives": [
+            {"name": "time", "from": "road_time"},
+            {"name": "way", "from": "road_distance"},
+        ],
+        "time_limit": 0.2,
+    }
+    if command == "fleet":
+        request["vehicles"] = [{"id": "van", "count": 3, "start": 0, "end": 0}]
+    file = tmp_path / "request.json"
+    file.write_text(json.dumps(request))
+    with fake_osrm() as engine:
+        router = {"PARETOUR_ROUTER_URL": engine.url, "PARETOUR_ROUTER": "osrm"}
+        planned = paretour(command, file, "--json", **router)
+        engine.misbehave = replying(503)
+        failed = paretour(command, file, "--json", **router)
+    assert planned.returncode == 0, planned.stderr
+    answer = json.loads(planned.stdout)
+    assert answer["front"]
+    assert answer["timings_ms"]["roads"] > 0
+    if command == "front":
+        costs = road_costs(np.array(places), np.array(places))
+        for each in answer["front"]:
+            lengths = costs[:, each["tour"], np.roll(each["tour"], -1)].sum(axis=1)
+            assert each["lengths"] == pytest.approx(lengths)
+    assert (failed.returncode, failed.stdout) == (3, "")
+    assert "(router-unavailable)" in failed.stderr
+    assert "Traceback" not in failed.stderr
 
 
 def test_ctrl_c_before_there_is_a_front_ends_with_130(cities: Path, tmp_path: Path) -> None:

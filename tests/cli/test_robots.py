@@ -106,3 +106,17 @@ def test_two_robots_share_a_map_of_ros(tmp_path: Path, quick_actors: dict[str, s
     assert last["lengths"] == [2.0, 1.0]
     assert "plans found" in ended.stderr
     assert "<svg" in picture.read_text()
+
+
+@pytest.mark.parametrize("robots", [[], [{"id": "a"}, {"id": "b"}]])
+def test_the_command_says_what_is_not_covered(
+    robots: list[dict[str, str]], url: str, tmp_path: Path
+) -> None:
+    request: dict[str, Any] = {"grid": [[0, 0, 1, 0]], "cell_size": 2, "places": [[0, 0], [0, 1]]}
+    more = {"robots": robots} if robots else {"second_matrix": [[0, 1], [1, 0]]}
+    file = tmp_path / "map.json"
+    file.write_text(json.dumps({**request, **more}))
+    ended = paretour("coverage", file, "--url", url)
+    assert ended.returncode == 0, ended.stderr
+    said = " ".join(ended.stderr.split())
+    assert "no path leads there: 1 free cell, 4 m²; the largest part is around [0, 3]" in said

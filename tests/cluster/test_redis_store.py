@@ -42,7 +42,7 @@ def test_records_of_the_last_release_are_read(redis: Redis) -> None:
         store = RedisStore(connection, entries=9, max_age=60, clock=lambda: 1001.0)
         done = await store.get("us", "done")
         assert (done.json(), done.front.gained) == (ANSWERS["done"], 0.0625)
-        assert (await store.latest("us")).id == "done"
+        assert (await store.latest("us", "us")).id == "done"
         running = await store.find("get", "us", "running")
         assert running.record.json() == ANSWERS["running"]
         assert (running.requested_at, running.attempts) == (1000, 1)
@@ -84,7 +84,7 @@ def test_a_record_that_cannot_be_read_is_dropped_and_logged_once(
                 await connection.hset(f"paretour:front:{id_}", mapping=damage)
             await connection.aclose()
             assert [each.id for each in await store.unfinished()] == ["c"]
-            assert (await store.latest("us")).id == "a"
+            assert (await store.latest("us", "us")).id == "a"
             for _ in range(2):
                 for id_ in "bd":
                     with pytest.raises(Expired):
@@ -142,9 +142,9 @@ def test_what_replicas_of_the_last_release_store_is_counted(redis: Redis) -> Non
             await connection.zadd(f"paretour:caller:{caller}", {str(number): number})
         bounds = {"max_age": 60, "clock": lambda: 1001.0}
         by_entries = RedisStore(connection, entries=10, **bounds)
-        assert (await by_entries.latest("us")).id == "0"
+        assert (await by_entries.latest("us", "us")).id == "0"
         by_bytes = RedisStore(connection, entries=99, max_bytes=3_000, **bounds)
-        assert (await by_bytes.latest("us")).id == "0"
+        assert (await by_bytes.latest("us", "us")).id == "0"
         assert await connection.zcard("paretour:finished") < 10
         assert int(await connection.get("paretour:total")) <= 3_000
         await by_bytes.close()
@@ -170,7 +170,7 @@ def test_without_keys_the_records_of_one_address_leave_those_of_another(redis: R
             for id_ in map(str, range(7)):
                 with pytest.raises(Expired):
                     await store.get("us", id_)
-            assert (await store.latest("us")).id == "b"
+            assert (await store.latest("us", "192.0.2.1")).id == "b"
 
     asyncio.run(test())
 

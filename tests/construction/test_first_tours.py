@@ -149,6 +149,22 @@ def test_preferences_that_were_asked_for_exceed_the_limit_by_one_call_at_most() 
     assert front.terminated == "time_limit"
 
 
+def test_preferences_that_were_asked_for_are_given_up_where_their_call_hardly_ends() -> None:
+    constructor = Counted(seconds=600)
+    front = plan(constructor, cities(60), PlanOptions(angles=fan(7), size=10, time_limit=0.1))
+    assert (len(constructor.calls), front.constructed) == (1, 0)
+    assert len(front.tours)
+
+
+def test_a_call_ends_whose_time_was_over_before_it_began() -> None:
+    class Late(Counted):
+        def tours(self, *args: object) -> np.ndarray:
+            time.sleep(0.2)  # the time is over, and nothing runs yet that could be ended
+            return super().tours(*args)
+
+    assert construct(Late(seconds=600), cities(10), fan(5), within=0.1).shape == (0, 10)
+
+
 def test_without_a_limit_all_repairs_are_made() -> None:
     constructor = Counted()
     plan(constructor, cities(60), PlanOptions(angles=fan(7), size=10, repairs=150))

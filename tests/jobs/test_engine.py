@@ -329,6 +329,22 @@ def test_what_was_unfinished_when_the_service_ended_is_done_for_the_next(
             check(found)
 
 
+def test_without_keys_the_latest_front_is_that_of_an_address_behind_a_proxy(
+    engine: Engine,
+) -> None:
+    with engine.serve() as served:
+        us, them = ({"X-Forwarded-For": f"203.0.113.{last}"} for last in (1, 2))
+        problem(served.client.get("/tour?knee", headers=us), 404, "no-front")
+        fronts = [
+            served.client.post("/front", json=SHORT, headers=who).json()["id"] for who in (us, them)
+        ]
+        for who, front in zip((us, them), fronts, strict=True):
+            assert served.client.get("/tour?knee", headers=who).json()["front"] == front
+        problem(served.client.get("/tour?knee"), 404, "no-front")
+        by_id = served.client.get(f"/tour?knee&front={fronts[0]}", headers=them)
+        assert by_id.json()["front"] == fronts[0]
+
+
 def test_a_caller_sees_its_own_jobs_alone(engine: Engine) -> None:
     (our_key, ours), (their_key, theirs) = new_key(), new_key()
     hashes = [KeyHash(caller="us", digest=ours), KeyHash(caller="them", digest=theirs)]

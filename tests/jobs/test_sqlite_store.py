@@ -56,7 +56,7 @@ def test_without_keys_the_records_of_one_address_leave_those_of_another(tmp_path
         [unfinished] = await again.unfinished()
         assert unfinished.client == "192.0.2.1"
         await again.put(record("b", client=unfinished.client))
-        assert (await again.latest("us")).id == "b"
+        assert (await again.latest("us", "192.0.2.1")).id == "b"
         for id_ in ("a", "7", "8"):
             assert (await again.get("us", id_)).id == id_
         await again.close()
@@ -151,7 +151,7 @@ def test_a_record_that_cannot_be_read_is_dropped_and_logged_once(
             database.commit()
         again = SqliteStore(path, entries=9, max_age=60)
         assert [each.id for each in await again.unfinished()] == ["c"]
-        assert (await again.latest("us")).id == "a"
+        assert (await again.latest("us", "us")).id == "a"
         for _ in range(2):
             for id_ in "bd":
                 with pytest.raises(Expired):
@@ -184,7 +184,7 @@ def test_in_memory_every_record_is_found_however_many_came_at_once() -> None:
         store = SqliteStore(IN_MEMORY, entries=100, max_age=60)
         for number in range(50):
             await store.put(record(str(number)))
-        assert (await store.latest("us")).id == "49"
+        assert (await store.latest("us", "us")).id == "49"
         for number in range(50):
             assert (await store.get("us", str(number))).id == str(number)
         await store.close()

@@ -56,7 +56,7 @@ def test_what_was_put_is_given_again_as_it_was(run: Run) -> None:
         await store.put(b)
         kept = await store.get("us", "a")
         assert (kept.json(), kept.front.tour(0)) == (a.json(), a.front.tour(0))
-        assert (await store.latest("us")).json() == b.json()
+        assert (await store.latest("us", "us")).json() == b.json()
 
     run(test)
 
@@ -66,7 +66,7 @@ def test_an_id_never_used_is_unknown(run: Run) -> None:
         with pytest.raises(NotFound):
             await store.get("us", "a")
         with pytest.raises(NotFound):
-            await store.latest("us")
+            await store.latest("us", "us")
 
     run(test)
 
@@ -75,7 +75,7 @@ def test_a_caller_sees_its_own_alone(run: Run) -> None:
     async def test(store: Store) -> None:
         await store.put(record("a", caller="us"))
         await store.put(record("b", caller="them"))
-        assert (await store.latest("us")).id == "a"
+        assert (await store.latest("us", "us")).id == "a"
         with pytest.raises(NotFound):
             await store.get("them", "a")
         await store.put(record("c", caller="us"))
@@ -86,6 +86,31 @@ def test_a_caller_sees_its_own_alone(run: Run) -> None:
             await store.get("them", "a")
 
     run(test)
+
+
+def test_the_latest_of_a_client_is_not_that_of_another_without_a_key(run: Run) -> None:
+    async def test(store: Store) -> None:
+        await store.put(record("a", client="192.0.2.1"))
+        await store.put(record("b", client="192.0.2.2"))
+        assert (await store.latest("us", "192.0.2.1")).id == "a"
+        assert (await store.latest("us", "192.0.2.2")).id == "b"
+        for nobody in ("192.0.2.3", "us"):
+            with pytest.raises(NotFound):
+                await store.latest("us", nobody)
+        with pytest.raises(NotFound):  # a caller that has the name of an address
+            await store.latest("192.0.2.1", "192.0.2.1")
+        await store.put(record("c", client="192.0.2.2"))
+        await store.put(record("d", client="192.0.2.3"))
+        assert (await store.latest("us", "192.0.2.1")).id == "a"
+        clock.now += 100
+        for gone in ("192.0.2.1", "192.0.2.2"):
+            with pytest.raises(Expired):
+                await store.latest("us", gone)
+        with pytest.raises(NotFound):
+            await store.latest("us", "192.0.2.4")
+
+    clock = Clock()
+    run(test, clock=clock, entries=3)
 
 
 def test_the_oldest_makes_way_when_the_store_is_full(run: Run) -> None:
@@ -112,7 +137,7 @@ def test_many_records_of_one_caller_leave_those_of_another(run: Run) -> None:
         await store.admit(record("a", key="k", digest="1"))
         for id_ in map(str, range(300)):
             await store.put(record(id_, caller="them"))
-        assert (await store.get("us", "a")).id == (await store.latest("us")).id == "a"
+        assert (await store.get("us", "a")).id == (await store.latest("us", "us")).id == "a"
         assert (await store.admit(job("b", key="k", digest="1"))).id == "a"
         assert await kept(store, "them", map(str, range(300))) == ["297", "298", "299"]
         for id_ in "bcd":
@@ -185,7 +210,7 @@ def test_asking_for_a_front_does_not_keep_it_longer(run: Run) -> None:
         with pytest.raises(Expired):
             await store.get("us", "a")
         with pytest.raises(Expired):
-            await store.latest("us")
+            await store.latest("us", "us")
 
     run(test, clock=clock)
 
@@ -225,9 +250,9 @@ def test_unfinished_work_never_makes_way_and_its_front_counts_as_new_when_it_is_
             await store.put(record(id_))
         [unfinished] = await store.unfinished()
         assert (unfinished.id, unfinished.source) == ("a", TaskSource("front", b"{}", b"\0"))
-        assert (await store.latest("us")).id == "d"
+        assert (await store.latest("us", "us")).id == "d"
         await store.put(replace(unfinished, status="done", source=None))
-        assert (await store.latest("us")).id == "a"
+        assert (await store.latest("us", "us")).id == "a"
         assert await store.unfinished() == []
 
     run(test, clock=clock)

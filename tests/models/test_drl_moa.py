@@ -68,3 +68,12 @@ def test_a_run_leaves_a_line_for_each_network(tmp_path: Path) -> None:
 def test_a_configuration_that_makes_no_sense_is_refused(changes: dict[str, int]) -> None:
     with pytest.raises(ValueError, match="must be at least"):
         TransferConfig(**changes)
+
+
+def test_options_that_differ_from_those_of_the_run_are_refused_by_name(tmp_path: Path) -> None:
+    save(new_run(SMALL), tmp_path / "run.pt")
+    with pytest.raises(
+        ValueError, match=r"must be resumed as it is, got --width 640, which has 16$"
+    ):
+        drl_moa.main(["--out", str(tmp_path), "--width", "640", "--cities", "6"])
+    assert not (tmp_path / "weights.pt").exists()

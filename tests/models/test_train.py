@@ -39,6 +39,22 @@ def test_the_command_goes_on_with_the_run_that_lies_there(tmp_path: Path) -> Non
     assert load_weights(tmp_path / "weights.pt").step == 6
 
 
+def test_options_that_differ_from_those_of_the_run_are_refused_by_name(tmp_path: Path) -> None:
+    save(new_run(small_config(), CPU), tmp_path / "run.pt")
+    same = ["--out", str(tmp_path), "--steps", "6"]
+    differing = ["--width", "640", "--learning-rate", "0.25", "--initial", "other.pt"]
+    with pytest.raises(ValueError, match="must be resumed as it is") as refused:
+        train.main([*same, *differing], counts=COUNTS)
+    message = str(refused.value)
+    assert all(
+        f"{name} {value}" in message for name, value in zip(*[iter(differing)] * 2, strict=True)
+    )
+    assert "--steps" not in message
+    assert not (tmp_path / "weights.pt").exists()
+    train.main(same, counts=COUNTS)
+    assert load_weights(tmp_path / "weights.pt").step == 6
+
+
 def test_products_of_less_precision_train_as_well(tmp_path: Path) -> None:
     command = ["--out", str(tmp_path), "--precision", "bfloat16", "--steps", "2"]
     command += ["--name", "pa-at"]

@@ -35,7 +35,7 @@ def best(points: np.ndarray, query: dict[str, Any]) -> int | None:
         v = (second - v0) / ((v1 - v0) or 1)
         match query:
             case {"angle": angle}:
-                worst.append((abs(float(angles(points[[index]])[0]) - angle), index))
+                worst.append((abs(float(angles(points[[index]], np.ones(2))[0]) - angle), index))
             case {"balance": balance}:
                 worst.append((abs((u + 1 - v) / 2 - balance), index))
             case {"first_at_most": budget} if first <= budget:
@@ -54,7 +54,7 @@ def test_service_and_client_choose_what_a_plain_search_finds(
     asked = TourQuery(**query)
     asked.check()
     expected = best(points, query)
-    directions = angles(points)
+    directions = angles(points, np.ones(2))
     angle, others = query.get("angle"), {k: v for k, v in query.items() if k != "angle"}
     if expected is not None:
         assert asked.choose(points, directions) == expected

@@ -10,7 +10,7 @@ from service.cli.data import print_data
 from service.cli.errors import exit_on_error
 from service.cli.fleets.output import plans_as_csv, plans_as_table
 from service.cli.labels import labels_of
-from service.cli.output import OutputFormat, check_plot, end_of_search, three_tours
+from service.cli.output import OutputFormat, check_plot, end_of_search, print_uncovered, three_tours
 from service.cli.terminal_chart import draw_front
 
 
@@ -30,6 +30,7 @@ def run_robots(plan: Plan, backend: Backend, output: OutputFormat) -> None:
     found = f"{len(front.plans)} of {front.points} plans found"
     ended = f"hypervolume {front.hypervolume:.2%}; {end_of_search(front.terminated)}"
     stderr.print(f"{found}, {ended}", highlight=False, markup=False)
+    print_uncovered(front.uncovered, stderr)
 
 
 def _print(front: RobotFront, output: OutputFormat, console: Console) -> None:

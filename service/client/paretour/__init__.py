@@ -29,7 +29,16 @@ from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, repla
 from paretour.robots import RobotFront, RobotPlan, RobotRoute
 from paretour.ros_maps import read_ros_map
 from paretour.sync import Client, Job
-from paretour.values import Actor, Front, Objective, Path, Progress, Tour
+from paretour.values import (
+    Actor,
+    Front,
+    Objective,
+    Path,
+    Progress,
+    Tour,
+    Uncovered,
+    UncoveredRegion,
+)
 
 __all__ = [
     "Actor",
@@ -59,6 +68,8 @@ __all__ = [
     "RobotsRequest",
     "StopRequest",
     "Tour",
+    "Uncovered",
+    "UncoveredRegion",
     "UnexpectedAnswer",
     "coverage_plan",
     "fleet_plan",

@@ -8,7 +8,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from paretour.expect import count, each, floats, indexes, members, number, text
-from paretour.values import PAIR, Array, Objective, Path, lengths_of, objectives_of, parse_path
+from paretour.values import (
+    PAIR,
+    Array,
+    Objective,
+    Path,
+    Uncovered,
+    lengths_of,
+    objectives_of,
+    parse_path,
+    parse_uncovered,
+)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,6 +68,7 @@ class RobotFront:
         objectives: Both objectives, as the service names them.
         terminated: Why the search ended; None while it runs.
         document: The answer as it came, with every member.
+        uncovered: The free cells of the map that no path leads to.
     """
 
     id: str
@@ -70,6 +81,7 @@ class RobotFront:
     objectives: tuple[Objective, ...]
     terminated: str | None
     document: Mapping[str, Any]
+    uncovered: Uncovered | None = None
 
 
 def parse_robots(document: Mapping[str, Any]) -> RobotFront:
@@ -91,6 +103,7 @@ def parse_robots(document: Mapping[str, Any]) -> RobotFront:
         objectives=objectives_of(answer) or (),
         terminated=answer.maybe("terminated", text),
         document=document,
+        uncovered=answer.maybe("uncovered", parse_uncovered),
     )
 
 

@@ -71,6 +71,36 @@ class Path:
     points: Array | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class UncoveredRegion:
+    """A region of free cells that no path leads to.
+
+    Attributes:
+        cells: How many cells it has.
+        cell: The row and column of one of them.
+        box: The row and column of the first and of the last cell of its bounding box.
+    """
+
+    cells: int
+    cell: tuple[int, int]
+    box: tuple[tuple[int, int], tuple[int, int]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Uncovered:
+    """The free cells of a map that no path leads to, as a room that is closed off.
+
+    Attributes:
+        cells: How many there are.
+        square_metres: Their area.
+        regions: The largest regions that they form, at most 20, the largest first.
+    """
+
+    cells: int
+    square_metres: float
+    regions: tuple[UncoveredRegion, ...]
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Tour:
     """A tour of a front.
@@ -129,6 +159,7 @@ class Front:
             it was replanned.
         arrivals: Both lengths of each tour up to each of its cities, where the request asked for
             them.
+        uncovered: Over a map, the free cells that no path leads to.
     """
 
     id: str
@@ -151,6 +182,7 @@ class Front:
     objectives: tuple[Objective, ...] | None = None
     kept: Array | None = None
     arrivals: tuple[Array, ...] | None = None
+    uncovered: Uncovered | None = None
 
     def nearest(self, angle: float) -> Tour:
         """Return the tour whose direction is nearest to an angle in degrees.
@@ -257,6 +289,7 @@ def parse_front(document: Mapping[str, Any]) -> Front:
         objectives=objectives_of(answer),
         kept=None if (kept := of_all(items, "kept", number)) is None else _stacked(kept),
         arrivals=of_all(items, "arrivals", floats(None, PAIR)),
+        uncovered=answer.maybe("uncovered", parse_uncovered),
     )
 
 
@@ -282,6 +315,25 @@ def of_all(items: Sequence[Members], name: str, read: Read[T]) -> tuple[T, ...] 
     if not items or items[0].maybe(name, anything) is None:
         return None
     return tuple(item.read(name, read) for item in items)
+
+
+def parse_uncovered(value: Any, where: str) -> Uncovered:
+    """Read what is uncovered of a map."""
+    found = members(value, where)
+    return Uncovered(
+        cells=found.read("cells", count),
+        square_metres=found.read("square_metres", number),
+        regions=found.read("regions", each(_parse_region)),
+    )
+
+
+def _parse_region(value: Any, where: str) -> UncoveredRegion:
+    region = members(value, where)
+    row, column = region.read("cell", indexes(PAIR)).tolist()
+    first, last = region.read("box", indexes(PAIR, PAIR)).tolist()
+    return UncoveredRegion(
+        cells=region.read("cells", count), cell=(row, column), box=(tuple(first), tuple(last))
+    )
 
 
 def lengths_of(items: Sequence[Members]) -> Array:

@@ -80,9 +80,7 @@ def holds_plans(front: FrontDocument) -> bool:
 
 def directions(front: FleetFront) -> NDArray[np.float64]:
     """Return the direction of each plan in scaled objectives, in degrees, shape (m,)."""
-    with np.errstate(over="ignore"):
-        scaled = front.points / front.scale
-    return angles(scaled)
+    return angles(front.points, front.scale)
 
 
 def _named(labels: Labels, over: tuple[Over, Over]) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from service.fleet.evaluation import route_lengths
 from service.fleet.plans import FleetFront, Plan, Route
 from service.jobs.fleets.fleet_document import directions
 from service.jobs.fleets.robot_fleet import RobotFleet
-from service.jobs.front_document import FrontDocument, Timings, empty_front
+from service.jobs.front_document import FrontDocument, Timings, empty_front, on_map
 from service.jobs.json_parts import encode_path, joined, with_member
 from service.pareto import balances
 from service.requests.maps.robots import SharedCoverage
@@ -62,7 +62,7 @@ class RobotEncoder:
             timings_ms=Timings(front.timings),
             terminated=front.terminated,
             actor=actor,
-            places=self.surveyed.places.tolist(),
+            **on_map(self.surveyed),
             **_kind_of_plans(self.subject),
             tours=plans,
             ends=ends,
