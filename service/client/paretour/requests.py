@@ -9,6 +9,7 @@ from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
+from paretour.frames import without_frames
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
@@ -67,11 +68,13 @@ class Plan:
 def front_plan(request: FrontRequest) -> Plan:
     """Return the request to POST /front, with matrices that are arrays as a NumPy file.
 
-    They are `matrices`, or the matrix of each objective where both are arrays, of numbers: None in
-    an array of objects becomes null in JSON.
+    They are `matrices`, two DataFrames among them, or the matrix of each objective where both are
+    arrays, of numbers: None in an array of objects becomes null in JSON.
     """
-    members: dict[str, Any] = dict(request)
+    members: dict[str, Any] = without_frames(request)
     objectives: Sequence[Mapping[str, Any]] = members.get("objectives", ())
+    if _fit_a_file(members.get("matrices")):
+        members["matrices"] = np.stack(members["matrices"])
     if _is_array(members.get("matrices")):
         return Plan("/front", members, _matrices_file(members.pop("matrices")))
     matrices: list[Any] = [objective.get("matrix") for objective in objectives]
@@ -81,9 +84,11 @@ def front_plan(request: FrontRequest) -> Plan:
     return Plan("/front", {**members, "objectives": named}, _matrices_file(np.stack(matrices)))
 
 
-def _fit_a_file(matrices: Sequence[Any]) -> bool:
+def _fit_a_file(matrices: Any) -> bool:
     """Return whether matrices are two arrays of one shape, as a file must have them."""
-    if len(matrices) != _OBJECTIVES or not all(map(_is_array, matrices)):
+    if not isinstance(matrices, list) or len(matrices) != _OBJECTIVES:
+        return False
+    if not all(map(_is_array, matrices)):
         return False
     return matrices[0].ndim == 2 and matrices[0].shape == matrices[1].shape
 
@@ -101,13 +106,13 @@ def _matrices_file(matrices: NDArray[Any]) -> File:
 
 def coverage_plan(request: CoverageRequest | RobotsRequest, png: bytes | None) -> Plan:
     """Return the request to POST /coverage. The map is in it, or a PNG or PGM file."""
-    return Plan("/coverage", request, None if png is None else File("map", png))
+    return Plan("/coverage", without_frames(request), None if png is None else File("map", png))
 
 
 def replan_plan(front: Front | str, request: ReplanRequest) -> Plan:
     """Return the request to replan a front, or the one with this id."""
     path = front_path(front.id if isinstance(front, Front) else front)
-    return Plan(f"{path}/replan", request)
+    return Plan(f"{path}/replan", without_frames(request))
 
 
 def front_path(front_id: str) -> str:
@@ -117,7 +122,7 @@ def front_path(front_id: str) -> str:
 
 def fleet_plan(request: FleetRequest) -> Plan:
     """Return the request to POST /fleet."""
-    return Plan("/fleet", request)
+    return Plan("/fleet", without_frames(request))
 
 
 def _listed(array: Any) -> Any:
