@@ -90,6 +90,13 @@ def _check_lists(source: Source, request: dict[str, Any]) -> None:
             items = request[name]
             if not isinstance(items, list) or not all(isinstance(each, kind) for each in items):
                 raise source.refusal(f"{name} must be a list of {what}, got {quoted(items)}")
+    for name in {"grid", "cost_layer"} & request.keys():
+        if not request[name] or not request[name][0]:
+            raise source.refusal(f"{name} must have a cell or more")
+    if "grid" in request and len(request.get("cost_layer", request["grid"])) != len(
+        request["grid"]
+    ):
+        raise source.refusal("cost_layer and grid must have as many rows")
 
 
 def _read_list(source: Source, value: list[Any]) -> Reading:
