@@ -211,7 +211,7 @@ function unread(error) {
   busy(false);
   say("");
   if (error.code === "unauthorized") showFaults(error);
-  else showFault("file", error.message);
+  else showFault("file", `not opened: ${error.message}`);
 }
 
 /** Text as of a file is opened, wherever it is pasted; rows of numbers go into their box. */
