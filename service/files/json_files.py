@@ -165,6 +165,7 @@ def _read_geojson(source: Source, value: dict[str, Any]) -> Reading:
         if value["type"] == "Feature"
         else {k: v for k, v in value.items() if k not in _STRUCTURE}
     )
+    _check_lists(source, rest)
     if "objectives" in rest and "vehicles" not in rest:
         stops = [{"id": each["id"], "location": each["location"]} for each in records]
         return source.reading("front", {**rest, "stops": stops})

@@ -1,6 +1,7 @@
 /** Have the service read files, and text that is pasted as a file would be. */
 
 import { namesIn } from "../common/objectives.js";
+import { inRows } from "../inputs/instance.js";
 import { proposed } from "../inputs/map_proposal.js";
 
 /** What the form opens, the names of its objectives, and the file's name with what was taken for granted. */
@@ -9,7 +10,7 @@ export async function read(service, files) {
   const { request, planes, name, notes } = await service.read(sorted);
   const { matrices, ...others } = request;
   // The form rounds distances itself, so that planes stay planes.
-  const members = planes ? { ...others, coordinates: planes, rounded: true } : proposed(request);
+  const members = planes ? { ...others, coordinates: planes, rounded: true } : proposed(inRows(request));
   return { members, objectives: namesIn(members), name, notes };
 }
 
