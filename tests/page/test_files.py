@@ -109,7 +109,8 @@ def collection(**members: Any) -> str:
 def test_points_of_geojson_are_stops_as_on_the_command_line(
     opened: Page, tmp_path: Path, pasted: bool
 ) -> None:
-    text = collection(objectives=OBJECTIVES, time_limit=0.2)
+    crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}
+    text = collection(name="stops", crs=crs, objectives=OBJECTIVES, time_limit=0.2)
     if pasted:
         stops_as_text(opened).focus()
         opened.evaluate("text => navigator.clipboard.writeText(text)", text)

@@ -59,16 +59,24 @@ def plan(page: Page) -> None:
         ("qgis.geojson", None),
     ],
 )
-def test_a_file_is_shown_and_planned_with_every_stop(
-    opened: Page, name: str, ids: list[str] | None
-) -> None:
+def test_a_file_is_shown_with_every_stop(opened: Page, name: str, ids: list[str] | None) -> None:
     open_examples(opened, name)
     expect(opened.locator("#file-notes p")).to_contain_text(name)
     expect(opened.locator("#file-fault")).to_be_empty()
-    plan(opened)
     found = [stop["id"] for stop in curl_body(opened)["stops"]]
     assert found == ids or (ids is None and len(found) > 1)
     expect(opened.get_by_label(f"Name of {found[0]}", exact=True)).to_have_value(found[0])
+
+
+def test_orders_with_hashes_and_costs_are_planned_with_every_row(opened: Page) -> None:
+    rows = [f"#100{row};24,9{row};60,{row % 3 + 1};0,{row}" for row in range(1, 7)]
+    text = "\r\n".join(["Order ID;Längengrad;Breitengrad;Risk", *rows])
+    file = {"name": "orders.csv", "mimeType": "text/csv", "buffer": text.encode("cp1252")}
+    opened.get_by_label("Open files").set_input_files([file])  # type: ignore[list-item]
+    wait_until_read(opened)
+    plan(opened)
+    expect(opened.locator("#order p")).to_contain_text("#1001 →")
+    assert len(curl_body(opened)["stops"]) == 6
 
 
 def test_a_spreadsheet_of_two_planes_is_shown_as_text(opened: Page) -> None:
