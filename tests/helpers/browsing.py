@@ -60,7 +60,7 @@ CLIPBOARD_TEXT = """async () => {
   return text;
 }"""
 
-expect.set_options(timeout=8 * SECOND)  # five seconds are too few on a busy machine
+expect.set_options(timeout=30 * SECOND)  # five seconds are too few on a busy machine
 
 needs_chromium = pytest.mark.skipif(
     MAY_BE_MISSING and not CHROMIUM.exists(),

@@ -98,6 +98,7 @@ def test_tsplib_of_any_kind_is_planned_twice_over(opened: Page, name: str) -> No
 )
 def test_demand_and_windows_are_a_fleet_that_is_planned(opened: Page, name: str) -> None:
     open_examples(opened, name)
+    expect(opened.locator("#file-notes p")).to_contain_text(name)
     expect(opened.get_by_text("A fleet:")).to_be_visible()
     assert curl_body(opened, "fleet")["vehicles"]
     plan(opened)
