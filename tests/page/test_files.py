@@ -140,7 +140,7 @@ def test_rows_that_are_pasted_go_into_their_box(opened: Page) -> None:
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
-        ("stops.csv", "x,y,u,v\n1,2,3,4\n5,6,7\n", "stops.csv: must have 4 columns"),
+        ("stops.csv", "x,y,u,v\n1,2,3,4\n5,6,7\n", "stops.csv: row 3, column 'v' must be a number"),
         ("stops.json", '{"coordinates": [', "stops.json: must be JSON"),
         ("stops.json", '{"coordinates": [1, 2]}', "coordinates must be a list of rows"),
         ("stops.json", '{"stops": 7}', "stops must be a list of objects"),
