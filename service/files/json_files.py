@@ -90,6 +90,13 @@ def _check_lists(source: Source, request: dict[str, Any]) -> None:
             items = request[name]
             if not isinstance(items, list) or not all(isinstance(each, kind) for each in items):
                 raise source.refusal(f"{name} must be a list of {what}, got {quoted(items)}")
+    for name in {"grid", "cost_layer"} & request.keys():
+        if not request[name] or not request[name][0]:
+            raise source.refusal(f"{name} must have a cell or more")
+    if "grid" in request and len(request.get("cost_layer", request["grid"])) != len(
+        request["grid"]
+    ):
+        raise source.refusal("cost_layer and grid must have as many rows")
 
 
 def _read_list(source: Source, value: list[Any]) -> Reading:
@@ -158,6 +165,7 @@ def _read_geojson(source: Source, value: dict[str, Any]) -> Reading:
         if value["type"] == "Feature"
         else {k: v for k, v in value.items() if k not in _STRUCTURE}
     )
+    _check_lists(source, rest)
     if "objectives" in rest and "vehicles" not in rest:
         stops = [{"id": each["id"], "location": each["location"]} for each in records]
         return source.reading("front", {**rest, "stops": stops})

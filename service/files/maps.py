@@ -14,6 +14,7 @@ from service.requests.validation import parse_json
 
 _CELL = 0.05  # metres, as the maps of robots mostly have it
 _OF_YAML = ("resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
+_OF_MESSAGE = ("occupancy_grid", "obstacle_from", "unknown")
 _MOST_BYTES = 2**16  # of a map.yaml
 _OTHER_PICTURES = {b"\xff\xd8\xff": "JPEG", b"GIF8": "GIF", b"RIFF": "WebP", b"BM": "BMP"}
 
@@ -38,18 +39,35 @@ def read_map(sources: Sequence[Source]) -> Reading:
     else:
         how = {"cell_size": _CELL}
         picture.note("cell-size", f"A cell is taken to be {_CELL} m wide, and dark to be blocked.")
+    request = _grid(picture.name, how, picture.file.data, picture.bounds.cells)
+    notes = tuple(note for source in sources for note in source.notes)
+    return Reading("coverage", request, (said or pictures)[0].name, notes)
+
+
+def with_grid(name: str, request: Request, cells: int) -> Request:
+    """Return a request whose map is a grid, in place of a message of ROS.
+
+    Raises:
+        UnreadableFile: The message is none, or holds too much; the file's name stands before it.
+    """
+    if "occupancy_grid" not in request:
+        return request
+    said = {member: request[member] for member in _OF_MESSAGE if member in request}
+    rest = {member: value for member, value in request.items() if member not in said}
+    return {**rest, **_grid(name, said, None, cells)}
+
+
+def _grid(name: str, how: dict[str, Any], picture: bytes | None, cells: int) -> Request:
+    """Return grid, cell size and origin of a map."""
     try:
-        read = parse_json(MapRequest, to_json(how)).with_map(
-            picture.file.data, picture.bounds.cells
-        )
+        read = parse_json(MapRequest, to_json(how)).with_map(picture, cells)
     except Refusal as refusal:
         kind = FileTooLarge if refusal.status == 413 else UnreadableFile
-        raise kind(f"{picture.name}: {refusal.detail}") from None
+        raise kind(f"{name}: {refusal.detail}") from None
     request: Request = {"grid": (read.grid > 0).astype(int).tolist(), "cell_size": read.cell_size}
     if read.origin:
         request["origin"] = read.origin
-    notes = tuple(note for source in sources for note in source.notes)
-    return Reading("coverage", request, (said or pictures)[0].name, notes)
+    return request
 
 
 def _interpretation(source: Source, picture: bytes) -> dict[str, Any]:

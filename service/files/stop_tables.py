@@ -84,7 +84,7 @@ def _two_planes(columns: Columns) -> Reading:
     named = [columns.fields[at] for at in free]
     planes = len(free) == 4 and set(named) <= {None, "x", "y"}
     if planes and {"x", "y"} <= set(named):
-        planes = all(re.match("[xy]|x?lon|y?lat", name) for name in _others(columns))
+        planes = all(re.match("[xy]|[uv]$|x?lon|y?lat", name) for name in _others(columns))
     if not planes:
         came = f"{len(free)} columns: {', '.join(quoted(columns.names[at]) for at in free[:8])}"
         demand = "must have 4 columns, x and y in either plane, or columns named lon and lat"

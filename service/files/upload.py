@@ -1,11 +1,13 @@
 """Read files that came over HTTP, within the limits of a service, as JSON."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from pydantic_core import to_json
 
 from service.actor_info import ActorInfo
 from service.errors import Refusal
+from service.files.maps import with_grid
 from service.files.reader import read_files
 from service.files.reading import Bounds, FileTooLarge, NamedFile, UnreadableFile
 from service.files.spreadsheets import is_spreadsheet
@@ -38,6 +40,9 @@ def read_upload(
             check_structure(file.data, limits)
     try:
         reading = read_files(files, bounds_of(limits), wanted=None)
+        if reading.kind == "coverage":  # whoever shows a map draws a grid
+            request = with_grid(reading.name, reading.request, limits.cells)
+            reading = replace(reading, request=request)
     except FileTooLarge as error:
         raise Refusal("file-too-large", detail=str(error)) from None
     except UnreadableFile as error:

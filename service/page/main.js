@@ -3,7 +3,7 @@
 import { Examples } from "./opening/examples.js";
 import { ExportButtons } from "./result/export_buttons.js";
 import { clearFaults, showFault, showFaults } from "./planning/faults.js";
-import { isRequest, read, readPasted } from "./inputs/files.js";
+import { FileNotes } from "./opening/file_notes.js";
 import { kindOf } from "./inputs/instance.js";
 import { linked } from "./result/link.js";
 import { UNNAMED, namesIn } from "./common/objectives.js";
@@ -14,6 +14,7 @@ import { RequestForm } from "./inputs/request_form.js";
 import { say, sentence } from "./planning/status.js";
 import { Planning } from "./planning/planning.js";
 import { stored } from "./planning/stored.js";
+import { pastedFile, read } from "./opening/reading.js";
 import { Surroundings } from "./opening/surroundings.js";
 import { takeDropped } from "./opening/dropping.js";
 import { Service } from "./planning/service.js";
@@ -35,6 +36,7 @@ const result = new Result({
 const input = new RequestForm(form, edited);
 const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row), result.wait);
 const examples = new Examples(element("example"), element("about"));
+const fileNotes = new FileNotes(element("file-notes"));
 const surroundings = new Surroundings(service, result);
 const exporting = new ExportButtons(service, screen);
 const replanForm = new ReplanForm(replan, result.wait);
@@ -185,31 +187,47 @@ function openChosen() {
   element("file").value = "";
 }
 
-const openFiles = (files) => files.length && openBrought(() => read(files));
-
-/** Opens what `reading` gives, or says why it gives nothing. */
-async function openBrought(reading) {
+/** Opens the request that files are, or says why they are none; until then nothing can be planned. */
+async function openFiles(files) {
+  if (!files.length) return;
+  leave();
+  clearFaults();
+  element("plan").disabled = true;
+  say(files.length > 1 ? "The files are being read." : "The file is being read.");
+  const mine = (opened += 1);
   try {
-    const { members, objectives: names } = await reading();
+    const brought = await read(service, files);
+    if (opened > mine) return;
     forgetExample();
-    open(members, names);
+    open(brought.members, brought.objectives);
+    fileNotes.show(brought);
   } catch (error) {
-    showFault("file", error.message);
+    if (opened === mine) unread(error);
   }
 }
 
-/** Text that is a request is opened, wherever it is pasted; rows of cities go into their box. */
+/** What was shown stays, and can be planned. */
+function unread(error) {
+  busy(false);
+  say("");
+  if (error.code === "unauthorized") showFaults(error);
+  else showFault("file", `not opened: ${error.message}`);
+}
+
+/** Text as of a file is opened, wherever it is pasted; rows of numbers go into their box. */
 function pasted(event) {
-  const text = event.clipboardData.getData("text");
-  if (!isRequest(text)) return;
+  const file = pastedFile(event.clipboardData.getData("text"));
+  if (!file) return;
   event.preventDefault();
-  openBrought(() => readPasted(text));
+  openFiles([file]);
 }
 
 /** Opens an example by its file; false where there is none, or another was opened meanwhile. */
 async function openExample(file) {
   if (!examples.choose(file)) return false;
   leave();
+  clearFaults();
+  fileNotes.dismiss();
   say("The example is being opened.");
   const mine = (opened += 1);
   const { objectives: names } = examples.chosen;
@@ -233,6 +251,7 @@ async function planExample(file) {
 
 function forgetExample() {
   examples.forget();
+  fileNotes.dismiss();
   surroundings.forget();
 }
 
@@ -261,6 +280,7 @@ form.addEventListener("submit", (event) => {
   if (narrow.matches) element("result").scrollIntoView();
   plan();
 });
+form.addEventListener("input", () => (element("file-fault").textContent = ""));
 narrow.addEventListener("change", arrange);
 element("stop").addEventListener("click", stop);
 element("clear").addEventListener("click", () => {

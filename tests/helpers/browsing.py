@@ -176,6 +176,12 @@ def open_files(page: Page, files: dict[str, str]) -> None:
         for name, text in files.items()
     ]
     page.get_by_label("Open files").set_input_files(payloads)
+    wait_until_read(page)
+
+
+def wait_until_read(page: Page) -> None:
+    """Wait until files that were opened are read, or refused: until then nothing can be planned."""
+    expect(page.get_by_role("button", name="Plan", exact=True)).to_be_enabled()
 
 
 def stops_as_text(page: Page) -> Locator:

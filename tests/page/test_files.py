@@ -109,7 +109,8 @@ def collection(**members: Any) -> str:
 def test_points_of_geojson_are_stops_as_on_the_command_line(
     opened: Page, tmp_path: Path, pasted: bool
 ) -> None:
-    text = collection(objectives=OBJECTIVES, time_limit=0.2)
+    crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}
+    text = collection(name="stops", crs=crs, objectives=OBJECTIVES, time_limit=0.2)
     if pasted:
         stops_as_text(opened).focus()
         opened.evaluate("text => navigator.clipboard.writeText(text)", text)
@@ -139,23 +140,24 @@ def test_rows_that_are_pasted_go_into_their_box(opened: Page) -> None:
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
-        ("stops.csv", "x,y,u,v\n1,2,3,4\n5,6,7\n", "stops.csv must have four numbers on each line"),
-        ("stops.json", '{"coordinates": [', "stops.json must be JSON"),
-        ("stops.json", '{"coordinates": [1, 2]}', "coordinates of stops.json must be rows"),
-        ("stops.json", '{"stops": 7}', "stops of stops.json must be a list"),
+        ("stops.csv", "x,y,u,v\n1,2,3,4\n5,6,7\n", "stops.csv: row 3, column 'v' must be a number"),
+        ("stops.json", '{"coordinates": [', "stops.json: must be JSON"),
+        ("stops.json", '{"coordinates": [1, 2]}', "coordinates must be a list of rows"),
+        ("stops.json", '{"stops": 7}', "stops must be a list of objects"),
         (
             "stops.csv",
             "id,lon,lat\na,24.9,60.1\nb,east,60.2\n",
-            "lon of stops.csv must be a number",
+            "row 3, column 'lon' must be a number, got 'east'",
         ),
-        ("stops.csv", "id;lon;lat\na;24,9;60\na;25;60\n", "must have an id of its own in row 2"),
+        ("stops.csv", "id;lon;lat\na;24,9;60\na;25;60\n", "row 3, column 'id' must be an id"),
         (
             "points.geojson",
             collection(objectives=OBJECTIVES, features=[{"geometry": None}]),
-            "features/0 of points.geojson must be a Point",
+            "features/0 must be a Point",
         ),
-        ("map.json", '{"grid": []}', "grid of map.json must have a cell or more"),
-        ("kroA.tsp", "EDGE_WEIGHT_TYPE: EUC_2D\n", "open it together with the other"),
+        ("points.geojson", collection(objectives=5), "objectives must be a list of objects"),
+        ("map.json", '{"grid": []}', "grid must have a cell or more"),
+        ("kroA.tsp", "EDGE_WEIGHT_TYPE: EUC_2D\n", "name another for the other one"),
     ],
 )
 def test_a_bad_file_is_refused_in_a_sentence(opened: Page, name: str, text: str, said: str) -> None:

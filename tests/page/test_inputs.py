@@ -77,11 +77,11 @@ def test_two_tables_are_planes_or_costs(opened: Page) -> None:
     open_files(opened, {"a.csv": "x,y\n1,2\n3,4\n5,6", "b.csv": "1;2\n3,5;4\n5;6"})
     expect(opened.locator("#count")).to_have_text("3 stops")
     assert curl_body(opened)["coordinates"] == [[1, 2, 1, 2], [3, 4, 3.5, 4], [5, 6, 5, 6]]
-    open_files(opened, {"b.csv": other, "stops.csv": "lon,lat\n0,0\n1,0\n0,1"})
+    open_files(opened, {"b.csv": other, "a.csv": "lon,lat\n0,0\n1,0\n0,1"})
     expect(opened.get_by_label("Second objective", exact=True)).to_have_value("b")
     assert curl_body(opened)["objectives"][1]["matrix"] == MATRICES[1]
-    open_files(opened, {"b.csv": other, "stops.csv": "lon,lat\n0,0\n1,0"})
-    expect(opened.locator("#file-fault")).to_contain_text("for each of the 2 stops of stops.csv")
+    open_files(opened, {"b.csv": other, "a.csv": "lon,lat\n0,0\n1,0"})
+    expect(opened.locator("#file-fault")).to_contain_text("got 2 of a.csv and 3 of b.csv")
 
 
 def test_the_table_renames_moves_adds_and_deletes_stops(opened: Page) -> None:

@@ -1,10 +1,9 @@
 /** Cities as text: a row of four numbers on each line. */
 
-/** The rows, a header left out. What is no number stays as it is, for the service to name. */
+/** The rows. What is no number stays as it is, for the service to name. */
 export function rowsOf(text) {
-  const lines = text.split(/\r?\n/).filter((line) => line.trim() && !line.startsWith("#"));
-  const rows = lines.map((line) => line.trim().split(/\s*[,;\t]\s*|\s+/).map(cell));
-  return rows.length && rows[0].every((each) => typeof each === "string") ? rows.slice(1) : rows;
+  const lines = text.split(/\r?\n/).filter((line) => line.trim());
+  return lines.map((line) => line.trim().split(/\s*[,;\t]\s*|\s+/).map(cell));
 }
 
 export const textOf = (rows) => rows.map((row) => row.join(", ")).join("\n");

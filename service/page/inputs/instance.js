@@ -4,7 +4,7 @@ import { isCity, rowsOf } from "./cities.js";
 import { rounded } from "./distances.js";
 import { describedFleet, describedRobots } from "../fleet/fleet_request.js";
 import { counted } from "../common/numbers.js";
-import { UNNAMED } from "../common/objectives.js";
+import { UNNAMED, namesIn } from "../common/objectives.js";
 import { nameOf } from "./names.js";
 import { Problem } from "../planning/service.js";
 
@@ -59,6 +59,17 @@ function long({ coordinates, matrices, ...others }, ids, names = UNNAMED) {
   };
 }
 
+/** Stops that lie in both objectives' planes alone as rows, which can be edited: `long` the other way. */
+export function inRows(request) {
+  const { stops, objectives, ...others } = request;
+  const planes = objectives?.length === 2 ? objectives.map(({ coordinates }) => coordinates) : [];
+  const inPlanes = stops && planes.length && planes.every((plane) => isPlane(plane, stops.length));
+  if (!inPlanes || kindOf(others) !== "unknown" || stops.some((stop) => Object.keys(stop).join() !== "id")) return request;
+  const coordinates = planes[0].map((place, row) => [...place, ...planes[1][row]]);
+  return { ...others, coordinates, ids: stops.map(({ id }) => id), names: namesIn(request) };
+}
+
+const isPlane = (rows, count) => Array.isArray(rows) && rows.length === count && rows.every((row) => Array.isArray(row) && row.length === 2);
 const without = (members, name) => Object.fromEntries(Object.entries(members).filter(([each]) => each !== name));
 
 function wholeDistances(rows) {

@@ -29,6 +29,13 @@ export class Service {
     return (await this.ask(path, options)).json();
   }
 
+  /** The request that files are, with what was taken for granted. */
+  async read(files) {
+    const body = new FormData();
+    for (const file of files) body.append("file", file);
+    return (await this.ask("files", { method: "POST", body })).json();
+  }
+
   async delete(path) {
     await this.ask(path, { method: "DELETE" });
   }

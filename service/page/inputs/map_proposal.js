@@ -1,0 +1,19 @@
+/** Propose what to plan on a map of a robot that says no more than where its walls are. */
+
+import { nearness } from "./nearness.js";
+
+const PLACES_ACROSS = 12; // places along the longer side
+const OF_MAP = ["grid", "cell_size", "origin"];
+const OBJECTIVES = [
+  { name: "distance", unit: "m" },
+  { name: "nearness to walls", unit: "" },
+];
+
+/** The request itself; where it is a map alone, one to visit places all over it, short against far from walls. */
+export function proposed(request) {
+  const { grid, cell_size: cell } = request;
+  if (!grid || !cell || Object.keys(request).some((member) => !OF_MAP.includes(member))) return request;
+  const longest = Math.max(grid.length, grid[0].length);
+  const spacing = Math.ceil((cell * longest * 100) / PLACES_ACROSS) / 100;
+  return { names: OBJECTIVES, ...request, cost_layer: nearness(grid), robot_radius: 0, spacing };
+}

@@ -1,0 +1,228 @@
+"""Files as people have them, opened and dropped on the page: what is shown, planned and said."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, Route, expect
+
+from service.api.app import Edge
+from service.api.auth import Access, KeyHash, new_key
+from service.settings import Settings
+from tests.helpers.browsing import (
+    curl_body,
+    needs_chromium,
+    open_files,
+    open_page,
+    stops_as_text,
+    wait_until_planned,
+    wait_until_read,
+)
+from tests.helpers.serving import app_of, serving
+
+pytestmark = needs_chromium
+
+EXAMPLES = Path(__file__).parents[1] / "files" / "examples"
+DROP = """files => {
+  const dataTransfer = new DataTransfer();
+  for (const [name, text] of Object.entries(files)) dataTransfer.items.add(new File([text], name));
+  document.body.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true }));
+}"""
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, released: str) -> Iterator[Page]:
+    """A page for all of these tests, each of which opens its own files."""
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        yield page
+
+
+def open_examples(page: Page, *names: str) -> None:
+    """Open files of the folder of examples, as they are."""
+    page.get_by_label("Open files").set_input_files([EXAMPLES / name for name in names])
+    wait_until_read(page)
+
+
+def plan(page: Page) -> None:
+    page.get_by_label("Seconds of planning").fill("0.2")
+    page.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(page)
+
+
+@pytest.mark.parametrize(
+    ("name", "ids"),
+    [
+        ("orders-with-hashes.csv", ["#1001", "#1002", "#1003", "#1004", "#1005", "#1006"]),
+        ("excel-german.CSV", ["München", "Köln"]),
+        ("qgis.geojson", None),
+    ],
+)
+def test_a_file_is_shown_with_every_stop(opened: Page, name: str, ids: list[str] | None) -> None:
+    open_examples(opened, name)
+    expect(opened.locator("#file-notes p")).to_contain_text(name)
+    expect(opened.locator("#file-fault")).to_be_empty()
+    found = [stop["id"] for stop in curl_body(opened)["stops"]]
+    assert found == ids or (ids is None and len(found) > 1)
+    expect(opened.get_by_label("Name of stop 1", exact=True)).to_have_value(found[0])
+
+
+def test_orders_with_hashes_and_costs_are_planned_with_every_row(opened: Page) -> None:
+    rows = [f"#100{row};24,9{row};60,{row % 3 + 1};0,{row}" for row in range(1, 7)]
+    text = "\r\n".join(["Order ID;Längengrad;Breitengrad;Risk", *rows])
+    file = {"name": "orders.csv", "mimeType": "text/csv", "buffer": text.encode("cp1252")}
+    opened.get_by_label("Open files").set_input_files([file])  # type: ignore[list-item]
+    wait_until_read(opened)
+    plan(opened)
+    expect(opened.locator("#order p")).to_contain_text("#1001 →")
+    assert len(curl_body(opened)["stops"]) == 6
+
+
+def test_a_spreadsheet_of_two_planes_is_shown_as_text(opened: Page) -> None:
+    open_examples(opened, "numbers.XLSX")
+    expect(stops_as_text(opened)).to_have_value("1, 2, 3, 4\n5, 6.5, 7, 8")
+
+
+@pytest.mark.parametrize("name", ["geo.tsp", "att.TSP", "lower-diag-row.tsp", "upper-row.tsp"])
+def test_tsplib_of_any_kind_is_planned_twice_over(opened: Page, name: str) -> None:
+    text = (EXAMPLES / name).read_text()
+    open_files(opened, {"a.tsp": text, "b.tsp": text})
+    expect(opened.get_by_text("Two matrices of")).to_be_visible()
+    plan(opened)
+    expect(opened.locator("#status")).to_have_text("Done: 1 tour found.")
+
+
+@pytest.mark.parametrize(
+    "name", ["windows-as-times.csv", "orders.xlsx", "cvrp.vrp", "solomon.txt", "vroom.json"]
+)
+def test_demand_and_windows_are_a_fleet_that_is_planned(opened: Page, name: str) -> None:
+    open_examples(opened, name)
+    expect(opened.locator("#file-notes p")).to_contain_text(name)
+    expect(opened.get_by_text("A fleet:")).to_be_visible()
+    assert curl_body(opened, "fleet")["vehicles"]
+    plan(opened)
+    expect(opened.locator("#fleet")).to_be_visible()
+
+
+def test_what_was_taken_for_granted_is_said_and_dismissed(opened: Page) -> None:
+    open_examples(opened, "excel-german.CSV")
+    notes = opened.locator("#file-notes")
+    expect(notes).to_have_attribute("role", "status")
+    expect(notes.get_by_role("listitem").first).to_be_visible()
+    notes.get_by_role("button", name="Dismiss the notes on excel-german.CSV").click()
+    expect(notes).to_be_empty()
+    open_examples(opened, "excel-german.CSV")
+    expect(notes).to_contain_text("excel-german.CSV")
+    opened.get_by_label("Example").select_option("City deliveries")
+    expect(notes).to_be_empty()
+    wait_until_planned(opened)
+
+
+def test_a_name_and_a_note_are_text(opened: Page) -> None:
+    open_files(opened, {"<img src=x>.csv": "<b>,lon,lat\n<i>a</i>,0,0\nb,0,1\n"})
+    expect(opened.locator("#file-notes p")).to_contain_text("<img src=x>.csv")
+    expect(opened.locator("#file-notes").locator("img, b, i")).to_have_count(0)
+
+
+def test_a_broken_file_is_told_until_something_else_is_opened_or_edited(opened: Page) -> None:
+    fault = opened.locator("#file-fault")
+    good = {"good.csv": "id,lon,lat\na,24.9,60.1\nb,24.8,60.2\nc,24.7,60.1\n"}
+
+    def open_broken() -> None:
+        open_files(opened, {"broken.csv": "id,lon,lat\nx,24.9,60.1\ny,east,60.2\n"})
+        expect(fault).to_contain_text("broken.csv")
+        expect(fault).to_contain_text("east")
+        expect(opened.locator("#status")).to_be_hidden()
+
+    open_files(opened, good)
+    open_broken()
+    open_files(opened, good)
+    expect(fault).to_be_empty()
+    open_broken()
+    expect(opened.locator("#file-notes p")).to_contain_text("good.csv")  # which is still shown
+    assert [stop["id"] for stop in curl_body(opened)["stops"]] == ["a", "b", "c"]
+    field = opened.get_by_label("Name of stop 1", exact=True)
+    field.fill("depot")
+    field.press("Tab")
+    expect(fault).to_be_empty()
+    open_broken()
+    opened.get_by_label("Example").select_option("City deliveries")
+    expect(fault).to_be_empty()
+    wait_until_planned(opened)
+    open_broken()
+    expect(opened.locator("#count")).to_have_text("61 stops")
+    plan(opened)
+    expect(fault).to_be_empty()
+
+
+def test_dropped_files_are_opened(opened: Page) -> None:
+    opened.evaluate(DROP, {"dropped.csv": "Order ID;lon [deg];lat [deg]\n#1;24,9;60,1\n#2;25;60\n"})
+    expect(opened.locator("#file-notes p")).to_contain_text("dropped.csv")
+    assert [stop["id"] for stop in curl_body(opened)["stops"]] == ["#1", "#2"]
+
+
+def test_a_table_that_is_pasted_keeps_its_rows(opened: Page) -> None:
+    text = "#1001,24.9,60.1\n#1002,24.8,60.2\n#1003,24.7,60.1\n"
+    opened.evaluate("text => navigator.clipboard.writeText(text)", f"id,lon,lat\n{text}")
+    opened.get_by_role("button", name="Clear").focus()
+    opened.keyboard.press("Control+V")
+    expect(opened.locator("#file-notes p")).to_contain_text("pasted text")
+    assert [stop["id"] for stop in curl_body(opened)["stops"]] == ["#1001", "#1002", "#1003"]
+
+
+def test_nothing_is_planned_while_a_file_is_read_and_the_last_one_opened_is_shown(
+    opened: Page,
+) -> None:
+    held: list[Route] = []
+    opened.route("**/files", lambda route: held.append(route))
+    button = opened.get_by_role("button", name="Plan", exact=True)
+    names = opened.get_by_label("Open files")
+    rows = b"id,lon,lat\na,24.9,60.1\nb,24.8,60.2\n"
+    for name in ("first.csv", "second.csv"):
+        names.set_input_files([{"name": name, "mimeType": "text/csv", "buffer": rows}])
+        expect(button).to_be_disabled()
+    expect(opened.locator("#status")).to_have_text("The file is being read.")
+    for route in reversed(held):  # the first one's answer comes last
+        route.continue_()
+    wait_until_read(opened)
+    opened.unroute_all(behavior="wait")
+    expect(opened.locator("#file-notes p")).to_contain_text("second.csv")
+
+
+@pytest.mark.parametrize(
+    ("status", "code", "detail"),
+    [
+        (413, "file-too-large", "a.csv: must have at most 9 stops, got 10"),
+        (429, "rate-limited", "at most 5 requests a minute"),
+        (503, "busy", "too many requests are being read: try again in 1 s"),
+        (0, "", "the service does not answer"),
+        (502, "", "the service answered 502 without saying why"),
+    ],
+)
+def test_a_refusal_is_a_sentence(opened: Page, status: int, code: str, detail: str) -> None:
+    def refuse(route: Route) -> None:
+        if not status:
+            return route.abort()
+        kind = "application/problem+json" if code else "text/html"
+        body = json.dumps({"code": code, "detail": detail}) if code else "<html>"
+        return route.fulfill(status=status, content_type=kind, body=body)
+
+    opened.route("**/files", refuse)
+    open_files(opened, {"a.csv": "lon,lat\n1,2\n"})
+    expect(opened.locator("#file-fault")).to_have_text(f"Not opened: {detail}.")
+    opened.unroute_all()
+
+
+def test_a_key_is_sent_with_files(browser: Browser) -> None:
+    key, digest = new_key()
+    access = Access([KeyHash(caller="dispatch", digest=digest)])
+    app = app_of(limits=Settings().limits, edge=Edge(access=access))
+    stops = {"stops.csv": "id,lon,lat\na,24.9,60.1\nb,24.8,60.2\n"}
+    with serving(app) as address, open_page(browser, address) as page:
+        expect(page.locator("#key-fault")).to_contain_text("key")
+        open_files(page, stops)
+        expect(page.locator("#key-fault")).to_contain_text("key")
+        page.get_by_label("API key").fill(key)
+        open_files(page, stops)
+        expect(page.locator("#count")).to_have_text("2 stops")
