@@ -1,7 +1,6 @@
 """A service runs its own code in any folder, says why it cannot, and calls nobody unasked."""
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -26,7 +25,8 @@ def served(folder: Path, **settings: str) -> Iterator[tuple[subprocess.Popen[byt
     """Run the installed command in a folder, and yield its process and address."""
     port = free_port()
     environment = {**os.environ, **settings}
-    environment.pop("PYTHONPATH", None)
+    if "PYTHONPATH" not in settings:
+        environment.pop("PYTHONPATH", None)
     with subprocess.Popen(
         [PARETOUR, "serve", "--port", str(port), "--workers", "1"],
         cwd=folder,
@@ -72,18 +72,22 @@ def test_a_module_in_the_current_folder_stands_in_for_none_that_is_installed(
         assert answer.status_code == 200
 
 
-def test_a_service_whose_workers_cannot_load_says_why_and_ends(
-    tmp_path: Path, quick_actors: dict[str, str]
-) -> None:
-    actors = shutil.copytree(quick_actors["PARETOUR_ACTORS"], tmp_path / "actors")
-    with served(tmp_path, PARETOUR_ACTORS=str(actors)) as (process, url):
+# Run by each Python that starts with this folder on its path: in workers one import fails.
+BROKEN_WORKERS = """
+import sys
+if any("forkserver" in argument for argument in sys.orig_argv):
+    sys.modules["onnxruntime"] = None
+"""
+
+
+def test_a_service_whose_workers_cannot_load_says_why_and_ends(tmp_path: Path) -> None:
+    (tmp_path / "sitecustomize.py").write_text(BROKEN_WORKERS)
+    with served(tmp_path, PYTHONPATH=str(tmp_path)) as (process, _):
         assert process.stderr is not None
-        until_ok(process, f"{url}/health/live")
-        shutil.rmtree(actors)  # which the server has read; each worker reads it when it has begun
         log = process.stderr.read()  # until it ends
         assert process.wait() == 3
+    assert b"import of onnxruntime halted" in log
     assert b"the service cannot start" in log
-    assert b"must hold ONNX files" in log
 
 
 def connections(process: psutil.Process) -> set[str]:

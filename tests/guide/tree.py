@@ -22,7 +22,7 @@ FOLDERS = {
     "service/page/chart": "The chart of the front, the slider, and the growth of the hypervolume.",
     "service/page/common": "Numbers, colours, nouns, and the names of objectives.",
     "service/page/fleet": "Fleets: their request in the form, and the selected plan by vehicle.",
-    "service/page/inputs": "The fields of a request, files, and cities clicked into place.",
+    "service/page/inputs": "The fields of a request, and cities clicked into place.",
     "service/page/map": "The maps: two planes, one of both objectives, or a grid.",
     "service/page/map/ways": "Ways along the streets: of an example, or of a routing engine.",
     "service/page/planning": "Calls of the service, and the refusals that it answers with.",

@@ -24,6 +24,7 @@ from service.errors import (
     WorkerLost,
 )
 from service.jobs.front_document import FrontDocument
+from service.jobs.runner import Runner
 from service.jobs.workers.worker_pool import WorkerPool
 from tests.helpers.scripted_runner import ScriptedRunner, brief_source, source, worker_pool
 
@@ -275,6 +276,27 @@ def test_processes_that_cannot_be_started_are_tried_again(
         assert sum("cannot run" in record.message for record in caplog.records) == 1
 
     run(test, workers=2)
+
+
+def never_made() -> Runner:
+    raise ValueError("no network is there")
+
+
+def test_processes_that_never_load_are_told_with_the_cause_after_three_tries() -> None:
+    async def test() -> None:
+        reasons: list[str] = []
+        pool = WorkerPool(never_made, workers=1, queue=1, on_failed=reasons.append)
+        await pool.start()
+        try:
+            await until(lambda: bool(reasons))
+            with pytest.raises(NoWorker, match="no network is there"):
+                pool.check_ready()
+        finally:
+            await pool.close()
+        assert len(reasons) == 1
+        assert "no network is there" in reasons[0]
+
+    asyncio.run(test())
 
 
 def is_ready(workers: WorkerPool) -> bool:
