@@ -22,22 +22,28 @@ PATIENCE = 300.0  # seconds, against hanging
 
 @contextmanager
 def served(folder: Path, **settings: str) -> Iterator[tuple[subprocess.Popen[bytes], str]]:
-    """Run the installed command in a folder, and yield its process and address."""
+    """Run the installed command in a folder, and yield its process and address.
+
+    Its log is in the file `log` beside that folder: a pipe that nobody reads would fill up.
+    """
     port = free_port()
     environment = {**os.environ, **settings}
     if "PYTHONPATH" not in settings:
         environment.pop("PYTHONPATH", None)
-    with subprocess.Popen(
-        [PARETOUR, "serve", "--port", str(port), "--workers", "1"],
-        cwd=folder,
-        env=environment,
-        stderr=subprocess.PIPE,
-    ) as process:
+    command = [PARETOUR, "serve", "--port", str(port), "--workers", "1"]
+    with (
+        log_of(folder).open("wb") as log,
+        subprocess.Popen(command, cwd=folder, env=environment, stderr=log) as process,
+    ):
         try:
             yield process, f"http://127.0.0.1:{port}"
         finally:
             process.send_signal(signal.SIGTERM)
-            process.communicate(timeout=PATIENCE)
+            process.wait(PATIENCE)
+
+
+def log_of(folder: Path) -> Path:
+    return folder.with_name(f"{folder.name}-log")
 
 
 def until_ok(process: subprocess.Popen[bytes], url: str) -> None:
@@ -83,9 +89,8 @@ if any("forkserver" in argument for argument in sys.orig_argv):
 def test_a_service_whose_workers_cannot_load_says_why_and_ends(tmp_path: Path) -> None:
     (tmp_path / "sitecustomize.py").write_text(BROKEN_WORKERS)
     with served(tmp_path, PYTHONPATH=str(tmp_path)) as (process, _):
-        assert process.stderr is not None
-        log = process.stderr.read()  # until it ends
-        assert process.wait() == 3
+        assert process.wait(PATIENCE) == 3
+    log = log_of(tmp_path).read_bytes()
     assert b"import of onnxruntime halted" in log
     assert b"the service cannot start" in log
 

@@ -1,8 +1,6 @@
 """Maps of robots as requests: a picture alone, or with its map.yaml of ROS."""
 
 from collections.abc import Sequence
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from pydantic_core import to_json
@@ -13,7 +11,6 @@ from service.requests.maps.fields import MapRequest
 from service.requests.validation import parse_json
 
 _CELL = 0.05  # metres, as the maps of robots mostly have it
-_OF_YAML = ("resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
 _OF_MESSAGE = ("occupancy_grid", "obstacle_from", "unknown")
 _MOST_BYTES = 2**16  # of a map.yaml
 _OTHER_PICTURES = {b"\xff\xd8\xff": "JPEG", b"GIF8": "GIF", b"RIFF": "WebP", b"BM": "BMP"}
@@ -35,7 +32,7 @@ def read_map(sources: Sequence[Source]) -> Reading:
         if picture.file.data.startswith(begin):
             raise picture.refusal(f"must be PNG or PGM, got {named}: save it as PNG, without loss")
     if said:
-        how = _interpretation(said[0], picture.file.data)
+        how = _interpretation(said[0])
     else:
         how = {"cell_size": _CELL}
         picture.note("cell-size", f"A cell is taken to be {_CELL} m wide, and dark to be blocked.")
@@ -70,22 +67,15 @@ def _grid(name: str, how: dict[str, Any], picture: bytes | None, cells: int) -> 
     return request
 
 
-def _interpretation(source: Source, picture: bytes) -> dict[str, Any]:
+def _interpretation(source: Source) -> dict[str, Any]:
     """Return what a map.yaml says of its picture, which is the one that came with it."""
-    import yaml
-    from paretour import read_ros_map
+    from paretour.ros_maps import parse_ros_map
 
     if len(source.file.data) > _MOST_BYTES:
-        raise source.refusal(f"a map.yaml must have at most {_MOST_BYTES} bytes")
+        raise source.refusal(f"must be a map.yaml of at most {_MOST_BYTES} bytes")
     try:
-        keys = yaml.safe_load(source.file.data)
-        kept = {name: keys[name] for name in _OF_YAML if name in keys}
-        with TemporaryDirectory() as folder:
-            # Whatever file it names: none of this machine is read.
-            (Path(folder) / "picture").write_bytes(picture)
-            (Path(folder) / "map.yaml").write_text(yaml.safe_dump({**kept, "image": "picture"}))
-            members, _ = read_ros_map(Path(folder) / "map.yaml")
-    except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:
+        members, _ = parse_ros_map(source.file.data)  # whatever file it names: none is read
+    except ValueError as error:
         came = " ".join(str(error).split())[:200]
         raise source.refusal(f"must be a map.yaml of ROS: {came}") from None
     return {**members}

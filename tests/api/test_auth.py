@@ -155,7 +155,7 @@ def test_the_header_of_a_proxy_that_is_not_trusted_counts_for_nothing() -> None:
     [
         ("dispatch", "the hash after CALLER: must be 64 hexadecimal digits"),
         (f"dispatch:{DISPATCH}", "the hash after CALLER: must be 64 hexadecimal digits"),
-        (f"dispatch:{DISPATCH_HASH.upper()}x", "the hash of dispatch's key"),
+        (f"dispatch:{DISPATCH_HASH.upper()}x", "the hash after CALLER"),
         (f"two words:{DISPATCH_HASH}", "a caller must be named"),
         (f":{DISPATCH_HASH}", "a caller must be named"),
     ],
@@ -186,10 +186,7 @@ def test_the_command_makes_a_key_that_its_entry_lets_in() -> None:
 def test_the_command_makes_no_key_for_a_name_that_no_entry_can_hold() -> None:
     made = paretour("key", "the lab")
     assert (made.returncode, made.stdout) == (2, "")
-    assert (
-        "a caller must be named by 1 to 64 letters, digits, dots, dashes, got 'the lab'"
-        in made.stderr
-    )
+    assert "a caller must be named by 1 to 64 letters, digits, dots, dashes" in made.stderr
 
 
 def test_replicas_count_together_in_redis_and_go_on_without_it(tmp_path: Path) -> None:

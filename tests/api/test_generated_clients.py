@@ -167,6 +167,7 @@ def test_every_operation_and_every_form_has_a_name_of_its_own(document: Path) ->
         "plan_coverage",
         "plan_fleet",
         "plan_front",
+        "read_files",
         "replan_front",
     ]
     for path, form in (("/front", "FrontForm"), ("/coverage", "CoverageForm")):

@@ -270,7 +270,8 @@ def test_without_the_extra_redis_is_refused_at_the_start(
 def test_without_the_extra_the_service_is_what_it_was() -> None:
     code = (
         "import sys; sys.modules['celery'] = sys.modules['redis'] = None; "
-        "from service.server import build; from service.settings import Settings; build(Settings())"
+        "from service.server import Ending, build; from service.settings import Settings; "
+        "build(Settings(), Ending())"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
 

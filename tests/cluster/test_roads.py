@@ -7,7 +7,7 @@ import httpx
 import numpy as np
 
 from service.jobs.runner import load_runner
-from service.server import build
+from service.server import Ending, build
 from service.settings import Settings
 from tests.helpers.cluster_state import ClusterState
 from tests.helpers.engines import celery_worker
@@ -44,7 +44,7 @@ def test_the_worker_asks_the_engine_and_refuses_what_it_cannot_reach(redis: Redi
         )
         with (
             celery_worker(settings.redis_url, make_runner, 60.0, 1),
-            serving(build(settings)) as url,
+            serving(build(settings, Ending())) as url,
         ):
             while not ClusterState(settings.redis_url).workers():
                 time.sleep(0.05)

@@ -31,7 +31,18 @@ def read_ros_map(path: str | Path) -> tuple[CoverageRequest, bytes]:
         ModuleNotFoundError: PyYAML is not installed.
     """
     yaml_path = Path(path)
-    keys = _parse(read_bounded(yaml_path, _MOST_BYTES))
+    request, image = parse_ros_map(read_bounded(yaml_path, _MOST_BYTES))
+    return request, read_bounded(yaml_path.parent / image, _MOST_PICTURE)
+
+
+def parse_ros_map(content: bytes) -> tuple[CoverageRequest, str]:
+    """Return what a map.yaml says of its map, as members of a request, and its picture's path.
+
+    Raises:
+        ValueError: The bytes are not a map.yaml; the message says what is wrong.
+        ModuleNotFoundError: PyYAML is not installed.
+    """
+    keys = _parse(content)
     if missing := [name for name in _REQUIRED if name not in keys]:
         raise ValueError(f"a map.yaml must have {', '.join(missing)}")
     request = {
@@ -42,8 +53,7 @@ def read_ros_map(path: str | Path) -> tuple[CoverageRequest, bytes]:
         "occupied_thresh": _number(keys, "occupied_thresh"),
         "free_thresh": _number(keys, "free_thresh"),
     }
-    picture = yaml_path.parent / _text(keys, "image")
-    return cast(CoverageRequest, request), read_bounded(picture, _MOST_PICTURE)
+    return cast(CoverageRequest, request), _text(keys, "image")
 
 
 def read_bounded(path: Path, most: int) -> bytes:
