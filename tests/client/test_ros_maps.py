@@ -99,6 +99,9 @@ def test_what_a_map_yaml_says_constructs_nothing_and_multiplies_nothing(tmp_path
     bomb = "a: &a [x, x, x, x]\n" + "".join(
         f"{b}: &{b} [*{a}, *{a}, *{a}, *{a}]\n" for a, b in zip("abcdefgh", "bcdefghi", strict=True)
     )
+    bomb += "? *i\n: 1\n"  # as a key, too
+    bomb += "k0: &k0 [x]\n" + "".join(f"k{k}: &k{k} [*k{k - 1}, *k{k - 1}]\n" for k in range(1, 40))
+    bomb += "? *k39\n: 1\n"
     apply = "!!python/object/apply:os.system ['false']: 1\n"
     (tmp_path / "map.yaml").write_text(bomb + apply + YAML)
     write_picture(tmp_path)

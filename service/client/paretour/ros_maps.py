@@ -86,7 +86,10 @@ def _parse(content: bytes) -> Mapping[str, Any]:
         raise ValueError(f"a map.yaml must be YAML: {' '.join(str(error).split())}") from None
     if not isinstance(root, yaml.MappingNode):
         raise ValueError("a map.yaml must be keys with values")
-    return {str(key.value): _value(value) for key, value in root.value}
+    # A key that is a list may name others over and over: to write it out would never end.
+    return {
+        key.value: _value(value) for key, value in root.value if isinstance(key, yaml.ScalarNode)
+    }
 
 
 def _value(node: Any) -> str | list[str] | None:
