@@ -26,9 +26,7 @@ _RESOLUTION = 2.0**20  # of a plane: cities whose coordinates round to the same 
 _LARGEST_COST = 2.0  # scaled, of a forbidden leg or an outlier: networks were trained on up to 1
 _MARGIN = 0.25  # around the unit square, in which cities far from all others are put
 _LEAST_PREFERENCE = 1e-3  # for an objective: else all cities that coincide in the other are alike
-_JITTER = (
-    1e-6  # relative, of inputs with ties: a network joins cities in turn, not at once, by ties
-)
+_JITTER = 1e-6  # relative: inputs with ties are joined one pair after another, and take minutes
 _SAMPLED = 32  # rows of matrices, in which ties are looked for
 
 

@@ -99,7 +99,7 @@ class Instance:
             ordinary = np.stack([np.ptp(box, axis=0).max() for box in self._ordinary_boxes])
         else:
             assert self.matrices is not None
-            ordinary = ordinary_costs(self.matrices)
+            ordinary = ordinary_costs(self.matrices, self.extents)
         return np.where(ordinary > 0, ordinary, 1.0)
 
     @cached_property
@@ -300,21 +300,28 @@ def least_steps(matrices: Array) -> tuple[Array, Array]:
 
 def largest_costs(matrices: Array) -> Array:
     """Return the largest finite cost of each matrix, shape (2,); 0 where there is none."""
+    largest: Array = matrices.max(axis=(1, 2))
+    if np.isfinite(largest).all():
+        return largest
     return matrices.max(axis=(1, 2), where=np.isfinite(matrices), initial=0.0)
 
 
-def ordinary_costs(matrices: Array) -> Array:
+def ordinary_costs(matrices: Array, largest: Array) -> Array:
     """Return the largest cost of each matrix that is not an outlier, shape (2,).
 
     An outlier is a cost of more than 100 times the median positive one, among a hundred cities.
+
+    Args:
+        matrices: The costs, shape (2, n, n).
+        largest: What largest_costs() returns of them.
     """
     step = -(-matrices.shape[1] // SAMPLED)
-    largest = largest_costs(matrices)
+    ordinary = largest.copy()
     for m, matrix in enumerate(matrices):
         limit = OUTLYING * _median_positive(matrix[::step, ::step])
         if largest[m] > limit:
-            largest[m] = matrix.max(where=matrix <= limit, initial=0.0)
-    return largest
+            ordinary[m] = matrix.max(where=matrix <= limit, initial=0.0)
+    return ordinary
 
 
 def _median_positive(costs: Array) -> float:
@@ -375,10 +382,11 @@ def _checked_matrices(matrices: Array | None) -> Array:
         )
     if (matrices < 0).any():
         raise InvalidInstance(f"costs must not be negative, got {matrices.min():g}")
-    matrices[:, np.isinf(matrices).any(axis=0)] = np.inf
-    for matrix in matrices:
+    forbidden = np.isinf(matrices).any(axis=0)
+    if forbidden.any():
+        matrices[:, forbidden] = np.inf
+    for matrix, largest in zip(matrices, largest_costs(matrices).tolist(), strict=True):
         least = matrix.min(where=matrix > 0, initial=np.inf)
-        largest = matrix.max(where=np.isfinite(matrix), initial=0.0)
         if least < largest * MOST_SPREAD:
             raise InvalidInstance(
                 "positive costs of an objective must lie within a factor of 1e301 of each other, "

@@ -9,7 +9,12 @@ import os
 import sys
 
 
+def variables() -> dict[str, str]:
+    """Return the environment variables by which a process imports what this one would import."""
+    folders = os.pathsep.join(os.path.abspath(folder) for folder in sys.path)
+    return {"PYTHONSAFEPATH": "1", "PYTHONPATH": folders}
+
+
 def keep_for_children() -> None:
     """Have processes that are started from now on import what this one would import."""
-    os.environ["PYTHONSAFEPATH"] = "1"
-    os.environ["PYTHONPATH"] = os.pathsep.join(os.path.abspath(folder) for folder in sys.path)
+    os.environ.update(variables())

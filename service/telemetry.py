@@ -100,7 +100,7 @@ async def _log_until_ready(check_ready: Callable[[], Awaitable[None]]) -> None:
 
 @contextmanager
 def logging_every(sentence: str, seconds: float = _SAY_SECONDS) -> Iterator[None]:
-    """Log a sentence now and every so many seconds until the block ends, with the time so far."""
+    """Log a sentence with the time so far, now and every few seconds until the block ends."""
     ended = Event()
     began = time.monotonic()
 

@@ -124,9 +124,11 @@ class TaskParser:
 
     def check_replan(self, body: bytes) -> None:
         """Raise a refusal where a short body is no request to replan; others are parsed later."""
-        self._check(body)
         if len(body) <= _SHORT and body.count(b'"') <= _FEW_QUOTES:
+            check_structure(body, self._limits)
             parse_json(ReplanRequest, body)
+        else:
+            self._check(body)
 
     async def replan(self, source: ReplanSource) -> TaskSource:
         """Return the rest of the way of a checked request, with its task; errors as of parse."""

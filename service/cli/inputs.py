@@ -38,10 +38,15 @@ def read_request(
     if len(files) > 1 and files[0] == files[1] == STANDARD_INPUT:
         raise UnreadableFile("standard input can be one of both files, not both")
     request = _request_in([_content(path) for path in files], kind, unrounded)
-    stops = request.get("stops")
-    if not isinstance(stops, list) or not all(_has_id(stop) for stop in stops):
-        return request, None
-    return request, tuple(stop["id"] for stop in stops)
+    return request, ids_in(request.get("stops"))
+
+
+def ids_in(stops: object) -> Ids | None:
+    """Return the id of each stop of a request or an answer; None where one has none."""
+    if not isinstance(stops, list):
+        return None
+    ids = [stop.get("id") if isinstance(stop, dict) else None for stop in stops]
+    return tuple(map(str, ids)) if all(isinstance(each, str) for each in ids) else None
 
 
 def _request_in(files: Sequence[NamedFile], kind: Kind, unrounded: bool = False) -> Request:
@@ -121,10 +126,6 @@ def _bounded(file: BinaryIO, name: str) -> bytes:
     if len(data) > _MOST_BYTES:
         raise UnreadableFile(f"{name} must have at most {_MOST_BYTES} bytes, got more")
     return data
-
-
-def _has_id(stop: object) -> bool:
-    return isinstance(stop, dict) and isinstance(stop.get("id"), str)
 
 
 def _as_arrays(matrices: object) -> object:

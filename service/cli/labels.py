@@ -2,7 +2,7 @@
 
 from paretour import FleetFront, Front, RobotFront
 
-from service.cli.inputs import Ids
+from service.cli.inputs import Ids, ids_in
 from service.cli.terminal_chart import LABELS
 from service.errors.printable import printable
 
@@ -39,8 +39,5 @@ def lengths_as_text(front: AnyFront, lengths: tuple[float, float]) -> str:
 
 def ids_of(front: Front) -> Ids | None:
     """Return the id of each stop, by its index; None where the answer does not name all."""
-    stops = front.document.get("stops")
-    if not isinstance(stops, list) or len(stops) < front.tours.shape[1]:
-        return None
-    ids = [stop.get("id") if isinstance(stop, dict) else None for stop in stops]
-    return tuple(map(str, ids)) if all(isinstance(each, str) for each in ids) else None
+    ids = ids_in(front.document.get("stops"))
+    return None if ids is None or len(ids) < front.tours.shape[1] else ids

@@ -16,6 +16,7 @@ from pydantic_core import to_json
 from redis import exceptions
 
 from service.errors import Cancelled, DeadlineExceeded
+from service.errors.printable import printable
 from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason
 from service.jobs.store import (
@@ -104,7 +105,7 @@ def log_repaired(key: str, error: exceptions.ResponseError) -> None:
     """Log that a key was put aside, because no record or number of ours was in it."""
     logging.getLogger("paretour").error(
         "key %s of Redis is damaged, put aside as paretour:damaged and made anew: %s",
-        key.encode("unicode_escape").decode()[:200],
+        printable(key)[:200],
         error,
     )
 

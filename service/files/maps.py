@@ -12,7 +12,6 @@ from service.requests.validation import parse_json
 
 _CELL = 0.05  # metres, as the maps of robots mostly have it
 _OF_MESSAGE = ("occupancy_grid", "obstacle_from", "unknown")
-_MOST_BYTES = 2**16  # of a map.yaml
 _OTHER_PICTURES = {b"\xff\xd8\xff": "JPEG", b"GIF8": "GIF", b"RIFF": "WebP", b"BM": "BMP"}
 
 
@@ -71,8 +70,6 @@ def _interpretation(source: Source) -> dict[str, Any]:
     """Return what a map.yaml says of its picture, which is the one that came with it."""
     from paretour.ros_maps import parse_ros_map
 
-    if len(source.file.data) > _MOST_BYTES:
-        raise source.refusal(f"must be a map.yaml of at most {_MOST_BYTES} bytes")
     try:
         members, _ = parse_ros_map(source.file.data)  # whatever file it names: none is read
     except ValueError as error:

@@ -173,18 +173,19 @@ class Fleet:
 
         Outliers do not count, but for those without which a stop cannot be left or reached.
         """
-        ordinary = ordinary_costs(self.costs)
+        largest = largest_costs(self.costs)
+        ordinary = ordinary_costs(self.costs, largest)
         least = np.concatenate(least_steps(self.costs), axis=1)
         needed = least.max(axis=1, where=np.isfinite(least), initial=0.0)
         legs: Array = np.where(needed > ordinary, needed + ordinary, ordinary)
-        return np.minimum(legs, largest_costs(self.costs))
+        return np.minimum(legs, largest)
 
     @cached_property
     def bounded_costs(self) -> Array:
         """Costs in which no leg costs much more than plans do, shape (2, n, n).
 
-        A leg that costs more than so many of the largest legs as there are stops costs as much, and
-        a forbidden one four times that. What a plan then has is no longer its true length.
+        No leg costs more than n times the largest leg, for n stops, and a forbidden one costs four
+        times that. The length of a plan that has such a leg is not its true one.
         """
         most = max(self.rules.n, _LEAST_LEGS) * self.largest_legs[:, np.newaxis, np.newaxis]
         bounded: Array = np.where(np.isinf(self.costs), 4 * most, np.minimum(self.costs, most))

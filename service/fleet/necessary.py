@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from functools import cache, partial
+from itertools import chain
 
 import numpy as np
 
@@ -18,9 +19,15 @@ def check_necessary(fleet: Fleet) -> None:
     Raises:
         Refusal: A necessary condition fails; that none does is no proof of a plan.
     """
-    for reason in (*_demands(fleet.rules), *_totals(fleet.rules)):
-        raise Refusal("no-plan", reason=reason)
-    for reason in _unreachable(fleet):
+    rules = fleet.rules
+    reasons = chain(
+        _demands(rules),
+        _totals(rules),
+        _without_ways(fleet),
+        _shipped_too_late(rules),
+        _unreachable(fleet),
+    )
+    for reason in reasons:
         raise Refusal("no-plan", reason=reason)
 
 
@@ -87,8 +94,6 @@ def _unreachable(fleet: Fleet) -> Iterator[str]:
     Where a detour over another stop may be shorter, that is no necessary condition.
     """
     rules = fleet.rules
-    yield from _without_ways(fleet)
-    yield from _shipped_too_late(rules)
     triangle = cache(partial(_triangle_holds, fleet))
     deliveries = {each.pickup: (each.pickup, each.delivery) for each in rules.shipments}
     for stop in _required(rules):

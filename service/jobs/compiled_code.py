@@ -18,7 +18,7 @@ from threading import Thread
 from numba import config
 from numba.core.event import Event, Listener, install_listener
 
-from service import jit
+from service import jit, own_code
 from service.coverage import shortest_paths
 from service.jobs.fleets import fleet_run
 from service.replanning import earlier_tours
@@ -78,8 +78,8 @@ class _RefuseCompilation(Listener):
 
 def _compile_elsewhere(processes: int) -> None:
     """Compile everything into the cache in processes, which end with this one at the latest."""
-    # Of all folders that modules are in, and in a group of its own, which no Ctrl-C ends.
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    # In a group of its own, which no Ctrl-C ends.
+    environment = {**os.environ, **own_code.variables()}
     with ExitStack() as stack:
         running = []
         for first in range(min(processes, len(_PARTS))):

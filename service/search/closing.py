@@ -22,10 +22,12 @@ LEAST_BARRIER = 16.0  # more than a move can gain where scaled steps cost less t
 NEVER_ADDED = 2.0**900  # above the cost of any step
 
 
-def closing_costs(instance: Instance) -> Array:
-    """Return the costs from city 0 to each city, and from each city to city 0, shape (2, n + 1)."""
+def closing_costs(instance: Instance, barrier: float) -> Array:
+    """Return the costs from city 0 to each city, and from each city to city 0, shape (2, n + 1).
+
+    A barrier is what kept and forbidden steps count: the greater of largest_steps().
+    """
     costs = np.zeros((2, instance.n + 1))
-    barrier = largest_costs(instance).max()
     if instance.symmetric:
         if len(instance.fixed_ends) == len(costs):
             costs[:] = barrier
@@ -38,7 +40,7 @@ def closing_costs(instance: Instance) -> Array:
     return costs
 
 
-def largest_costs(instance: Instance) -> Array:
+def largest_steps(instance: Instance) -> Array:
     """Return bounds, shape (2,), on what the search counts for a step, that to city 0 included."""
     matrices = instance.kind == "matrices"
     largest = instance.penalised_matrices.max(axis=(1, 2)) if matrices else instance.extents

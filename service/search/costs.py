@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.jit import compiled, inlined
-from service.search.closing import closing_cost, closing_costs, is_closing, largest_costs
+from service.search.closing import closing_cost, closing_costs, is_closing, largest_steps
 
 Array = NDArray[np.float64]
 
@@ -41,10 +41,11 @@ def make_costs(instance: Instance) -> Costs:
     A power of two rounds nothing, so sums of whole-numbered costs stay exact, and neither huge
     nor tiny units overflow or underflow in a product of two lengths.
     """
-    closing = None if instance.closed else closing_costs(instance)
+    largest = largest_steps(instance)
+    closing = None if instance.closed else closing_costs(instance, float(largest.max()))
     added = 0 if closing is None else 1
     n = added + instance.n
-    cities, largest = np.zeros((n, 4)), largest_costs(instance)
+    cities = np.zeros((n, 4))
     if instance.coordinates is None:
         assert instance.matrices is not None
         planes = np.ldexp(instance.penalised_matrices, instance.shifts[:, None, None])

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance
+from service.instance import Instance, least_steps
 from service.jit import compiled, inlined
 from service.search.archive import ROUNDING, Archive, accepts, insert, make_archive
 from service.search.closing import closing_cost, opened_tours
@@ -60,14 +60,21 @@ def exact_tours(
 
 
 def enumerate_tours(costs: Costs, archive: Archive) -> Iterator[None]:
-    """Insert all nondominated tours, and yield about every ms."""
+    """Insert all nondominated tours, and yield about every ms.
+
+    Args:
+        costs: The costs, tabulated.
+        archive: Where tours are inserted; it may hold some already.
+    """
     n = len(costs.cities)
     tour = np.arange(n, dtype=np.int32)
     if n == 1:
         insert(archive, (0.0, 0.0), tour)
         return
-    least = np.zeros((n, 2))
-    least_steps(costs, least)
+    steps = costs.matrix.transpose(2, 0, 1).copy()
+    if costs.closing is not None:
+        steps[:, 0] = steps[:, :, 0] = 0.0  # which adds nothing to lengths
+    least = np.ascontiguousarray(least_steps(steps)[0].T)
     # Rounded down to few digits, sums and differences of them are exact.
     unit = np.ldexp(1.0, np.frexp(least.max(axis=0))[1] - DIGITS)
     least = np.floor(least / unit) * unit
@@ -91,19 +98,8 @@ def _distinct(archive: Archive) -> NDArray[np.bool_]:
 
 
 @compiled
-def least_steps(costs: Costs, least: Array) -> None:
-    """Fill in, shape (n, 2), the least costs of a step that leaves a city."""
-    for i in range(len(least)):
-        least[i, 0] = least[i, 1] = np.inf
-        for j in range(len(least)):
-            if j != i:
-                c = travel_costs(costs, i, j)
-                least[i, 0], least[i, 1] = min(least[i, 0], c[0]), min(least[i, 1], c[1])
-
-
-@compiled
 def insert_some(costs: Costs, archive: Archive, enumeration: Enumeration, steps: int) -> None:
-    """Go on with an enumeration of tours from city 0 on, for so many steps or to its end.
+    """Go on with an enumeration of tours from city 0 on: for some steps, or to its end.
 
     A beginning is left out as soon as no tour that begins so can still be on the front.
     """

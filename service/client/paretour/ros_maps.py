@@ -42,6 +42,8 @@ def parse_ros_map(content: bytes) -> tuple[CoverageRequest, str]:
         ValueError: The bytes are not a map.yaml; the message says what is wrong.
         ModuleNotFoundError: PyYAML is not installed.
     """
+    if len(content) > _MOST_BYTES:
+        raise ValueError(f"a map.yaml must have at most {_MOST_BYTES} bytes, got more")
     keys = _parse(content)
     if missing := [name for name in _REQUIRED if name not in keys]:
         raise ValueError(f"a map.yaml must have {', '.join(missing)}")
