@@ -8,14 +8,13 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from service.actor_info import ActorInfo, read_actor_info
+from service.actor_info import RELEASED, ActorInfo, read_actor_info, read_actor_infos
 from service.construction.call_estimate import CallEstimate
 from service.construction.first_tours import Constructor
 from service.errors import Cancelled
 from service.instance import PLANE, Instance
 from service.onnx_runtime import onnxruntime
 
-RELEASED = Path(__file__).parent / "actors"
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 Indices = NDArray[np.intp]
@@ -153,30 +152,14 @@ def load_actors(
     Runtime cannot run is to be seen at the start.
 
     Raises:
-        ValueError: There is no file in a directory, one is no actor, or two have the same name.
+        ValueError: As of read_actor_infos, or one is no network that ONNX Runtime can run.
     """
     actors: dict[str, OnnxActor] = {}
-    files: dict[str, Path] = {}
-    for path in [*_onnx_files(directory), *(_onnx_files(own_directory) if own_directory else ())]:
-        actor = OnnxActor(path, threads)
+    for path, info in read_actor_infos(directory, own_directory).items():
+        actors[info.name] = OnnxActor(path, threads)
         if path.parent != RELEASED:
-            actor.load()
-        name = actor.info.name
-        if name in actors:
-            both = f"{files[name]} and {path}"
-            raise ValueError(
-                f"ONNX files must hold actors of different names, got {name} in {both}"
-            )
-        actors[name], files[name] = actor, path
+            actors[info.name].load()
     return actors
-
-
-def _onnx_files(directory: Path) -> list[Path]:
-    """Return the ONNX files of a directory; raise ValueError where there is none."""
-    found = sorted(directory.glob("*.onnx"))
-    if not found:
-        raise ValueError(f"{directory} must hold ONNX files, got none")
-    return found
 
 
 def _places_by_coordinates(cities: NDArray[np.float32]) -> tuple[Indices, Indices]:

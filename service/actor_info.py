@@ -15,6 +15,7 @@ from google.protobuf.message import DecodeError, Message
 
 from service.instance import Kind
 
+RELEASED = Path(__file__).parent / "actors"
 _METADATA = ("name", "config", "commit", "sizes", "angles", "figures", "inputs")
 # Of onnx.proto what is read here: by message the number of each field, and its type if no text.
 _FIELDS: dict[str, dict[str, tuple[int, str | None]]] = {
@@ -61,6 +62,34 @@ class ActorInfo:
     def serves(self, kind: Kind) -> bool:
         """Return whether it builds tours for instances of a kind: matrices serve both kinds."""
         return self.inputs in ("matrices", kind)
+
+
+def read_actor_infos(directory: Path, own_directory: Path | None = None) -> dict[Path, ActorInfo]:
+    """Return the metadata of the ONNX files in a directory, and in one of the user's, by path.
+
+    Raises:
+        ValueError: There is no file in a directory, one is no actor, or two have the same name.
+    """
+    folders = [directory] if own_directory is None else [directory, own_directory]
+    infos: dict[Path, ActorInfo] = {}
+    paths: dict[str, Path] = {}
+    for path in (path for folder in folders for path in _onnx_files(folder)):
+        info = read_actor_info(path.read_bytes(), path)
+        if info.name in paths:
+            both = f"{paths[info.name]} and {path}"
+            raise ValueError(
+                f"ONNX files must hold actors of different names, got {info.name} in {both}"
+            )
+        infos[path], paths[info.name] = info, path
+    return infos
+
+
+def _onnx_files(directory: Path) -> list[Path]:
+    """Return the ONNX files of a directory; raise ValueError where there is none."""
+    found = sorted(directory.glob("*.onnx"))
+    if not found:
+        raise ValueError(f"{directory} must hold ONNX files, got none")
+    return found
 
 
 def read_actor_info(content: bytes, path: Path) -> ActorInfo:

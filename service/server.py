@@ -17,8 +17,7 @@ from fastapi import FastAPI
 from uvicorn.config import STARTUP_FAILURE
 
 from service import installed_version
-from service.actor import load_actors
-from service.actor_info import ActorInfo
+from service.actor_info import RELEASED, ActorInfo, read_actor_infos
 from service.api.app import Edge, create_app
 from service.api.auth import Access, Rates
 from service.api.body_budget import BodyBounds
@@ -30,10 +29,9 @@ from service.api.transport.connections import ConnectionLimits, Connections
 from service.api.transport.listener import bound_sockets, most_connections
 from service.api.transport.protocol import Connection
 from service.cluster import check_cluster
-from service.jobs.compiled_code import warm_up
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
-from service.jobs.runner import MakeRunner, load_runner
+from service.jobs.runner import MakeRunner, make_runner
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool
@@ -68,9 +66,7 @@ def build(settings: Settings, ending: Ending) -> FastAPI:
     Raises:
         ValueError: There are no actors, the store cannot be opened, or an extra is not installed.
     """
-    # The workers load the actors, too: here only their facts are needed.
-    actors = load_actors(settings.actors, settings.threads, settings.own_actors)
-    infos = {name: actor.info for name, actor in actors.items()}
+    infos = _checked_actors(settings)
     metrics = Metrics()
     roads = None if settings.roads is None else RoadClient(settings.roads, metrics.routed)
     if settings.redis_url is None:
@@ -160,8 +156,9 @@ def build_worker(settings: Settings) -> Callable[[], int]:
     redis_url = _redis_url(settings)
     from service.cluster.celery_app import make_celery
     from service.cluster.worker import CeleryWorker, make_record_worker
+    from service.jobs.compiled_code import warm_up
 
-    _check_actors(settings)
+    _checked_actors(settings)
     configure_logging()
     seconds = settings.request_seconds
     worker = CeleryWorker(
@@ -242,10 +239,10 @@ def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
 
 
 def _make_runner(settings: Settings, roads: RouterSettings | None) -> MakeRunner:
-    load = partial(
-        load_runner, settings.actors, settings.threads, settings.limits, settings.own_actors, roads
+    make = partial(
+        make_runner, settings.actors, settings.threads, settings.limits, settings.own_actors, roads
     )
-    return partial(logged, load)
+    return partial(logged, make)
 
 
 def _redis_url(settings: Settings) -> str:
@@ -255,12 +252,24 @@ def _redis_url(settings: Settings) -> str:
     return settings.redis_url
 
 
-def _check_actors(settings: Settings) -> None:
-    """Load the networks once, in another process: onnxruntime does not survive a fork."""
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(1, mp_context=context) as pool:
-        pool.submit(_load_actors, settings).result()
+def _checked_actors(settings: Settings) -> Mapping[str, ActorInfo]:
+    """Return the metadata of the actors by name, once those not released were seen to load.
+
+    They are loaded in another process: with ONNX Runtime this one would take 20 MB more, and
+    could not be forked.
+
+    Raises:
+        ValueError: A file is no actor, or no network that ONNX Runtime can run.
+    """
+    infos = read_actor_infos(settings.actors, settings.own_actors)
+    if any(path.parent != RELEASED for path in infos):
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(1, mp_context=context) as pool:
+            pool.submit(_load_actors, settings).result()
+    return {info.name: info for info in infos.values()}
 
 
 def _load_actors(settings: Settings) -> None:
+    from service.actor import load_actors
+
     load_actors(settings.actors, settings.threads, settings.own_actors)

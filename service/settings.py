@@ -15,6 +15,7 @@ from limits import parse
 from pydantic import AfterValidator, BeforeValidator, Field
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
+from service.actor_info import RELEASED
 from service.api.auth import KeyHash
 from service.api.site.tiles import checked_template
 from service.jobs.store import STORE_BYTES
@@ -86,9 +87,7 @@ class Settings(BaseSettings):
     # The address, and the processes that plan.
     host: str = Field("127.0.0.1", description="address to listen on")
     port: int = Field(8000, ge=0, le=65535, description="port to listen on; 0 takes a free one")
-    actors: Path = Field(
-        Path(__file__).parent / "actors", description="directory of the networks, ONNX files"
-    )
+    actors: Path = Field(RELEASED, description="directory of the networks, ONNX files")
     own_actors: Path | None = Field(
         None, description="directory of more networks, which are served beside those"
     )

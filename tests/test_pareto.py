@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from service.pareto import balances, best_subset, hypervolume, knee, nondominated
+from service.pareto import balances, hypervolume, knee, nondominated
+from service.search.best_subset import best_subset
 
 POINT_LISTS = st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, max_size=9)
 REFERENCE_POINT = np.array([8.0, 10.0])

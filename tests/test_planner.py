@@ -12,9 +12,10 @@ from hypothesis.extra.numpy import arrays
 from service.actor import OnnxActor
 from service.construction.call_estimate import CallEstimate
 from service.construction.repairs import TOURS_REPAIRED, repairs_worth
+from service.front import Front, PlanOptions
 from service.instance import Instance, RouteEnds, tour_lengths
 from service.pareto import hypervolume, nondominated
-from service.planner import Front, PlanOptions, plan
+from service.planner import plan
 from service.preferences import fan
 from service.search.improve import warm_up
 from service.settings import Settings

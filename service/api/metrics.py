@@ -21,7 +21,6 @@ from starlette.responses import Response
 
 from service.api.middleware import AnsweredRequest
 from service.jobs.engine import EngineStats
-from service.jobs.fleets.fleet_document import holds_plans
 from service.jobs.front_document import FrontDocument
 
 AnyMetric = TypeVar("AnyMetric", Counter, Histogram)
@@ -178,7 +177,7 @@ class _Exposition(Response):
 
 def _kind_of(front: FrontDocument) -> str:
     """Return what a front is of: tours, or plans of a fleet or of robots on a map."""
-    if not holds_plans(front):
+    if not front.holds_plans:
         return "tours"
     return "fleet" if front.places is None else "robots"
 

@@ -32,8 +32,8 @@ from service.api.responses import (
 )
 from service.api.stored_fronts import find_record
 from service.api.task_parser import TaskParser
+from service.jobs.empty_document import empty_document
 from service.jobs.engine import Engine, record_in_time
-from service.jobs.fleets.empty_document import empty_document
 from service.jobs.record import Record
 from service.jobs.store import Store
 from service.requests.limits import Limits

@@ -16,10 +16,10 @@ from starlette.responses import Response
 from service.errors import Refusal
 from service.files.reading import Kind
 from service.fleet.fleet import Over
+from service.front import Termination
 from service.instance import OBJECTIVES
 from service.jobs.record import Status
 from service.requests.stop_fields import StopItem
-from service.search.improve import Termination
 
 PROBLEM_JSON = "application/problem+json"
 Lengths = Annotated[list[float], Field(min_length=OBJECTIVES, max_length=OBJECTIVES)]

@@ -23,13 +23,12 @@ from service.api.responses import (
     problem_responses,
 )
 from service.errors import Expired, NotFound, Refusal
+from service.front import Progress
 from service.jobs.engine import Engine, JobState
-from service.jobs.fleets.fleet_document import holds_plans
 from service.jobs.record import Record
 from service.jobs.store import Store
 from service.requests.schemas import GEOMETRY, Geometry, NonNegativeInteger
 from service.requests.tour import TourQuery
-from service.search.improve import Progress
 
 PLAN = (
     "of a fleet's front in GeoJSON, the one plan whose routes are drawn, by its place from 0; by"
@@ -104,7 +103,7 @@ class StoredFrontRoutes:
         """Give one tour of a front: at an angle, at a balance, within a budget, or the knee."""
         query.check()
         record = await self._record(request, query.front)
-        if holds_plans(record.front):
+        if record.front.holds_plans:
             raise Refusal("no-tours", front=record.id)
         if not record.front.tours:
             raise Refusal("no-tour", front=record.id)

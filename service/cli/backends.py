@@ -115,7 +115,7 @@ class LocalBackend:
         from service.cli.configuration import load_settings, load_with
         from service.errors import Cancelled, Refusal
         from service.jobs.compiled_code import warm_up
-        from service.jobs.runner import load_runner
+        from service.jobs.task_runner import load_runner
         from service.requests.task import TaskKind, TaskSource
 
         runner = load_with(

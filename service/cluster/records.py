@@ -17,6 +17,7 @@ from redis import exceptions
 
 from service.errors import Cancelled, DeadlineExceeded
 from service.errors.printable import printable
+from service.front import Progress
 from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason
 from service.jobs.store import (
@@ -28,7 +29,6 @@ from service.jobs.store import (
     source_from,
 )
 from service.requests.task import TaskSource
-from service.search.improve import Progress
 
 SCRIPT = "".join(
     (Path(__file__).parent / name).read_text() for name in ("stored_records.lua", "records.lua")

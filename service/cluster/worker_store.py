@@ -28,10 +28,10 @@ from service.cluster.records import (
     record_arguments,
     stored_record,
 )
+from service.front import Progress
 from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason
 from service.jobs.store import UnreadableRecord, log_dropped
-from service.search.improve import Progress
 
 _SECONDS = 2.0  # that one reply of Redis may take
 _PATIENCE = 60.0  # seconds for which a call is tried again while Redis is away

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from service.coverage.coverage import Coverage
 from service.coverage.frame import MapFrame
 from service.coverage.grid import free_cells
+from service.coverage.path import CoveragePath
 from service.coverage.places import find_places
 from service.coverage.shortest_paths import (
     Grid,
@@ -34,18 +35,6 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Cells = NDArray[np.int64]
 Indices = NDArray[np.integer]
-
-
-@dataclass(frozen=True, eq=False)
-class CoveragePath:
-    """The path of a tour: rows and columns, shape (m, 2); of a closed one, the first also last.
-
-    The frame is that of the map, where it is known.
-    """
-
-    cells: Cells
-    metres: float
-    frame: MapFrame | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,8 +23,9 @@ from service.fleet.splitting.first_plans import first_plans
 from service.fleet.splitting.network_sequences import network_sequences
 from service.fleet.sweep import Sweep
 from service.fleet.translation import FREE, Translation
-from service.pareto import best_subset, hypervolume, nondominated, selection_seconds
-from service.search.improve import Progress, Termination
+from service.front import Progress, Termination
+from service.pareto import hypervolume, nondominated
+from service.search.best_subset import best_subset, selection_seconds
 
 _REPORT_EVERY = 0.1  # seconds
 _NO_LIMIT = 2**62

@@ -21,12 +21,12 @@ from numba.core.event import Event, Listener, install_listener
 from service import jit, own_code
 from service.coverage import shortest_paths
 from service.jobs.fleets import fleet_run
-from service.replanning import earlier_tours
+from service.replanning import insertion
 from service.search import improve
 
 
 def _compile_beside() -> None:
-    earlier_tours.warm_up()
+    insertion.warm_up()
     shortest_paths.warm_up()
     fleet_run.warm_up()
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from service.errors import DeadlineExceeded, ShuttingDown
+from service.front import Progress
 from service.jobs.record import Record
-from service.search.improve import Progress
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,26 +1,23 @@
 """A front as JSON: the one form in which it travels between processes, is stored and answered.
 
-To add a member to the answer, add a field to `FrontDocument` and fill it in `encode_front` and
-`empty_front`. Stores, engines and routes pass all members on by themselves. A field that is not in
-the documents stored by earlier releases needs a default.
+To add a member to the answer, add a field to `FrontDocument` and fill it in where documents are
+written: `empty_document`, `tour_document`, and `fleet_document` and `robot_document` in `fleets`.
+Stores, engines and routes pass all members on by themselves. A field that is not in the documents
+stored by earlier releases needs a default.
 """
 
-from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
-from service.coverage.survey import CoveragePath, Survey
-from service.instance import OBJECTIVES, Instance
-from service.jobs.json_parts import encode_path, encode_tours, joined, split, with_member
+from service.front import Termination
+from service.instance import OBJECTIVES
+from service.jobs.json_parts import joined, split
 from service.pareto import balances
-from service.planner import Front
-from service.requests.stops import Labels, UnmeasuredStops
-from service.requests.task import Task
-from service.search.improve import Termination
 
 _HEAD = 100  # bytes of a tour in which its first members are
 
@@ -123,6 +120,11 @@ class FrontDocument:
         return b"".join((members[:-1], b',"front":[', self.tours, b"]}"))
 
     @property
+    def holds_plans(self) -> bool:
+        """Whether it is a front of plans for several vehicles or robots, and not of tours."""
+        return bool(self.objectives) and all("over" in each for each in self.objectives or ())
+
+    @property
     def directions(self) -> NDArray[np.float64]:
         """The direction of each tour in degrees, shape (m,)."""
         return np.frombuffer(self.angles)
@@ -168,119 +170,3 @@ def _lengths(tour: bytes) -> list[float]:
     """Return the lengths in the JSON of a tour, whose first members are numbers and they."""
     lengths: list[float] = from_json(tour[: tour.index(b"]") + 1] + b"}")["lengths"]
     return lengths
-
-
-def encode_front(
-    front: Front,
-    actor: Mapping[str, str],
-    surveyed: Survey | None = None,
-    paths: Iterable[CoveragePath] | None = None,
-    labels: Labels | None = None,
-    arrivals: NDArray[np.float64] | None = None,
-) -> FrontDocument:
-    """Write a front as JSON: its tours with the ids of labels, and with arrivals and paths if any.
-
-    Of a map it has the places and what is uncovered, as they were surveyed.
-
-    The actor is left out where it built no tours. Arrivals have shape (m, stops, 2).
-    """
-    tours, ends = encode_tours(_rows(front, arrivals))
-    if labels is not None:
-        tours, ends = joined(_with_stops(split(tours, ends), front.tours, labels))
-    if paths is not None:
-        tours, ends = joined(
-            with_member(tour, b"path", encode_path(path))
-            for tour, path in zip(split(tours, ends), paths, strict=True)
-        )
-    return FrontDocument(
-        cities=front.n,
-        points=front.found,
-        hypervolume=front.hypervolume,
-        hypervolume_bound=front.bound,
-        reference_point=front.reference_point.tolist(),
-        scale=front.scale.tolist(),
-        timings_ms=Timings(front.timings),
-        terminated=front.terminated,
-        actor=actor if front.constructed else None,
-        **on_map(surveyed),
-        closed=None if front.closed else False,
-        **_named(labels),
-        tours=tours,
-        ends=ends,
-        angles=front.angles.tobytes(),
-        gained=front.gained,
-    )
-
-
-def on_map(surveyed: Survey | None) -> dict[str, Any]:
-    """Return the members of a document that say where places lie on a map, and what is not."""
-    if surveyed is None:
-        return {}
-    return {"places": surveyed.places.tolist(), "uncovered": asdict(surveyed.uncovered)}
-
-
-def _rows(front: Front, arrivals: NDArray[np.float64] | None) -> list[dict[str, Any]]:
-    """Return the members of each tour, all of them numbers, ready for JSON."""
-    columns = zip(
-        front.angles.tolist(),
-        balances(front.points).tolist(),
-        _optional("kept", front.kept, front),
-        front.points.tolist(),
-        front.tours.tolist(),
-        _optional("arrivals", arrivals, front),
-        strict=True,
-    )
-    return [
-        {"angle": angle, "balance": balance, **kept, "lengths": lengths, "tour": tour, **arrived}
-        for angle, balance, kept, lengths, tour, arrived in columns
-    ]
-
-
-def _optional(name: str, values: NDArray[np.float64] | None, front: Front) -> list[dict[str, Any]]:
-    """Return a member of each tour of a front, or none where there are no values."""
-    if values is None:
-        return [{}] * len(front.tours)
-    return [{name: value} for value in values.tolist()]
-
-
-def _with_stops(encoded: list[bytes], tours: NDArray[np.integer], labels: Labels) -> list[bytes]:
-    """Return the JSON of each tour with the ids of its stops, each of which is encoded once."""
-    ids = np.array([to_json(stop.id) for stop in labels.stops], object)
-    return [
-        with_member(tour, b"stops", b"[%b]" % b",".join(stops))
-        for tour, stops in zip(encoded, ids[tours].tolist(), strict=True)
-    ]
-
-
-def _named(labels: Labels | None) -> dict[str, Any]:
-    """Return the members of a document that hold the caller's names."""
-    return {} if labels is None else labels.members
-
-
-def empty_front(task: Task) -> FrontDocument:
-    """Return the document of a task, not of a fleet, of which nothing has been found yet."""
-    subject: Any = task.subject
-    reference_point = task.options.reference_point
-    if isinstance(subject, Instance):
-        cities, scale, places = subject.n, subject.scale.tolist(), None
-        if reference_point is None:
-            reference_point = subject.reference_point
-    elif isinstance(subject, UnmeasuredStops):
-        cities, scale, places = subject.n, None, None
-    else:
-        places = [] if subject.places is None else subject.places.tolist()
-        cities, scale = len(places), None  # a worker finds out what they cost
-    return FrontDocument(
-        cities=cities,
-        points=0,
-        hypervolume=0.0,
-        hypervolume_bound=None,
-        reference_point=None if reference_point is None else reference_point.tolist(),
-        scale=scale,
-        timings_ms=Timings({}),
-        terminated=None,
-        actor=None,
-        places=places,
-        closed=None if subject.ends.closed else False,
-        **_named(task.labels),
-    )

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from time import perf_counter
 
 from service.errors import Cancelled, DeadlineExceeded
+from service.front import Progress
 from service.jobs.front_document import FrontDocument
 from service.jobs.record import StopReason
 from service.requests.task import TaskSource
-from service.search.improve import Progress
 
 MOST_ATTEMPTS = 2
 

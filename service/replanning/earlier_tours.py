@@ -1,16 +1,12 @@
-"""First tours made of those of an earlier front: what is left of each, with new cities in it."""
+"""What is left of the tours of an earlier front."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.instance import Instance, step_lengths, tour_steps
-from service.jit import compiled
-from service.search.closing import closed_tours, opened_tours
-from service.search.costs import Costs, make_costs, step_costs
+from service.instance import Instance
 
-Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 MOST_TRIED = 2**25  # places of cities that are inserted, each in some ten nanoseconds
 
@@ -56,27 +52,6 @@ def few_enough(instance: Instance, earlier: EarlierTours, most: int = MOST_TRIED
     return replace(earlier, tours=earlier.tours[chosen])
 
 
-def completed(instance: Instance, earlier: EarlierTours) -> Tours:
-    """Return the earlier tours with the other cities of an instance inserted, shape (m, n).
-
-    Each city goes, one after another, where it costs least under a weighted sum of the lengths: of
-    the tour whose first length is the least, that is the first length, and so on to the second. A
-    route between two fixed ends is turned round first where that is shorter under its weights, but
-    for the driven one. O(m n (n - k)).
-    """
-    costs = make_costs(instance)
-    lengths = _scaled_lengths(instance, earlier.tours)
-    weights = _weights(lengths)
-    routes = _better_way_round(instance, earlier.tours, (lengths * weights).sum(axis=1), weights)
-    known = np.isin(np.arange(instance.n), routes[0])
-    added = np.flatnonzero(~known)
-    tours = np.concatenate((routes, np.tile(added, (len(routes), 1))), axis=1).astype(np.int32)
-    tours = closed_tours(instance, tours)
-    scaled = weights / np.ldexp(instance.scale, instance.shifts)
-    insert_cheapest(costs, tours, tours.shape[1] - len(added), scaled)
-    return opened_tours(instance, tours).astype(np.int64)
-
-
 def touched_cities(instance: Instance, earlier: EarlierTours, tours: Tours) -> NDArray[np.int64]:
     """Return the cities where the completed earlier tours may be improved at first, ascending.
 
@@ -87,62 +62,3 @@ def touched_cities(instance: Instance, earlier: EarlierTours, tours: Tours) -> N
     inserted = ~np.isin(tours, earlier.driven)
     beside = inserted | np.roll(inserted, 1, axis=1) | np.roll(inserted, -1, axis=1)
     return np.union1d(earlier.touched, tours[beside])
-
-
-def _scaled_lengths(instance: Instance, tours: Tours) -> Array:
-    """Return lengths, shape (m, 2), finite where a leg has become forbidden, in units of scale."""
-    steps = step_lengths(instance, *tour_steps(instance, tours))
-    return steps.sum(axis=1) / instance.scale
-
-
-def _weights(lengths: Array) -> Array:
-    """Return weights of scaled lengths, shape (m, 2), by the rank of each route in balance."""
-    rank = (lengths[:, 0] - lengths[:, 1]).argsort(kind="stable").argsort(kind="stable")
-    share = rank / max(1, len(lengths) - 1)
-    return np.stack((1 - share, share), axis=1)
-
-
-def _better_way_round(instance: Instance, routes: Tours, sums: Array, weights: Array) -> Tours:
-    """Return the routes, those turned round whose weighted sum of lengths is less then."""
-    if instance.closed or not instance.symmetric:
-        return routes
-    begin = int(instance.start is not None)
-    end = routes.shape[1] - int(instance.end is not None)
-    turned = routes.copy()
-    turned[:, begin:end] = routes[:, begin:end][:, ::-1]
-    better = (_scaled_lengths(instance, turned) * weights).sum(axis=1) < sums
-    better[0] = False
-    return np.where(better[:, np.newaxis], turned, routes)
-
-
-@compiled
-def insert_cheapest(costs: Costs, tours: NDArray[np.int32], begun: int, weights: Array) -> None:
-    """Insert the last cities of closed tours, shape (m, n), into their first `begun`, in place."""
-    for k in range(len(tours)):
-        tour = tours[k]
-        for size in range(begun, len(tour)):
-            city = tour[size]
-            least, place = np.inf, size
-            for i in range(size):
-                before, after = tour[i], tour[i + 1 if i + 1 < size else 0]
-                to, on, direct = (
-                    step_costs(costs, before, city),
-                    step_costs(costs, city, after),
-                    step_costs(costs, before, after),
-                )
-                more = weights[k, 0] * (to[0] + on[0] - direct[0])
-                more += weights[k, 1] * (to[1] + on[1] - direct[1])
-                if more < least:
-                    least, place = more, i + 1
-            for i in range(size, place, -1):
-                tour[i] = tour[i - 1]
-            tour[place] = city
-
-
-def warm_up() -> None:
-    """Compile what is compiled, or load it from the cache of an earlier process."""
-    cities = np.arange(4.0)
-    coordinates = np.stack([cities, cities**2, cities**2, cities], axis=1)
-    begun = EarlierTours(np.array([[0, 1, 2]]))
-    for closed in (True, False):
-        completed(Instance(coordinates=coordinates, closed=closed), begun)

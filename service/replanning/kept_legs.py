@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from service.front import SearchResult
 from service.instance import Instance, tour_lengths, tour_steps
 from service.pareto import balances
-from service.search.improve import SearchResult
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer]

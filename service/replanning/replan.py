@@ -9,18 +9,14 @@ import numpy as np
 
 from service.construction.first_tours import Constructor
 from service.errors import Refusal
+from service.front import Front, PlanOptions, Progress, Report
 from service.instance import Instance, tour_lengths
-from service.pareto import best_subset, nondominated
-from service.planner import Front, PlanOptions, Report, plan
-from service.replanning.earlier_tours import (
-    EarlierTours,
-    Tours,
-    completed,
-    few_enough,
-    touched_cities,
-)
+from service.pareto import nondominated
+from service.planner import plan
+from service.replanning.earlier_tours import EarlierTours, Tours, few_enough, touched_cities
+from service.replanning.insertion import completed
 from service.replanning.kept_legs import kept_shares, most_like_driven, with_most_kept_at
-from service.search.improve import Progress
+from service.search.best_subset import best_subset
 
 _LEAST_SECONDS = 1e-3  # that are left for the search when the earlier tours took all of its time
 _ROUNDING = 1e-9  # of a share

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from service.errors import Refusal
+from service.front import PlanOptions
 from service.instance import Array, Kind
-from service.planner import PlanOptions
 from service.requests.schemas import PlanFields, PlanRequest
 from service.requests.stops import ROAD_MEASURES, Measured, UnmeasuredStops, base_of
 from service.requests.validation import invalid

@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
+from service.front import PlanOptions
 from service.instance import CLOSED, OBJECTIVES, RouteEnds
-from service.planner import PlanOptions
 from service.preferences import fan
 
 # Between these, lengths and hypervolumes neither overflow nor vanish.

@@ -6,10 +6,11 @@ from functools import partial
 from typing import Literal
 
 from service.actor_info import ActorInfo
+from service.construction.repairs import TOURS_REPAIRED
 from service.coverage.coverage import Coverage
 from service.errors import CityNames, Refusal
+from service.front import PlanOptions
 from service.instance import Instance, Kind, least_lengths
-from service.planner import PlanOptions
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.coverage import CoverageRequest, parse_coverage_request
 from service.requests.fleets.request import parse_fleet_request
@@ -75,9 +76,12 @@ class Task:
 
     @property
     def needs_compiled_code(self) -> bool:
-        """Whether planning needs more than the network."""
-        compiled = isinstance(self.subject, Coverage | SharedCoverage | UnmeasuredFleet)
-        return compiled or self.options.needs_compiled_code
+        """Whether planning needs more than the network: search, bound, best subset, or a map."""
+        if isinstance(self.subject, Coverage | SharedCoverage | UnmeasuredFleet):
+            return True
+        options = self.options
+        constructed = len(options.angles) * (TOURS_REPAIRED if options.repairs > 0 else 1)
+        return options.time_limit > 0 or options.bound or constructed > options.size
 
     @property
     def is_brief(self) -> bool:

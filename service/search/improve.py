@@ -6,18 +6,18 @@ between what they reach are filled. Every nondominated tour that is visited is k
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from itertools import islice
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from service.front import Progress, SearchResult, Termination
 from service.instance import Instance, tour_lengths
-from service.pareto import best_subset, nondominated
+from service.pareto import nondominated
 from service.search import candidates
 from service.search.archive import MAX_POINTS
+from service.search.best_subset import best_subset
 from service.search.bound.hypervolume import hypervolume_bound
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
 from service.search.pareto_local_search import WEIGHTS
@@ -27,40 +27,9 @@ from service.search.three_opt.choice import ThreeOptSearch
 from service.search.three_opt.undoable_tour import make_undoable_tour
 
 Array = NDArray[np.float64]
-Termination = Literal["converged", "time_limit", "cancelled"]
 
 REPORT_EVERY = 0.1  # seconds
 KINDS = ((True, True), (False, True), (True, False), (False, False))  # closed, of coordinates
-
-
-@dataclass(frozen=True, eq=False)
-class SearchResult:
-    """A front: points, shape (p, 2), by ascending first length, and their tours.
-
-    Args:
-        points: The points.
-        tours_at: Returns the tours, shape (k, n), of the points at indices, shape (k,). To copy
-            those of a few takes far less than all, which can be a quarter of a GB.
-        terminated: How the search ended; None while it goes on.
-    """
-
-    points: Array
-    tours_at: Callable[[NDArray[np.intp]], NDArray[np.integer]]
-    terminated: Termination | None
-
-    @property
-    def tours(self) -> NDArray[np.integer]:
-        """All tours, shape (p, n)."""
-        return self.tours_at(np.arange(len(self.points)))
-
-
-@dataclass(frozen=True)
-class Progress:
-    """The state of a search that goes on: seconds, hypervolume and nondominated points so far."""
-
-    seconds: float
-    hypervolume: float
-    points: int
 
 
 Report = Callable[[Progress, Callable[[int], SearchResult]], None]

@@ -14,7 +14,7 @@ import pytest
 
 from service.actor import OnnxActor
 from service.instance import Instance, step_lengths, tour_lengths
-from service.jobs.runner import load_runner
+from service.jobs.task_runner import load_runner
 from service.server import Ending, build
 from service.settings import Settings
 from tests.helpers.actors import Shuffler

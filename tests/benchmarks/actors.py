@@ -19,9 +19,10 @@ from tqdm import tqdm
 
 from service.actor import OnnxActor
 from service.construction.repairs import repairs_worth
+from service.front import PlanOptions
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
-from service.planner import PlanOptions, plan
+from service.planner import plan
 from service.preferences import fan, from_angles
 from service.search.improve import warm_up
 from tests.benchmarks.instances import COUNT, SIZES, check_tours, paper_instances, reference_points

@@ -22,9 +22,10 @@ from numpy.typing import NDArray
 from service.actor import OnnxActor, load_actors
 from service.construction.call_estimate import CallEstimate
 from service.construction.repairs import repairs_worth
+from service.front import PlanOptions
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
-from service.planner import PlanOptions, plan
+from service.planner import plan
 from service.preferences import fan, from_angles
 from service.search.improve import warm_up
 from tests.benchmarks.instances import check_tours

@@ -13,7 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from service.instance import Instance, tour_lengths
-from service.pareto import best_subset, nondominated
+from service.pareto import nondominated
+from service.search.best_subset import best_subset
 from service.search.improve import improve
 from tests.benchmarks.instances import paper_instances
 from tests.benchmarks.methods import methods

@@ -19,8 +19,9 @@ import numpy as np
 
 from service.actor import OnnxActor
 from service.construction.repairs import repairs_worth
+from service.front import Front, PlanOptions
 from service.instance import Instance
-from service.planner import Front, PlanOptions, plan
+from service.planner import plan
 from service.preferences import fan
 from service.search.improve import warm_up
 from tests.benchmarks.beside import Nothing

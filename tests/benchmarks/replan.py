@@ -32,7 +32,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import tour_lengths
-from service.pareto import best_subset, hypervolume, nondominated
+from service.pareto import hypervolume, nondominated
+from service.search.best_subset import best_subset
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rests import (
     ROAD_STOPS,

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from models.data.generators import clustered, uniform
 from service.instance import Instance
-from service.replanning.earlier_tours import EarlierTours, completed
+from service.replanning.earlier_tours import EarlierTours
+from service.replanning.insertion import completed
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]

@@ -22,9 +22,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.actor import OnnxActor
+from service.front import PlanOptions
 from service.instance import Instance, tour_lengths
 from service.pareto import nondominated
-from service.planner import PlanOptions, plan
+from service.planner import plan
 from service.preferences import fan
 from service.search.improve import warm_up
 from tests.benchmarks.instances import check_tours

@@ -10,8 +10,8 @@ from service.cluster.records import (
     record_arguments,
 )
 from service.errors import Cancelled, DeadlineExceeded
+from service.front import Progress
 from service.jobs.record import UNFINISHED
-from service.search.improve import Progress
 from tests.helpers.released_records import REDIS_HASHES
 from tests.helpers.scripted_runner import document
 from tests.helpers.stores import job, record

@@ -13,8 +13,8 @@ from service.cluster.redis_engine import connect
 from service.cluster.redis_store import RedisStore
 from service.cluster.worker_store import WorkerStore
 from service.errors import Expired, StoreUnavailable
+from service.front import Progress
 from service.requests.task import TaskSource
-from service.search.improve import Progress
 from tests.helpers.redis_server import Redis, redis_server
 from tests.helpers.released_records import ANSWERS, REDIS_HASHES, REDIS_SETS
 from tests.helpers.stores import job, record, redis_store

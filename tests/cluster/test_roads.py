@@ -6,7 +6,7 @@ from functools import partial
 import httpx
 import numpy as np
 
-from service.jobs.runner import load_runner
+from service.jobs.task_runner import load_runner
 from service.server import Ending, build
 from service.settings import Settings
 from tests.helpers.cluster_state import ClusterState

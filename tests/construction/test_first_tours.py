@@ -12,8 +12,9 @@ from service.actor import OnnxActor
 from service.construction.call_estimate import CallEstimate
 from service.construction.first_tours import SHARE, construct
 from service.errors import Cancelled
+from service.front import PlanOptions
 from service.instance import Instance
-from service.planner import PlanOptions, plan
+from service.planner import plan
 from service.preferences import fan, from_angles
 from service.search.improve import warm_up
 from service.settings import Settings

@@ -21,9 +21,10 @@ from service.examples.helsinki import CROWDS, people_along
 from service.examples.streets import KINDS
 from service.examples.warehouse import DOCKS
 from service.fleet.planner import FleetOptions, plan_fleet
+from service.front import PlanOptions
 from service.instance import Instance
 from service.jobs.fleets.robot_fleet import robot_fleet
-from service.planner import PlanOptions, plan
+from service.planner import plan
 from service.requests.coverage import parse_coverage_request
 from service.requests.fleets.request import parse_fleet_request
 from service.roads.client import RoadClient, RoadCosts

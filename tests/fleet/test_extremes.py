@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from service.errors import Refusal
-from service.jobs.runner import TaskRunner
+from service.jobs.task_runner import TaskRunner
 from service.requests.task import TaskSource
 from tests.helpers.fleet_requests import LIMITS
 

@@ -20,8 +20,8 @@ from service.fleet.plans import FleetFront
 from service.fleet.solver import Solver
 from service.fleet.sweep import Sweep
 from service.fleet.translation import Translation
+from service.front import Progress
 from service.pareto import nondominated
-from service.search.improve import Progress
 from tests.helpers.actors import Shuffler, info_of
 from tests.helpers.fleets import Point, exact_front, hull_corners, random_fleet
 

@@ -15,12 +15,13 @@ import httpx
 import pytest
 import redis
 
+from service.actor import NamedActor
 from service.api.app import Edge
 from service.cluster.celery_app import make_celery
 from service.cluster.redis_engine import connect
 from service.cluster.worker import CeleryWorker, make_record_worker
 from service.jobs.compiled_code import warm_up
-from service.jobs.runner import MakeRunner, NamedActor
+from service.jobs.runner import MakeRunner
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.workers.worker_pool import WorkerPool
 from tests.helpers.cluster_state import ClusterState

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
+from service.front import Front, PlanOptions, Progress
 from service.instance import Instance
-from service.jobs.front_document import FrontDocument, encode_front
+from service.jobs.front_document import FrontDocument
 from service.jobs.runner import Report
+from service.jobs.tour_document import encode_front
 from service.jobs.workers.worker_pool import WorkerPool
-from service.planner import Front, PlanOptions
 from service.requests.task import Task, TaskSource
-from service.search.improve import Progress
 
 _TERMINATED = Event()  # of the process that runs
 

@@ -13,13 +13,15 @@ from typing import Any
 import httpx
 from fastapi import FastAPI
 
+from service.actor import NamedActor
 from service.api.app import Edge, create_app
 from service.api.transport.connections import ConnectionLimits, Connections
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
-from service.jobs.runner import MakeRunner, NamedActor, TaskRunner
+from service.jobs.runner import MakeRunner
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
+from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.limits import Limits
 from service.server import Ending, build, make_server

@@ -13,7 +13,7 @@ import json, sys
 from pathlib import Path
 import service
 from service.jobs.compiled_code import load_from_cache
-from service.jobs.runner import load_runner
+from service.jobs.task_runner import load_runner
 from service.requests.task import TaskSource
 from service.settings import Settings
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from service.errors import Refusal
-from service.jobs.runner import TaskRunner
+from service.jobs.task_runner import TaskRunner
 from service.requests.limits import Limits
 from service.requests.task import TaskSource
 from tests.helpers.robot_plans import best_plans, check_answer

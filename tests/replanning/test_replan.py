@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from service.errors import Refusal
+from service.front import Front, PlanOptions, SearchResult
 from service.instance import Instance, tour_lengths
 from service.pareto import balances, nondominated
-from service.planner import Front, PlanOptions
-from service.replanning.earlier_tours import EarlierTours, completed, few_enough, touched_cities
+from service.replanning.earlier_tours import EarlierTours, few_enough, touched_cities
+from service.replanning.insertion import completed
 from service.replanning.kept_legs import kept_shares, with_most_kept_at
 from service.replanning.replan import replan
 from service.requests.limits import Limits
@@ -18,7 +19,6 @@ from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.stops import UnmeasuredStops, make_instance
 from service.requests.task import Task, TaskSource, parse_task
-from service.search.improve import SearchResult
 from tests.helpers.actors import Shuffler, info_of
 from tests.helpers.changes import Change, random_change
 

@@ -11,7 +11,7 @@ import pytest
 from service.coverage.frame import MapFrame
 from service.errors import Refusal
 from service.jobs.front_document import FrontDocument
-from service.jobs.runner import TaskRunner
+from service.jobs.task_runner import TaskRunner
 from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.fields import ReplanRequest

@@ -9,10 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from service.front import Progress, SearchResult
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
-from service.search.improve import Progress, SearchResult, improve
+from service.search.improve import improve
 from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import Search
 from tests.helpers.instances import (

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from service.construction.call_estimate import CallEstimate
 from service.errors import InvalidInstance
+from service.front import Front, PlanOptions
 from service.instance import Instance
-from service.pareto import best_subset
-from service.planner import Front, PlanOptions, plan
+from service.planner import plan
 from service.preferences import fan
+from service.search.best_subset import best_subset
 from service.search.bound.hypervolume import hypervolume_bound
 from service.search.improve import improve
 from tests.helpers.instances import no_tours

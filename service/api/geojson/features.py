@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
 from service.api.geojson.lines import Line, encode_line
-from service.jobs.fleets.fleet_document import holds_plans
 from service.jobs.json_parts import with_member
 from service.jobs.record import Record
 
@@ -38,7 +37,7 @@ class Drawing:
             first: The number of the first one.
         """
         parsed = from_json(tours)
-        if holds_plans(record.front):
+        if record.front.holds_plans:
             return cls._of_plans(record, parsed, first)
         # Fronts have this member where tours are open routes alone.
         returns = record.front.closed is None or record.front.cities == 1

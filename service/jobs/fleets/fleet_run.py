@@ -9,12 +9,12 @@ from service.actor import NamedActor
 from service.fleet.fleet import Fleet
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront
+from service.front import Progress
 from service.jobs.fleets.fleet_document import encode_fleet
 from service.jobs.front_document import FrontDocument
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import check_reference_point
 from service.requests.task import Task
-from service.search.improve import Progress
 
 Report = Callable[[Progress, Callable[[int], FrontDocument]], None]
 ReportPlans = Callable[[Progress, Callable[[int], FleetFront]], None]
@@ -45,7 +45,7 @@ def run_fleet(
     labels = task.labels
 
     def encoded(front: FleetFront) -> FrontDocument:
-        return encode_fleet(front, identity_of(front, actor), subject.vehicles, labels)
+        return encode_fleet(front, identity_of(front, actor), subject, labels)
 
     began = time.perf_counter()
     fleet = subject.fleet()

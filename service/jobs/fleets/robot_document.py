@@ -1,26 +1,24 @@
 """A front of plans for robots as JSON: routes through the places of a map, and their paths."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import repeat
 from typing import Any
 
 from pydantic_core import to_json
 
-from service.coverage.coverage import Coverage
-from service.coverage.survey import CoveragePath, Survey
+from service.coverage.path import CoveragePath
+from service.coverage.survey import Survey
 from service.fleet.evaluation import route_lengths
 from service.fleet.plans import FleetFront, Plan, Route
 from service.jobs.fleets.fleet_document import directions
 from service.jobs.fleets.robot_fleet import RobotFleet
-from service.jobs.front_document import FrontDocument, Timings, empty_front, on_map
+from service.jobs.front_document import FrontDocument, Timings
 from service.jobs.json_parts import encode_path, joined, with_member
+from service.jobs.tour_document import on_map
 from service.pareto import balances
 from service.requests.maps.robots import SharedCoverage
-from service.requests.task import Task
 
-_METRES = {"sum": "total distance", "max": "longest route"}
-_COSTS = {"sum": "total cost", "max": "greatest cost"}
 Paths = Iterator[CoveragePath | None]
 
 
@@ -63,7 +61,7 @@ class RobotEncoder:
             terminated=front.terminated,
             actor=actor,
             **on_map(self.surveyed),
-            **_kind_of_plans(self.subject),
+            **self.subject.members,
             tours=plans,
             ends=ends,
             angles=directions(front).tobytes(),
@@ -83,31 +81,3 @@ class RobotEncoder:
         }
         encoded = to_json(members)
         return encoded if path is None else with_member(encoded, b"path", encode_path(path))
-
-
-def empty_robot_plans(task: Task, subject: SharedCoverage) -> FrontDocument:
-    """Return the document of a task for robots of which nothing has been found yet."""
-    of_one_robot = empty_front(replace(task, subject=subject.coverage))
-    return replace(of_one_robot, **_kind_of_plans(subject))
-
-
-def _kind_of_plans(subject: SharedCoverage) -> dict[str, Any]:
-    """Return the members of a document that tell plans from tours: objectives, and open routes."""
-    first, second = subject.over
-    return {
-        "closed": None if _returns(subject.coverage) else False,
-        "objectives": [
-            {"name": _METRES[first], "unit": "m", "over": first},
-            {**_second_objective(subject.coverage, second), "over": second},
-        ],
-    }
-
-
-def _second_objective(coverage: Coverage, over: str) -> dict[str, str | None]:
-    if coverage.has_costs:
-        return {"name": _COSTS[over], "unit": None}
-    return {"name": _METRES[over], "unit": "m"}
-
-
-def _returns(coverage: Coverage) -> bool:
-    return all(robot.closed for robot in coverage.robots)

@@ -5,7 +5,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from service.actor import NamedActor
-from service.coverage.survey import CoveragePath, Survey, survey
+from service.coverage.path import CoveragePath
+from service.coverage.survey import Survey, survey
 from service.errors import Cancelled
 from service.fleet.plans import FleetFront
 from service.jobs.fleets.fleet_run import Report, identity_of, plan_front, reporting

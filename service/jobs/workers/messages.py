@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from socket import socket
 from typing import Any
 
+from service.front import Progress
 from service.jobs.front_document import FrontDocument
 from service.requests.task import Task, TaskSource
-from service.search.improve import Progress
 
 _LENGTH = struct.Struct("!Q")
 

@@ -8,8 +8,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import to_json
 
 from service.fleet.fleet import Rules, Shipment, VehicleType
+from service.front import PlanOptions
 from service.instance import OBJECTIVES
-from service.planner import PlanOptions
 from service.requests.fleets.fields import (
     FleetObjectiveItem,
     FleetStopItem,

@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 from service.fleet.fleet import Fleet, Rules
-from service.requests.stops import Array, RoadMeasure, UnmeasuredStops, cost_matrices
+from service.requests.stops import Array, Labels, RoadMeasure, UnmeasuredStops, cost_matrices
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,6 +20,12 @@ class UnmeasuredFleet:
     def n(self) -> int:
         """The number of stops."""
         return self.rules.n
+
+    def members(self, labels: Labels) -> dict[str, Any]:
+        """Return the members of an answer that name the stops and objectives, ready for JSON."""
+        members = labels.members
+        objectives = zip(members["objectives"], self.rules.over, strict=True)
+        return {**members, "objectives": [{**each, "over": over} for each, over in objectives]}
 
     def measured_by_road(self, costs: Mapping[RoadMeasure, Array]) -> "UnmeasuredFleet":
         """Return this fleet with a matrix, shape (n, n), in place of each measure by road."""

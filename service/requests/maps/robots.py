@@ -15,6 +15,8 @@ from service.requests.schemas import NonNegativeInteger, Number, Text
 from service.requests.validation import invalid, show
 
 MOST_ROBOTS = 100
+_METRES = {"sum": "total distance", "max": "longest route"}
+_COSTS = {"sum": "total cost", "max": "greatest cost"}
 DEFAULT_OVER: tuple[Over, Over] = ("sum", "max")
 RobotPose = Annotated[list[Number], Field(min_length=2, max_length=3, fail_fast=True)]
 OverBoth = Annotated[
@@ -75,6 +77,21 @@ class SharedCoverage:
 
     coverage: Coverage
     over: tuple[Over, Over]
+
+    @property
+    def members(self) -> dict[str, Any]:
+        """The members of an answer that tell plans from tours: objectives, and open routes."""
+        first, second = self.over
+        closed = all(robot.closed for robot in self.coverage.robots)
+        costs = {"name": _COSTS[second], "unit": None}
+        metres = {"name": _METRES[second], "unit": "m"}
+        return {
+            "closed": None if closed else False,
+            "objectives": [
+                {"name": _METRES[first], "unit": "m", "over": first},
+                {**(costs if self.coverage.has_costs else metres), "over": second},
+            ],
+        }
 
 
 def check_robots(
