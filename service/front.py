@@ -1,4 +1,4 @@
-"""What planning takes and gives: options, the progress of a search, and fronts of tours."""
+"""Values of planning: its options, the progress of a search, and fronts of tours."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What is left of the tours of an earlier front."""
+"""Earlier tours: the rest of each tour of an earlier front."""
 
 from dataclasses import dataclass, replace
 
