@@ -35,8 +35,7 @@ from service.jobs.runner import MakeRunner, make_runner
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool
-from service.requests.road_measurer import RoadMeasurer
-from service.requests.task import parse_task
+from service.requests.stored_task import read_task
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 from service.settings import Settings
@@ -214,11 +213,8 @@ def _local_engine(
         max_age=settings.store_seconds,
         max_bytes=settings.store_bytes,
     )
-    measurer = None
-    if roads is not None:
-        parse = partial(parse_task, limits=settings.limits, actors=actors)
-        measurer = RoadMeasurer(roads, parse)
-    return store, LocalEngine(workers, store, measurer)
+    read = partial(read_task, limits=settings.limits, actors=actors)
+    return store, LocalEngine(workers, store, read, roads)
 
 
 def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:

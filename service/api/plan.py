@@ -5,7 +5,7 @@ import hashlib
 import time
 import uuid
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from fastapi import APIRouter
@@ -40,8 +40,11 @@ from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront, not_replannable
 from service.requests.replan.parser import ReplanSource
 from service.requests.schemas import Geometry
-from service.requests.task import TaskKind, TaskSource
+from service.requests.stored_task import stored
+from service.requests.task import Task, TaskKind, TaskSource
 
+_QUICK = 8  # bytes of stored tours are read in the time of one of a request
+_LONG = 2**20  # bytes of a body, whose task takes a while to write
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
 _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
 
@@ -171,13 +174,12 @@ class PlanRoutes:
             body = _Body(received, front, time.monotonic())
             if front is None:
                 task = await self.parser.parse(received)
-                source = replace(received, task=task)
             else:
-                source = await self._rest(request, received, front)
-            return await self._planned(request, source, body, allowance)
+                task = await self._rest(request, received, front)
+            return await self._planned(request, task, body, allowance)
 
-    async def _rest(self, request: Request, body: TaskSource, front: str) -> TaskSource:
-        """Return the rest of the way of a stored front, with its task.
+    async def _rest(self, request: Request, body: TaskSource, front: str) -> Task:
+        """Return the rest of the way of a stored front.
 
         Raises:
             Refusal: There is no such front, it cannot be replanned, or not as the body says.
@@ -190,24 +192,24 @@ class PlanRoutes:
         if source is None:
             reason = "what it was planned from is not kept; plan what is left with POST /front"
             raise not_replannable(record.id, reason)
-        stored = StoredFront(record.id, source, record.front.tours, record.front.places)
-        return await self.parser.replan(ReplanSource(body.body, stored))
+        stored = StoredFront(record.id, source, record.front)
+        length = body.length + source.length + len(record.front.tours) // _QUICK
+        return await self.parser.replan(ReplanSource(body.body, stored), length)
 
     async def _planned(
-        self, request: Request, source: TaskSource, body: _Body, allowance: BodyAllowance
+        self, request: Request, task: Task, body: _Body, allowance: BodyAllowance
     ) -> Response:
         """Have the engine plan a task, and answer as the request's headers ask for."""
-        assert source.task is not None
-        geometry = source.task.geometry
-        record = await self._new_record(request, source, body)
+        geometry = task.geometry
+        record = await self._new_record(request, task, body)
         self._answers.check(request, record.front.stops, geometry)
         if prefers_async(request):
-            first = await self._submit(record, allowance)
+            first = await self._submit(record, task, allowance)
             return _accepted_response(self._engine.state(first).record, geometry)
         if record.key is None:
-            record = await self._run(request, record)
+            record = await self._run(request, record, task)
         else:
-            first = await self._submit(record, allowance)
+            first = await self._submit(record, task, allowance)
             record = await record_in_time(self._engine, first, self._seconds)
         if record.problem is None:
             left = self._seconds - (time.monotonic() - body.received)
@@ -215,9 +217,9 @@ class PlanRoutes:
         # The problem may be that of an earlier request, of which this one is a repeat.
         return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
 
-    async def _submit(self, record: Record, allowance: BodyAllowance) -> Record:
+    async def _submit(self, record: Record, task: Task, allowance: BodyAllowance) -> Record:
         """Submit a job, whose body counts until the engine holds it no more."""
-        first = await self._engine.submit(record)
+        first = await self._engine.submit(record, task)
         if first.id == record.id:
             holding = asyncio.create_task(self._hold(record, allowance.hand_over()))
             self._held.add(holding)
@@ -235,27 +237,27 @@ class PlanRoutes:
         if idempotency_key(request) is None:
             await self._engine.check_place(client_of(request))
 
-    async def _new_record(self, request: Request, source: TaskSource, body: _Body) -> Record:
-        assert source.task is not None
-        if source.task.needs_compiled_code:
+    async def _new_record(self, request: Request, task: Task, body: _Body) -> Record:
+        if task.needs_compiled_code:
             await self._engine.check_warm()
         key = idempotency_key(request)
+        long = body.source.length > _LONG
         return Record(
             id=uuid.uuid4().hex,
             caller=caller_of(request),
             request_id=request.scope["request_id"],
             status="queued",
-            front=empty_document(source.task),
-            source=source,
+            front=empty_document(task),
+            source=await asyncio.to_thread(stored, task) if long else stored(task),
             key=key,
             digest=await asyncio.to_thread(_digest, body) if key else "",
             client=client_of(request),
         )
 
-    async def _run(self, request: Request, record: Record) -> Record:
+    async def _run(self, request: Request, record: Record, task: Task) -> Record:
         disconnect = asyncio.ensure_future(disconnected(request))
         try:
-            return await self._engine.run(record, disconnect)
+            return await self._engine.run(record, task, disconnect)
         finally:
             disconnect.cancel()
 

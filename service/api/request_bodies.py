@@ -11,7 +11,7 @@ from service.requests.coverage import coverage_schemas
 from service.requests.fleets.schemas import fleet_schemas
 from service.requests.front_schemas import FILE_FORMS, JSON_FORMS, front_schemas, one_of
 from service.requests.limits import Limits, reference_to
-from service.requests.replan.schema import replan_schemas
+from service.requests.replan.fields import replan_schemas
 
 Schema = dict[str, Any]
 

@@ -17,9 +17,10 @@ from service.errors import QueueFull, Refusal
 from service.files.reading import NamedFile
 from service.files.upload import read_upload
 from service.requests.limits import Limits, check_structure
+from service.requests.parser import parse_task
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.task import Task, TaskSource, parse_task
+from service.requests.task import Task, TaskSource
 from service.requests.validation import check_json, parse_json
 
 _SHORT = 2**17  # bytes that are parsed here, in a few milliseconds
@@ -115,7 +116,7 @@ class TaskParser:
             InvalidInstance: The cities or the map cannot be planned.
             QueueFull: Too many bodies wait to be parsed.
         """
-        length = len(source.body) + len(source.upload or b"")
+        length = source.length
         short = length <= _SHORT and source.upload is None
         if short and source.body.count(b'"') <= _FEW_QUOTES:
             return parse_task(source, self._limits, self._actors)
@@ -130,12 +131,12 @@ class TaskParser:
         else:
             self._check(body)
 
-    async def replan(self, source: ReplanSource) -> TaskSource:
-        """Return the rest of the way of a checked request, with its task; errors as of parse."""
+    async def replan(self, source: ReplanSource, length: int) -> Task:
+        """Return the rest of the way of a checked request, with so much to parse."""
         quotes = source.body.count(b'"') + source.front.source.body.count(b'"')
-        if source.length <= _SHORT and quotes <= _FEW_QUOTES:
+        if length <= _SHORT and quotes <= _FEW_QUOTES:
             return parse_replan(source, self._limits, self._actors)
-        return await self._in_turn(parse_replan, source, source.length)
+        return await self._in_turn(parse_replan, source, length)
 
     def _check(self, body: bytes) -> None:
         """Raise a refusal where a body is too complex or, unless it is long, is not JSON.

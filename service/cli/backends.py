@@ -116,6 +116,7 @@ class LocalBackend:
         from service.errors import Cancelled, Refusal
         from service.jobs.compiled_code import warm_up
         from service.jobs.task_runner import load_runner
+        from service.requests.parser import parse_task
         from service.requests.task import TaskKind, TaskSource
 
         runner = load_with(
@@ -131,7 +132,8 @@ class LocalBackend:
         upload = None if plan.file is None else plan.file.content
         kinds: Mapping[str, TaskKind] = {"/coverage": "coverage", "/fleet": "fleet"}
         try:
-            task = runner.parse(TaskSource(kinds.get(plan.path, "front"), plan.json, upload))
+            source = TaskSource(kinds.get(plan.path, "front"), plan.json, upload)
+            task = parse_task(source, runner.limits, runner.infos)
             if task.actor in runner.actors:
                 runner.actors[task.actor].load()  # before the clock of its time limit starts
             if task.needs_compiled_code:

@@ -33,6 +33,7 @@ from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason, as_ended, as_failed
 from service.jobs.store import STORE_BYTES
+from service.requests.task import Task
 
 _POLL = 2.0  # seconds without a notification after which a record is read all the same
 _GRACE = 1.0  # seconds for a worker to stop by itself
@@ -112,7 +113,12 @@ class RedisEngine:
         await self.check_open()
         await self._store.check_ready()
 
-    async def run(self, record: Record, disconnected: Future[None]) -> Record:
+    async def run(
+        self,
+        record: Record,
+        task: Task,  # noqa: ARG002  # a worker reads it from the record
+        disconnected: Future[None],
+    ) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it."""
         await self._submit(record, waits=True)
         ending = asyncio.ensure_future(final_record(self, record))
@@ -130,7 +136,7 @@ class RedisEngine:
             await self._store.delete(record)
         return record
 
-    async def submit(self, record: Record) -> Record:
+    async def submit(self, record: Record, task: Task) -> Record:  # noqa: ARG002  # as of run
         """Store and begin a job at once, or return the earlier one that it is a repeat of."""
         return await self._submit(record, waits=False)
 

@@ -93,7 +93,8 @@ class RecordWorker:
         assert source is not None
         try:
             reporter = Reporter(supervisor.report)
-            front = self._runner.run(source, supervisor.stop.is_set, reporter)
+            task = self._runner.read(source)
+            front = self._runner.run(task, supervisor.stop.is_set, reporter)
         except Exception as error:
             if supervisor.reason is None:
                 return as_failed(stored.record, error, supervisor.front)

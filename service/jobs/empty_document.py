@@ -3,11 +3,10 @@
 from typing import Any
 
 from service.coverage.coverage import Coverage
-from service.instance import Instance
 from service.jobs.front_document import FrontDocument, Timings
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.maps.robots import SharedCoverage
-from service.requests.stops import UnmeasuredStops
+from service.requests.stops import Stops
 from service.requests.task import Task
 
 
@@ -17,10 +16,11 @@ def empty_document(task: Task) -> FrontDocument:
     A worker finds out later how many places a map has, and what they cost.
     """
     reference_point, scale = task.options.reference_point, None
-    if isinstance(task.subject, Instance):
-        scale = task.subject.scale.tolist()
+    if isinstance(task.subject, Stops) and task.subject.measured:
+        instance = task.subject.instance
+        scale = instance.scale.tolist()
         if reference_point is None:
-            reference_point = task.subject.reference_point
+            reference_point = instance.reference_point
     cities, members = _cities_and_members(task)
     return FrontDocument(
         cities=cities,
@@ -49,14 +49,14 @@ def _cities_and_members(task: Task) -> tuple[int, dict[str, Any]]:
         case Coverage() as coverage:
             places = _places(coverage)
             return len(places), {"places": places, "closed": _closed(coverage), **labels}
-        case Instance() | UnmeasuredStops() as cities:
-            return cities.n, {"closed": _closed(cities), **labels}
+        case Stops() as stops:
+            return stops.n, {"closed": _closed(stops), **labels}
 
 
 def _places(coverage: Coverage) -> list[list[int]]:
     return [] if coverage.places is None else coverage.places.tolist()
 
 
-def _closed(subject: Coverage | Instance | UnmeasuredStops) -> bool | None:
+def _closed(subject: Coverage | Stops) -> bool | None:
     """Return the member `closed`, which is left out where tours are closed."""
     return None if subject.ends.closed else False

@@ -9,6 +9,7 @@ from typing import Protocol
 from service.errors import DeadlineExceeded, ShuttingDown
 from service.front import Progress
 from service.jobs.record import Record
+from service.requests.task import Task
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,8 +53,10 @@ class Engine(Protocol):
     async def check_ready(self) -> None:
         """Raise a refusal when some task would be refused at the moment."""
 
-    async def run(self, record: Record, disconnected: Future[None]) -> Record:
+    async def run(self, record: Record, task: Task, disconnected: Future[None]) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it.
+
+        The task is that of the record's source.
 
         Raises:
             QueueFull: No place is left.
@@ -62,8 +65,10 @@ class Engine(Protocol):
             StoreUnavailable: The store takes no more fronts.
         """
 
-    async def submit(self, record: Record) -> Record:
+    async def submit(self, record: Record, task: Task) -> Record:
         """Store and begin a job, and return its record; or that of which it is a repeat.
+
+        The task is that of the record's source.
 
         Either both happens or nothing: nobody sees a record that was not begun.
 

@@ -12,7 +12,7 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic_core import from_json, to_json
+from pydantic_core import to_json
 
 from service.front import Termination
 from service.instance import OBJECTIVES
@@ -132,7 +132,21 @@ class FrontDocument:
     @property
     def lengths(self) -> NDArray[np.float64]:
         """The lengths of each tour, shape (m, 2)."""
-        return np.array([_lengths(tour) for tour in self.split()]).reshape(-1, OBJECTIVES)
+        texts = [_between(self.tours, b'"lengths":[', b"]", begin) for begin in self._begins]
+        return np.fromstring(b",".join(texts), sep=",").reshape(-1, OBJECTIVES)
+
+    @property
+    def orders(self) -> NDArray[np.int64]:
+        """The stops of each tour in order, shape (m, n); of plans, which have routes, none."""
+        texts = [_between(self.tours, b'"tour":[', b"]", begin) for begin in self._begins]
+        # Numbers of one kind are read so in a fifth of the time that lists of them take.
+        stops = np.fromstring(b",".join(texts), np.int64, sep=",")
+        return stops.reshape(len(texts), -1) if texts else np.empty((0, 0), np.int64)
+
+    @property
+    def _begins(self) -> list[int]:
+        """Where each tour begins, shape (m,)."""
+        return [0, *(np.frombuffer(self.ends, np.int64)[:-1] + 1).tolist()] if self.ends else []
 
     def split(self) -> list[bytes]:
         """Return the JSON of each tour."""
@@ -166,7 +180,7 @@ _MEMBERS = tuple(field.name for field in _MEMBER_FIELDS)
 _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
 
 
-def _lengths(tour: bytes) -> list[float]:
-    """Return the lengths in the JSON of a tour, whose first members are numbers and they."""
-    lengths: list[float] = from_json(tour[: tour.index(b"]") + 1] + b"}")["lengths"]
-    return lengths
+def _between(text: bytes, before: bytes, after: bytes, begin: int) -> bytes:
+    """Return what is between two parts of a text, the first of each from a byte on."""
+    at = text.index(before, begin) + len(before)
+    return text[at : text.index(after, at)]

@@ -3,7 +3,7 @@
 import asyncio
 import logging
 from asyncio import Future
-from collections.abc import AsyncIterator, Coroutine
+from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import suppress
 
 from service.errors import (
@@ -23,7 +23,9 @@ from service.jobs.running_job import RunningJob
 from service.jobs.store import Store
 from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
-from service.requests.road_measurer import RoadMeasurer
+from service.requests.road_measurer import measured_by_road, needs_roads
+from service.requests.task import Task, TaskSource
+from service.roads.client import RoadClient
 
 _PAUSE = 0.5  # seconds between two tries to resume the job of an earlier process
 _LOG = logging.getLogger("paretour")
@@ -41,11 +43,24 @@ class LocalEngine:
     """
 
     def __init__(
-        self, workers: WorkerPool, store: Store, measurer: RoadMeasurer | None = None
+        self,
+        workers: WorkerPool,
+        store: Store,
+        read: Callable[[TaskSource], Task],
+        roads: RoadClient | None = None,
     ) -> None:
+        """Make an engine.
+
+        Args:
+            workers: The processes that plan.
+            store: Where records are kept.
+            read: Reads the stored task of a job that an earlier process left unfinished.
+            roads: The client of a routing engine.
+        """
         self._workers = workers
         self._store = store
-        self._measurer = measurer
+        self._read = read
+        self._roads = roads
         self._unsaved = UnsavedRecords(store)
         self._jobs: dict[str, RunningJob] = {}
         self._tasks: set[asyncio.Task[None]] = set()
@@ -64,8 +79,8 @@ class LocalEngine:
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
-        if self._measurer is not None:
-            await self._measurer.close()
+        if self._roads is not None:
+            await self._roads.close()
 
     async def stats(self) -> EngineStats:
         """Return the numbers for the metrics."""
@@ -90,11 +105,10 @@ class LocalEngine:
         self._workers.check_ready()
         self._unsaved.check_none()
 
-    async def run(self, record: Record, disconnected: Future[None]) -> Record:
+    async def run(self, record: Record, task: Task, disconnected: Future[None]) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it."""
-        assert record.source is not None
         self._unsaved.check_none()
-        submission = self._workers.reserve(record.source, client=record.client)
+        submission = self._workers.reserve(task, client=record.client)
         self._queue(submission)
         disconnected.add_done_callback(lambda _: self._workers.stop(submission))
         try:
@@ -108,12 +122,12 @@ class LocalEngine:
             self._spawn(self._unsaved.save(record, error))
         return record
 
-    async def submit(self, record: Record) -> Record:
+    async def submit(self, record: Record, task: Task) -> Record:
         """Store and begin a job at once, or return the earlier one that it is a repeat of."""
         job = RunningJob(record)
         try:
             self._unsaved.check_none()
-            job.reserve(self._workers)
+            job.reserve(self._workers, task)
         except (QueueFull, StoreUnavailable):
             # A repeat needs no place.
             if earlier := await self._store.repeated(record):
@@ -186,19 +200,19 @@ class LocalEngine:
 
     def _queue(self, submission: Submission) -> None:
         """Queue a submission that has a place, at once or when its costs by road are there."""
-        if self._measurer is None or not self._measurer.needed(submission.source):
+        if self._roads is None or not needs_roads(submission.task):
             self._workers.queue(submission)
         else:
-            self._spawn(self._queue_measured(submission, self._measurer))
+            self._spawn(self._queue_measured(submission, self._roads))
 
-    async def _queue_measured(self, submission: Submission, measurer: RoadMeasurer) -> None:
+    async def _queue_measured(self, submission: Submission, roads: RoadClient) -> None:
         """Ask for the costs by road of a submission, until it ends, and queue it with them."""
-        asking = asyncio.create_task(measurer.measured(submission.source))
+        asking = asyncio.create_task(measured_by_road(submission.task, roads))
         submission.when_ended(asking.cancel)
         try:
             await asyncio.wait((asking,))
             if not asking.cancelled():
-                submission.source = asking.result()
+                submission.task = asking.result()
         except Exception as error:
             submission.fail(error)
         finally:
@@ -221,16 +235,18 @@ class LocalEngine:
         """Begin jobs of an earlier process, whichever of them are not cancelled meanwhile."""
         for job in jobs:
             try:
-                while not job.ended and not await self._is_resumed(job):
+                assert job.record.source is not None
+                task = await asyncio.to_thread(self._read, job.record.source)
+                while not job.ended and not self._is_resumed(job, task):
                     await asyncio.sleep(_PAUSE)
             except Exception as error:
                 await self._end(job, as_failed(job.record, error, job.record.front))
 
-    async def _is_resumed(self, job: RunningJob) -> bool:
+    def _is_resumed(self, job: RunningJob, task: Task) -> bool:
         """Begin a job, and return whether there was a place for it."""
         with suppress(QueueFull, WarmingUp, ShuttingDown):
             self._workers.check_warm()
-            job.reserve(self._workers)
+            job.reserve(self._workers, task)
             self._begin(job)
         return job.submission is not None
 

@@ -23,8 +23,8 @@ class Record:
         caller: The name of the API key, which alone may see the record.
         request_id: Of the request that submitted the job; it is named in the problem document.
         front: The best front found so far.
-        source: What the task is parsed from, and of a finished job what it was: stores keep it
-            where they can, and return it by itself; None of a job that failed.
+        source: The task as it is stored. Stores keep that of a finished job where they can, and
+            return it by itself; None of a job that failed.
         key: The Idempotency-Key, if the request had one.
         digest: SHA-256 of the body, which tells a repeat from a key used twice.
         problem: The problem document of a job that failed.
@@ -74,8 +74,7 @@ def as_ended(
 def as_finished(record: Record, front: FrontDocument, reason: StopReason | None) -> Record:
     """Return the record with its final front: cancelled for that reason, else done."""
     status: Status = "cancelled" if reason is Cancelled else "done"
-    source = record.source and record.source.without_task()
-    return replace(record, status=status, front=front, source=source)
+    return replace(record, status=status, front=front)
 
 
 def as_cancelled(record: Record) -> Record:

@@ -24,13 +24,14 @@ class Runner(Protocol):
     def warm_up(self) -> None:
         """Compile the search, or load it from the cache."""
 
-    def run(
-        self, task: TaskSource | Task, stop: Callable[[], bool], report: Report
-    ) -> FrontDocument:
-        """Return the front of a task, parsed or not.
+    def read(self, source: TaskSource) -> Task:
+        """Return a stored task; errors as of `read_task`."""
+
+    def run(self, task: Task, stop: Callable[[], bool], report: Report) -> FrontDocument:
+        """Return the front of a task.
 
         Args:
-            task: The task, or its source.
+            task: The task.
             stop: Called often; planning ends soon after it returns True.
             report: Called now and then with the progress, and with a function that writes the best
                 so many tours found so far, which may be called until it returns.

@@ -7,6 +7,7 @@ from service.jobs.engine import JobState
 from service.jobs.record import Record, Status
 from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
+from service.requests.task import Task
 
 
 class RunningJob:
@@ -38,12 +39,9 @@ class RunningJob:
         """An event that is set at the next change."""
         return self._changed
 
-    def reserve(self, workers: WorkerPool) -> None:
-        """Take a place in the queue; it raises what WorkerPool.reserve raises."""
-        if self.record.source is None:
-            raise ValueError("an unfinished record must have a source")
-        client = self.record.client
-        self.submission = workers.reserve(self.record.source, self._notify, True, client)
+    def reserve(self, workers: WorkerPool, task: Task) -> None:
+        """Take a place in the queue for its task; it raises what WorkerPool.reserve raises."""
+        self.submission = workers.reserve(task, self._notify, True, self.record.client)
 
     def end(self, record: Record) -> None:
         """Take the final record."""

@@ -9,7 +9,7 @@ from service.errors import Cancelled, DeadlineExceeded
 from service.front import Progress
 from service.jobs.front_document import FrontDocument
 from service.jobs.record import StopReason
-from service.requests.task import TaskSource
+from service.requests.task import Task
 
 MOST_ATTEMPTS = 2
 
@@ -19,7 +19,7 @@ class Submission:
 
     Args:
         number: Tells it from the pool's other submissions, also in messages.
-        source: What the task is parsed from.
+        task: The task.
         on_change: Called when a worker begins, and with each progress.
         patient: Whether its time limit counts from the start of planning, not from submission.
         client: Whose turn it takes in the queue, and whose share of the places.
@@ -28,13 +28,13 @@ class Submission:
     def __init__(
         self,
         number: int,
-        source: TaskSource,
+        task: Task,
         on_change: Callable[[], None],
         patient: bool,
         client: str = "",
     ) -> None:
         self.number = number
-        self.source = source
+        self.task = task
         self.patient = patient
         self.client = client
         self.attempts = 0
@@ -56,8 +56,7 @@ class Submission:
     @property
     def is_brief(self) -> bool:
         """Whether it may share a process's turn: it is short, and was in no process that died."""
-        task = self.source.task
-        return task is not None and task.is_brief and self.attempts == 0
+        return self.task.is_brief and self.attempts == 0
 
     async def front(self) -> FrontDocument:
         """Wait for the front and return it. Planning goes on if the waiting task is cancelled.

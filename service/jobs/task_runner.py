@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.actor import NamedActor, load_actors
+from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage
 from service.coverage.path import CoveragePath
 from service.coverage.survey import Survey, survey
@@ -26,9 +27,11 @@ from service.replanning.replan import replan
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import Limits, within_network
 from service.requests.maps.robots import SharedCoverage
+from service.requests.parser import check_instance
 from service.requests.road_measurer import BlockingMeasurer, needs_roads
-from service.requests.stops import UnmeasuredStops, make_instance
-from service.requests.task import Task, TaskSource, check_instance, parse_task
+from service.requests.stops import Stops
+from service.requests.stored_task import read_task
+from service.requests.task import Task, TaskSource
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 
@@ -50,17 +53,17 @@ class TaskRunner:
             actor.load()
         warm_up()
 
-    def parse(self, source: TaskSource) -> Task:
-        """Return the task in a source; the exceptions are those of `parse_task`."""
-        infos = {name: actor.info for name, actor in self.actors.items()}
-        return parse_task(source, self.limits, infos)
+    @property
+    def infos(self) -> Mapping[str, ActorInfo]:
+        """The metadata of the actors by name."""
+        return {name: actor.info for name, actor in self.actors.items()}
 
-    def run(
-        self, task: TaskSource | Task, stop: Callable[[], bool], report: Report
-    ) -> FrontDocument:
-        """Return the front of a task, parsed or not."""
-        if isinstance(task, TaskSource):
-            task = self.parse(task)
+    def read(self, source: TaskSource) -> Task:
+        """Return a stored task; errors as of `read_task`."""
+        return read_task(source, self.limits, self.infos)
+
+    def run(self, task: Task, stop: Callable[[], bool], report: Report) -> FrontDocument:
+        """Return the front of a task."""
         if self.measurer is not None and needs_roads(task):
             task = self.measurer.measured(task, stop)
         if isinstance(task.subject, UnmeasuredFleet):
@@ -70,9 +73,7 @@ class TaskRunner:
             return run_robots(task, task.subject, actor, self.limits, stop, report)
         if isinstance(task.subject, Coverage):
             return self._cover(task, task.subject, stop, report)
-        if isinstance(task.subject, UnmeasuredStops):
-            return self._plan_stops(task, task.subject, stop, report)
-        return self._plan_instance(task, task.subject, stop, report, {})
+        return self._plan_stops(task, task.subject, stop, report)
 
     def terminate(self) -> None:
         """End the running call of a network, if one runs; from any thread."""
@@ -80,23 +81,13 @@ class TaskRunner:
             actor.terminate()
 
     def _plan_stops(
-        self, task: Task, stops: UnmeasuredStops, stop: Callable[[], bool], report: Report
+        self, task: Task, stops: Stops, stop: Callable[[], bool], report: Report
     ) -> FrontDocument:
         began = time.perf_counter()
-        instance = make_instance(stops)
-        check_instance(task, instance)
-        timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
-        return self._plan_instance(task, instance, stop, report, timings)
-
-    def _plan_instance(
-        self,
-        task: Task,
-        instance: Instance,
-        stop: Callable[[], bool],
-        report: Report,
-        timings: Mapping[str, float],
-    ) -> FrontDocument:
-        """Plan the front of an instance, whose costs took these milliseconds to find."""
+        instance, timings = stops.instance, {}
+        if task.timings or not stops.measured:  # else it was checked when it came
+            check_instance(task, instance)
+            timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
         front = self._plan(task, instance, stop, report)
         if timings:
             front = replace(front, timings={**timings, **front.timings})

@@ -183,16 +183,20 @@ def _coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
 
 
 def parse_coverage_request(
-    body: bytes,
-    limits: Limits,
-    picture: bytes | None = None,
-    model: type[AnyCoverageRequest] = CoverageRequest,  # type: ignore[assignment]
-) -> AnyCoverageRequest:
+    body: bytes, limits: Limits, picture: bytes | None = None
+) -> CoverageRequest:
     """Return the request in a JSON body, with the map of a picture where one came with it.
 
     Raises:
         Refusal: The body is not JSON, misses the schema, is over a limit or has no map.
     """
+    return parse_coverage_as(CoverageRequest, body, limits, picture)
+
+
+def parse_coverage_as(
+    model: type[AnyCoverageRequest], body: bytes, limits: Limits, picture: bytes | None
+) -> AnyCoverageRequest:
+    """Return a request of a class, as `parse_coverage_request` does."""
     request = parse_json(model, body).with_map(picture, limits.cells)
     most = limits.most_places(shared=bool(request.robots))
     if len(request.places) > most:

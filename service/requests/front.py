@@ -1,6 +1,5 @@
 """Requests of `POST /front`: their fields, and what these mean for a plan."""
 
-from dataclasses import replace
 from functools import cached_property
 from typing import Annotated
 
@@ -9,7 +8,7 @@ from numpy.typing import NDArray
 from pydantic import Field, GetPydanticSchema
 from pydantic_core.core_schema import no_info_after_validator_function
 
-from service.instance import OBJECTIVES, Instance, Kind
+from service.instance import OBJECTIVES, PLANE, Kind
 from service.requests.arrays import stack_matrices
 from service.requests.schemas import (
     END,
@@ -32,11 +31,12 @@ from service.requests.stop_fields import (
 from service.requests.stops import (
     Labels,
     Matrix,
+    Plane,
     Source,
     Stop,
-    UnmeasuredStops,
+    Stops,
+    kind_of,
     locations_of,
-    make_instance,
 )
 from service.requests.validation import invalid
 
@@ -56,7 +56,7 @@ Matrices = Annotated[
 
 
 class FrontRequest(PlanRequest):
-    """Cities or stops under two objectives, and the options of their front.
+    """Stops or stops under two objectives, and the options of their front.
 
     Whatever its form, a request is checked by `parse_front_request`, and only then complete.
     """
@@ -103,7 +103,7 @@ class FrontRequest(PlanRequest):
     def kind(self) -> Kind:
         """The kind of instance that an actor has to read."""
         if self.stops:
-            return self.unmeasured.kind
+            return kind_of(self.sources)
         return "coordinates" if self.coordinates else "matrices"
 
     @property
@@ -119,22 +119,21 @@ class FrontRequest(PlanRequest):
         return Labels(read_stops(self.stops), read_objectives(self.objectives))
 
     @cached_property
-    def unmeasured(self) -> UnmeasuredStops:
-        """The stops of the long form."""
-        assert self.labels is not None
-        stops = self.labels.stops
-        return UnmeasuredStops(locations_of(stops), self._sources(stops))
+    def sources(self) -> tuple[Source, ...]:
+        """The source of the costs of each objective."""
+        if self.labels is not None:
+            return self._sources(self.labels.stops)
+        if self.coordinates:
+            cities = np.array(self.coordinates, np.float64)
+            return tuple(Plane(cities[:, m : m + PLANE]) for m in range(0, _COLUMNS, PLANE))
+        return tuple(Matrix(matrix) for matrix in self.matrices)
 
-    def subject(self) -> Instance | UnmeasuredStops:
-        """Return the cities as an instance, or the stops whose costs are still to be measured."""
-        if self.stops:
-            # Only a checked request has the indexes of its ends.
-            stops = replace(self.unmeasured, ends=self.ends)
-            return make_instance(stops) if stops.measured else stops
-        ends = self.ends._asdict()
-        if self.kind == "matrices":
-            return Instance(matrices=self.matrices, **ends)
-        return Instance(coordinates=np.array(self.coordinates, dtype=np.float64), **ends)
+    @property
+    def subject(self) -> Stops:
+        """The stops to plan; those of a checked request have the indexes of their ends."""
+        stops = () if self.labels is None else self.labels.stops
+        locations = locations_of(stops) if stops else np.full((self.n, 2), np.nan)
+        return Stops(locations, self.sources, self.ends)
 
     def _sources(self, stops: tuple[Stop, ...]) -> tuple[Source, ...]:
         """Return the source of each objective, which is a matrix of the file where one came."""

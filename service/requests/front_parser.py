@@ -16,17 +16,19 @@ _REFERENCES = {"start", "end", "initial_tours"}  # the fields that may name stop
 AnyFrontRequest = TypeVar("AnyFrontRequest", bound=FrontRequest)
 
 
-def parse_front_request(
-    body: bytes,
-    limits: Limits,
-    npy: bytes | None = None,
-    model: type[AnyFrontRequest] = FrontRequest,  # type: ignore[assignment]
-) -> AnyFrontRequest:
+def parse_front_request(body: bytes, limits: Limits, npy: bytes | None = None) -> FrontRequest:
     """Return the request in a JSON body, with the matrices of a .npy file where one came with it.
 
     Raises:
         Refusal: The body is not JSON, misses the schema or is over a limit.
     """
+    return parse_front_as(FrontRequest, body, limits, npy)
+
+
+def parse_front_as(
+    model: type[AnyFrontRequest], body: bytes, limits: Limits, npy: bytes | None
+) -> AnyFrontRequest:
+    """Return a request of a class, as `parse_front_request` does."""
     request = parse_json(model, body)
     _check_form(request, npy is not None)
     if npy is not None:
@@ -69,7 +71,7 @@ def _check_cities(request: FrontRequest, limits: Limits) -> None:
     if request.matrices.size:
         _check_matrices(request)
     if request.stops:
-        check_router(request.unmeasured, limits)
+        check_router(request.sources, limits)
 
 
 def _check_matrices(request: FrontRequest) -> None:

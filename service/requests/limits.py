@@ -1,6 +1,6 @@
 """The limits of a service: on what a request may bring or ask for, as checks and as JSON schema."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -8,7 +8,7 @@ from service.errors import Refusal
 from service.front import PlanOptions
 from service.instance import Array, Kind
 from service.requests.schemas import PlanFields, PlanRequest
-from service.requests.stops import ROAD_MEASURES, Measured, UnmeasuredStops, base_of
+from service.requests.stops import ROAD_MEASURES, Measured, Source, base_of
 from service.requests.validation import invalid
 
 _TOURS_BY_ID = 100  # initial tours that may name every stop by its id
@@ -22,10 +22,10 @@ class Limits:
 
     Args:
         body_bytes: Bytes of a body.
-        cities: Cities in two planes.
-        matrix_cities: Cities whose costs are matrices: as they come, as they are measured, or over
+        cities: Stops in two planes.
+        matrix_cities: Stops whose costs are matrices: as they come, as they are measured, or over
             a map.
-        network_cities: Cities of which a network builds tours.
+        network_cities: Stops of which a network builds tours.
         fleet_stops: Stops of a fleet, and places that several robots share.
         cells: Cells of a map.
         path_cells: Cells of all paths of an answer, and stops of all its tours; long ids of stops
@@ -198,11 +198,11 @@ def within_network(options: PlanOptions, n: int, limits: Limits) -> PlanOptions:
     return replace(options, angles=options.angles[:0])
 
 
-def check_router(stops: UnmeasuredStops, limits: Limits) -> None:
+def check_router(sources: Sequence[Source], limits: Limits) -> None:
     """Raise a refusal where costs by road are asked for, and no routing engine is configured."""
     if limits.roads:
         return
-    for m, source in enumerate(map(base_of, stops.sources)):
+    for m, source in enumerate(map(base_of, sources)):
         if isinstance(source, Measured) and source.measure in ROAD_MEASURES:
             part = f"objectives/{m}/from"
             raise Refusal("no-router", name=part, measure=source.measure, pointer=f"/{part}")

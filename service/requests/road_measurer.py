@@ -9,8 +9,8 @@ import numpy as np
 
 from service.errors import Cancelled
 from service.requests.fleets.subject import UnmeasuredFleet
-from service.requests.stops import UnmeasuredStops
-from service.requests.task import Task, TaskSource
+from service.requests.stops import Stops
+from service.requests.task import Task
 from service.roads.client import RoadClient
 from service.search.forbidden_legs import check_ways
 
@@ -20,7 +20,7 @@ _POLL_SECONDS = 0.05  # between two questions whether to stop
 def needs_roads(task: Task) -> bool:
     """Return whether costs by road are missing of a task."""
     match task.subject:
-        case UnmeasuredStops() as stops:
+        case Stops() as stops:
             return bool(stops.road_measures)
         case UnmeasuredFleet(stops=stops):
             return bool(stops.road_measures)
@@ -35,51 +35,15 @@ async def measured_by_road(task: Task, client: RoadClient) -> Task:
             it does not know, or it fails; see RoadClient.costs.
     """
     subject, labels = task.subject, task.labels
-    assert isinstance(subject, UnmeasuredStops | UnmeasuredFleet)
+    assert isinstance(subject, Stops | UnmeasuredFleet)
     assert labels is not None
     began = time.perf_counter()
     stops = subject.stops if isinstance(subject, UnmeasuredFleet) else subject
     costs = await client.costs(stops.locations, [stop.id for stop in labels.stops])
-    if isinstance(subject, UnmeasuredStops):
+    if isinstance(subject, Stops):
         check_ways(np.isinf(costs.seconds), subject.ends, task.city_names, "no-road")
     measured = subject.measured_by_road({"road_time": costs.seconds, "road_distance": costs.metres})
     return replace(task, subject=measured, timings={"roads": 1000 * (time.perf_counter() - began)})
-
-
-class RoadMeasurer:
-    """Measures the tasks of an engine that runs in an event loop.
-
-    Args:
-        client: The client of the routing engine.
-        parse: Parses the source of a job that an earlier process left unfinished.
-    """
-
-    def __init__(self, client: RoadClient, parse: Callable[[TaskSource], Task]) -> None:
-        self._client = client
-        self._parse = parse
-
-    def needed(self, source: TaskSource) -> bool:
-        """Return whether costs by road are missing, or may be where the task is not parsed."""
-        if source.task is not None:
-            return needs_roads(source.task)
-        return b"road_" in source.body
-
-    async def measured(self, source: TaskSource) -> TaskSource:
-        """Return the source with a task that has its costs by road.
-
-        Raises:
-            Refusal: There are none; see RoadClient.costs.
-        """
-        task = source.task
-        if task is None:
-            task = await asyncio.to_thread(self._parse, source)
-        if needs_roads(task):
-            task = await measured_by_road(task, self._client)
-        return replace(source, task=task)
-
-    async def close(self) -> None:
-        """Close the connections to the engine."""
-        await self._client.close()
 
 
 class BlockingMeasurer:

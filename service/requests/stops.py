@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -102,8 +103,8 @@ Source = Matrix | Plane | Measured | Changed
 
 
 @dataclass(frozen=True, eq=False)
-class UnmeasuredStops:
-    """Stops that become an instance once the costs between them are measured.
+class Stops:
+    """Stops, where the costs between them come from, and the ends of tours.
 
     Args:
         locations: Longitude and latitude of each stop in degrees, shape (n, 2); NaN where a stop
@@ -131,6 +132,19 @@ class UnmeasuredStops:
         """Whether nothing has to be measured any more."""
         return not any(isinstance(base_of(source), Measured) for source in self.sources)
 
+    @cached_property
+    def instance(self) -> Instance:
+        """The stops and the costs between them as an instance. O(n^2) unless both are planes.
+
+        Raises:
+            InvalidInstance: The costs are too large, or too far apart, to be planned.
+        """
+        planes = [source.points for source in self.sources if isinstance(source, Plane)]
+        ends = self.ends._asdict()
+        if len(planes) == OBJECTIVES:
+            return Instance(coordinates=np.concatenate(planes, axis=1), **ends)
+        return Instance(matrices=cost_matrices(self), **ends)
+
     @property
     def road_measures(self) -> frozenset[RoadMeasure]:
         """The measures that a routing engine has to be asked for."""
@@ -138,7 +152,7 @@ class UnmeasuredStops:
         measures = {source.measure for source in bases if isinstance(source, Measured)}
         return frozenset(measure for measure in ROAD_MEASURES if measure in measures)
 
-    def measured_by_road(self, costs: Mapping[RoadMeasure, Array]) -> "UnmeasuredStops":
+    def measured_by_road(self, costs: Mapping[RoadMeasure, Array]) -> "Stops":
         """Return these stops with a matrix, shape (n, n), in place of each measure by road."""
 
         def measured(source: Source) -> Source:
@@ -175,20 +189,7 @@ def locations_of(stops: Sequence[Stop]) -> Array:
     return np.array([stop.location or (np.nan, np.nan) for stop in stops], dtype=np.float64)
 
 
-def make_instance(stops: UnmeasuredStops) -> Instance:
-    """Return stops and the costs between them as an instance. O(n^2) unless both are planes.
-
-    Raises:
-        InvalidInstance: The costs are too large, or too far apart, to be planned.
-    """
-    planes = [source.points for source in stops.sources if isinstance(source, Plane)]
-    ends = stops.ends._asdict()
-    if len(planes) == OBJECTIVES:
-        return Instance(coordinates=np.concatenate(planes, axis=1), **ends)
-    return Instance(matrices=cost_matrices(stops), **ends)
-
-
-def cost_matrices(stops: UnmeasuredStops) -> Array:
+def cost_matrices(stops: Stops) -> Array:
     """Return the costs between stops, all of them measured, shape (2, n, n)."""
     return np.stack([_costs(source, stops.locations) for source in stops.sources])
 

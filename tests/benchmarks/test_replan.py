@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from service.instance import Instance, tour_lengths
+from service.requests import stops as request_stops
 from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
@@ -22,6 +23,7 @@ from tests.benchmarks.rests import (
     with_stops_changed,
 )
 from tests.helpers.actors import info_of
+from tests.helpers.changes import Found
 
 LIMITS = Limits(body_bytes=2**20, cities=60, cells=100, preferences=99, size=99, seconds=9)
 N = 30
@@ -49,14 +51,13 @@ def test_a_share_of_the_stops_is_never_more_than_asked_but_for_one_stop() -> Non
 @pytest.mark.parametrize("shape", ["uniform", "clustered", ROADS, ROADS_COSTS])
 def test_the_rest_from_nothing_is_that_which_is_replanned(shape: str) -> None:
     stops, front, rest = drawn(shape)
-    items = [{"lengths": [1.0, 2.0], "tour": each["tour"]} for each in front["front"]]
+    orders = np.array([each["tour"] for each in front["front"]])
     source = TaskSource("front", json.dumps(stops.request(range(N))).encode())
-    stored = StoredFront("a", source, json.dumps(items)[1:-1].encode())
+    stored = StoredFront("a", source, Found(orders, np.ones((len(orders), 2))))
     body = json.dumps(rest.changes).encode()
-    task = parse_replan(ReplanSource(body, stored), LIMITS, {"a": info_of("a", "matrices")}).task
-    assert task is not None
-    instance = task.subject
-    assert isinstance(instance, Instance)
+    task = parse_replan(ReplanSource(body, stored), LIMITS, {"a": info_of("a", "matrices")})
+    assert isinstance(task.subject, request_stops.Stops)
+    instance = task.subject.instance
     one, other = (_costs_by_kind(each) for each in (instance, rest.instance))
     for costs, others in zip(one, other, strict=True):
         np.testing.assert_allclose(costs, others)

@@ -8,6 +8,7 @@ import pytest
 
 from service.errors import Refusal
 from service.jobs.task_runner import TaskRunner
+from service.requests.parser import parse_task
 from service.requests.task import TaskSource
 from tests.helpers.fleet_requests import LIMITS
 
@@ -52,7 +53,8 @@ def extreme_request(seed: int) -> dict[str, Any]:
 def test_extreme_numbers_are_planned_or_refused(seed: int) -> None:
     source = TaskSource("fleet", json.dumps(extreme_request(seed)).encode())
     try:
-        document = TaskRunner({}, LIMITS).run(source, lambda: False, lambda *_: None)
+        task = parse_task(source, LIMITS, {})
+        document = TaskRunner({}, LIMITS).run(task, lambda: False, lambda *_: None)
     except Refusal:
         return  # its status is that of the table, and none of it is 500
     front = json.loads(document.json())["front"]

@@ -16,8 +16,9 @@ import httpx
 from service.actor_info import ActorInfo
 from service.errors import PROBLEMS, Refusal
 from service.requests.limits import Limits
+from service.requests.parser import parse_task
 from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.task import TaskSource, parse_task
+from service.requests.task import TaskSource
 from tests.fuzz.bodies import GENERATORS
 
 

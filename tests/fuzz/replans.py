@@ -5,10 +5,13 @@ import random
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource
 from service.requests.task import TaskKind, TaskSource
 from tests.fuzz.mutations import EXTREMES, TOKENS, mutated
+from tests.helpers.changes import Found
 
 _CITIES = 5
 _MATRIX = [[abs(i - j) for j in range(_CITIES)] for i in range(_CITIES)]
@@ -33,10 +36,11 @@ def replan(rng: random.Random) -> ReplanSource:
     if rng.random() < 1 / 4:
         body = mutated(rng, body, TOKENS, len(body))
     source = TaskSource(kind, json.dumps({**request, "time_limit": 0.02}).encode())
-    return ReplanSource(body, StoredFront("front", source, _TOURS, request.get("places")))
+    found = Found(_TOURS, _LENGTHS, request.get("places"))
+    return ReplanSource(body, StoredFront("front", source, found))
 
 
-_TOURS = json.dumps({"lengths": [1.0, 1.0], "tour": list(range(_CITIES))}).encode()
+_TOURS, _LENGTHS = np.arange(_CITIES)[np.newaxis], np.ones((1, 2))
 
 
 def _reference(rng: random.Random) -> Any:

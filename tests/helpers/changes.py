@@ -1,7 +1,7 @@
 """Random fronts with random changes on the way, and what is left of them by brute force."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise, permutations
 from typing import Any
@@ -16,6 +16,15 @@ from service.roads.great_circle import great_circle_matrix
 Array = NDArray[np.float64]
 MOST = 9  # stops in all, for which the search compares all tours
 KINDS = ("coordinates", "matrices", "mixed", "measured")
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Tours of a front, as what is stored of it gives them."""
+
+    orders: NDArray[np.int64]
+    lengths: Array
+    places: Sequence[Sequence[int]] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,15 +187,9 @@ def _stored(  # noqa: PLR0913  what is stored of a front
 ) -> StoredFront:
     turns = rng.integers(0, way.n, len(tours)) if way.closed else [0] * len(tours)
     turned = [np.roll(tour, turn) for tour, turn in zip(tours, turns, strict=True)]
-    items = [
-        {
-            "lengths": [float(each[tour, np.roll(tour, -1)].sum()) for each in costs],
-            "tour": tour.tolist(),
-        }
-        for tour in turned
-    ]
+    lengths = [[float(each[tour, np.roll(tour, -1)].sum()) for each in costs] for tour in turned]
     source = TaskSource("front", json.dumps(_named(request, ids, kind, way.n)).encode())
-    return StoredFront("front", source, json.dumps(items)[1:-1].encode())
+    return StoredFront("front", source, Found(np.array(turned), np.array(lengths)))
 
 
 def _name(rng: np.random.Generator, ids: list[str], index: int) -> int | str:

@@ -1,4 +1,4 @@
-"""A runner for tests of worker processes, which does what the body of a request names."""
+"""A runner for tests of worker processes, which does what the actor of a task names."""
 
 import os
 import signal
@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from service.front import Front, PlanOptions, Progress
-from service.instance import Instance
 from service.jobs.front_document import FrontDocument
 from service.jobs.runner import Report
 from service.jobs.tour_document import encode_front
 from service.jobs.workers.worker_pool import WorkerPool
+from service.requests.stops import Plane, Stops
 from service.requests.task import Task, TaskSource
 
 _TERMINATED = Event()  # of the process that runs
@@ -26,7 +26,7 @@ _TERMINATED = Event()  # of the process that runs
 
 @dataclass(frozen=True)
 class ScriptedRunner:
-    """A runner that fails, dies, waits, hangs, calls or reports, as the body says.
+    """A runner that fails, dies, waits, hangs, calls or reports, as it says.
 
     Each death takes one byte from the file `lives`; where none is left it plans instead. With
     `warm`, the path of a file, its warm-up lasts until the file exists.
@@ -40,27 +40,31 @@ class ScriptedRunner:
         while self.warm is not None and not self.warm.exists():
             time.sleep(0.01)
 
+    def read(self, source: TaskSource) -> Task:
+        """Return the task of a source whose body says what to do."""
+        return task(source.body.decode())
+
     def run(  # noqa: C901
-        self, task: TaskSource | Task, stop: Callable[[], bool], report: Report
+        self, task: Task, stop: Callable[[], bool], report: Report
     ) -> FrontDocument:
-        """Return a front of one tour, after what the body names, or the actor of a task."""
-        body = task.actor.encode() if isinstance(task, Task) else task.body
-        match body:
-            case b"fail":
+        """Return a front of one tour, after what the actor of the task names."""
+        deed = task.actor
+        match deed:
+            case "fail":
                 raise KeyError("city")
-            case b"die":
+            case "die":
                 self._die_once_more()
-            case b"wait" | b"stop slowly":
+            case "wait" | "stop slowly":
                 while not stop():
                     time.sleep(0.001)
-                time.sleep(body == b"stop slowly")
+                time.sleep(deed == "stop slowly")
                 return document("cancelled")
-            case b"call":
+            case "call":
                 _TERMINATED.wait()
                 raise RuntimeError("terminated")
-            case b"hang":
+            case "hang":
                 time.sleep(600)
-            case b"report and hang":
+            case "report and hang":
                 began = time.monotonic()
                 while True:
                     seconds = time.monotonic() - began
@@ -94,18 +98,17 @@ def document(terminated: str | None, gained: float | None = None) -> FrontDocume
     return encode_front(front, {"name": "pa-one", "digest": "0" * 64})
 
 
-def source(body: bytes = b"") -> TaskSource:
-    """Return a task's source of which the body says what the runner does."""
-    return TaskSource("front", body)
+def task(deed: str = "", seconds: float = 1.0) -> Task:
+    """Return a task whose actor says what the runner does; without a time limit it is brief."""
+    cities = np.random.default_rng(0).random((3, 4))
+    planes = Plane(cities[:, :2]), Plane(cities[:, 2:])
+    options = PlanOptions(angles=np.array([45.0]), size=1, time_limit=seconds)
+    return Task(subject=Stops(np.full((3, 2), np.nan), planes), options=options, actor=deed)
 
 
-def brief_source(body: bytes = b"") -> TaskSource:
-    """Return the source of a brief task, parsed already, that says the same."""
-    instance = Instance(coordinates=np.random.default_rng(0).random((3, 4)))
-    options = PlanOptions(angles=np.array([45.0]), size=1)
-    return TaskSource(
-        "front", body, task=Task(subject=instance, options=options, actor=body.decode())
-    )
+def brief_task(deed: str = "") -> Task:
+    """Return a brief task, likewise."""
+    return task(deed, seconds=0.0)
 
 
 def _same(runner: ScriptedRunner) -> ScriptedRunner:

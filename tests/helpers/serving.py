@@ -24,6 +24,7 @@ from service.jobs.store import Store
 from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.limits import Limits
+from service.requests.stored_task import read_task
 from service.server import Ending, build, make_server
 from service.settings import Settings
 from tests.helpers.actors import Shuffler, info_of
@@ -78,7 +79,9 @@ def app_of(
     """Return the application with the engine of one machine and, by default, a store in memory."""
     store = store or SqliteStore(IN_MEMORY, entries=100, max_age=60)
     workers = workers or workers_of(runner_of(*actors, limits=limits))
-    return engine_app(store, LocalEngine(workers, store), *actors, limits=limits, edge=edge)
+    infos = {actor.info.name: actor.info for actor in actors or ACTORS}
+    read = partial(read_task, limits=limits, actors=infos)
+    return engine_app(store, LocalEngine(workers, store, read), *actors, limits=limits, edge=edge)
 
 
 def engine_app(

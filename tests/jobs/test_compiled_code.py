@@ -14,6 +14,7 @@ from pathlib import Path
 import service
 from service.jobs.compiled_code import load_from_cache
 from service.jobs.task_runner import load_runner
+from service.requests.parser import parse_task
 from service.requests.task import TaskSource
 from service.settings import Settings
 
@@ -34,12 +35,12 @@ for path in sorted((Path(service.__file__).parent / "examples").glob("*.json")):
     kind = "coverage" if "grid" in request else "fleet" if "vehicles" in request else "front"
     for seconds in (0, 0.2):
         source = TaskSource(kind, json.dumps({**request, "time_limit": seconds}).encode(), None)
-        runner.run(runner.parse(source), lambda: False, lambda *_: None)
+        runner.run(parse_task(source, runner.limits, runner.infos), lambda: False, lambda *_: None)
 cities = [[x % 97, x % 89, x % 83, x % 79] for x in range(700)]
 for closed in (True, False):
     request = {"coordinates": cities, "closed": closed, "time_limit": 0.2}
     source = TaskSource("front", json.dumps(request).encode(), None)
-    runner.run(runner.parse(source), lambda: False, lambda *_: None)
+    runner.run(parse_task(source, runner.limits, runner.infos), lambda: False, lambda *_: None)
 after = compiled()
 print(json.dumps({name: number for name, number in after.items() if number > before.get(name, 0)}))
 """

@@ -7,7 +7,7 @@ import pytest
 
 from service.jobs.fair_queue import FairQueue
 from service.jobs.submission import Submission
-from service.requests.task import TaskSource
+from tests.helpers.scripted_runner import task
 
 
 def turns(before: str, then: str, taken: int = 1, served: Sequence[str] = ()) -> str:
@@ -23,10 +23,10 @@ def turns(before: str, then: str, taken: int = 1, served: Sequence[str] = ()) ->
     async def take() -> str:
         queue = FairQueue()
         for number, client in enumerate(before):
-            queue.append(Submission(number, TaskSource("front", b""), lambda: None, True, client))
+            queue.append(Submission(number, task(), lambda: None, True, client))
         order = [queue.take().client for _ in range(taken)]
         for number, client in enumerate(then, len(before)):
-            queue.append(Submission(number, TaskSource("front", b""), lambda: None, True, client))
+            queue.append(Submission(number, task(), lambda: None, True, client))
         while len(queue):
             following = queue.next(served)
             assert queue.take(served) is following
@@ -59,9 +59,7 @@ def test_turns_of_many_clients_take_little_memory() -> None:
     async def take() -> int:
         queue = FairQueue()
         for number in range(3000):
-            submission = Submission(
-                number, TaskSource("front", b""), lambda: None, True, str(number)
-            )
+            submission = Submission(number, task(), lambda: None, True, str(number))
             queue.append(submission)
             queue.take()
         return len(queue._turns)

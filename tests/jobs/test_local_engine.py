@@ -12,9 +12,9 @@ from service.jobs.record import Record, as_finished
 from service.jobs.retries import UnsavedRecords
 from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
-from service.requests.task import TaskSource
+from service.requests.task import Task, TaskSource
 from tests.helpers.actors import Shuffler
-from tests.helpers.scripted_runner import document
+from tests.helpers.scripted_runner import document, task
 
 FRONT = FrontDocument(
     cities=3,
@@ -85,6 +85,11 @@ class Immediate:
         return [record for record in self.records.values() if not record.finished]
 
 
+def read(source: TaskSource) -> Task:
+    del source
+    return task()
+
+
 def new_record(id_: str = "0" * 32) -> Record:
     return Record(
         id=id_,
@@ -99,9 +104,9 @@ def new_record(id_: str = "0" * 32) -> Record:
 async def followed(steps: int) -> list[str]:
     """The statuses that are told to who begins to follow so many steps of the loop into the end."""
     workers = NoProcesses()
-    jobs = LocalEngine(workers, Immediate())
+    jobs = LocalEngine(workers, Immediate(), read)
     record = new_record()
-    await jobs.submit(record)
+    await jobs.submit(record, task())
     await asyncio.sleep(0)  # so that the job waits for its front
     workers.given.finish(FRONT)
     for _ in range(steps):
@@ -123,11 +128,11 @@ def test_the_end_is_told_whenever_it_comes(steps: int) -> None:
 async def full_store() -> None:
     """The store is full as a job ends, and after a while it is not."""
     workers, store = NoProcesses(), Immediate()
-    engine = LocalEngine(workers, store)
+    engine = LocalEngine(workers, store, read)
     first, second = new_record(), new_record("1" * 32)
-    await engine.submit(first)
+    await engine.submit(first, task())
     following = asyncio.ensure_future(_statuses(engine, first))
-    running = asyncio.ensure_future(engine.run(second, asyncio.Future()))
+    running = asyncio.ensure_future(engine.run(second, task(), asyncio.Future()))
     await asyncio.sleep(0)
     alone = workers.given
     store.full = True
@@ -141,8 +146,8 @@ async def full_store() -> None:
     for refused in (
         engine.check_ready(),
         engine.check_place("me"),
-        engine.submit(new_record("2" * 32)),
-        engine.run(new_record("3" * 32), asyncio.Future()),
+        engine.submit(new_record("2" * 32), task()),
+        engine.run(new_record("3" * 32), task(), asyncio.Future()),
     ):
         with pytest.raises(StoreUnavailable):
             await refused
@@ -153,7 +158,7 @@ async def full_store() -> None:
         await asyncio.sleep(0.01)
     await engine.check_ready()
     assert await _statuses(engine, first) == ["done"]
-    await engine.submit(new_record("4" * 32))
+    await engine.submit(new_record("4" * 32), task())
 
 
 def test_who_follows_a_job_that_cannot_be_stored_is_told_and_it_is_stored_later() -> None:
@@ -184,7 +189,7 @@ def test_a_job_that_cannot_be_resumed_ends() -> None:
     async def test() -> None:
         store = Immediate()
         await store.put(replace(new_record(), source=None))
-        engine = LocalEngine(Warm(), store)
+        engine = LocalEngine(Warm(), store, read)
         following = replace(new_record(), source=None)
         await engine.start()
         async with asyncio.timeout(2):
@@ -198,7 +203,7 @@ def test_a_job_may_be_cancelled_before_it_is_resumed() -> None:
     async def test() -> None:
         store = Immediate()
         await store.put(new_record())
-        engine = LocalEngine(NoProcesses(), store)
+        engine = LocalEngine(NoProcesses(), store, read)
         await engine.start()
         async with asyncio.timeout(2):
             assert (await engine.cancel(new_record())).status == "cancelled"

@@ -11,6 +11,7 @@ import pytest
 from service.errors import Refusal
 from service.jobs.task_runner import TaskRunner
 from service.requests.limits import Limits
+from service.requests.parser import parse_task
 from service.requests.task import TaskSource
 from tests.helpers.robot_plans import best_plans, check_answer
 from tests.helpers.serving import ACTORS
@@ -22,9 +23,9 @@ RUNNER = TaskRunner({actor.info.name: actor for actor in ACTORS}, LIMITS)
 def answer_to(request: dict[str, Any], runner: TaskRunner = RUNNER) -> dict[str, Any]:
     """Return the answer that a worker gives, without HTTP."""
     source = TaskSource("coverage", json.dumps(request).encode())
-    answer: dict[str, Any] = json.loads(
-        runner.run(source, lambda: False, lambda *_: None).json(id="")
-    )
+    task = parse_task(source, runner.limits, runner.infos)
+    document = runner.run(task, lambda: False, lambda *_: None)
+    answer: dict[str, Any] = json.loads(document.json(id=""))
     return answer
 
 

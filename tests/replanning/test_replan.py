@@ -1,7 +1,7 @@
 """Replanned fronts against brute force on the remaining problem, over random changes."""
 
 import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,10 +17,10 @@ from service.replanning.replan import replan
 from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.stops import UnmeasuredStops, make_instance
-from service.requests.task import Task, TaskSource, parse_task
+from service.requests.stops import Stops
+from service.requests.task import Task, TaskSource
 from tests.helpers.actors import Shuffler, info_of
-from tests.helpers.changes import Change, random_change
+from tests.helpers.changes import Change, Found, random_change
 
 CHANGES, PARTS = 300, 10
 LIMITS = Limits(body_bytes=2**20, cities=50, cells=100, preferences=99, size=9999, seconds=9)
@@ -29,17 +29,12 @@ INFOS = {kind: info_of(kind, kind) for kind in ("coordinates", "matrices")}
 
 def task_of(change: Change, **more: object) -> Task:
     body = json.dumps({**change.request, "size": 9999, **more}).encode()
-    task = parse_replan(ReplanSource(body, change.front), LIMITS, INFOS).task
-    assert task is not None
-    return task
+    return parse_replan(ReplanSource(body, change.front), LIMITS, INFOS)
 
 
 def instance_of(task: Task) -> Instance:
-    subject = task.subject
-    if isinstance(subject, UnmeasuredStops):
-        return make_instance(subject)
-    assert isinstance(subject, Instance)
-    return subject
+    assert isinstance(task.subject, Stops)
+    return task.subject.instance
 
 
 def replanned(task: Task) -> Front:
@@ -136,20 +131,10 @@ def test_fewer_tours_are_completed_where_all_would_take_too_long() -> None:
     assert driven.tolist() == earlier.driven.tolist()
 
 
-def test_the_task_of_a_rest_is_the_one_that_its_source_is_parsed_into() -> None:
-    for seed in range(80):
-        change = random_change(seed)
-        body = json.dumps({**change.request, "arrivals": True, "seed": seed}).encode()
-        rest = parse_replan(ReplanSource(body, change.front), LIMITS, INFOS)
-        assert rest.task is not None
-        parsed = parse_task(rest.without_task(), LIMITS, INFOS)
-        np.testing.assert_equal(asdict(rest.task), asdict(parsed))
-
-
 def test_more_stops_than_the_kind_of_their_costs_allows_are_refused_by_what_makes_them_so() -> None:
     few = replace(LIMITS, matrix_cities=3)
     source = TaskSource("front", json.dumps({"coordinates": np.eye(4).tolist()}).encode())
-    front = StoredFront("front", source, b'{"lengths":[4,4],"tour":[0,1,2,3]}')
+    front = StoredFront("front", source, Found(np.arange(4)[np.newaxis], np.full((1, 2), 4.0)))
     entry = {"objective": 0, "from": 1, "to": 2, "cost": 1.0}
     objectives = [{"name": name, "matrix": [[1] * 4] * 4} for name in "ab"]
     parse_replan(ReplanSource(b"{}", front), few, INFOS)
@@ -184,7 +169,7 @@ def test_cities_that_are_not_touched_have_the_neighbours_and_costs_that_they_had
 def _neighbours(change: Change) -> set[frozenset[int]]:
     """The stops of a front that follow each other in one of its tours, or in the driven one."""
     closed = json.loads(change.front.source.body).get("closed", True)
-    tours = [item["tour"] for item in json.loads(b"[" + change.front.tours + b"]")]
+    tours = change.front.found.orders.tolist()
     tours.append([change.ids.index(stop) for stop in change.request["tour"]])
     pairs = [
         pair for tour in tours for pair in zip(tour, tour[1:] + tour[: int(closed)], strict=False)
@@ -209,10 +194,11 @@ def test_new_objectives_may_have_touched_every_city() -> None:
 def test_the_driven_tour_has_the_balance_that_it_had_in_the_earlier_front() -> None:
     for seed in range(40):
         change = random_change(seed)
-        items = json.loads(b"[" + change.front.tours + b"]")
+        found = change.front.found
         driven = [change.ids.index(stop) for stop in change.request["tour"]]
-        ways = [np.roll(item["tour"], -item["tour"].index(driven[0])).tolist() for item in items]
-        expected = balances(np.array([item["lengths"] for item in items]))[ways.index(driven)]
+        orders = found.orders.tolist()
+        ways = [np.roll(tour, -tour.index(driven[0])).tolist() for tour in orders]
+        expected = balances(found.lengths)[ways.index(driven)]
         earlier = task_of(change).earlier
         assert earlier is not None
         assert earlier.balance == expected

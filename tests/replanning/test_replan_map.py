@@ -11,13 +11,15 @@ import pytest
 from service.coverage.frame import MapFrame
 from service.errors import Refusal
 from service.jobs.front_document import FrontDocument
+from service.jobs.json_parts import joined
 from service.jobs.task_runner import TaskRunner
 from service.requests.limits import Limits
+from service.requests.parser import parse_task
 from service.requests.replan.earlier_front import StoredFront
-from service.requests.replan.fields import ReplanRequest
-from service.requests.replan.rest_of_map import rest_of_map
-from service.requests.task import TaskSource
-from service.requests.validation import parse_json
+from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.stored_task import stored
+from service.requests.task import Task, TaskSource
+from service.requests.task_codec import encode_task
 from tests.helpers.actors import Shuffler, info_of
 
 LIMITS = Limits(body_bytes=2**20, cities=20, cells=200, preferences=99, size=9999, seconds=9)
@@ -29,8 +31,8 @@ ORIGIN = [3.0, -2.0, 0.5]
 FRAME = MapFrame(origin=ORIGIN, cell_size=0.5, rows=ROWS)
 
 
-def rest_of(front: StoredFront, body: bytes) -> TaskSource:
-    return rest_of_map(parse_json(ReplanRequest, body), front, LIMITS)
+def rest_of(front: StoredFront, body: bytes) -> Task:
+    return parse_replan(ReplanSource(body, front), LIMITS, RUNNER.infos)
 
 
 @dataclass
@@ -66,8 +68,8 @@ class Scene:
         self.front = planned(self.source)
         self.tours = [item["tour"] for item in json.loads(b"[" + self.front.tours + b"]")]
 
-    def rest(self, **request: Any) -> TaskSource:
-        stored = StoredFront("front", self.source, self.front.tours, self.front.places)
+    def rest(self, **request: Any) -> Task:
+        stored = StoredFront("front", self.source, self.front)
         body = json.dumps({"size": 9999, **request}).encode()
         return rest_of(stored, body)
 
@@ -85,8 +87,10 @@ def grid(walls: list[list[int]]) -> list[list[int]]:
     return [[int([r, c] in walls) for c in range(COLUMNS)] for r in range(ROWS)]
 
 
-def planned(source: TaskSource) -> FrontDocument:
-    return RUNNER.run(source, lambda: False, lambda *_: None)
+def planned(task: Task | TaskSource) -> FrontDocument:
+    if isinstance(task, TaskSource):
+        task = parse_task(task, LIMITS, RUNNER.infos)
+    return RUNNER.run(task, lambda: False, lambda *_: None)
 
 
 def new_front(scene: Scene, **request: Any) -> FrontDocument:
@@ -143,7 +147,7 @@ def test_a_whole_map_and_a_whole_layer_may_be_new() -> None:
     layer = scene.rng.integers(1, 9, (ROWS, COLUMNS)).tolist()
     rest = planned(scene.rest(grid=grid([]), cost_layer=layer))
     assert same_lengths(rest, new_front(scene, grid=grid([]), cost_layer=layer))
-    again = StoredFront("rest", scene.rest(grid=grid([])), rest.tours, rest.places)
+    again = StoredFront("rest", stored(scene.rest(grid=grid([]))), rest)
     body = json.dumps({"remove": [2], "size": 9999}).encode()
     second = planned(rest_of(again, body))
     places = [cell for i, cell in enumerate(scene.places) if i != 2]
@@ -216,14 +220,14 @@ def test_the_paths_of_a_front_are_not_parsed() -> None:
     scene = Scene(7)
     cells = ",".join(["[0,1]"] * 100_000)
     path = f',"arrivals":[{cells}],"path":{{"cells":[{cells}],"metres":1.0}}}}'.encode()
-    plain = StoredFront("front", scene.source, scene.front.tours, scene.front.places)
-    long = replace(plain, tours=scene.front.tours.replace(b"]}", b"]" + path))
-    expected = rest_of(plain, b'{"done": [1]}')
+    tours, ends = joined(tour[:-1] + path for tour in scene.front.split())
+    front = replace(scene.front, tours=tours, ends=ends)
+    expected = scene.rest(done=[1])
     tracemalloc.start()
     try:
-        rest = rest_of(long, b'{"done": [1]}')
+        rest = rest_of(StoredFront("front", scene.source, front), b'{"size": 9999, "done": [1]}')
         _, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-    assert rest == expected
+    assert encode_task(rest) == encode_task(expected)
     assert peak < 2**20

@@ -27,9 +27,7 @@ def refusal(body: str | dict[str, Any], npy: bytes | None = None) -> Refusal:
 
 
 def instance_of(request: FrontRequest) -> Instance:
-    subject = request.subject()
-    assert isinstance(subject, Instance)
-    return subject
+    return request.subject.instance
 
 
 @pytest.mark.parametrize(

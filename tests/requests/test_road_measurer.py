@@ -1,4 +1,4 @@
-"""Tasks are measured once, also those of an earlier process, and not after they are stopped."""
+"""Tasks are measured once, and not after they are stopped."""
 
 import asyncio
 import json
@@ -13,9 +13,10 @@ import pytest
 
 from service.errors import Cancelled, RouterUnusable
 from service.requests.limits import Limits
-from service.requests.road_measurer import BlockingMeasurer, RoadMeasurer, needs_roads
-from service.requests.stops import Matrix, UnmeasuredStops
-from service.requests.task import Task, TaskSource, parse_task
+from service.requests.parser import parse_task
+from service.requests.road_measurer import BlockingMeasurer, measured_by_road, needs_roads
+from service.requests.stops import Matrix, Stops
+from service.requests.task import Task, TaskSource
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 from tests.helpers.actors import info_of
@@ -55,55 +56,30 @@ def _settings(url: str) -> RouterSettings:
     return RouterSettings(url=url, router="osrm", profile="driving")
 
 
-@pytest.mark.parametrize("parsed", [True, False])
-def test_a_task_is_measured_whether_it_is_parsed_or_not(parsed: bool) -> None:
-    source = _source("road_time")
-    given = replace(source, task=_parsed(source)) if parsed else source
+def test_a_task_is_measured_once() -> None:
+    task = _parsed(_source("road_time"))
+    assert needs_roads(task)
 
-    async def measure(url: str) -> Task | None:
-        measurer = RoadMeasurer(RoadClient(_settings(url)), _parsed)
-        assert measurer.needed(given)
-        measured = await measurer.measured(given)
-        assert not measurer.needed(measured)
-        await measurer.close()
-        return measured.task
+    async def measure(url: str) -> Task:
+        client = RoadClient(_settings(url))
+        try:
+            return await measured_by_road(task, client)
+        finally:
+            await client.close()
 
     with fake_osrm() as fake:
-        task = asyncio.run(measure(fake.url))
-    assert task is not None
-    assert isinstance(task.subject, UnmeasuredStops)
-    time_source, risk_source = task.subject.sources
+        measured = asyncio.run(measure(fake.url))
+    assert not needs_roads(measured)
+    assert isinstance(measured.subject, Stops)
+    time_source, risk_source = measured.subject.sources
     assert isinstance(time_source, Matrix)
     assert isinstance(risk_source, Matrix)
     np.testing.assert_array_equal(time_source.costs, road_costs(PLACES, PLACES)[0])
-    assert task.timings["roads"] > 0
+    assert measured.timings["roads"] > 0
 
 
 def test_a_task_without_roads_needs_no_engine() -> None:
-    source = _source("great_circle")
-    measurer = RoadMeasurer(RoadClient(_settings("http://127.0.0.1:1")), _parsed)
-    assert not measurer.needed(source)
-    task = _parsed(source)
-    assert not needs_roads(task)
-    assert not measurer.needed(replace(source, task=task))
-
-
-def test_an_unparsed_task_that_only_speaks_of_roads_is_left_as_it_is() -> None:
-    plane = {"coordinates": [[0, 0]]}
-    objectives = [{"name": "distance", **plane}, {"name": "climb", **plane}]
-    body = {"stops": [{"id": "road_side"}], "objectives": objectives}
-    source = TaskSource("front", json.dumps(body).encode())
-
-    async def measure() -> TaskSource:
-        measurer = RoadMeasurer(RoadClient(_settings("http://127.0.0.1:1")), _parsed)
-        assert measurer.needed(source)
-        measured = await measurer.measured(source)
-        await measurer.close()
-        return measured
-
-    measured = asyncio.run(measure())
-    assert measured.task is not None
-    assert not measured.task.timings
+    assert not needs_roads(_parsed(_source("great_circle")))
 
 
 def test_a_process_measures_one_task_after_another() -> None:

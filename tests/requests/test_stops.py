@@ -10,15 +10,12 @@ import pytest
 from pydantic_core import to_json
 
 from service.errors import Refusal
-from service.instance import Instance
 from service.requests.front import FrontRequest
 from service.requests.front_parser import parse_front_request
 from service.requests.stops import (
     Measured,
     Objective,
     Stop,
-    UnmeasuredStops,
-    make_instance,
 )
 from service.roads.great_circle import great_circle_matrix
 from tests.helpers.serving import LIMITS
@@ -61,16 +58,14 @@ def npy(matrices: Any) -> bytes:
 
 def test_two_planes_are_an_instance_of_coordinates() -> None:
     request = parsed(objectives=[PLANE, OTHER_PLANE])
-    subject = request.subject()
-    assert isinstance(subject, Instance)
+    subject = request.subject.instance
     assert (request.kind, subject.kind) == ("coordinates", "coordinates")
     np.testing.assert_array_equal(subject.coordinates, np.hstack((POINTS, POINTS[::-1])))
 
 
 def test_a_plane_beside_a_matrix_is_an_instance_of_matrices() -> None:
     request = parsed(objectives=[PLANE, RISK])
-    subject = request.subject()
-    assert isinstance(subject, Instance)
+    subject = request.subject.instance
     assert (request.kind, subject.kind) == ("matrices", "matrices")
     distances = [[0, 5, 6, 3], [5, 0, 5, 4], [6, 5, 0, 3], [3, 4, 3, 0]]
     np.testing.assert_array_equal(subject.matrices, [distances, COSTS])
@@ -78,32 +73,29 @@ def test_a_plane_beside_a_matrix_is_an_instance_of_matrices() -> None:
 
 def test_great_circles_are_measured_once_the_job_runs() -> None:
     request = parsed()
-    subject = request.subject()
-    assert isinstance(subject, UnmeasuredStops)
+    subject = request.subject
     assert (subject.n, subject.kind, request.kind) == (4, "matrices", "matrices")
     assert not subject.road_measures
     expected = [great_circle_matrix(np.array(LOCATIONS)), COSTS]
-    np.testing.assert_allclose(make_instance(subject).matrices, expected)
+    np.testing.assert_allclose(subject.instance.matrices, expected)
 
 
 def test_road_matrices_complete_an_instance() -> None:
     objectives = [{"name": "time", "from": "road_time"}, WAY]
     request = parse_front_request(body(objectives=objectives), ROADS)
-    subject = request.subject()
-    assert isinstance(subject, UnmeasuredStops)
+    subject = request.subject
     assert subject.sources == (Measured("road_time"), Measured("great_circle"))
     assert subject.road_measures == {"road_time"}
     measured = subject.measured_by_road({"road_time": np.array(COSTS, dtype=np.float64)})
     assert not measured.road_measures
-    instance = make_instance(measured)
+    instance = measured.instance
     np.testing.assert_allclose(instance.matrices, [COSTS, great_circle_matrix(np.array(LOCATIONS))])
 
 
 def test_matrices_may_come_as_a_file() -> None:
     objectives = [{"name": "time", "unit": "s"}, {"name": "risk"}]
     request = parse_front_request(body(objectives=objectives), LIMITS, npy([COSTS, COSTS]))
-    subject = request.subject()
-    assert isinstance(subject, Instance)
+    subject = request.subject.instance
     np.testing.assert_array_equal(subject.matrices, [COSTS, COSTS])
     assert request.labels is not None
     assert request.labels.objectives == (Objective("time", "s"), Objective("risk"))

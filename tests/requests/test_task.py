@@ -10,8 +10,10 @@ import pytest
 from service.actor_info import ActorInfo
 from service.coverage.survey import Coverage
 from service.errors import InvalidCoverage, Refusal
-from service.instance import Instance
-from service.requests.task import Task, TaskSource, choose_actor, parse_task
+from service.requests.actors import choose_actor
+from service.requests.parser import parse_task
+from service.requests.stops import Stops
+from service.requests.task import Task, TaskSource
 from tests.helpers.actors import info_of
 from tests.helpers.serving import LIMITS
 
@@ -30,7 +32,7 @@ COVERAGE = {
 
 def test_a_body_becomes_a_task() -> None:
     task = parse_front({"coordinates": np.eye(4).tolist(), "repairs": 2, "time_limit": 0})
-    assert isinstance(task.subject, Instance)
+    assert isinstance(task.subject, Stops)
     assert (task.actor, task.options.repairs, task.paths) == ("pa-one", 2, False)
     assert task.needs_compiled_code  # twice 20 preferences make more tours than the limit of 30
     task = parse_task(TaskSource("coverage", json.dumps(COVERAGE).encode()), LIMITS, FACTS)

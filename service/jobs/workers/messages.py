@@ -9,7 +9,7 @@ from typing import Any
 
 from service.front import Progress
 from service.jobs.front_document import FrontDocument
-from service.requests.task import Task, TaskSource
+from service.requests.task import Task
 
 _LENGTH = struct.Struct("!Q")
 
@@ -23,7 +23,7 @@ class WarmUp:
 class Do:
     """To an idle worker: run these tasks by number, in this order, and send all results at once."""
 
-    tasks: Mapping[int, TaskSource | Task]
+    tasks: Mapping[int, Task]
 
 
 @dataclass(frozen=True)

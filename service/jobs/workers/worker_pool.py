@@ -20,7 +20,7 @@ from service.jobs.runner import MakeRunner
 from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.workers.messages import Do, Done, Failed, Found, Stop
 from service.jobs.workers.worker_set import Worker, WorkerSet
-from service.requests.task import TaskSource
+from service.requests.task import Task
 
 GRACE = 0.15  # seconds for a stopped task to give its front; then its last report is the answer
 _MOST_TOGETHER = 4  # brief submissions in one turn of a process, whose answers come together
@@ -131,7 +131,7 @@ class WorkerPool:
 
     def reserve(
         self,
-        source: TaskSource,
+        task: Task,
         on_change: Callable[[], None] = lambda: None,
         patient: bool = False,
         client: str = "",
@@ -145,7 +145,7 @@ class WorkerPool:
         """
         self.check_open()
         self.check_place(client)
-        submission = Submission(next(self._numbers), source, on_change, patient, client)
+        submission = Submission(next(self._numbers), task, on_change, patient, client)
         if not patient:
             self._start_timer(submission)
         self._reserved.add(submission)
@@ -164,13 +164,13 @@ class WorkerPool:
 
     def submit(
         self,
-        source: TaskSource,
+        task: Task,
         on_change: Callable[[], None] = lambda: None,
         patient: bool = False,
         client: str = "",
     ) -> Submission:
         """Reserve a place for a task and queue it there; arguments and errors are of reserve."""
-        submission = self.reserve(source, on_change, patient, client)
+        submission = self.reserve(task, on_change, patient, client)
         self.queue(submission)
         return submission
 
@@ -267,7 +267,7 @@ class WorkerPool:
         for submission in worker.submissions.values():
             submission.begin()
             self._start_timer(submission)
-            tasks[submission.number] = submission.source.task or submission.source
+            tasks[submission.number] = submission.task
         try:
             worker.process.send(Do(tasks))
         except Exception as error:

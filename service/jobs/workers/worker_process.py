@@ -29,7 +29,7 @@ from service.jobs.workers.messages import (
     encode,
     receive_blocking,
 )
-from service.requests.task import Task, TaskSource
+from service.requests.task import Task
 
 NICENESS = 5  # of a worker: the event loop comes first, and needs little
 _TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin a call
@@ -133,7 +133,7 @@ class _WorkerLoop:
                 self._runner.terminate()
             time.sleep(_TERMINATE_EVERY)
 
-    def _result(self, number: int, task: TaskSource | Task) -> Done | Failed:
+    def _result(self, number: int, task: Task) -> Done | Failed:
         report = Reporter(lambda progress, front: self._send(Found(number, progress, front)))
         self._begin(number)
         try:

@@ -27,7 +27,7 @@ from service.requests.schemas import (
     Text,
 )
 from service.requests.stop_fields import find_index, read_objectives, read_stops
-from service.requests.stops import Labels, UnmeasuredStops, locations_of
+from service.requests.stops import Labels, Stops, locations_of
 from service.requests.validation import invalid, parse_json, show, too_many_cities
 
 _MOST_VEHICLE_TYPES = 100
@@ -103,7 +103,7 @@ class FleetRequest(BaseModel):
             clock=self._clock(),
         )
         names = _unique([item.id for item in self.vehicles])
-        return UnmeasuredFleet(rules, names, UnmeasuredStops(locations_of(labels.stops), sources))
+        return UnmeasuredFleet(rules, names, Stops(locations_of(labels.stops), sources))
 
     def options(self) -> PlanOptions:
         """Return the options for the planner."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from service.fleet.fleet import Fleet, Rules
-from service.requests.stops import Array, Labels, RoadMeasure, UnmeasuredStops, cost_matrices
+from service.requests.stops import Array, Labels, RoadMeasure, Stops, cost_matrices
 
 
 @dataclass(frozen=True, eq=False)
@@ -14,7 +14,7 @@ class UnmeasuredFleet:
 
     rules: Rules
     vehicles: tuple[str, ...]
-    stops: UnmeasuredStops
+    stops: Stops
 
     @property
     def n(self) -> int:

@@ -1,46 +1,48 @@
-"""The front that is replanned: its stops, costs, ends and tours, from what was stored of it."""
+"""The front that is replanned: its stops or places, costs, ends and tours, from what is stored."""
 
-import re
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from service.coverage.coverage import Coverage
 from service.errors import Refusal
-from service.instance import OBJECTIVES, PLANE, RouteEnds
+from service.instance import CLOSED, RouteEnds
 from service.pareto import balances, knee
-from service.requests.front import FrontRequest
-from service.requests.front_parser import parse_front_request
-from service.requests.limits import Limits
-from service.requests.replan.rest_request import RestRequest
-from service.requests.stops import Labels, Matrix, Objective, Plane, Source, Stop
-from service.requests.task import TaskSource
+from service.requests.stops import Labels, Objective, Source, Stop, Stops
+from service.requests.task import Task, TaskSource
 from service.search.open_routes import rotated
 
 Array = NDArray[np.float64]
 MOST_TOURS = 50  # of an earlier front, from which the search sets out, as many as it has weights
 _NAMES = ("first", "second")  # of objectives that the front's request did not name
-# What is read of a tour: not its path, whose millions of cells take seconds and half a gigabyte.
-_READ = re.compile(rb'"lengths":\s*\[([^]]*)],\s*"tour":\s*\[([^]]*)]')
-_MODELS: Mapping[str, type[FrontRequest]] = {"front": FrontRequest, "replan": RestRequest}
+
+
+class FoundTours(Protocol):
+    """The tours of a front, as they are stored."""
+
+    @property
+    def orders(self) -> NDArray[np.int64]:
+        """The stops or places of each tour in order, shape (m, n)."""
+
+    @property
+    def lengths(self) -> Array:
+        """The lengths of each tour, shape (m, 2)."""
+
+    @property
+    def places(self) -> Sequence[Sequence[int]] | None:
+        """Of a front of a map, row and column of each place."""
 
 
 @dataclass(frozen=True, eq=False)
 class StoredFront:
-    """A front as it is stored.
-
-    Args:
-        id: Its id.
-        source: What it was planned from.
-        tours: The JSON of its tours, with commas between, without brackets.
-        places: Of a front of a map, row and column of each place.
-    """
+    """A front as it is stored: its id, what it was planned from, and its tours."""
 
     id: str
     source: TaskSource
-    tours: bytes
-    places: Sequence[Sequence[int]] | None = None
+    found: FoundTours
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +51,7 @@ class EarlierFront:
 
     Args:
         labels: The names of its stops and objectives; of a front without, their numbers.
-        sources: The source of the costs of each objective.
+        sources: The source of the costs of each objective; none of a front of a map.
         ends: Whether its tours are closed, and the ends of open routes.
         start: The stop that closed tours are reported from.
         tours: The stops of each tour in order, shape (m, n), evenly spread over the front where
@@ -60,7 +62,7 @@ class EarlierFront:
     """
 
     labels: Labels
-    sources: tuple[Source, ...]
+    sources: Sequence[Source]
     ends: RouteEnds
     start: int
     tours: NDArray[np.int64]
@@ -85,49 +87,52 @@ class EarlierFront:
         return rotated(tours, (tours == self.start).argmax(axis=1))
 
 
-def read_earlier_front(stored: StoredFront, limits: Limits) -> EarlierFront:
-    """Return the front that was stored.
+def earlier_front(stored: StoredFront, task: Task, stops: Stops) -> EarlierFront:
+    """Return the front of a task of stops.
 
     Raises:
-        Refusal: It is of a kind that cannot be replanned, or cannot be read under these limits.
+        Refusal: It has no tours, or such as are not of its stops.
     """
-    source = stored.source
-    if source.kind not in _MODELS:
-        reason = f"it is of POST /{source.kind}, and only those of POST /front and /coverage can be"
-        raise not_replannable(stored.id, reason)
-    try:
-        model = _MODELS[source.kind]
-        request = parse_front_request(source.body, limits, source.upload, model)
-    except Refusal as refusal:
-        raise refused_now(stored.id, refusal) from None
-    start = request.start if isinstance(request.start, int) else 0
-    front = with_tours(stored, request.n, lambda _: (request.ends, start))
-    labels = request.labels or front.labels
-    return replace(front, labels=labels, sources=_sources(request))
+    tours = _tours(stored, stops.n)
+    labels = task.labels or _numbered(stops.n)
+    return _front(stored, tours, labels, stops.sources, stops.ends, task.options.start)
 
 
-def with_tours(
+def earlier_front_of_map(stored: StoredFront, coverage: Coverage) -> EarlierFront:
+    """Return the front of a coverage task, whose places are named by their indexes.
+
+    Raises:
+        Refusal: It has no tours, or such as are not of its places.
+    """
+    n = len(stored.found.places or ())
+    tours = _tours(stored, n)
+    ends, start = CLOSED, int(tours[0, 0])
+    if not coverage.ends.closed:
+        starts = coverage.start_pose is not None or coverage.ends.start is not None
+        ends_there = coverage.end_pose is not None or coverage.ends.end is not None
+        last = int(tours[0, -1])
+        ends = RouteEnds(False, start if starts else None, last if ends_there else None)
+    return _front(stored, tours, _numbered(n), (), ends, start)
+
+
+def not_replannable(front: str, reason: str) -> Refusal:
+    """Return the refusal of a front that cannot be replanned."""
+    return Refusal("not-replannable", front=front, reason=reason)
+
+
+def _front(
     stored: StoredFront,
-    n: int,
-    ends_of: Callable[[NDArray[np.int64]], tuple[RouteEnds, int]],
+    tours: NDArray[np.int64],
+    labels: Labels,
+    sources: Sequence[Source],
+    ends: RouteEnds,
+    start: int,
 ) -> EarlierFront:
-    """Return an earlier front with its tours, of stops named by their numbers, without sources.
-
-    Args:
-        stored: The front as it is stored.
-        n: Its number of stops.
-        ends_of: Returns the ends of all tours, and the stop that closed ones are reported from, by
-            the first of them, shape (n,).
-
-    Raises:
-        Refusal: It has no tours, or such as are not of so many stops.
-    """
-    tours, lengths = _read_tours(stored, n)
+    lengths = stored.found.lengths
     chosen = np.linspace(0, len(tours) - 1, min(len(tours), MOST_TOURS)).astype(np.intp)
-    ends, start = ends_of(tours[0])
     return EarlierFront(
-        labels=_numbered(n),
-        sources=(),
+        labels=labels,
+        sources=sources,
         ends=ends,
         start=start,
         tours=tours[chosen],
@@ -137,39 +142,17 @@ def with_tours(
     )
 
 
-def refused_now(front: str, refusal: Refusal) -> Refusal:
-    """Return the refusal of a front whose request is refused under the limits of now."""
-    return not_replannable(front, f"what it was planned from is refused now ({refusal.detail})")
-
-
-def not_replannable(front: str, reason: str) -> Refusal:
-    """Return the refusal of a front that cannot be replanned."""
-    return Refusal("not-replannable", front=front, reason=reason)
-
-
-def _read_tours(stored: StoredFront, n: int) -> tuple[NDArray[np.int64], Array]:
-    """Return the stops of all tours, shape (m, n), and their lengths, shape (m, 2)."""
-    read = _READ.findall(stored.tours)
-    if not read:
+def _tours(stored: StoredFront, n: int) -> NDArray[np.int64]:
+    """Return the tours of a front of n stops, shape (m, n)."""
+    tours = stored.found.orders
+    if not len(tours):
         raise not_replannable(stored.id, "it has no tour")
-    lengths, tours = (b",".join(texts) for texts in zip(*read, strict=True))
-    # Numbers of one kind are read so in a fifth of the time that lists of them take.
-    stops = np.fromstring(tours, np.int64, sep=",")
-    if len(stops) != len(read) * n:
+    if tours.shape[1] != n:
         raise not_replannable(stored.id, "its tours are not of its stops")
-    return stops.reshape(-1, n), np.fromstring(lengths, sep=",").reshape(-1, OBJECTIVES)
+    return tours
 
 
 def _numbered(n: int) -> Labels:
     """Return labels for stops and objectives without names."""
     stops = tuple(Stop(str(index)) for index in range(n))
     return Labels(stops, tuple(Objective(name) for name in _NAMES))
-
-
-def _sources(request: FrontRequest) -> tuple[Source, ...]:
-    if request.stops:
-        return tuple(request.unmeasured.sources)
-    if request.kind == "matrices":
-        return tuple(Matrix(matrix) for matrix in request.matrices)
-    planes = np.array(request.coordinates, np.float64)
-    return tuple(Plane(planes[:, m : m + PLANE]) for m in range(0, planes.shape[1], PLANE))

@@ -1,14 +1,18 @@
-"""The fields of requests to replan a front."""
+"""Requests to replan a front: their fields, their JSON schemas, and what belongs to which kind."""
 
-from typing import Annotated
+from collections.abc import Iterable
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from service.instance import OBJECTIVES
 from service.requests.coverage import Cell
-from service.requests.replan.map_fields import MapChanges
+from service.requests.limits import Limits, limited_schema
+from service.requests.maps.fields import Layer, empty_array
+from service.requests.maps.robots import RobotPose
 from service.requests.schemas import GEOMETRY, LARGEST, Geometry, PlanePoint, PlanFields, Text
 from service.requests.stop_fields import Latitude, Longitude, ObjectiveItem, StopReference
+from service.requests.validation import invalid
 
 Cost = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
 _Row = Annotated[list[Cost | None], Field(min_length=1, fail_fast=True)]
@@ -93,6 +97,43 @@ _Added = Annotated[
 ]
 
 
+_Cells = Annotated[list[Cell], Field(fail_fast=True)]
+
+
+class MapChanges(PlanFields):
+    """What has changed on the map of a front of `POST /coverage`."""
+
+    pose: RobotPose = Field(
+        default_factory=list,
+        description="instead of position, on a map with an origin: x and y, and maybe yaw, of the"
+        " robot in the frame of the map",
+    )
+    grid: Layer = Field(
+        default_factory=empty_array,
+        description="of a front of a map: the map anew, as large as it was, 0 where it is free and"
+        " 1 an obstacle",
+    )
+    blocked: _Cells = Field(
+        default_factory=list,
+        description="of a front of a map: row and column of each cell that is an obstacle now",
+    )
+    freed: _Cells = Field(
+        default_factory=list, description="likewise, of each cell that is an obstacle no more"
+    )
+    cost_layer: Layer = Field(
+        default_factory=empty_array,
+        description="of a front of a map: the second objective anew, as in `POST /coverage`",
+    )
+    paths: bool = Field(
+        default=False, description="of a front of a map: whether each tour comes with its path"
+    )
+
+    @property
+    def map_changed(self) -> bool:
+        """Whether a path between two places may have become another."""
+        return bool(self.grid.size or self.blocked or self.freed or self.cost_layer.size)
+
+
 class ReplanRequest(MapChanges):
     """What has changed since a front was planned, and the options of the front of the rest.
 
@@ -142,3 +183,62 @@ class ReplanRequest(MapChanges):
     def options_given(self) -> frozenset[str]:
         """The names of the options that the request has, as those of a new request."""
         return frozenset({*PlanFields.model_fields, "geometry"} & self.model_fields_set)
+
+
+OF_MAPS = tuple(name for name in MapChanges.model_fields if name not in PlanFields.model_fields)
+_OF_STOPS = ("costs", "objectives", "geometry")
+
+
+def check_of_stops(request: MapChanges) -> None:
+    """Raise a refusal where a request about a front of stops has what only those of maps have."""
+    _refuse(request, OF_MAPS, "a map, by POST /coverage")
+
+
+def check_of_map(request: MapChanges) -> None:
+    """Raise a refusal where a request about a front of a map has what only those of stops have."""
+    _refuse(request, _OF_STOPS, "stops or cities, by POST /front")
+
+
+def _refuse(request: MapChanges, names: tuple[str, ...], kind: str) -> None:
+    for name in names:
+        if name in request.model_fields_set:
+            raise invalid(name, f"must be left out: it is for fronts of {kind}")
+
+
+_SHARED = "ObjectiveItem"  # of which each form has a name of its own, as in `front_schemas`
+_OBJECTIVES = ("MatrixObjective", "PlaneObjective", "MeasuredObjective")
+
+
+def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str, Any]]:
+    """Return the schema of a request to replan, and of what is in it, by name.
+
+    Its objectives are of the kinds that `front_schemas` has.
+    """
+    schema = limited_schema(ReplanRequest, limits, actors)
+    parts = schema.pop("$defs")
+    fields = schema["properties"]
+    if not limits.roads:
+        fields["geometry"]["enum"].remove("roads")
+    kinds = [{"$ref": f"#/components/schemas/{name}"} for name in _OBJECTIVES]
+    fields["objectives"] = {**fields["objectives"], "items": {"oneOf": kinds}}
+    _describe_map_changes(fields, limits.cells)
+    for name in ("done", "remove", "tour", "add"):
+        fields[name]["maxItems"] = limits.cities
+    named = {name: part for name, part in parts.items() if name != _SHARED}
+    return {**{name: _without_null(part) for name, part in named.items()}, "ReplanRequest": schema}
+
+
+def _without_null(schema: dict[str, Any]) -> dict[str, Any]:
+    """Return a schema without defaults of null, from which generators conclude too much."""
+    fields = {
+        name: {k: v for k, v in field.items() if k != "default" or v is not None}
+        for name, field in schema["properties"].items()
+    }
+    return {**schema, "properties": fields}
+
+
+def _describe_map_changes(fields: dict[str, Any], most_cells: int) -> None:
+    """Refine the fields of a map in the JSON schema of a request."""
+    fields["grid"]["items"]["items"] = {"enum": [0, 1]}
+    for name in ("blocked", "freed"):
+        fields[name]["maxItems"] = most_cells

@@ -1,16 +1,21 @@
-"""Parse requests to replan: from an earlier front and a body to the source of a task."""
+"""Parse requests to replan: from a stored front and a body to the task of the rest."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from service.actor_info import ActorInfo
+from service.coverage.coverage import Coverage
+from service.errors import Refusal
+from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import Limits
-from service.requests.replan.earlier_front import StoredFront
-from service.requests.replan.earlier_map import MAP_MODELS
+from service.requests.maps.robots import SharedCoverage
+from service.requests.replan.earlier_front import StoredFront, earlier_front, not_replannable
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.rest_of_map import rest_of_map
 from service.requests.replan.rest_of_stops import rest_of_stops
-from service.requests.task import TaskSource, parse_task
+from service.requests.stops import Stops
+from service.requests.stored_task import read_task
+from service.requests.task import Task
 from service.requests.validation import parse_json
 
 
@@ -21,27 +26,35 @@ class ReplanSource:
     body: bytes
     front: StoredFront
 
-    @property
-    def length(self) -> int:
-        """The bytes to parse; those of the tours, which are the service's own, are quick to."""
-        earlier = self.front.source
-        upload = len(earlier.upload or b"")
-        return len(self.body) + len(earlier.body) + upload + len(self.front.tours) // 8
 
-
-def parse_replan(
-    source: ReplanSource, limits: Limits, actors: Mapping[str, ActorInfo]
-) -> TaskSource:
-    """Return the rest of the way as a source with its task; the source stands by itself.
+def parse_replan(source: ReplanSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
+    """Return the rest of the way.
 
     Raises:
         Refusal: The request is malformed or over a limit, no actor serves it, or the front cannot
             be replanned so.
         InvalidInstance: The costs or the map cannot be planned.
     """
-    request = parse_json(ReplanRequest, source.body)
-    if source.front.source.kind in MAP_MODELS:
-        rest = rest_of_map(request, source.front, limits)
-        return replace(rest, task=parse_task(rest, limits, actors))
-    stops = rest_of_stops(request, source.front, limits)
-    return replace(stops.source(), task=stops.task(limits, actors))
+    request, stored = parse_json(ReplanRequest, source.body), source.front
+    task = _stored_task(stored, limits, actors)
+    match task.subject:
+        case Stops() as stops:
+            front = earlier_front(stored, task, stops)
+            return rest_of_stops(request, front, limits, actors)
+        case Coverage() as coverage:
+            return rest_of_map(request, stored, coverage, limits, actors)
+        case UnmeasuredFleet():
+            reason = "it is of POST /fleet, and only those of POST /front and /coverage can be"
+            raise not_replannable(stored.id, reason)
+        case SharedCoverage():
+            raise not_replannable(stored.id, "it is of plans for several robots")
+
+
+def _stored_task(stored: StoredFront, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
+    try:
+        return read_task(stored.source, limits, actors)
+    except Refusal as refusal:
+        reason = f"what it was planned from is refused now ({refusal.detail})"
+        raise not_replannable(stored.id, reason) from None
+    except ValueError as error:
+        raise not_replannable(stored.id, "what it was planned from is damaged") from error

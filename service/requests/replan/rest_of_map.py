@@ -1,27 +1,23 @@
-"""The rest of a way over a map: from an earlier front and what has changed to a source."""
+"""The rest of a way over a map: from the task of an earlier front and what has changed."""
 
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic_core import to_json
 
+from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage, size_of
 from service.coverage.grid import free_cells
 from service.coverage.places import find_places
 from service.errors import InvalidCoverage
 from service.replanning.earlier_tours import EarlierTours
-from service.requests.limits import Limits, check_amounts
+from service.requests.limits import Limits, check_amounts, lower_defaults
+from service.requests.parser import coverage_task
 from service.requests.replan.costs import AllStops
-from service.requests.replan.earlier_front import StoredFront
-from service.requests.replan.earlier_map import read_earlier_map
-from service.requests.replan.fields import ReplanRequest
-from service.requests.replan.map_fields import check_of_map
-from service.requests.replan.new_places import all_places
-from service.requests.replan.rest_members import EarlierMembers
+from service.requests.replan.earlier_front import StoredFront, earlier_front_of_map
+from service.requests.replan.fields import ReplanRequest, check_of_map
 from service.requests.replan.way import (
     RestOfWay,
     driven_tour,
@@ -30,54 +26,112 @@ from service.requests.replan.way import (
     rest_of_way,
 )
 from service.requests.stops import Stop
-from service.requests.task import TaskSource
+from service.requests.task import Task
 from service.requests.validation import invalid, too_many_cities
 
 Array = NDArray[np.float64]
 Cells = NDArray[np.int64]
-_FREE, _BLOCKED = 255, 0  # shades of a PGM file
 
 
-def rest_of_map(request: ReplanRequest, stored: StoredFront, limits: Limits) -> TaskSource:
-    """Return the rest of the way over a map as the source of a task, which stands by itself.
+def rest_of_map(
+    request: ReplanRequest,
+    stored: StoredFront,
+    coverage: Coverage,
+    limits: Limits,
+    actors: Mapping[str, ActorInfo],
+) -> Task:
+    """Return the rest of the way over a map.
 
     Raises:
         Refusal: The request has what only a front of stops has, its map does not fit, a place is
-            not free or cannot be reached any more, or the way cannot be that of the front.
+            not free or cannot be reached any more, no actor serves it, or the way cannot be that
+            of the front.
     """
     check_of_map(request)
-    earlier = read_earlier_map(stored, limits)
-    coverage = _changed_map(earlier.coverage, request)
-    places = all_places(earlier, coverage, request)
-    request = places.request
-    named = tuple(Stop(str(index)) for index in range(len(places.cells)))
-    stops = AllStops(named, earlier.front.n, {})
-    rest = rest_of_way(earlier.front, request, stops)
-    most = limits.most_places(shared=False)
-    if len(rest.stops) > most:
-        raise too_many_cities("add", most, len(rest.stops))
-    check_amounts(request, len(rest.stops), limits)
-    place = np.full(len(places.cells), -1)
-    place[rest.stops] = np.arange(len(rest.stops))
-    driven = driven_tour(earlier.front, request)
-    left, moved = left_of_tours(earlier.front, driven, rest)
-    task = _task_of_rest(coverage, places.cells, rest, place)
-    _check_places(task, rest, earlier.front.n, request, limits)
-    members = {
-        **_members(task),
-        **rest.end_members(place),
-        **EarlierMembers.members(
-            EarlierTours(
-                tours=place[left],
-                min_kept=request.min_kept,
-                touched=None if request.map_changed else indexes_in_rest(place, moved),
-                balance=earlier.front.balance_of(driven),
-            )
-        ),
-        **request.model_dump(include={*request.options_given, "paths"}),
-    }
-    body = to_json(members, inf_nan_mode="null")
-    return TaskSource("replan-coverage", body, _picture(task.blocked))
+    front = earlier_front_of_map(stored, coverage)
+    coverage = _changed_map(coverage, request)
+    known = np.array(stored.found.places, np.int64).reshape(-1, 2)
+    cells, request = _all_places(known, coverage, request)
+    stops = AllStops(tuple(Stop(str(index)) for index in range(len(cells))), front.n, {})
+    rest = rest_of_way(front, request, stops)
+    n, most = len(rest.stops), limits.most_places(shared=False)
+    if n > most:
+        raise too_many_cities("add", most, n)
+    check_amounts(request, n, limits)
+    place = np.full(len(cells), -1)
+    place[rest.stops] = np.arange(n)
+    driven = driven_tour(front, request)
+    left, moved = left_of_tours(front, driven, rest)
+    of_rest = _of_rest(coverage, cells, rest, place)
+    _check_places(of_rest, rest, front.n, request, limits)
+    earlier = EarlierTours(
+        tours=place[left],
+        min_kept=request.min_kept,
+        touched=None if request.map_changed else indexes_in_rest(place, moved),
+        balance=front.balance_of(driven),
+    )
+    return coverage_task(lower_defaults(request, n, limits), of_rest, actors, earlier)
+
+
+def _all_places(
+    known: Cells, coverage: Coverage, request: ReplanRequest
+) -> tuple[Cells, ReplanRequest]:
+    """Return the known places, those added, and maybe one where the way goes on, in this order.
+
+    In the request that is returned, the position is a known place or the last of all.
+
+    Raises:
+        Refusal: A new one is no cell of the grid, or has no costs.
+    """
+    new = []
+    for index, item in enumerate(request.add):
+        if not isinstance(item, list):
+            raise invalid(f"add/{index}", "must be row and column of a place on the map")
+        _check_costs(coverage, f"add/{index}")
+        new.append(item)
+    name, cell = _position_cell(coverage, request)
+    if cell is None:
+        return (np.concatenate((known, _cells(new))), request)
+    there = np.flatnonzero((known == cell).all(axis=1))
+    if coverage.cost_layer is None and len(there):
+        request = request.model_copy(update={"position": int(there[0])})
+        return (np.concatenate((known, _cells(new))), request)
+    _check_costs(coverage, name)
+    request = request.model_copy(update={"position": cell})
+    return (np.concatenate((known, _cells([*new, cell]))), request)
+
+
+def _cells(cells: list[list[int]]) -> Cells:
+    return np.array(cells, np.int64).reshape(-1, 2)
+
+
+def _position_cell(coverage: Coverage, request: ReplanRequest) -> tuple[str, list[int] | None]:
+    """Return the cell where the way goes on, None if that is a place, and the field that says it.
+
+    Raises:
+        Refusal: It is said twice, is no cell of the grid, or is in a frame that nobody knows.
+    """
+    if not request.pose:
+        if isinstance(request.position, list):
+            return "position", request.position
+        if request.position is None or isinstance(request.position, int | str):
+            return "position", None
+        raise invalid("position", "must be a place of the front, or row and column of one")
+    if request.position is not None:
+        raise invalid("pose", "or position must be left out")
+    if coverage.frame is None:
+        raise invalid("pose", "must be in the frame of a map with an origin")
+    row, column = coverage.frame.cell(*request.pose[:2])
+    rows, columns = coverage.blocked.shape
+    if not (0 <= row < rows and 0 <= column < columns):
+        raise invalid("pose", f"must be in a cell of the grid of {coverage.size}")
+    return "pose", [row, column]
+
+
+def _check_costs(coverage: Coverage, part: str) -> None:
+    if coverage.cost_layer is None:
+        demand = "must be in the cell of a place, as only a cost_layer has costs of other cells"
+        raise invalid(part, demand)
 
 
 def _changed_map(coverage: Coverage, request: ReplanRequest) -> Coverage:
@@ -113,7 +167,7 @@ def _whole_map(grid: Array, coverage: Coverage) -> NDArray[np.bool_]:
     return grid > 0
 
 
-def _task_of_rest(
+def _of_rest(
     coverage: Coverage, cells: Cells, rest: RestOfWay, place: NDArray[np.int64]
 ) -> Coverage:
     """Return the task of the rest: its places, and the second objective between them."""
@@ -162,29 +216,3 @@ def _about_request(
             yield "remove", f"must have place {stop}, as it {demand}"
         else:
             yield f"add/{stop - n}", demand
-
-
-def _members(task: Coverage) -> dict[str, Any]:
-    """Return the members of a request that say a task, but for its map and ends."""
-    assert task.places is not None
-    second = {
-        "second_matrix": task.second_matrix,
-        "cost_layer": task.cost_layer,
-        "second_coordinates": task.second_coordinates,
-    }
-    given: Mapping[str, Array] = {k: v for k, v in second.items() if v is not None}
-    origin = {} if task.origin is None else {"origin": list(task.origin)}
-    return {
-        "cell_size": task.cell_size,
-        "robot_radius": task.robot_radius,
-        **origin,
-        "places": task.places.tolist(),
-        **{name: array.tolist() for name, array in given.items()},
-    }
-
-
-def _picture(blocked: NDArray[np.bool_]) -> bytes:
-    """Return a map as a PGM file, in which it takes a byte a cell."""
-    rows, columns = blocked.shape
-    shades = np.where(blocked, _BLOCKED, _FREE).astype(np.uint8)
-    return b"P5 %d %d %d\n" % (columns, rows, _FREE) + shades.tobytes()

@@ -26,7 +26,7 @@ from service.errors import (
 from service.jobs.front_document import FrontDocument
 from service.jobs.runner import Runner
 from service.jobs.workers.worker_pool import WorkerPool
-from tests.helpers.scripted_runner import ScriptedRunner, brief_source, source, worker_pool
+from tests.helpers.scripted_runner import ScriptedRunner, brief_task, task, worker_pool
 
 
 def run(test: Callable[[WorkerPool], Awaitable[None]], *args: Any, **options: Any) -> None:
@@ -44,8 +44,8 @@ async def until(holds: Callable[[], bool]) -> None:
         await asyncio.sleep(0.005)
 
 
-async def front(workers: WorkerPool, body: bytes = b"") -> FrontDocument:
-    return await workers.submit(source(body)).front()
+async def front(workers: WorkerPool, deed: str = "") -> FrontDocument:
+    return await workers.submit(task(deed)).front()
 
 
 def test_work_becomes_a_front_with_the_time_that_it_waited() -> None:
@@ -60,7 +60,7 @@ def test_work_becomes_a_front_with_the_time_that_it_waited() -> None:
 def test_what_fails_fails_for_whoever_asked_with_the_traceback_of_the_worker() -> None:
     async def test(workers: WorkerPool) -> None:
         with pytest.raises(KeyError, match="city") as failed:
-            await front(workers, b"fail")
+            await front(workers, "fail")
         assert 'raise KeyError("city")' in failed.value.__notes__[0]
         assert (await front(workers)).terminated == "converged"
 
@@ -69,12 +69,12 @@ def test_what_fails_fails_for_whoever_asked_with_the_traceback_of_the_worker() -
 
 def test_work_keeps_its_place_when_nobody_waits_for_it_any_more() -> None:
     async def test(workers: WorkerPool) -> None:
-        submission = workers.submit(source(b"wait"))
+        submission = workers.submit(task("wait"))
         await until(lambda: workers.working == 1)
         with pytest.raises(TimeoutError):
             await asyncio.wait_for(submission.front(), timeout=0.05)
         with pytest.raises(QueueFull):
-            workers.submit(source())
+            workers.submit(task())
         workers.stop(submission)
         assert (await submission.front()).terminated == "cancelled"
 
@@ -83,19 +83,19 @@ def test_work_keeps_its_place_when_nobody_waits_for_it_any_more() -> None:
 
 def test_work_that_is_stopped_while_it_waits_gives_up_its_place() -> None:
     async def test(workers: WorkerPool) -> None:
-        workers.submit(source(b"wait"))
-        waiting = workers.submit(source())
+        workers.submit(task("wait"))
+        waiting = workers.submit(task())
         workers.stop(waiting)
         with pytest.raises(Cancelled):
             await waiting.front()
-        workers.submit(source())
+        workers.submit(task())
 
     run(test, queue=1)
 
 
 def test_work_that_does_not_listen_is_ended_and_its_process_replaced() -> None:
     async def test(workers: WorkerPool) -> None:
-        submission = workers.submit(source(b"hang"))
+        submission = workers.submit(task("hang"))
         await until(lambda: workers.working == 1)
         workers.stop(submission)
         with pytest.raises(Cancelled):
@@ -107,13 +107,13 @@ def test_work_that_does_not_listen_is_ended_and_its_process_replaced() -> None:
     run(test, stop_seconds=1.0)
 
 
-@pytest.mark.parametrize("body", [b"wait", b"stop slowly", b"call"])
-def test_to_stop_work_ends_no_process(body: bytes) -> None:
+@pytest.mark.parametrize("deed", ["wait", "stop slowly", "call"])
+def test_to_stop_work_ends_no_process(deed: str) -> None:
     async def test(workers: WorkerPool) -> None:
         await front(workers)
         before = list(workers.pids)
         for _ in range(3):
-            submission = workers.submit(source(body))
+            submission = workers.submit(task(deed))
             await until(lambda: workers.working == 1)
             began = time.monotonic()
             workers.stop(submission)
@@ -129,12 +129,12 @@ def test_to_stop_work_ends_no_process(body: bytes) -> None:
 
 def test_a_process_takes_no_work_until_what_was_stopped_has_ended() -> None:
     async def test(workers: WorkerPool) -> None:
-        submission = workers.submit(source(b"stop slowly"))
+        submission = workers.submit(task("stop slowly"))
         await until(lambda: workers.working == 1)
         workers.stop(submission)
         with pytest.raises(Cancelled):
             await submission.front()
-        following = workers.submit(source())
+        following = workers.submit(task())
         assert (workers.working, workers.waiting) == (0, 1)
         assert (await following.front()).terminated == "converged"
 
@@ -144,11 +144,11 @@ def test_a_process_takes_no_work_until_what_was_stopped_has_ended() -> None:
 def test_clients_take_turns_and_none_holds_more_than_its_share() -> None:
     async def test(workers: WorkerPool) -> None:
         begun: list[str] = []
-        first = workers.submit(source(b"wait"), client="many")
+        first = workers.submit(task("wait"), client="many")
         submissions = []
         for name, client in (("m1", "many"), ("m2", "many"), ("o1", "one"), ("m3", "many")):
             began = partial(begun.append, name)
-            submissions.append(workers.submit(source(), began, client=client))
+            submissions.append(workers.submit(task(), began, client=client))
         with pytest.raises(ShareFull) as refused:
             workers.check_place("many")
         assert refused.value.limit == 4
@@ -165,11 +165,11 @@ def test_clients_take_turns_and_none_holds_more_than_its_share() -> None:
 def test_a_client_that_is_served_waits_behind_those_that_are_not() -> None:
     async def test(workers: WorkerPool) -> None:
         begun: list[str] = []
-        served, other = (workers.submit(source(b"wait"), client=name) for name in ("many", "other"))
+        served, other = (workers.submit(task("wait"), client=name) for name in ("many", "other"))
         submissions = []
         for name, client in (("m1", "many"), ("m2", "many"), ("o1", "one"), ("t1", "two")):
             began = partial(begun.append, name)
-            submissions.append(workers.submit(source(), began, client=client))
+            submissions.append(workers.submit(task(), began, client=client))
         await until(lambda: len(workers.running) == 2)
         workers.stop(other)
         for submission in submissions:
@@ -188,9 +188,9 @@ def test_brief_work_that_waits_shares_a_turn_of_a_process() -> None:
             together.append(len(workers.running))
             assert workers.working == 1
 
-        first = workers.submit(source(b"wait"))
+        first = workers.submit(task("wait"))
         await until(lambda: len(workers.running) == 1)
-        waiting = [*[brief_source()] * 6, source(), brief_source()]
+        waiting = [*[brief_task()] * 6, task(), brief_task()]
         submissions = [workers.submit(each, began) for each in waiting]
         workers.stop(first)
         for submission in submissions:
@@ -202,9 +202,9 @@ def test_brief_work_that_waits_shares_a_turn_of_a_process() -> None:
 
 def test_two_processes_share_the_brief_work_that_waits() -> None:
     async def test(workers: WorkerPool) -> None:
-        first = [workers.submit(source(b"wait")) for _ in range(2)]
+        first = [workers.submit(task("wait")) for _ in range(2)]
         await until(lambda: len(workers.running) == 2)
-        submissions = [workers.submit(brief_source(b"wait")) for _ in range(4)]
+        submissions = [workers.submit(brief_task("wait")) for _ in range(4)]
         workers.stop(first[0])
         await until(lambda: first[0] not in workers.running)
         assert [each in workers.running for each in submissions] == [True, True, False, False]
@@ -216,9 +216,9 @@ def test_two_processes_share_the_brief_work_that_waits() -> None:
 
 def test_brief_work_that_shares_a_turn_is_stopped_alone() -> None:
     async def test(workers: WorkerPool) -> None:
-        first = workers.submit(source(b"wait"))
+        first = workers.submit(task("wait"))
         await until(lambda: len(workers.running) == 1)
-        submissions = [workers.submit(brief_source(body)) for body in (b"wait", b"wait", b"")]
+        submissions = [workers.submit(brief_task(body)) for body in ("wait", "wait", "")]
         workers.stop(first)
         await until(lambda: len(workers.running) == 3)
         waiting, stopped, other = submissions
@@ -240,9 +240,9 @@ def test_brief_work_beside_what_kills_its_process_is_done(tmp_path: Path, deaths
     lives.write_bytes(bytes(deaths))
 
     async def test(workers: WorkerPool) -> None:
-        first = workers.submit(source(b"wait"))
+        first = workers.submit(task("wait"))
         await until(lambda: len(workers.running) == 1)
-        submissions = [workers.submit(brief_source(body)) for body in (b"", b"die", b"")]
+        submissions = [workers.submit(brief_task(body)) for body in ("", "die", "")]
         workers.stop(first)
         before, deadly, behind = submissions
         assert (await before.front()).terminated == "converged"
@@ -309,9 +309,9 @@ def is_ready(workers: WorkerPool) -> bool:
 @pytest.mark.parametrize("patient", [True, False])
 def test_work_that_takes_too_long_ends_with_the_best_front_so_far(patient: bool) -> None:
     async def test(workers: WorkerPool) -> None:
-        await workers.submit(source(), patient=True).front()
+        await workers.submit(task(), patient=True).front()
         told: list[None] = []
-        submission = workers.submit(source(b"report and hang"), lambda: told.append(None), patient)
+        submission = workers.submit(task("report and hang"), lambda: told.append(None), patient)
         found = await submission.front()
         assert (found.terminated, found.points) == ("time_limit", 1)
         # That it was begun, and what was found.
@@ -323,7 +323,7 @@ def test_work_that_takes_too_long_ends_with_the_best_front_so_far(patient: bool)
 def test_work_that_takes_too_long_and_found_nothing_fails() -> None:
     async def test(workers: WorkerPool) -> None:
         with pytest.raises(DeadlineExceeded):
-            await front(workers, b"hang")
+            await front(workers, "hang")
 
     run(test, seconds=1.0)
 
@@ -333,7 +333,7 @@ def test_work_whose_process_is_killed_is_done_by_another(tmp_path: Path) -> None
     lives.write_bytes(b"1")
 
     async def test(workers: WorkerPool) -> None:
-        assert (await front(workers, b"die")).terminated == "converged"
+        assert (await front(workers, "die")).terminated == "converged"
         assert workers.lost == 1
 
     run(test, ScriptedRunner(lives=lives))
@@ -344,7 +344,7 @@ def test_work_that_kills_two_processes_is_given_up_and_others_are_done(tmp_path:
     lives.write_bytes(b"123")
 
     async def test(workers: WorkerPool) -> None:
-        deadly, other = workers.submit(source(b"die")), workers.submit(source())
+        deadly, other = workers.submit(task("die")), workers.submit(task())
         with pytest.raises(WorkerLost):
             await deadly.front()
         assert (await other.front()).terminated == "converged"
@@ -389,7 +389,7 @@ def is_warm(workers: WorkerPool) -> bool:
 
 def test_after_the_close_no_work_is_taken_and_none_is_waited_for_in_vain() -> None:
     async def test(workers: WorkerPool) -> None:
-        submissions = [workers.submit(source(b"hang")) for _ in range(2)]
+        submissions = [workers.submit(task("hang")) for _ in range(2)]
         await until(lambda: workers.working == 1)
         await workers.close()
         for submission in submissions:
@@ -398,6 +398,6 @@ def test_after_the_close_no_work_is_taken_and_none_is_waited_for_in_vain() -> No
         with pytest.raises(ShuttingDown):
             workers.check_open()
         with pytest.raises(ShuttingDown):
-            workers.submit(source())
+            workers.submit(task())
 
     run(test, queue=1)

@@ -14,11 +14,11 @@ ROOT = Path(__file__).parents[3]
 
 ORPHANS = """
 import asyncio
-from tests.helpers.scripted_runner import source, worker_pool
+from tests.helpers.scripted_runner import task, worker_pool
 
 async def main():
     async with worker_pool(workers=2) as workers:
-        submissions = [workers.submit(source(b"hang")) for _ in range(2)]
+        submissions = [workers.submit(task("hang")) for _ in range(2)]
         while workers.working < 2:
             await asyncio.sleep(0.01)
         print(*workers.pids, flush=True)

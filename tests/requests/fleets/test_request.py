@@ -13,7 +13,8 @@ from service.fleet.fleet import ALWAYS, Shipment, VehicleType, Visit
 from service.requests.fleets.request import parse_fleet_request
 from service.requests.fleets.schemas import fleet_schemas
 from service.requests.limits import Limits
-from service.requests.task import TaskSource, parse_task
+from service.requests.parser import parse_task
+from service.requests.task import TaskSource
 from tests.helpers.fleet_requests import LIMITS, fleet_of, fleet_request
 
 

@@ -1,0 +1,151 @@
+"""Parse requests into tasks: parse_task(...), and the parts of it that replanning shares."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+
+from service.actor_info import ActorInfo
+from service.coverage.coverage import Coverage
+from service.errors import Refusal
+from service.front import PlanOptions
+from service.instance import Instance, least_lengths
+from service.replanning.earlier_tours import EarlierTours
+from service.requests.actors import actor_for_plans, choose_actor
+from service.requests.coverage import CoverageRequest, parse_coverage_request
+from service.requests.fleets.request import parse_fleet_request
+from service.requests.front import FrontRequest
+from service.requests.front_parser import parse_front_request
+from service.requests.limits import (
+    Limits,
+    check_reference_point,
+    check_router,
+    check_structure,
+    within_network,
+)
+from service.requests.replan.fields import ReplanRequest
+from service.requests.schemas import PlanFields
+from service.requests.stops import Labels, Stops
+from service.requests.task import Task, TaskSource
+from service.search.forbidden_legs import check_legs
+
+
+def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
+    """Return the task of a request as it came.
+
+    Raises:
+        Refusal: The body is malformed or over a limit, or no actor serves it.
+        InvalidInstance: The cities or the map cannot be planned.
+    """
+    check_structure(source.body, limits)
+    match source.kind:
+        case "front":
+            request = parse_front_request(source.body, limits, source.upload)
+            return front_task(request, request.subject, limits, actors, labels=request.labels)
+        case "coverage":
+            return _coverage_task(source, limits, actors)
+        case "fleet":
+            return _fleet_task(source.body, limits, actors)
+    raise ValueError(f"no request is of kind {source.kind}")
+
+
+def front_task(
+    request: FrontRequest | ReplanRequest,
+    stops: Stops,
+    limits: Limits,
+    actors: Mapping[str, ActorInfo],
+    *,
+    labels: Labels | None = None,
+    earlier: EarlierTours | None = None,
+) -> Task:
+    """Return the task of a checked request; the arguments are those of Task.
+
+    Raises:
+        Refusal: No actor serves it, it asks for what the actor cannot do, or it is plain that no
+            tour is without a forbidden leg.
+        InvalidInstance: The costs cannot be planned.
+    """
+    name = choose_actor(actors, stops.kind, request.requested_actor)
+    task = Task(
+        subject=stops,
+        options=within_network(options_of(request, actors[name]), stops.n, limits),
+        actor=name,
+        labels=labels,
+        arrivals=request.arrivals,
+        geometry=request.geometry,
+        earlier=earlier,
+    )
+    if stops.measured:
+        check_instance(task, stops.instance)
+    return task
+
+
+def check_instance(task: Task, instance: Instance) -> None:
+    """Raise a refusal where it is plain that the instance of a task has no tour, or none to count.
+
+    Raises:
+        NoTour: Forbidden legs leave no tour.
+        Refusal: No tour lies below the reference point.
+    """
+    check_legs(instance, task.city_names)
+    check_reference_point(task.options, partial(least_lengths, instance))
+
+
+def options_of(request: PlanFields, actor: ActorInfo) -> PlanOptions:
+    """Return the options of a request, without repairs by an actor that makes none.
+
+    Raises:
+        Refusal: It asks for repairs by such an actor.
+    """
+    options = request.options()
+    if actor.repairs or options.repairs == 0:
+        return options
+    if "repairs" in request.model_fields_set:
+        raise Refusal("no-repairs", name=actor.name, came=request.repairs, pointer="/repairs")
+    return replace(options, repairs=0)
+
+
+def _coverage_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
+    request = parse_coverage_request(source.body, limits, source.upload)
+    if request.robots:
+        return Task(
+            subject=request.shared(),
+            options=request.options(),
+            actor=actor_for_plans(actors),
+            paths=request.paths,
+        )
+    return coverage_task(request, request.coverage(), actors)
+
+
+def coverage_task(
+    request: CoverageRequest | ReplanRequest,
+    coverage: Coverage,
+    actors: Mapping[str, ActorInfo],
+    earlier: EarlierTours | None = None,
+) -> Task:
+    """Return the task of a checked request about one robot on a map; the arguments are Task's.
+
+    Raises:
+        Refusal: No actor serves it, or it asks for what the actor cannot do.
+    """
+    name = choose_actor(actors, "matrices", request.requested_actor)
+    return Task(
+        subject=coverage,
+        options=replace(options_of(request, actors[name]), start=coverage.start),
+        actor=name,
+        paths=request.paths,
+        arrivals=request.arrivals,
+        earlier=earlier,
+    )
+
+
+def _fleet_task(body: bytes, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
+    request = parse_fleet_request(body, limits)
+    fleet = request.subject()
+    check_router(fleet.stops.sources, limits)
+    return Task(
+        subject=fleet,
+        options=request.options(),
+        actor=actor_for_plans(actors),
+        labels=request.labels,
+        geometry=request.geometry,
+    )

@@ -1,0 +1,150 @@
+"""Tasks as bytes: the one form in which they are stored, queued and sent to other machines.
+
+The bytes are a line with the version, the length of a header, the header, and arrays one after
+another as .npy. The header is JSON: the members of the task, in which each array is its number,
+and each value of one of `_TYPES` has the name of its type.
+"""
+
+import struct
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import from_json, to_json
+
+from service.coverage.coverage import Coverage
+from service.coverage.robots import Robot
+from service.fleet.fleet import Rules, Shipment, VehicleType, Visit
+from service.front import PlanOptions
+from service.instance import RouteEnds
+from service.replanning.earlier_tours import EarlierTours
+from service.requests.fleets.subject import UnmeasuredFleet
+from service.requests.maps.robots import SharedCoverage
+from service.requests.stops import (
+    Changed,
+    Labels,
+    Matrix,
+    Measured,
+    Objective,
+    Plane,
+    Stop,
+    Stops,
+)
+from service.requests.task import Task
+
+_FIRST_LINE = b"paretour task 1\n"
+_LENGTH = struct.Struct("!Q")
+_TYPES: Mapping[str, type[Any]] = {
+    each.__name__: each
+    for each in (
+        *(Task, PlanOptions, EarlierTours, Labels),
+        *(Stops, Matrix, Plane, Measured, Changed),
+        *(Coverage, SharedCoverage, UnmeasuredFleet, Rules),
+    )
+}
+# Of these there may be thousands. Their members are numbers, texts, and tuples of numbers.
+_FLAT_TYPES: Mapping[str, type[Any]] = {
+    each.__name__: each for each in (Stop, Objective, Visit, Shipment, VehicleType, Robot)
+}
+_NUMBERS = "biuf"  # the kinds of arrays: of truth values, integers and floats
+
+Arrays = list[NDArray[Any]]
+
+
+def encode_task(task: Task) -> bytes:
+    """Return a task as bytes."""
+    arrays: Arrays = []
+    header = to_json(_encoded(task, arrays), inf_nan_mode="constants")
+    content = BytesIO()
+    content.write(_FIRST_LINE + _LENGTH.pack(len(header)) + header)
+    for array in arrays:
+        np.lib.format.write_array(content, array, allow_pickle=False)
+    return content.getvalue()
+
+
+def decode_task(content: bytes) -> Task:
+    """Return the task that `encode_task` has written.
+
+    Raises:
+        ValueError: The bytes are damaged, or of another version.
+    """
+    if not content.startswith(_FIRST_LINE):
+        raise ValueError("the task is of another version")
+    begin = len(_FIRST_LINE) + _LENGTH.size
+    try:
+        (length,) = _LENGTH.unpack_from(content, len(_FIRST_LINE))
+        arrays = list(_arrays(content, begin + length))
+        task = _decoded(from_json(content[begin : begin + length]), arrays)
+    # Whatever parsers of bytes that anything may have damaged raise.
+    except Exception as error:
+        raise ValueError(f"the task is damaged: {error!r}") from error
+    if not isinstance(task, Task):
+        raise ValueError(f"the task is a {type(task).__name__}")
+    return task
+
+
+def _encoded(value: Any, arrays: Arrays) -> Any:
+    """Return a value ready for JSON; its arrays are appended to these."""
+    if isinstance(value, np.ndarray):
+        if value.dtype.kind not in _NUMBERS:
+            raise TypeError(f"an array must be of numbers, got {value.dtype}")
+        arrays.append(value)
+        return {"$array": len(arrays) - 1}
+    if isinstance(value, RouteEnds):
+        return {"$ends": list(value)}
+    if isinstance(value, tuple | list):
+        return _encoded_sequence(value, arrays)
+    if isinstance(value, dict):
+        return {"$mapping": {key: _encoded(each, arrays) for key, each in value.items()}}
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    name = type(value).__name__
+    if _TYPES.get(name) is not type(value):
+        raise TypeError(f"a task has no values of type {name}")
+    members = {each.name: getattr(value, each.name) for each in fields(value)}
+    return {"$type": name, **{key: _encoded(each, arrays) for key, each in members.items()}}
+
+
+def _encoded_sequence(values: Sequence[Any], arrays: Arrays) -> Any:
+    name = type(values[0]).__name__ if values else ""
+    if name in _FLAT_TYPES:
+        return {"$rows": [list(vars(each).values()) for each in values], "$of": name}
+    return [_encoded(each, arrays) for each in values]
+
+
+def _decoded(value: Any, arrays: Sequence[NDArray[Any]]) -> Any:
+    """Return the value of JSON that `_encoded` returned; sequences are tuples."""
+    if isinstance(value, list):
+        return tuple(_decoded(each, arrays) for each in value)
+    if not isinstance(value, dict):
+        return value
+    if "$array" in value:
+        return arrays[value["$array"]]
+    if "$ends" in value:
+        return RouteEnds(*value["$ends"])
+    if "$mapping" in value:
+        return {key: _decoded(each, arrays) for key, each in value["$mapping"].items()}
+    if "$rows" in value:
+        flat = _FLAT_TYPES[value["$of"]]
+        names = [each.name for each in fields(flat)]
+        return tuple(
+            flat(**dict(zip(names, map(_tuples, row), strict=True))) for row in value["$rows"]
+        )
+    members = {k: _decoded(each, arrays) for k, each in value.items() if k != "$type"}
+    return _TYPES[value["$type"]](**members)
+
+
+def _tuples(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _arrays(content: bytes, begin: int) -> Iterator[NDArray[Any]]:
+    """Yield the arrays of a task from a byte on."""
+    stream = BytesIO(content)
+    stream.seek(begin)
+    while stream.tell() < len(content):
+        array: NDArray[Any] = np.lib.format.read_array(stream, allow_pickle=False)
+        yield array

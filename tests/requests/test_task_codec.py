@@ -1,0 +1,141 @@
+"""A task is the same after it was written and read, and damage is told."""
+
+import json
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+from service.requests.limits import Limits
+from service.requests.parser import parse_task
+from service.requests.replan.earlier_front import StoredFront
+from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.stored_task import read_task
+from service.requests.task import Task, TaskKind, TaskSource
+from service.requests.task_codec import decode_task, encode_task
+from tests.helpers.actors import info_of
+from tests.helpers.changes import Found, random_change
+
+LIMITS = Limits(
+    body_bytes=2**20, cities=50, cells=100, preferences=99, size=99, seconds=9, roads=True
+)
+INFOS = {kind: info_of(kind, kind) for kind in ("coordinates", "matrices")}
+COSTS = [[0, 1, None], [2, 0, 3], [4, 5, 0]]
+STOPS = [{"id": name, "location": [24.9 + i / 100, 60.1]} for i, name in enumerate("äb#")]
+OBJECTIVES = [{"name": "t", "unit": "s", "from": "road_time"}, {"name": "r", "matrix": COSTS}]
+ROUTE = {"closed": False, "start": None, "end": "b", "arrivals": True, "geometry": "roads"}
+GRID = {"grid": [[0, 0, 1], [0, 0, 0]], "cell_size": 0.5, "origin": [1, 2, 0.5], "paths": True}
+PLACES = {"places": [[0, 0], [1, 2], [1, 0]], "cost_layer": [[1, 2, 3]] * 2}
+LAID_OUT = {"spacing": 0.5, "start_pose": [1.2, 2.2], "cost_layer": [[1, 2, 3]] * 2}
+ROBOTS = {"robots": [{"id": "r", "start": 1}, {"id": "s", "start_pose": [1.2, 2.2]}]}
+VISITS = [STOPS[0], {**STOPS[1], "demand": [1], "window": [0, 9]}, {**STOPS[2], "prize": 9}]
+VAN = {"id": "van", "count": 2, "start": 0, "capacity": [3], "shift": [0, 99]}
+FLEET = {"stops": VISITS, "vehicles": [VAN], "objectives": OBJECTIVES, "clock": "t"}
+PAIR = {"shipments": [{"pickup": "b", "delivery": "#"}]}
+SHARED = {"stops": STOPS, "vehicles": [{"id": "v"}], "objectives": OBJECTIVES, **PAIR}
+REQUESTS: list[tuple[TaskKind, dict[str, Any]]] = [
+    ("front", {"coordinates": np.eye(4).tolist(), "initial_tours": [[0, 2, 1, 3]]}),
+    ("front", {"matrices": [COSTS, COSTS], "preferences": [10, 80], "reference_point": [99, 99]}),
+    ("front", {"stops": STOPS, "objectives": OBJECTIVES, **ROUTE}),
+    ("coverage", {**GRID, **PLACES, "closed": False, "end": 1}),
+    ("coverage", {**GRID, **LAID_OUT}),
+    ("coverage", {**GRID, **PLACES, **ROBOTS, "over": ["max", "sum"]}),
+    ("fleet", FLEET),
+    ("fleet", SHARED),
+]
+
+
+def same(one: Any, other: Any) -> bool:
+    """Whether two values are the same, member by member; a list is the same as a tuple."""
+    if isinstance(one, np.ndarray):
+        return bool(np.array_equal(one, other, equal_nan=True)) and one.dtype == other.dtype
+    if is_dataclass(one):
+        names = [each.name for each in fields(one)]
+        alike = all(same(getattr(one, name), getattr(other, name)) for name in names)
+        return type(one) is type(other) and alike
+    if isinstance(one, list | tuple):
+        return len(one) == len(other) and all(map(same, one, other))
+    return bool(one == other)
+
+
+def is_kept(task: Task) -> bool:
+    return same(task, decode_task(encode_task(task)))
+
+
+def task_of(kind: TaskKind, request: dict[str, Any]) -> Task:
+    return parse_task(TaskSource(kind, json.dumps(request).encode()), LIMITS, INFOS)
+
+
+@pytest.mark.parametrize(("kind", "request_"), REQUESTS)
+def test_a_task_is_the_same_once_it_was_written_and_read(
+    kind: TaskKind, request_: dict[str, Any]
+) -> None:
+    assert is_kept(task_of(kind, request_))
+
+
+def test_the_rest_of_a_way_is_the_same_once_it_was_written_and_read() -> None:
+    for seed in range(80):
+        change = random_change(seed)
+        body = json.dumps({**change.request, "arrivals": True, "seed": seed}).encode()
+        assert is_kept(parse_replan(ReplanSource(body, change.front), LIMITS, INFOS))
+
+
+def test_damage_is_told() -> None:
+    rng = np.random.default_rng(0)
+    for request in (REQUESTS[0], REQUESTS[4], REQUESTS[6]):
+        content = encode_task(task_of(*request))
+        for _ in range(200):
+            with pytest.raises(ValueError, match="the task is"):
+                decode_task(content[: rng.integers(len(content))])
+            damaged = bytearray(content)
+            damaged[rng.integers(len(content))] ^= 1 << rng.integers(8)
+            try:
+                decode_task(bytes(damaged))
+            except ValueError:
+                continue
+
+
+# What version 0.1 stored of the rests of both ways, and what was asked for.
+STORED_REST = TaskSource(
+    "replan",
+    b'{"stops":[{"id":"a","location":[24.9,60.1]},{"id":"b","location":[24.91,60.1]},'
+    b'{"id":"c","location":[24.919999999999998,60.1]},{"id":"d","location":[24.93,60.1]}],'
+    b'"objectives":[{"name":"way","unit":"m","from":"great_circle","changed":[[1,2,7.0]]},'
+    b'{"name":"risk","unit":null,"coordinates":[[0.0,0.0],[1.0,2.0],[2.0,1.0],[3.0,3.0]]}],'
+    b'"closed":false,"start":0,"end":3,"earlier_tours":{"count":3,"stops":'
+    b'"AAAAAAEAAAACAAAAAwAAAAAAAAABAAAAAgAAAAMAAAAAAAAAAgAAAAEAAAADAAAA"},'
+    b'"touched":[0,1,2,3],"balance":0.0,"min_kept":0.0,"arrivals":true,"seed":5}',
+)
+STORED_REST_OF_MAP = TaskSource(
+    "replan-coverage",
+    b'{"cell_size":0.5,"robot_radius":0.0,"origin":[1.0,2.0,0.0],"places":[[0,0],[1,2],[1,0],'
+    b'[0,1]],"cost_layer":[[1.0,2.0,3.0],[4.0,5.0,6.0]],"closed":false,"start":3,"end":0,'
+    b'"earlier_tours":{"count":2,"stops":"AwAAAAEAAAACAAAAAAAAAAMAAAABAAAAAgAAAAAAAAA="},'
+    b'"touched":[0,1,2,3],"balance":0.5,"min_kept":0.0,"paths":true}',
+    b"P5 3 2 255\n\xff\xff\x00\xff\xff\xff",
+)
+
+
+def test_rests_that_an_earlier_version_stored_are_read() -> None:
+    stops = [{"id": name, "location": [24.9 + i / 100, 60.1]} for i, name in enumerate("abcd")]
+    planes = [{"name": "way", "from": "great_circle"}, {"name": "risk", "coordinates": [[0, 0]]}]
+    planes[1]["coordinates"] = [[0, 0], [1, 2], [2, 1], [3, 3]]
+    front = {"stops": stops, "objectives": planes, "closed": False, "end": "d"}
+    found = Found(np.array([[0, 1, 2, 3], [0, 2, 1, 3]]), np.array([[1.0, 2.0], [2.0, 1.0]]))
+    entry = {"objective": 0, "from": "b", "to": "c", "cost": 7}
+    asked: dict[str, Any] = {"done": ["a"], "costs": [entry], "seed": 5, "arrivals": True}
+    _check_read(STORED_REST, "front", front, found, asked)
+    places = {**PLACES, "cost_layer": [[1, 2, 3], [4, 5, 6]]}
+    coverage = {**GRID, **places, "origin": [1, 2, 0], "paths": False}
+    found = Found(np.array([[0, 1, 2]]), np.array([[1.0, 2.0]]), places["places"])
+    asked = {"done": [0], "position": [0, 1], "paths": True}
+    _check_read(STORED_REST_OF_MAP, "coverage", coverage, found, asked)
+
+
+def _check_read(
+    rest: TaskSource, kind: TaskKind, request: dict[str, Any], found: Found, asked: dict[str, Any]
+) -> None:
+    front = StoredFront("f", TaskSource(kind, json.dumps(request).encode()), found)
+    now = parse_replan(ReplanSource(json.dumps(asked).encode(), front), LIMITS, INFOS)
+    assert same(read_task(rest, LIMITS, INFOS), now)
