@@ -60,7 +60,7 @@ class Ending:
 
 
 def build(settings: Settings, ending: Ending) -> FastAPI:
-    """Return the application of the service, which fails where no worker gets ready.
+    """Return the application of the service, which shuts down if no worker gets ready.
 
     Raises:
         ValueError: There are no actors, the store cannot be opened, or an extra is not installed.
@@ -133,7 +133,7 @@ def make_server(app: FastAPI, connections: Connections, drain_seconds: int) -> F
     """Return a server of HTTP/1.1 alone, over these connections."""
     config = uvicorn.Config(
         app,
-        http=partial(Connection, connections),  # type: ignore[arg-type]  # called as a class is
+        http=partial(Connection, connections),  # type: ignore[arg-type]  # called like a class
         ws="none",
         # Not uvloop: 1 % more answers, but it does not shut down while Redis is connected.
         loop="asyncio",
