@@ -1,4 +1,4 @@
-"""A front as JSON: the one form in which it travels between processes, is stored and answered.
+"""A front as JSON: the one form in which it is sent between processes, stored and answered.
 
 To add a member to the answer, add a field to `FrontDocument` and fill it in where documents are
 written: `empty_document`, `tour_document`, and `fleet_document` and `robot_document` in `fleets`.
@@ -19,12 +19,12 @@ from service.instance import OBJECTIVES
 from service.jobs.json_parts import joined, split
 from service.pareto import balances
 
-_HEAD = 100  # bytes of a tour in which its first members are
+_HEAD = 100  # the first bytes of a tour, which contain its first members
 
 
 @dataclass(frozen=True)
 class Timings:
-    """Milliseconds of each phase of planning, and from the request to its end, once it has ended.
+    """Milliseconds of each phase of planning; once it has ended, also those since the request.
 
     Their JSON form is one object: the time in the queue, the phases, the total.
     """
@@ -62,7 +62,7 @@ class FrontDocument:
         objectives: Name and unit of each objective, where the caller named them.
         stops: Id and location of each stop, where the caller named them.
         uncovered: The free cells of a map that are out of reach.
-        tours: The JSON of all tours, with commas between, without brackets.
+        tours: The JSON of all tours, separated by commas, without brackets.
         ends: Where each tour ends in `tours`, as m native integers of 8 bytes.
         angles: The direction of each tour in degrees, as m native floats of 8 bytes.
         gained: The hypervolume that the search added, for the metrics.
@@ -91,15 +91,15 @@ class FrontDocument:
     def from_members(cls, members: Mapping[str, Any], **encoded: Any) -> Self:
         """Return the document of parsed members, with the other fields as given.
 
-        Members that this release does not know are dropped. Tours of releases that knew no balance
-        get theirs.
+        Members that this release does not know are dropped. Tours of releases without balances get
+        theirs.
         """
         known = {name: members[name] for name in _MEMBERS if name in members}
         timings = Timings.from_json(known.pop("timings_ms"))
         return cls(**known, timings_ms=timings, **encoded).with_balances()
 
     def with_balances(self) -> Self:
-        """Return the front with the balance of each tour, where they have none yet."""
+        """Return the front with the balance of each tour, computed where it is missing."""
         if b'"balance":' in self.tours[:_HEAD]:
             return self
         tours, ends = joined(
@@ -157,11 +157,11 @@ class FrontDocument:
         return self.split()[index]
 
     def without_tours(self) -> Self:
-        """Return the front with none of its tours."""
+        """Return the front without its tours."""
         return replace(self, tours=b"", ends=b"", angles=b"")
 
     def ended(self, seconds: float, *, late: bool) -> Self:
-        """Return the front as it ended, so many seconds after the request.
+        """Return the front with its timings at the end.
 
         Args:
             seconds: From the request to the end.

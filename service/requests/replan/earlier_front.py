@@ -16,7 +16,7 @@ from service.requests.task import Task, TaskSource
 from service.search.open_routes import rotated
 
 Array = NDArray[np.float64]
-MOST_TOURS = 50  # of an earlier front, from which the search sets out, as many as it has weights
+MOST_TOURS = 50  # of an earlier front to start the search from: the search has as many weights
 _NAMES = ("first", "second")  # of objectives that the front's request did not name
 
 
@@ -76,7 +76,7 @@ class EarlierFront:
         return len(self.labels.stops)
 
     def balance_of(self, tour: NDArray[np.int64]) -> float | None:
-        """Return the balance of a tour in the front; None where it is none of its tours."""
+        """Return the balance of a tour in the front; None if the front does not have it."""
         same = (self.from_start(self.known) == self.from_start(tour[np.newaxis])).all(axis=1)
         return float(self.balances[same.argmax()]) if same.any() else None
 
