@@ -1,8 +1,8 @@
 """Dominance, hypervolume, balance and knee of points of two minimised objectives.
 
-A point dominates another if it is no worse in both objectives and better in one. The hypervolume
-of points is the share of the box between the origin and a reference point that they dominate: a
-number from 0 to 1, without a unit.
+A point dominates another if it is at least as good in both objectives and better in one. The
+hypervolume of points is the share of the box between the origin and a reference point that they
+dominate: a number from 0 to 1, without a unit.
 """
 
 import numpy as np
