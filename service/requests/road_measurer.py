@@ -14,11 +14,11 @@ from service.requests.task import Task
 from service.roads.client import RoadClient
 from service.search.forbidden_legs import check_ways
 
-_POLL_SECONDS = 0.05  # between two questions whether to stop
+_POLL_SECONDS = 0.05  # between two checks whether to stop
 
 
 def needs_roads(task: Task) -> bool:
-    """Return whether costs by road are missing of a task."""
+    """Return whether a task lacks costs by road."""
     match task.subject:
         case Stops() as stops:
             return bool(stops.road_measures)
@@ -31,8 +31,8 @@ async def measured_by_road(task: Task, client: RoadClient) -> Task:
     """Return a task with its costs by road, and the time that it took to ask for them.
 
     Raises:
-        Refusal: The engine knows so few ways between these stops that no tour is without a leg that
-            it does not know, or it fails; see RoadClient.costs.
+        Refusal: Every tour has a leg for which the engine knows no way, or the engine fails; see
+            RoadClient.costs.
     """
     subject, labels = task.subject, task.labels
     assert isinstance(subject, Stops | UnmeasuredFleet)
@@ -58,7 +58,7 @@ class BlockingMeasurer:
 
         Raises:
             Cancelled: It was told to stop before.
-            Refusal: There are none; see RoadClient.costs.
+            Refusal: The costs cannot be found; see RoadClient.costs.
         """
         return self._runner.run(self._until_stopped(task, stop))
 

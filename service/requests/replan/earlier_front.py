@@ -58,7 +58,7 @@ class EarlierFront:
             it has more than MOST_TOURS.
         knee: The tour with the least sum of lengths, each in the front's own box, shape (n,).
         known: All tours of the front, shape (k, n).
-        balances: Of these, shape (k,).
+        balances: Their balances, shape (k,).
     """
 
     labels: Labels
@@ -81,7 +81,7 @@ class EarlierFront:
         return float(self.balances[same.argmax()]) if same.any() else None
 
     def from_start(self, tours: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return tours of the front's stops, shape (m, n), the closed ones from their start on."""
+        """Return tours of the front's stops, shape (m, n); closed ones begin at their start."""
         if not self.ends.closed:
             return tours
         return rotated(tours, (tours == self.start).argmax(axis=1))

@@ -208,7 +208,7 @@ def _about_request(
             yield part, demand
             continue
         stop = int(rest.stops[int(index)])
-        # The request knows no places of the rest.
+        # The request does not name places of the rest.
         demand = re.sub(r"from places/\d+", "from where the way goes on", demand)
         if stop == rest.start:
             yield position, demand

@@ -39,7 +39,7 @@ def rest_of_stops(
     stops = all_stops(front, request)
     rest = rest_of_way(front, request, stops)
     if not request.objectives:
-        # Before matrices grow by the stops added.
+        # Before matrices grow by the added stops.
         _check_cities("add", rest, front.sources, limits)
     objectives, sources = all_costs(front, request, stops)
     _check_cities("objectives" if request.objectives else "costs", rest, sources, limits)
@@ -69,7 +69,7 @@ def rest_of_stops(
 
 
 def _check_cities(part: str, rest: RestOfWay, sources: Sequence[Source], limits: Limits) -> None:
-    """Raise a refusal of a part of the request where the rest is of more stops than it may be."""
+    """Raise a refusal of a part of the request where the rest has too many stops."""
     kind = kind_of(sources)
     most = limits.most_cities(kind)
     if len(rest.stops) > most:
@@ -86,9 +86,8 @@ def _touched(
 ) -> NDArray[np.int64] | None:
     """Return the stops of the rest at which the earlier tours may have become worse, ascending.
 
-    Those are the ones with new neighbours, and those to or from which a single cost has changed.
-
-    None where that may be any, as the request brings whole new objectives.
+    These are the stops with new neighbours, and those to or from which a single cost has changed.
+    None if any stop may be affected, because the request has whole new objectives.
     """
     if request.objectives:
         return None
