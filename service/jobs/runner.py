@@ -13,7 +13,7 @@ from service.roads.router import RouterSettings
 
 REPORT_TOURS = 100  # at most in a reported front
 REPORT_SECONDS = 0.25  # at least between two reports
-REPORT_SHARE = 0.05  # of the time may be spent on reports
+REPORT_SHARE = 0.05  # the share of the time that reports may take
 
 Report = Callable[[Progress, Callable[[int], FrontDocument]], None]
 
@@ -45,7 +45,7 @@ MakeRunner = Callable[[], Runner]
 
 
 class Reporter:
-    """Sends progress with the best front now and then, the more rarely the longer it takes."""
+    """Sends progress with the best front now and then; less often if sending takes long."""
 
     def __init__(self, send: Callable[[Progress, FrontDocument], None]) -> None:
         self._send = send
