@@ -221,6 +221,10 @@ def test_a_key_is_sent_with_files(browser: Browser) -> None:
     stops = {"stops.csv": "id,lon,lat\na,24.9,60.1\nb,24.8,60.2\n"}
     with serving(app) as address, open_page(browser, address) as page:
         expect(page.locator("#key-fault")).to_contain_text("key")
+        with page.expect_response("**/files") as answered:
+            open_files(page, stops)
+        assert answered.value.status == 401
+        expect(page.locator("#key-fault")).to_contain_text("key")
         page.get_by_label("API key").fill(key)
         open_files(page, stops)
         expect(page.locator("#count")).to_have_text("2 stops")
