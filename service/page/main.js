@@ -17,7 +17,7 @@ import { stored } from "./planning/stored.js";
 import { pastedFile, read } from "./opening/reading.js";
 import { Surroundings } from "./opening/surroundings.js";
 import { takeDropped } from "./opening/dropping.js";
-import { Service } from "./planning/service.js";
+import { Problem, Service } from "./planning/service.js";
 
 const element = (id) => document.getElementById(id);
 // Charts and maps are most of the page's bytes: what is seen first does not wait for them.
@@ -33,10 +33,10 @@ const result = new Result({
   },
   onDelete: (city) => input.deleteCity(city),
 });
-const input = new RequestForm(form, edited);
+const input = new RequestForm(form, service, edited, settled);
 const placing = new Placing(element("place"), element("place-help"), (row) => input.addCity(row), result.wait);
 const examples = new Examples(element("example"), element("about"));
-const fileNotes = new FileNotes(element("file-notes"));
+const fileNotes = new FileNotes(element("file-notes"), element("dismiss-notes"), () => element("file").focus());
 const surroundings = new Surroundings(service, result);
 const exporting = new ExportButtons(service, screen);
 const replanForm = new ReplanForm(replan, result.wait);
@@ -44,21 +44,26 @@ const replanForm = new ReplanForm(replan, result.wait);
 let way = null; // on which the front that is shown may be replanned
 let objectives = UNNAMED; // as the front that is shown calls them
 let planning = null; // what is under way
+let reading = null; // what ends the reading of files, of an example or of typed text that is under way
 let answer = null; // the best front so far
-let opened = 0; // how many requests were, or are being fetched, so that none takes the place of a later one
+let shown = false; // whether anything was opened or typed
+let awaited = null; // the file of an example that is to be shown, unless files are opened in its place
+let refusal = null; // of such files, while that example is fetched all the same
 
 /** Takes what is asked for into the form, and shows its stops under their objectives. */
 function open(wanted, names) {
-  opened += 1;
+  giveUp();
   element("order").open = !["coordinates", "grid"].includes(kindOf(wanted));
   input.open(wanted, names);
 }
 
 /** Whatever was planned is not of these stops. */
 function edited(instance, fit) {
+  shown = true;
+  awaited = null;
   leave();
-  clearFaults();
-  say("");
+  clear();
+  if (!reading) say("");
   result.name((objectives = input.objectives), input.ids);
   result.clear(instance, { fit });
   way = null;
@@ -72,8 +77,9 @@ function answered(found) {
   if (!found) replanForm.show(null);
 }
 
-/** What is on the screen. The rest of a way was not asked for as the form says. */
-function screen() {
+/** What is on the screen; null where what was typed cannot be read. The rest of a way was not asked for as the form says. */
+async function screen() {
+  if (input.unread && !(await settled())) return null;
   const asked = way?.replanned ? null : input.asked;
   return {
     request: input.request,
@@ -94,11 +100,11 @@ function arrange() {
 
 /** Shows what comes of a plan; `states` asks a planning for it, and until then `waiting` is said. */
 async function run(states, waiting = "The network is building its front.") {
-  input.settle();
+  if (input.unread && !(await settled())) return;
   leave();
   const mine = (planning = new Planning(service));
-  clearFaults();
-  busy(true);
+  clear();
+  offer();
   arrange();
   say(waiting);
   try {
@@ -109,8 +115,15 @@ async function run(states, waiting = "The network is building its front.") {
   } catch (error) {
     if (!mine.left) fail(error);
   } finally {
-    if (planning === mine) busy(false);
+    if (planning === mine) ended();
   }
+}
+
+function ended() {
+  // It was stopped before it had a job that would say so.
+  if (planning.left) say(answer ? sentence({ stage: "cancelled", answer }) : "Stopped.");
+  planning = null;
+  offer();
 }
 
 function show(state) {
@@ -142,6 +155,7 @@ async function replan() {
     const { id } = answer;
     await run((mine) => replanned(mine.replan(id, body), longer), "What is left is being planned.");
   } catch (error) {
+    if (!(error instanceof Problem)) throw error;
     showFault("replan", error.message);
   }
 }
@@ -159,24 +173,78 @@ async function* replanned(states, longer) {
 function leave() {
   planning?.leave();
   planning = null;
-  busy(false);
+  offer();
 }
 
-function busy(yes) {
-  element("plan").disabled = yes;
-  element("stop").disabled = !yes;
-  form.setAttribute("aria-busy", String(yes));
+/** Whatever is being read is not wanted any more. */
+function giveUp() {
+  reading?.abort();
+  reading = null;
+  offer();
+}
+
+/** Offers to plan while nothing is read or planned, and to stop while something is. */
+function offer() {
+  const busy = Boolean(planning || reading);
+  element("plan").disabled = busy;
+  element("stop").disabled = !busy;
+  form.setAttribute("aria-busy", String(busy));
+}
+
+function clear() {
+  clearFaults();
+  if (refusal) tellUnread(refusal);
 }
 
 async function stop() {
-  const mine = planning;
-  await mine?.stop().catch(fail);
-  // It had no job yet that would say so.
-  if (mine?.left && mine === planning) say(answer ? sentence({ stage: "cancelled", answer }) : "Stopped.");
+  if (reading) {
+    giveUp();
+    if (awaited) examples.forget();
+    awaited = null;
+    say("Stopped.");
+  }
+  await planning?.stop().catch(fail);
+}
+
+/**
+ * Reads in the place of whatever is read or planned; `task` takes an AbortController. False where it was
+ * given up. A refusal of files goes on being told while the example is fetched that is shown instead.
+ */
+async function whileReading(words, task, told = null) {
+  leave();
+  giveUp();
+  const mine = (reading = new AbortController());
+  refusal = told;
+  clear();
+  offer();
+  say(words);
+  try {
+    await task(mine);
+    return true;
+  } catch (error) {
+    if (mine.signal.aborted && (error.name === "AbortError" || error instanceof Problem)) return false;
+    throw error;
+  } finally {
+    if (reading === mine) {
+      giveUp();
+      if (!planning) say("");
+    }
+  }
+}
+
+/** Has what was typed read; false where it cannot be, which is told, or where that was given up. */
+async function settled() {
+  if (reading) return false; // and takes the place of what was typed
+  try {
+    return await whileReading("What was typed is being read.", (mine) => input.settle(mine));
+  } catch (error) {
+    fail(error);
+    return false;
+  }
 }
 
 function fail(error) {
-  if (error.code === undefined) throw error;
+  if (!(error instanceof Problem)) throw error;
   say("");
   showFaults(error);
   element("waiting").textContent = document.querySelector(".fault:not(:empty)").textContent; // a phone shows the form below
@@ -190,28 +258,45 @@ function openChosen() {
 /** Opens the request that files are, or says why they are none; until then nothing can be planned. */
 async function openFiles(files) {
   if (!files.length) return;
-  leave();
-  clearFaults();
-  element("plan").disabled = true;
-  say(files.length > 1 ? "The files are being read." : "The file is being read.");
-  const mine = (opened += 1);
+  const words = files.length > 1 ? "The files are being read." : "The file is being read.";
   try {
-    const brought = await read(service, files);
-    if (opened > mine) return;
-    forgetExample();
-    open(brought.members, brought.objectives);
-    fileNotes.show(brought);
+    await whileReading(words, async ({ signal }) => {
+      const brought = await brings(files, signal);
+      signal.throwIfAborted();
+      forgetExample();
+      open(brought.members, brought.objectives);
+      fileNotes.show(brought);
+    });
   } catch (error) {
-    if (opened === mine) unread(error);
+    await unread(error);
   }
 }
 
-/** What was shown stays, and can be planned. */
-function unread(error) {
-  busy(false);
-  say("");
+async function brings(files, signal) {
+  try {
+    return await read(service, files, (await equipment)?.roads ?? true, signal);
+  } catch (error) {
+    await started; // and with it is known which example is shown instead
+    throw error;
+  }
+}
+
+/** What was shown stays, and can be planned; an example that was awaited is shown. */
+async function unread(error) {
+  tellUnread(error);
+  if (!awaited) return;
+  if (await openExample(awaited, error)) plan();
+  if (refusal === error) refusal = null;
+}
+
+function tellUnread(error) {
+  if (!(error instanceof Problem)) throw error;
   if (error.code === "unauthorized") showFaults(error);
   else showFault("file", `not opened: ${error.message}`);
+}
+
+function tellFolder(name) {
+  tellUnread(new Problem({ code: "folder", detail: `${name} is a folder: drop its files` }));
 }
 
 /** Text as of a file is opened, wherever it is pasted; rows of numbers go into their box. */
@@ -223,20 +308,21 @@ function pasted(event) {
 }
 
 /** Opens an example by its file; false where there is none, or another was opened meanwhile. */
-async function openExample(file) {
+async function openExample(file, refused) {
   if (!examples.choose(file)) return false;
-  leave();
-  clearFaults();
+  const { chosen } = examples;
+  awaited = file;
   fileNotes.dismiss();
-  say("The example is being opened.");
-  const mine = (opened += 1);
-  const { objectives: names } = examples.chosen;
+  const fetched = async ({ signal }) => {
+    const wanted = await service.get(`examples/${file}`, signal);
+    surroundings.begin(chosen);
+    open(wanted, chosen.objectives);
+  };
   try {
-    const wanted = await service.get(`examples/${file}`);
-    if (opened > mine) return false;
-    surroundings.begin(examples.chosen);
-    open(wanted, names);
+    if (!(await whileReading("The example is being opened.", fetched, refused))) return false;
   } catch (error) {
+    awaited = null;
+    examples.forget();
     fail(error);
     return false;
   }
@@ -280,7 +366,10 @@ form.addEventListener("submit", (event) => {
   if (narrow.matches) element("result").scrollIntoView();
   plan();
 });
-form.addEventListener("input", () => (element("file-fault").textContent = ""));
+form.addEventListener("input", ({ target }) => {
+  element("file-fault").textContent = "";
+  if (target.id === "cities") clearFaults();
+});
 narrow.addEventListener("change", arrange);
 element("stop").addEventListener("click", stop);
 element("clear").addEventListener("click", () => {
@@ -289,11 +378,19 @@ element("clear").addEventListener("click", () => {
 });
 element("example").addEventListener("change", ({ target }) => planExample(target.value));
 element("file").addEventListener("change", openChosen);
-takeDropped(element("drop"), openFiles);
+takeDropped(element("drop"), openFiles, tellFolder);
 addEventListener("paste", pasted);
 addEventListener("hashchange", openLinked);
-openChosen(); // while the page was being loaded
 
-service.get("page/map.json").then((map) => result.equip(map, service), () => {});
-examples.offer(await service.get("examples/index.json"));
-if (!(await openLinked()) && !opened) await planExample(examples.first);
+const equipment = service.get("page/map.json").catch(() => null);
+const started = start();
+openChosen(); // while the page was being loaded
+equipment.then((map) => map && result.equip(map, service));
+
+/** Opens what the address names, or else the first example, unless something was opened or typed meanwhile. */
+async function start() {
+  examples.offer(await service.get("examples/index.json"));
+  if ((await openLinked()) || shown) return;
+  if (reading) awaited = examples.first;
+  else planExample(examples.first);
+}

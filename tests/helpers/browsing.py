@@ -30,6 +30,10 @@ NOTHING = "about:blank"  # the address of a window that shows nothing
 
 SVG = "{http://www.w3.org/2000/svg}"  # before the names of elements
 
+# Chromium writes a line for each refusal of the service, which the page has shown, and for each
+# request that a test aborts: one that fails by itself has a reason, as net::ERR_CONNECTION_REFUSED.
+EXPECTED = ("server responded with a status of", "net::ERR_FAILED")
+
 # In the page rather than by a route, since playwright turns the cache off where there is one.
 SHORTEN_SEARCH = f"""
 const sent = globalThis.fetch;
@@ -111,8 +115,7 @@ def open_page(
         page.unroute_all()
         page.remove_listener("pageerror", note_error)
         page.remove_listener("console", note_line)
-    # Chromium writes a line for each refusal of the service, which the page has shown.
-    unexpected = [error for error in errors if "server responded with a status of" not in error]
+    unexpected = [error for error in errors if not any(line in error for line in EXPECTED)]
     assert not unexpected, unexpected
 
 

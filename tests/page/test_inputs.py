@@ -50,7 +50,7 @@ def test_tables_with_longitude_and_latitude_are_stops(opened: Page, text: str) -
     body = curl_body(opened)
     assert [stop["id"] for stop in body["stops"]] == ["depot", "a", "b"]
     assert [stop["location"] for stop in body["stops"]] == LOCATED
-    assert [each["from"] for each in body["objectives"]] == ["great_circle", "road_time"]
+    assert [each["from"] for each in body["objectives"]] == ["great_circle", "great_circle"]
 
 
 def test_a_column_of_numbers_says_what_a_metre_costs(opened: Page) -> None:
@@ -143,10 +143,24 @@ def test_both_objectives_have_names_and_units_of_the_user(opened: Page) -> None:
 
 def test_roads_that_the_service_has_not_are_refused_at_their_objective(opened: Page) -> None:
     open_files(opened, {"stops.csv": "lon,lat\n0,0\n1,0\n0,1"})
+    source: Any = opened.get_by_label("What the second objective is measured by")
+    source.select_option("Time by road, s")
     opened.get_by_role("button", name="Plan", exact=True).click()
     expect(opened.locator("#objectives-fault")).to_contain_text("routing engine")
-    source: Any = opened.get_by_label("What the second objective is measured by")
     expect(source).to_be_focused()
+
+
+def test_places_alone_are_measured_by_road_where_the_service_has_roads(
+    browser: Browser, released: str
+) -> None:
+    with open_page(browser, f"{released}/page/icon.svg") as page:
+        known = {"tiles": None, "credit": "", "roads": True}
+        page.route("**/page/map.json", lambda route: route.fulfill(json=known))
+        page.goto(released)
+        wait_until_planned(page)
+        open_files(page, {"stops.csv": "lon,lat\n0,0\n1,0\n0,1"})
+        expect(page.locator("#file-notes")).to_contain_text("time by road")
+        assert curl_body(page)["objectives"][1] == {"name": "time", "from": "road_time"}
 
 
 def commit(page: Page, label: str, text: str) -> None:

@@ -110,8 +110,12 @@ def test_what_was_taken_for_granted_is_said_and_dismissed(opened: Page) -> None:
     notes = opened.locator("#file-notes")
     expect(notes).to_have_attribute("role", "status")
     expect(notes.get_by_role("listitem").first).to_be_visible()
-    notes.get_by_role("button", name="Dismiss the notes on excel-german.CSV").click()
+    dismiss = opened.get_by_role("button", name="Dismiss the notes on excel-german.CSV")
+    expect(opened.get_by_role("status").get_by_role("button")).to_have_count(0)
+    dismiss.press("Enter")
     expect(notes).to_be_empty()
+    expect(dismiss).to_be_hidden()
+    expect(opened.get_by_label("Open files")).to_be_focused()
     open_examples(opened, "excel-german.CSV")
     expect(notes).to_contain_text("excel-german.CSV")
     opened.get_by_label("Example").select_option("City deliveries")
@@ -220,6 +224,10 @@ def test_a_key_is_sent_with_files(browser: Browser) -> None:
     app = app_of(limits=Settings().limits, edge=Edge(access=access))
     stops = {"stops.csv": "id,lon,lat\na,24.9,60.1\nb,24.8,60.2\n"}
     with serving(app) as address, open_page(browser, address) as page:
+        expect(page.locator("#key-fault")).to_contain_text("key")
+        with page.expect_response("**/files") as answered:
+            open_files(page, stops)
+        assert answered.value.status == 401
         expect(page.locator("#key-fault")).to_contain_text("key")
         page.get_by_label("API key").fill(key)
         open_files(page, stops)

@@ -151,6 +151,36 @@ def test_a_map_that_cannot_be_read_is_refused_in_a_sentence(
     expect(opened.locator("#file-fault")).to_contain_text(said, ignore_case=True)
 
 
+def open_request(page: Page, asked: dict[str, Any]) -> None:
+    payload = {"name": "office.json", "mimeType": "", "buffer": json.dumps(asked).encode()}
+    page.get_by_label("Open files").set_input_files([payload])  # type: ignore[list-item]
+    wait_until_read(page)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [{"cost_layer": [[1] * 9] * 3}, {"robots": [{"id": "left"}, {"id": "right", "start": 1}]}],
+    ids=["tours", "plans"],
+)
+def test_what_no_path_leads_to_is_told_and_outlined(opened: Page, kind: dict[str, Any]) -> None:
+    grid = [[int(column in (4, 7)) for column in range(9)] for _ in range(3)]
+    places = [[0, 0], [2, 3], [0, 3]]
+    office = {"grid": grid, "cell_size": 0.5, "places": places, "time_limit": 0.1, **kind}
+    open_request(opened, office)
+    said, boxes = opened.locator("#uncovered"), opened.locator("#grid path.unreached")
+    expect(said).to_be_empty()
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    expect(said).to_have_text("2.25 m² in 2 regions cannot be reached.")
+    expect(boxes).to_have_count(2)
+    open_request(opened, {**office, "grid": [[0] * 9] * 3})
+    expect(said).to_be_empty()
+    expect(boxes).to_have_count(0)
+    opened.get_by_role("button", name="Plan", exact=True).click()
+    wait_until_planned(opened)
+    expect(said).to_be_empty()
+
+
 def test_a_robots_map_names_its_places_and_marks_both_ends(opened: Page) -> None:
     office = {
         "grid": [[0] * 7] * 3,

@@ -1,6 +1,6 @@
 /** The kinds of instance (fleet, planes, matrices, grid, stops, or not known) and the requests for them. */
 
-import { isCity, rowsOf } from "./cities.js";
+import { isCity } from "./cities.js";
 import { rounded } from "./distances.js";
 import { describedFleet, describedRobots } from "../fleet/fleet_request.js";
 import { counted } from "../common/numbers.js";
@@ -30,9 +30,9 @@ export function described(asked) {
  * What is asked for, as the page opens it: a request, beside whose coordinates or matrices may stand
  * `rounded`, the `ids` of the stops, and `names`, both objectives as the user calls them.
  */
-export function askedFor(opened, settings, { text, whole }) {
+export function askedFor(opened, settings, { rows, whole }) {
   const asked = { ...opened, ...settings };
-  return kindOf(opened) === "coordinates" ? { ...asked, coordinates: rowsOf(text), rounded: whole } : asked;
+  return kindOf(opened) === "coordinates" ? { ...asked, coordinates: rows, rounded: whole } : asked;
 }
 
 /** The request by which the service is asked for it. */

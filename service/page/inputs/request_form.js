@@ -1,6 +1,6 @@
 /** The form, put together: stops as a table and as text, both objectives, and the settings. */
 
-import { isCity, rowsOf, textOf } from "./cities.js";
+import { isCity, textOf } from "./cities.js";
 import { Fields } from "./fields.js";
 import { askedFor, described, kindOf, requestFor } from "./instance.js";
 import { RequestText } from "../fleet/request_text.js";
@@ -8,6 +8,7 @@ import { nameOf } from "./names.js";
 import { ObjectiveFields } from "./objective_fields.js";
 import { isMeasured, moved, put, renamed, withAnother, without } from "./stops.js";
 import { StopsTable } from "./table.js";
+import { TypedRows } from "./typed_rows.js";
 import { counted } from "../common/numbers.js";
 import { asksForPlans } from "../common/nouns.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
@@ -21,23 +22,31 @@ export class RequestForm {
   #objectiveFields;
   #text = new RequestText(element("fleet-request"));
   #onEdited;
+  #settled;
+  #typedRows;
+  #rows = []; // of planes, a stop each, as they were opened, edited or typed and read
   #brought = { coordinates: [] }; // of what was opened, the members that are not settings
   #objectives = UNNAMED; // as they are shown
-  #frame = 0; // in which what was typed is drawn, 0 where all of it is
 
-  /** @param {(instance: object, fit: boolean) => void} onEdited told of other stops or costs */
-  constructor(form, onEdited) {
+  /**
+   * @param {Service} service that reads what is typed
+   * @param {(instance: object, fit: boolean) => void} onEdited told of other stops or costs
+   * @param {() => Promise<boolean>} settled has what was typed read, and tells why it cannot be
+   */
+  constructor(form, service, onEdited, settled) {
     this.#onEdited = onEdited;
+    this.#settled = settled;
+    this.#typedRows = new TypedRows(service, (found) => this.#take(found));
     this.#fields = new Fields(form);
     this.#objectiveFields = new ObjectiveFields(element("objectives"), (axis, change) => this.#measure(axis, change));
     this.#table = new StopsTable(element("stops"), {
-      onName: (row, text) => this.#rename(row, text),
-      onNumber: (row, column, text) => this.#move(row, column, text),
-      onDelete: (row) => this.#delete(row),
+      onName: (row, text) => this.#onceRead(() => this.#rename(row, text)),
+      onNumber: (row, column, text) => this.#onceRead(() => this.#move(row, column, text)),
+      onDelete: (row) => this.#onceRead(() => this.#delete(row)),
     });
     element("cities").addEventListener("input", () => this.#typed());
     element("rounded").addEventListener("change", () => this.#edited(false));
-    element("add").addEventListener("click", () => this.#add());
+    element("add").addEventListener("click", () => this.#onceRead(() => this.#add()));
   }
 
   /** Takes what is asked for into the form, and shows its stops under their objectives. */
@@ -50,7 +59,7 @@ export class RequestForm {
     this.#text.show(asksForPlans(wanted) ? wanted : null);
     element("brought").textContent = described(wanted);
     element("brought").hidden = !element("brought").textContent;
-    element("cities").value = textOf(wanted.coordinates ?? []);
+    this.#show(wanted.coordinates ?? []);
     element("rounding").hidden = !wanted.rounded;
     element("rounded").checked = Boolean(wanted.rounded);
     this.#showObjectives();
@@ -58,7 +67,7 @@ export class RequestForm {
   }
 
   get asked() {
-    const typed = { text: element("cities").value, whole: element("rounded").checked };
+    const typed = { rows: this.#rows, whole: element("rounded").checked };
     return askedFor(this.#brought, this.#fields.members, typed);
   }
 
@@ -81,18 +90,27 @@ export class RequestForm {
     return this.#brought.stops?.map(({ id }) => id) ?? this.#brought.ids ?? null;
   }
 
-  /** What was typed is seen at once, and not in the next frame. */
-  settle() {
-    if (this.#frame) this.#edited();
+  /** Whether something was typed that is not among the stops. */
+  get unread() {
+    return this.#typedRows.waiting;
+  }
+
+  /** Has what was typed read now, as `TypedRows.settle`. */
+  settle(reading) {
+    return this.#typedRows.settle(reading);
   }
 
   /** Adds a stop where it was clicked: a row of four numbers, or longitude and latitude. */
   addCity(row) {
-    this.#insert(row);
+    this.#onceRead(() => this.#insert(row));
   }
 
   /** Puts a stop where it was dragged on the first or second map. */
   moveCity(plane, city, place) {
+    this.#onceRead(() => this.#put(plane, city, place));
+  }
+
+  #put(plane, city, place) {
     const rounded = place.map((value) => Number(value.toPrecision(7)));
     if (this.#brought.stops) {
       this.#brought = put(this.#brought, plane, city, rounded);
@@ -109,7 +127,7 @@ export class RequestForm {
 
   /** Deletes a stop that is drawn. */
   deleteCity(city) {
-    this.#delete(this.#brought.stops ? city : this.#rowOf(city));
+    this.#onceRead(() => this.#delete(this.#brought.stops ? city : this.#rowOf(city)));
   }
 
   /** The row of a city, as rows that cannot be drawn are none. */
@@ -118,23 +136,39 @@ export class RequestForm {
     return drawn[city];
   }
 
-  get #rows() {
-    return rowsOf(element("cities").value);
+  /** The front is of other stops from the first key on; the stops are drawn once they are read. */
+  #typed() {
+    if (!this.unread) this.#onEdited(this.instance, false);
+    this.#typedRows.typed(element("cities").value);
   }
 
-  /** Between two frames, however much is typed, it is drawn once. */
-  #typed() {
-    this.#frame ||= requestAnimationFrame(() => this.#edited());
+  #take({ coordinates, ids }) {
+    this.#rows = coordinates;
+    if (ids) this.#brought.ids = ids;
+    this.#edited();
+  }
+
+  /** Changes stops when what was typed is among them; where it cannot be read, they stay as they are. */
+  async #onceRead(change) {
+    if (this.unread) {
+      this.#edited(false);
+      if (!(await this.#settled())) return;
+    }
+    change();
+  }
+
+  #show(rows) {
+    this.#rows = rows;
+    this.#typedRows.forget();
+    element("cities").value = textOf(rows);
   }
 
   #write(rows, fit) {
-    element("cities").value = textOf(rows);
+    this.#show(rows);
     this.#edited(fit);
   }
 
   #edited(fit = true) {
-    cancelAnimationFrame(this.#frame);
-    this.#frame = 0;
     const kind = kindOf(this.#brought);
     const rows = this.#tableRows(kind);
     this.#table.show(COLUMNS[kind] ?? [], rows);

@@ -18,7 +18,9 @@ export class GridMap {
   #image = null;
   #cells = []; // of the places
   #places = L.featureGroup();
+  #unreached = L.featureGroup();
   #renderer = L.canvas({ padding: 0.2 });
+  #outlines = L.svg({ padding: 0.2 });
   #start = ring("start", 18);
   #end = ring("end", 18);
   #highlight = ring("highlight", 16);
@@ -32,7 +34,7 @@ export class GridMap {
     this.#map = flatMap(element, { minZoom: -5, maxZoom: 8 });
     this.#map.setView([0, 0], 0);
     for (const line of [...Object.values(this.#lines), this.#routes]) line.addTo(this.#map);
-    this.#places.addTo(this.#map);
+    for (const group of [this.#places, this.#unreached]) group.addTo(this.#map);
     this.#map.on("mousemove", ({ containerPoint }) => this.#point(this.#near(containerPoint)));
     element.addEventListener("mouseleave", () => this.#point(null)); // Leaflet's canvas keeps it from the map
     new ResizeObserver(() => this.#fit()).observe(element);
@@ -50,14 +52,17 @@ export class GridMap {
     this.#fit();
   }
 
-  /** Shows places, a row and a column each. */
-  place(places) {
+  /** Shows places, a row and a column each, and the boxes of regions out of reach. */
+  place(places, regions = []) {
     this.#cells = places;
     this.#point(null);
     this.#places.clearLayers();
     const style = { renderer: this.#renderer, radius: 3, weight: 0, fillOpacity: 1, interactive: false };
     for (const cell of places) this.#places.addLayer(L.circleMarker(middle(cell), style));
     this.#places.setStyle({ fillColor: colour("ink") });
+    this.#unreached.clearLayers();
+    const outlined = { renderer: this.#outlines, className: "unreached", interactive: false };
+    for (const { box } of regions) this.#unreached.addLayer(L.rectangle(corners(box), outlined));
   }
 
   /** Draws the path of a tour as "selected" or "pinned"; null takes it away. */
@@ -124,6 +129,9 @@ export class GridMap {
 
 /** Rows go down the map, columns to the right. */
 const middle = ([row, column]) => [-row - 0.5, column + 0.5];
+
+/** Two corners of a box, of which the first and the last cell are in it. */
+const corners = ([[top, left], [bottom, right]]) => [[-top, left], [-bottom - 1, right + 1]];
 
 /** The line of a path on the map; of none, as while a front is found, it is empty. */
 const lineOf = (path) => turns(path?.cells ?? []).map(middle);

@@ -123,9 +123,9 @@ export class Maps {
     this.#sayCredit();
   }
 
-  /** Shows the places that the service laid out on the grid. */
-  place(places) {
-    if (this.#kind === "grid" && places) this.#grid.place(places);
+  /** Shows the places that the service laid out on the grid, and what no path leads to. */
+  place(places, uncovered) {
+    if (this.#kind === "grid" && places) this.#grid.place(places, uncovered?.regions);
   }
 
   /**

@@ -1,12 +1,17 @@
 /** Take files that are dropped anywhere on the page. */
 
-/** Marks an element while something is held over the page, and opens the files that are let go. */
-export function takeDropped(marked, openFiles) {
+/**
+ * Marks an element while something is held over the page, and opens the files that are let go; of
+ * folders, which a browser gives no content of, the name of the first is told.
+ */
+export function takeDropped(marked, openFiles, onFolder) {
   for (const kind of ["dragover", "drop"]) addEventListener(kind, (event) => event.preventDefault());
   addEventListener("dragover", () => marked.classList.add("over"));
   addEventListener("dragleave", () => marked.classList.remove("over"));
-  addEventListener("drop", (event) => {
+  addEventListener("drop", ({ dataTransfer: { files, items } }) => {
     marked.classList.remove("over");
-    openFiles([...event.dataTransfer.files]);
+    const folder = [...items].map((item) => item.webkitGetAsEntry?.()).find((entry) => entry?.isDirectory);
+    if (folder) onFolder(folder.name);
+    else openFiles([...files]);
   });
 }

@@ -1,26 +1,34 @@
 /** The name of the file that is shown, and what was taken for granted when it was read. */
 
 export class FileNotes {
-  #element;
+  #status;
+  #button;
 
-  /** @param {HTMLElement} element a live region, which is read out when it is filled */
-  constructor(element) {
-    this.#element = element;
+  /**
+   * @param {HTMLElement} status a live region, which is read out when it is filled
+   * @param {HTMLButtonElement} button that dismisses the notes
+   * @param {() => void} onDismissed told once that was pressed and is gone, and the focus with it
+   */
+  constructor(status, button, onDismissed) {
+    this.#status = status;
+    this.#button = button;
+    button.addEventListener("click", () => {
+      this.dismiss();
+      onDismissed();
+    });
   }
 
   show({ name, notes }) {
-    const title = made("p", { textContent: name });
-    const dismiss = made("button", { type: "button", className: "remove", textContent: "×" });
-    dismiss.setAttribute("aria-label", `Dismiss the notes on ${name}`);
-    dismiss.addEventListener("click", () => this.dismiss());
-    title.append(" ", dismiss);
     const list = made("ul");
     list.append(...notes.map(({ text }) => made("li", { textContent: text })));
-    this.#element.replaceChildren(title, ...(notes.length ? [list] : []));
+    this.#status.replaceChildren(made("p", { textContent: name }), ...(notes.length ? [list] : []));
+    this.#button.setAttribute("aria-label", `Dismiss the notes on ${name}`);
+    this.#button.hidden = false;
   }
 
   dismiss() {
-    this.#element.replaceChildren();
+    this.#status.replaceChildren();
+    this.#button.hidden = true;
   }
 }
 

@@ -3,15 +3,33 @@
 import { namesIn } from "../common/objectives.js";
 import { inRows } from "../inputs/instance.js";
 import { proposed } from "../inputs/map_proposal.js";
+import { Problem } from "../planning/service.js";
+import { withoutRoads } from "./roads.js";
 
-/** What the form opens, the names of its objectives, and the file's name with what was taken for granted. */
-export async function read(service, files) {
+/**
+ * What the form opens, the names of its objectives, and the file's name with what was taken for granted;
+ * `roads` says whether the service has a routing engine.
+ */
+export async function read(service, files, roads, signal) {
   const sorted = files.toSorted((one, other) => (one.name < other.name ? -1 : 1)); // as file dialogs have no order
-  const { request, planes, name, notes } = await service.read(sorted);
+  await Promise.all(sorted.map(checked));
+  const answer = await service.read(sorted, signal);
+  const { request, planes, name, notes } = roads ? answer : withoutRoads(answer);
   const { matrices, ...others } = request;
   // The form rounds distances itself, so that planes stay planes.
   const members = planes ? { ...others, coordinates: planes, rounded: true } : proposed(inRows(request));
   return { members, objectives: namesIn(members), name, notes };
+}
+
+/** What the browser cannot read would look like a service that does not answer. */
+async function checked(file) {
+  const reader = file.stream().getReader();
+  try {
+    await reader.read();
+    await reader.cancel();
+  } catch {
+    throw new Problem({ code: "unreadable-file", detail: `${file.name}: the browser cannot read it: choose it again` });
+  }
 }
 
 /** The file of text that is pasted; null for rows of numbers, and for a name or a number for a field. */

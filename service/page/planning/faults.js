@@ -15,7 +15,7 @@ export function showFaults(problem) {
     const field = FIELD_OF_CODE[problem.code] ?? FIELD_OF[member] ?? member ?? "request";
     const said = seen(document.getElementById(`${field}-fault`)) ?? document.getElementById("request-fault");
     said.textContent ||= sentence(inWords(detail, field));
-    first ??= mark(field, member === "matrices" ? undefined : row);
+    first ??= member === "cities" ? markText(row) : mark(field, member === "matrices" ? undefined : row);
   }
   first?.focus();
 }
@@ -51,10 +51,19 @@ function mark(name, row) {
   return document.querySelector(`#stops [data-row="${row}"]`) ?? field;
 }
 
+/** Marks the text of the stops, which are not in the table while it cannot be read. */
+function markText(row) {
+  const area = document.getElementById("cities");
+  area.setAttribute("aria-invalid", "true");
+  area.closest("details").open = true;
+  if (row) selectLine(area, Number(row));
+  return area;
+}
+
+/** Selects a row of text, in which empty lines are none. */
 function selectLine(area, row) {
-  const lines = area.value.split("\n");
-  const before = lines.slice(0, row).join("\n").length + (row > 0 ? 1 : 0);
-  area.setSelectionRange(before, before + (lines[row]?.length ?? 0));
+  const line = [...area.value.matchAll(/^.*\S.*$/gm)][row];
+  if (line) area.setSelectionRange(line.index, line.index + line[0].length);
 }
 
 const counted = (index) => Number(index) + 1; // as people count

@@ -1,5 +1,7 @@
 /** Replanning: what has changed on the way, as the body of `POST /front/{id}/replan`, and its stops. */
 
+import { Problem } from "./service.js";
+
 /**
  * The stops of a front that may be replanned: all that there ever were, in the order in which they are
  * drawn. `keys` are what the service calls them, `names` what the page does.
@@ -15,7 +17,7 @@ export class Way {
   body({ at, removed, added, vehicle }, tour) {
     const visit = (name) => tour.indexOf(this.names.indexOf(name));
     const unknown = [at, ...removed].find((name) => name && visit(name) < 0);
-    if (unknown) throw new Error(`the selected tour has no stop "${unknown}"`);
+    if (unknown) throw new Problem({ code: "unknown-stop", detail: `the selected tour has no stop "${unknown}"` });
     const keys = tour.map((city) => this.keys[city]);
     return {
       tour: keys,

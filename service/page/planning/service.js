@@ -19,21 +19,21 @@ export class Service {
   }
 
   async get(path, signal) {
-    return (await this.ask(path, { signal })).json();
+    return content(await this.ask(path, { signal }));
   }
 
   /** The answer to a request; with `Prefer: respond-async` among the headers, that of its job. */
   async post({ path, body }, signal, headers = {}) {
     const options = { method: "POST", body: JSON.stringify(body), signal };
     options.headers = { "Content-Type": "application/json", ...headers };
-    return (await this.ask(path, options)).json();
+    return content(await this.ask(path, options));
   }
 
   /** The request that files are, with what was taken for granted. */
-  async read(files) {
+  async read(files, signal) {
     const body = new FormData();
     for (const file of files) body.append("file", file);
-    return (await this.ask("files", { method: "POST", body })).json();
+    return content(await this.ask("files", { method: "POST", body, signal }));
   }
 
   async delete(path) {
@@ -68,15 +68,28 @@ export class Service {
   }
 }
 
+/** What an answer says; one of a proxy, as a page that asks to sign in, is none of the service's. */
+async function content(response) {
+  const text = await whole(response.text());
+  try {
+    return JSON.parse(text);
+  } catch {
+    throw unexplained(response);
+  }
+}
+
 /** A connection that was lost ends a stream like any other end; leaving it is no end. */
 function broken(error) {
   if (error.name === "AbortError") throw error;
   return { done: true };
 }
 
-async function reached(path, options) {
+const reached = (path, options) => whole(fetch(path, options));
+
+/** A response, or all of its text, where the network brings it. */
+async function whole(arriving) {
   try {
-    return await fetch(path, options);
+    return await arriving;
   } catch (error) {
     if (error.name === "AbortError") throw error;
     throw new Problem({ code: "unreachable", detail: "the service does not answer" });
@@ -86,7 +99,9 @@ async function reached(path, options) {
 async function problem(response) {
   const seconds = Number(response.headers.get("Retry-After")) || null;
   const type = response.headers.get("Content-Type") ?? "";
-  if (type.startsWith("application/problem+json")) return new Problem(await response.json(), seconds);
-  const detail = `the service answered ${response.status} without saying why`;
-  return new Problem({ code: "unexplained", detail }, seconds);
+  if (type.startsWith("application/problem+json")) return new Problem(await content(response), seconds);
+  return unexplained(response, seconds);
 }
+
+const unexplained = ({ status }, seconds) =>
+  new Problem({ code: "unexplained", detail: `the service answered ${status} without saying why` }, seconds);

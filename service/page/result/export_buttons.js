@@ -18,13 +18,17 @@ export class ExportButtons {
 
   /**
    * @param {Service} service that has the front
-   * @param {() => { request: object, asked: object, example: string | null, objectives: object[],
-   *   picture: object, balance: number, driven: boolean }} screen what is on the screen; the example
-   *   that it is; whether its lines can follow the streets
+   * @param {() => Promise<{ request: object, asked: object, example: string | null, objectives: object[],
+   *   picture: object, balance: number, driven: boolean } | null>} screen what is on the screen; the
+   *   example that it is; whether its lines can follow the streets; null where that cannot be read
    */
   constructor(service, screen) {
     this.#service = service;
-    const on = (id, act) => element(id).addEventListener("click", ({ target }) => act(screen(), target));
+    const on = (id, act) =>
+      element(id).addEventListener("click", async ({ target }) => {
+        const shown = await screen();
+        if (shown) act(shown, target);
+      });
     on("curl", ({ request }, button) => copy(curl(request), button));
     on("python", ({ request, balance }, button) => copy(python(request, balance), button));
     on("link", (shown, button) => this.#copyLink(shown, button));

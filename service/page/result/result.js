@@ -9,7 +9,7 @@ import { nameOf } from "../inputs/names.js";
 import { Maps } from "../map/maps.js";
 import { isPlan } from "../common/nouns.js";
 import { PlanView } from "../fleet/plan_view.js";
-import { length } from "../common/numbers.js";
+import { counted, length } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
 import { BalanceSlider } from "../chart/slider.js";
 import { RoutedWay, pathOfWays } from "../map/ways/routed_way.js";
@@ -70,6 +70,7 @@ export class Result {
     cancelAnimationFrame(this.#frame);
     this.#maps.show(instance, fit, editable);
     this.#planView.open(instance);
+    element("uncovered").textContent = "";
     element("shade").textContent = instance.cost_layer ? `shaded: ${this.#objectives[1].name}` : "";
     this.#front = [];
     this.#id = null;
@@ -98,7 +99,8 @@ export class Result {
     this.#legend("improved", improved.length > 0);
     this.#growth.show(growth);
     this.#slider.show(answer.front);
-    this.#maps.place(answer.places);
+    this.#maps.place(answer.places, answer.uncovered);
+    element("uncovered").textContent = unreached(answer.uncovered);
     element("tour-title").textContent = isPlan(answer.front[0]) ? "Selected plan" : "Tour";
     if (this.#front.length) this.#select(this.#chart.budget.index ?? nearest(this.#front, this.#balance));
     showFigures(element("figures"), alone, answer);
@@ -244,6 +246,15 @@ export class Result {
     const back = this.#closed && names.length > 1 ? [names[0]] : [];
     element("order").querySelector("p").textContent = [...names, ...back].join(" → ");
   }
+}
+
+/** How much of a map no path leads to, as a sentence; the service describes the largest of very many regions. */
+function unreached(uncovered) {
+  if (!uncovered?.cells) return "";
+  const { cells, square_metres, regions } = uncovered;
+  const described = regions.reduce((sum, region) => sum + region.cells, 0);
+  const where = `${described < cells ? "more than " : ""}${counted(regions.length, "region", "regions")}`;
+  return `${length(square_metres)} m² in ${where} cannot be reached.`;
 }
 
 /** The names of the stops of a tour, in its order. */

@@ -1,0 +1,80 @@
+/** Have the service read rows of cities that are typed, as it reads files, once the typing pauses. */
+
+import { inRows } from "./instance.js";
+import { Problem } from "../planning/service.js";
+
+const PAUSE = 250; // ms without a key
+const ABOUT_TEXT = ["unreadable-file", "file-too-large"]; // codes of refusals
+const FOUR = "each stop must have 4 items: x and y in the first plane, then in the second";
+
+export class TypedRows {
+  #service;
+  #onRead;
+  #text = null; // that was typed and is not read yet
+  #timer = 0;
+  #reading = new AbortController();
+
+  /** @param {(found: { coordinates: number[][], ids?: string[] }) => void} onRead told what was typed */
+  constructor(service, onRead) {
+    this.#service = service;
+    this.#onRead = onRead;
+  }
+
+  /** Whether something was typed that is not read yet, or cannot be. */
+  get waiting() {
+    return this.#text !== null;
+  }
+
+  typed(text) {
+    this.forget();
+    this.#text = text;
+    // What is refused may be half a row: that is told when it is planned.
+    this.#timer = setTimeout(() => this.settle().catch(disregard), PAUSE);
+  }
+
+  forget() {
+    clearTimeout(this.#timer);
+    this.#reading.abort();
+    this.#text = null;
+  }
+
+  /** Reads what was typed now. Throws a Problem that names the row, or an AbortError. */
+  async settle(reading = new AbortController()) {
+    clearTimeout(this.#timer);
+    this.#reading.abort();
+    this.#reading = reading;
+    const found = this.#text.trim() ? await this.#read(this.#text, reading.signal) : { coordinates: [] };
+    reading.signal.throwIfAborted();
+    this.#text = null;
+    this.#onRead(found);
+  }
+
+  async #read(text, signal) {
+    const file = new File([prepared(text)], "rows");
+    const { request } = await this.#service.read([file], signal).catch((error) => {
+      throw ABOUT_TEXT.includes(error.code) ? aboutRow(error) : error;
+    });
+    const found = inRows(request);
+    if (!found.coordinates) throw refusal(FOUR);
+    return found;
+  }
+}
+
+/** Without empty lines a row's number is its stop's; its sign keeps `0, 1, 2, 3` from being a heading, as pandas writes it. */
+const prepared = (text) => text.replace(/^\s*\n/gm, "").replace(/^\s*(?=\d)/, "+");
+
+/** The same refusal, of the stop and the number that it is about. */
+function aboutRow({ message }) {
+  const detail = message.replace(/^rows: /, "").replace(/^must have 4 columns.*/s, FOUR).replace(/(?<=must have \d+ )fields/, "items");
+  const [place, row, column] = /^row (\d+)(?:, column '([1-4])')?/.exec(detail) ?? [];
+  if (!place) return refusal(detail);
+  return refusal(detail.replace(place, `coordinates/${row - 1}${column ? `/${column - 1}` : ""}`), row - 1);
+}
+
+function refusal(detail, row = "") {
+  return new Problem({ code: "unreadable-file", detail, errors: [{ pointer: `/cities/${row}`, detail }] });
+}
+
+function disregard(error) {
+  if (!(error instanceof Problem) && error.name !== "AbortError") throw error;
+}

@@ -1,0 +1,162 @@
+"""Rows of stops that are typed on the page: read by the service, as files are."""
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, Request, expect
+
+from tests.helpers.browsing import (
+    copied,
+    curl_body,
+    needs_chromium,
+    open_files,
+    open_page,
+    stops_as_text,
+    wait_until_planned,
+)
+
+pytestmark = needs_chromium
+
+ROWS = [[0, 0, 5, 5], [3.5, 1, 9, 1], [5, 2, 2, 8]]
+TEXT = "0, 0, 5, 5\n3.5, 1, 9, 1\n5, 2, 2, 8"
+
+
+@pytest.fixture(scope="module")
+def window(browser: Browser, released: str) -> Iterator[Page]:
+    """A page for all of these tests."""
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        yield page
+
+
+@pytest.fixture
+def opened(window: Page) -> Iterator[Page]:
+    """The page with two stops, whose text is unfolded."""
+    open_files(window, {"two.csv": "0,0,5,5\n3,1,9,1\n"})
+    expect(window.locator("#count")).to_have_text("2 stops")
+    stops_as_text(window)
+    yield window
+    window.unroute_all()
+
+
+def press_plan(page: Page) -> None:
+    page.get_by_role("button", name="Plan", exact=True).click()
+
+
+@pytest.mark.parametrize(
+    ("text", "rows"),
+    [
+        (TEXT, ROWS),
+        ("0 0 5 5\n3.5 1 9 1\n5 2 2 8\n", ROWS),
+        ("0;0;5;5\n3,5;1;9;1\n5;2;2;8\n", ROWS),
+        ("0\t0\t5\t5\r\n3.5\t1\t9\t1\r\n5\t2\t2\t8", ROWS),
+        ("\n\n0,0,5,5\n\n3.5,1,9,1\n   \n5,2,2,8\n\n", ROWS),
+        ("x1,y1,x2,y2\n0,0,5,5\n3.5,1,9,1\n5,2,2,8", ROWS),
+        ("0, 1, 2, 3\n4, 5, 6, 7", [[0, 1, 2, 3], [4, 5, 6, 7]]),
+        ("  0 1 2 3\n4 5 6 7", [[0, 1, 2, 3], [4, 5, 6, 7]]),
+        ("-0.5, 1e3, .5, 3.", [[-0.5, 1000, 0.5, 3]]),
+    ],
+)
+def test_rows_are_read_as_a_file_is(opened: Page, text: str, rows: list[list[float]]) -> None:
+    stops_as_text(opened).fill(text)
+    expect(opened.locator("#count")).to_have_text(f"{len(rows)} stop{'s' * (len(rows) > 1)}")
+    assert curl_body(opened)["coordinates"] == rows
+
+
+def test_what_is_copied_at_once_has_what_was_typed(opened: Page) -> None:
+    stops_as_text(opened).fill(TEXT)
+    assert curl_body(opened)["coordinates"] == ROWS
+    stops_as_text(opened).fill("1, 2, 3, 4")
+    assert "1.0, 2.0" in copied(opened, "as Python") or "[1, 2, 3, 4]" in copied(
+        opened, "as Python"
+    )
+
+
+def test_names_before_the_numbers_are_the_stops(opened: Page) -> None:
+    stops_as_text(opened).fill("depot,0,0,5,5\nshop,3.5,1,9,1\nschool,5,2,2,8")
+    expect(opened.get_by_label("Name of stop 2", exact=True)).to_have_value("shop")
+    assert [stop["id"] for stop in curl_body(opened)["stops"]] == ["depot", "shop", "school"]
+
+
+@pytest.mark.parametrize(
+    ("text", "said", "selected"),
+    [
+        ("1, 2, 3, 4\n1, 2, 3\n", "Stop 2 must have 4 items", "1, 2, 3"),
+        ("1, 2, 3, 4\n\n1, 2, x, 4\n", "x₂ of stop 2 must be a number, got 'x'", "1, 2, x, 4"),
+        ("1, 2, 3, 4\n5, , 7, 8", "y₁ of stop 2 must be a number, got ''", "5, , 7, 8"),
+        ("1, 2, 3\n4, 5, 6", "Each stop must have 4 items", None),
+        ("lon,lat\n1,2\n3,4", "Each stop must have 4 items", None),
+    ],
+)
+def test_a_fault_in_a_row_is_told_at_its_row_when_it_is_planned(
+    opened: Page, text: str, said: str, selected: str | None
+) -> None:
+    box, fault = stops_as_text(opened), opened.locator("#cities-fault")
+    with opened.expect_response("**/files"):
+        box.fill(text)
+    expect(fault).to_be_empty()
+    press_plan(opened)
+    expect(fault).to_contain_text(said, ignore_case=True)
+    expect(box).to_be_focused()
+    expect(box).to_have_attribute("aria-invalid", "true")
+    chosen = box.evaluate("({ value, selectionStart: a, selectionEnd: b }) => value.slice(a, b)")
+    assert selected is None or chosen == selected
+    opened.get_by_role("button", name="Copy as curl").click()
+    expect(fault).to_contain_text(said, ignore_case=True)
+    expect(box).to_have_value(text)
+    box.press_sequentially("0")
+    expect(fault).to_be_empty()
+    expect(opened.get_by_role("button", name="Plan", exact=True)).to_be_enabled()
+
+
+def test_a_row_that_cannot_be_read_is_not_lost_by_an_edit_of_another(opened: Page) -> None:
+    box = stops_as_text(opened)
+    box.fill("1, 2, 3, 4\n5, 6, x, 8")
+    cell = opened.get_by_label("x₁ of 1", exact=True)
+    cell.fill("9")
+    cell.press("Tab")
+    expect(opened.locator("#cities-fault")).to_contain_text("X₂ of stop 2")
+    expect(box).to_have_value("1, 2, 3, 4\n5, 6, x, 8")
+    box.fill("1, 2, 3, 4\n5, 6, 7, 8")
+    cell.fill("9")
+    cell.press("Tab")
+    expect(box).to_have_value("9, 2, 3, 4\n5, 6, 7, 8")
+
+
+def test_typing_asks_once_it_pauses_and_takes_the_front_away_at_once(page: Page) -> None:
+    reads: list[Request] = []
+    page.on("request", lambda asked: reads.append(asked) if asked.url.endswith("/files") else None)
+    box = stops_as_text(page)
+    expect(page.get_by_label(re.compile("A front of"))).to_be_visible()
+    page.route("**/files", lambda route: route.abort())
+    box.press("End")
+    with page.expect_request("**/files"):
+        box.press_sequentially("12345")
+        expect(page.get_by_label("No front yet")).to_be_visible()
+    assert len(reads) < 5
+    page.unroute_all()
+    box.fill(TEXT)
+    expect(page.locator("#count")).to_have_text("3 stops")
+    press_plan(page)
+    expect(page.locator("#status")).to_have_text("Done: 1 tour found.")
+
+
+def test_rows_that_the_service_cannot_take_now_are_read_when_they_are_planned(
+    opened: Page,
+) -> None:
+    opened.route("**/files", lambda route: route.abort())
+    stops_as_text(opened).fill(TEXT)
+    press_plan(opened)
+    expect(opened.locator("#request-fault")).to_have_text("The service does not answer.")
+    opened.unroute_all()
+    press_plan(opened)
+    expect(opened.locator("#status")).to_have_text("Done: 1 tour found.")
+    assert curl_body(opened)["coordinates"] == ROWS
+
+
+def test_no_rows_are_no_stops(opened: Page) -> None:
+    stops_as_text(opened).fill(" \n")
+    expect(opened.locator("#count")).to_have_text("0 stops")
+    press_plan(opened)
+    expect(opened.locator("#cities-fault")).to_contain_text("There must be a stop")
