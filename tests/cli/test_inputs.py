@@ -1,13 +1,17 @@
 """Files become requests, and what is no such file is refused with a sentence that names it."""
 
 import io
+import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from queue import Queue
+from threading import Thread, Timer
 
 import pytest
 
 from service.cli.errors import UnreadableFile
-from service.cli.inputs import read_layer, read_map, read_request
+from service.cli.inputs import read_layer, read_map, read_object, read_request
 from tests.helpers.tsplib_files import EUCLIDEAN, EXPLICIT
 
 
@@ -205,6 +209,45 @@ def test_a_map_is_a_request_or_a_picture(tmp_path: Path) -> None:
     written(tmp_path, ("map.json", '{"grid": [[0]]}'), ("map.png", "PNG"))
     assert read_map(tmp_path / "map.json") == ({"grid": [[0]]}, None)
     assert read_map(tmp_path / "map.png") == ({}, b"PNG")
+
+
+def refusal(read: Callable[[], object]) -> str:
+    """The sentence that a call is refused with, in a thread that holds up nobody if it waits."""
+    said: Queue[str] = Queue()
+
+    def run() -> None:
+        with pytest.raises(UnreadableFile) as refused:
+            read()
+        said.put(str(refused.value))
+
+    Thread(target=run, daemon=True).start()
+    return said.get(timeout=60)
+
+
+READERS: list[Callable[[Path], object]] = [
+    read_layer,
+    read_object,
+    read_map,
+    lambda path: read_request([path]),
+    lambda path: read_request([path], "fleet"),
+    lambda path: read_request([path.with_name("a.csv"), path]),
+]
+
+
+@pytest.mark.parametrize("read", READERS)
+def test_a_pipe_is_read_only_where_a_program_writes_into_it(
+    tmp_path: Path, read: Callable[[Path], object]
+) -> None:
+    written(tmp_path, ("a.csv", "1,2\n3,4\n5,6\n"))
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    demand = "must be a file, or a pipe that a program writes into"
+    assert refusal(lambda: read(pipe)) == f"{pipe}: {demand}"
+    descriptor = os.open(pipe, os.O_RDWR)  # what a program has open that writes nothing yet
+    writer = Timer(0.2, lambda: (os.write(descriptor, b"{ no table"), os.close(descriptor)))
+    writer.start()
+    assert demand not in refusal(lambda: read(pipe))
+    writer.join()
 
 
 def test_costs_on_a_map_are_a_table(tmp_path: Path) -> None:

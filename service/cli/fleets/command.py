@@ -26,9 +26,9 @@ def fleet(  # noqa: PLR0913  an option each
     from rich.console import Console
 
     from service.cli.backends import backend_for
-    from service.cli.data import print_data
+    from service.cli.data import print_csv, print_data
     from service.cli.errors import UsageError, exit_on_error
-    from service.cli.fleets.output import plans_as_csv, plans_as_table
+    from service.cli.fleets.output import plans_as_rows, plans_as_table
 
     console = Console(stderr=True)
     with exit_on_error():
@@ -39,7 +39,7 @@ def fleet(  # noqa: PLR0913  an option each
     if as_json:
         print_data(json.dumps(front.document))
     elif as_csv:
-        print_data(plans_as_csv(front))
+        print_csv(plans_as_rows(front))
     else:
         Console().print(plans_as_table(front))
     found = f"{len(front.plans)} of {front.points} plans, hypervolume {front.hypervolume:.6g}"
