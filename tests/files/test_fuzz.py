@@ -66,7 +66,7 @@ def test_the_command_says_what_is_wrong_with_a_broken_file(
                 if number % 3 == 0:
                     plan_cities(path, options={})
                 elif number % 3 == 1:
-                    read_fleet(path, {})
+                    read_fleet(path, None, {})
                 else:
                     plan_map(path, None, {"cell_size": 1, "spacing": 1})
         except typer.Exit as ended:
