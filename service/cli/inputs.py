@@ -37,10 +37,15 @@ def read_request(
         UsageError: It holds what another command plans.
         OSError: There is no such file.
     """
-    if len(files) > 1 and files[0] == files[1] == STANDARD_INPUT:
-        raise UnreadableFile("standard input can be one of both files, not both")
+    check_inputs(*files)
     request = _request_in([_content(path) for path in files], kind, unrounded)
     return request, ids_in(request.get("stops"))
+
+
+def check_inputs(*files: Path | None) -> None:
+    """Raise UnreadableFile if two files are standard input, which can be read once."""
+    if files.count(STANDARD_INPUT) > 1:
+        raise UnreadableFile("standard input can be one of both files, not both")
 
 
 def ids_in(stops: object) -> Ids | None:

@@ -7,11 +7,17 @@ from collections.abc import Callable
 from pathlib import Path
 from queue import Queue
 from threading import Thread, Timer
+from typing import Any
 
 import pytest
+from paretour import Client, Plan
+from typer.testing import CliRunner
 
+from service.cli.commands import app
 from service.cli.errors import UnreadableFile
 from service.cli.inputs import read_layer, read_map, read_object, read_request
+from tests.client.test_robots import REQUEST as ROBOTS
+from tests.helpers.fleet_requests import fleet_request
 from tests.helpers.tsplib_files import EUCLIDEAN, EXPLICIT
 
 
@@ -166,6 +172,9 @@ def test_the_ids_of_two_files_are_the_same(tmp_path: Path) -> None:
         read_request([files[0], files[2]])
 
 
+CITIES = [[0, 0, 1, 1], [3, 1, 2, 5], [1, 4, 5, 2], [4, 4, 1, 3]]
+
+
 class Piped:
     """Standard input with these bytes in it."""
 
@@ -190,6 +199,34 @@ def test_one_of_two_files_may_be_standard_input(
     assert read_request([file, Path("-")])[0] == {"coordinates": expected}
     with pytest.raises(UnreadableFile, match="one of both files"):
         read_request([Path("-"), Path("-")])
+
+
+PIPED: dict[tuple[str, ...], Any] = {
+    ("front", "-"): {"coordinates": CITIES},
+    ("tour", "-", "--knee"): {"coordinates": CITIES},
+    ("fleet", "-", "--csv"): fleet_request(),
+    ("coverage", "-", "--csv"): ROBOTS,
+    ("replan", "FRONT", "-", "--csv"): {"done": [0, 1]},
+}
+
+
+@pytest.mark.parametrize("arguments", PIPED)
+def test_every_command_has_a_service_plan_what_is_piped_into_it(
+    arguments: tuple[str, ...], url: str
+) -> None:
+    with Client(url) as client:
+        front = client.front(coordinates=CITIES, time_limit=0.1).id
+    command = [front if each == "FRONT" else each for each in arguments]
+    piped = Plan("/", PIPED[arguments] | {"time_limit": 0.1}).json
+    ended = CliRunner().invoke(app, [*command, "--url", url], input=piped)
+    assert ended.exit_code == 0, ended.stderr
+    assert ended.stdout
+
+
+def test_a_map_and_its_costs_are_not_both_standard_input() -> None:
+    ended = CliRunner().invoke(app, ["coverage", "-", "--cost-layer", "-"], input=b"P5 1 1 255 a")
+    assert ended.exit_code == 2
+    assert "one of both files, not both" in ended.stderr
 
 
 def test_standard_input_is_named_where_it_cannot_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
