@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterable
 from typing import Literal
 
-from service.errors.printable import printable_lines
+from service.errors.printable import printable, printable_lines
 
 
 def print_data(text: str) -> None:
@@ -15,6 +15,15 @@ def print_data(text: str) -> None:
     shown = printable_lines(text) if sys.stdout.isatty() else text
     sys.stdout.write(shown + "\n")
     sys.stdout.flush()
+
+
+def print_csv(rows: Iterable[Iterable[object]], delimiter: str = ",") -> None:
+    """Print rows as CSV, on a terminal each in one line, whatever its fields hold."""
+    if sys.stdout.isatty():
+        rows = [
+            [printable(each) if isinstance(each, str) else each for each in row] for row in rows
+        ]
+    print_data(csv_text(rows, delimiter))
 
 
 def csv_text(rows: Iterable[Iterable[object]], delimiter: str = ",") -> str:

@@ -1,5 +1,7 @@
 """Read the files that a command is given, and say what was taken for granted."""
 
+import os
+import stat
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -35,10 +37,15 @@ def read_request(
         UsageError: It holds what another command plans.
         OSError: There is no such file.
     """
-    if len(files) > 1 and files[0] == files[1] == STANDARD_INPUT:
-        raise UnreadableFile("standard input can be one of both files, not both")
+    check_inputs(*files)
     request = _request_in([_content(path) for path in files], kind, unrounded)
     return request, ids_in(request.get("stops"))
+
+
+def check_inputs(*files: Path | None) -> None:
+    """Raise UnreadableFile if two files are standard input, which can be read once."""
+    if files.count(STANDARD_INPUT) > 1:
+        raise UnreadableFile("standard input can be one of both files, not both")
 
 
 def ids_in(stops: object) -> Ids | None:
@@ -117,8 +124,18 @@ def _bounds() -> Bounds:
 def _content(path: Path) -> NamedFile:
     if path == STANDARD_INPUT:
         return NamedFile("standard input", _bounded(sys.stdin.buffer, "standard input"))
-    with path.open("rb") as file:
-        return NamedFile(str(path), _bounded(file, str(path)))
+    with open(path, "rb", opener=_without_waiting) as file:
+        piped = stat.S_ISFIFO(os.fstat(file.fileno()).st_mode)
+        begin = file.raw.read(1) if piped else b""  # None where a program has written nothing yet
+        if piped and begin == b"":
+            raise UnreadableFile(f"{path}: must be a file, or a pipe that a program writes into")
+        os.set_blocking(file.fileno(), True)
+        return NamedFile(str(path), (begin or b"") + _bounded(file, str(path)))
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    """Open a file; a pipe at once, whether or not a program writes into it."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 def _bounded(file: BinaryIO, name: str) -> bytes:

@@ -31,6 +31,14 @@ FleetFile = Annotated[
         " windows. CVRPLIB, Solomon's, Li and Lim's. - is standard input.",
     ),
 ]
+VehiclesFile = Annotated[
+    Path | None,
+    Argument(
+        metavar="VEHICLES",
+        help="CSV or XLSX: vehicles, with their capacities, shifts and places, where FILE is a"
+        " table of stops.",
+    ),
+]
 TimeLimit = Annotated[
     float | None, Option(help="Seconds of search; 0 takes the network's tours.", show_default="1.0")
 ]

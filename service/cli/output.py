@@ -15,7 +15,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from service.cli.backends import Backend
-from service.cli.data import csv_text, print_data
+from service.cli.data import csv_text, print_csv, print_data
 from service.cli.errors import UsageError, exit_on_error
 from service.cli.inputs import Ids
 from service.cli.labels import columns_of, ids_of, labels_of, lengths_as_text
@@ -77,7 +77,10 @@ def run_tour(
         front = backend.front(plan, _STDERR)
         with _usage_errors():
             tour = front.choose(angle, **choice)
-    print_data(tour_as_json(tour) if as_json else tour_as_text(tour.tour, ids or ids_of(front)))
+    if as_json:
+        print_data(tour_as_json(tour))
+    else:
+        print_csv([stops_of(tour.tour, ids or ids_of(front))], delimiter=" ")
     _STDERR.print(tour_summary(front, tour), highlight=False, markup=False)
 
 
@@ -105,13 +108,17 @@ def front_as_json(front: Front) -> str:
     return json.dumps(front.document)
 
 
-def front_as_csv(front: Front, ids: Ids | None = None) -> str:
-    """Return a line for each tour, with spaces between its cities, or between their ids."""
+def front_as_rows(front: Front, ids: Ids | None = None) -> list[tuple[object, ...]]:
+    """Return a row for each tour, with spaces between its cities, or between their ids.
+
+    An id with a space or a quotation mark in it is quoted, as in CSV.
+    """
     found = zip(front.angles, front.lengths, front.tours, strict=True)
     rows = [
-        (float(angle), *lengths.tolist(), tour_as_text(tour, ids)) for angle, lengths, tour in found
+        (float(angle), *lengths.tolist(), csv_text([stops_of(tour, ids)], delimiter=" "))
+        for angle, lengths, tour in found
     ]
-    return csv_text([("angle", *columns_of(front), "tour"), *rows])
+    return [("angle", *columns_of(front), "tour"), *rows]
 
 
 def front_as_table(front: Front) -> Table:
@@ -179,12 +186,9 @@ def tour_as_json(tour: Tour) -> str:
     return json.dumps(members if tour.stops is None else {**members, "stops": tour.stops})
 
 
-def tour_as_text(tour: NDArray[np.int64], ids: Ids | None = None) -> str:
-    """Return the cities of a tour, shape (n,), with spaces between.
-
-    Cities with ids go by them; one with a space or a quotation mark in it is quoted, as in CSV.
-    """
-    return csv_text([tour.tolist() if ids is None else [ids[city] for city in tour]], delimiter=" ")
+def stops_of(tour: NDArray[np.int64], ids: Ids | None = None) -> list[int] | list[str]:
+    """Return the cities of a tour, shape (n,), by their ids if they have any."""
+    return tour.tolist() if ids is None else [ids[city] for city in tour]
 
 
 def tour_summary(front: Front, tour: Tour) -> str:
@@ -224,7 +228,7 @@ def _print(front: Front, ids: Ids | None, output: OutputFormat, console: Console
     if output.as_json:
         print_data(front_as_json(front))
     elif output.as_csv:
-        print_data(front_as_csv(front, ids))
+        print_csv(front_as_rows(front, ids))
     elif console.is_terminal and len(front.tours) and not output.as_table:
         print_chart(front, console)
         _STDERR.print("--table prints every tour, --csv its cities too", highlight=False)

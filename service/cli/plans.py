@@ -15,7 +15,7 @@ from paretour import (
 )
 
 from service.cli.errors import UsageError
-from service.cli.inputs import Ids, read_layer, read_map, read_object, read_request
+from service.cli.inputs import Ids, check_inputs, read_layer, read_map, read_object, read_request
 from service.cli.options import ANY
 
 _SECOND_OBJECTIVES = ("second_matrix", "cost_layer", "second_coordinates")
@@ -92,6 +92,7 @@ def plan_map(
         name: _parse_numbers(pose, f"--{name.replace('_', '-')}")
         for name, pose in (poses or {}).items()
     }
+    check_inputs(file, cost_layer)
     request, picture = read_map(file)
     costs = None if cost_layer is None else read_layer(cost_layer)
     members = {"cost_layer": costs, "robots": _parse_robots(robots)}

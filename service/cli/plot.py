@@ -15,6 +15,8 @@ def check_path(path: Path) -> None:
     formats = sorted(FigureCanvasBase.get_supported_filetypes())
     if path.suffix.removeprefix(".") not in formats:
         raise UsageError(f"--plot must end in one of {', '.join(formats)}, got {path}")
+    if path.exists() and not path.is_file():  # a pipe would hold up whoever writes into it
+        raise UsageError(f"--plot must be a file, got {path}")
     if not path.parent.is_dir():
         raise UsageError(f"--plot must be in a directory that is there, got {path}")
 

@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-from service.files.fleets import planar, timed
+from service.files.fleets import fleet_request, planar
 from service.files.reading import Reading, Request, Source, quoted
 from service.files.tables import number_in
 from service.files.tsplib import TsplibFile, costs, plain
@@ -66,10 +66,7 @@ def _request(
     stops: list[dict[str, Any]], depot: str, count: Any, vehicle: dict[str, Any], objectives: Any
 ) -> Request:
     fleet = {"id": "vehicle", "count": count, "start": depot, "end": depot, **vehicle}
-    request: Request = {"stops": stops, "vehicles": [fleet], "objectives": objectives}
-    if timed(stops) or "shift" in vehicle:
-        request["clock"] = objectives[1]["name"]
-    return request
+    return fleet_request(stops, [fleet], objectives)
 
 
 def is_customers(text: str) -> bool:

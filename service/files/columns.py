@@ -1,7 +1,8 @@
-"""Headings of columns: the field of a stop that each stands for, and its unit."""
+"""Headings of columns: the field of a stop or a vehicle that each stands for, and its unit."""
 
 import re
 import unicodedata
+from collections.abc import Mapping, Sequence
 
 # By field, the names that people give it, without accents, units and signs; the first names first.
 _NAMES = {
@@ -27,25 +28,86 @@ _NAMES = {
     "prize": "prize",
     "cost": "cost costs risk danger exposure co2 emissions kosten risiko",
 }
+_AMOUNTS = _NAMES["demand"].split()
+_TOLD_BY = {
+    "id": "vehicleid vehicle vehiclename vehicletype truckid truck driverid driver van fahrzeug"
+    " fahrer",
+    "capacity": "capacity vehiclecapacity maxcapacity payload kapazitaet kapazitat nutzlast "
+    + " ".join(f"max{each} capacity{each} {each}capacity" for each in _AMOUNTS),
+    "shift_from": "shiftstart shiftfrom shiftbegin workstart schichtbeginn",
+    "shift_to": "shiftend shiftto workend schichtende",
+    "shift": "shift workinghours workhours schicht arbeitszeit",
+    "longest_time": "maxtime maxtraveltime maxdrivingtime maxduration maxrouteduration",
+    "longest_distance": "maxdistance maxdistancekm maxkm range rangekm",
+    "fixed": "fixed fixedcost fixedcosts costfixed fixkosten",
+    "per_km": "costperkm costkm kmcost perkm priceperkm kmkosten",
+}  # what only vehicles have
+_NAMES_OF_VEHICLES = {
+    "start": "start startid startstop startplace startlocation startdepot",
+    "end": "end endid endstop endplace endlocation enddepot destination",
+    "depot": "depot depotid home base",
+    "start_latitude": "startlatitude startlat",
+    "start_longitude": "startlongitude startlon startlng",
+    "end_latitude": "endlatitude endlat",
+    "end_longitude": "endlongitude endlon endlng",
+    "depot_latitude": "depotlatitude depotlat homelatitude homelat latitude lat",
+    "depot_longitude": "depotlongitude depotlon depotlng homelongitude homelon homelng longitude"
+    " lon lng",
+    **_TOLD_BY,
+    "id": f"{_TOLD_BY['id']} id name type",
+    "capacity": f"{_TOLD_BY['capacity']} {_NAMES['demand']}",
+    "shift_from": f"{_TOLD_BY['shift_from']} {_NAMES['window_from']}",
+    "shift_to": f"{_TOLD_BY['shift_to']} {_NAMES['window_to']}",
+    "shift": f"{_TOLD_BY['shift']} {_NAMES['window']}",
+    "count": "count vehicles available anzahl",
+    "skills": "skills skill",
+}
 _PLACES = ("longitude", "latitude", "x", "y")
 _BEFORE = re.compile(r"^(stop|geo|gps|location|customer|address|position|pos|point)(?=l)")
 _AFTER = re.compile(r"(deg|degree|degrees|wgs84|dd|decimal)$")
 _UNIT = re.compile(r"[\[(](.*?)[\])]")
 _SECONDS = {"s": 1, "sec": 1, "min": 60, "mins": 60, "minutes": 60, "h": 3600, "hours": 3600}
+_SEVERAL = ("demand", "capacity")  # fields of which a table may have more than one
 FLEET = ("demand", "window_from", "window_to", "window", "service", "skills", "prize")
 
 
-def fields_of(heading: list[str]) -> list[str | None]:
+def fields_of(heading: Sequence[str]) -> list[str | None]:
     """Return what each column of a heading may be taken for; of the fields but demand one each.
 
     Of two columns for one field, that has it whose name comes first among its names. Of names for
     stops that are left, none is taken.
     """
-    ranks = [_rank(_plain(name)) for name in heading]
+    return _taken(heading, _NAMES)
+
+
+def fields_of_vehicles(heading: Sequence[str]) -> list[str | None]:
+    """Return what each column of a heading of vehicles may be taken for; of all but capacity one.
+
+    Columns `start` and `end` may be those of a shift: their fields tell.
+    """
+    return _taken(heading, _NAMES_OF_VEHICLES)
+
+
+def is_about_vehicles(heading: Sequence[str]) -> bool:
+    """Return whether a heading has what only vehicles have, and not what only stops have."""
+    stops, told = fields_of(heading), set(_taken(heading, _TOLD_BY))
+    located = {"latitude", "x", "place"} & set(stops)
+    return bool(told - ({"id", None} if located else {None})) and "demand" not in stops
+
+
+def amount_of(name: str) -> str:
+    """Return which amount a column of demands or capacities is about, as `weight`; maybe none."""
+    plain = plain_name(name)
+    forms = ("{}", "max{}", "capacity{}", "{}capacity")
+    return next((each for each in _AMOUNTS for form in forms if form.format(each) == plain), "")
+
+
+def _taken(heading: Sequence[str], names: Mapping[str, str]) -> list[str | None]:
+    ranks = [_rank(plain_name(name), names) for name in heading]
     taken: list[str | None] = [None] * len(heading)
     for at in sorted(range(len(heading)), key=lambda at: (ranks[at][1], at)):
         field = ranks[at][0]
-        if field == "demand" or field not in taken:
+        if field in _SEVERAL or field not in taken:
             taken[at] = field
     return taken
 
@@ -57,16 +119,16 @@ def seconds_of(name: str) -> int | None:
     return _SECONDS.get(plain)
 
 
-def _rank(plain: str) -> tuple[str | None, int]:
-    for field, names in _NAMES.items():
-        known = names.split()
+def _rank(plain: str, names: Mapping[str, str]) -> tuple[str | None, int]:
+    for field, words in names.items():
+        known = words.split()
         for name in (plain, _AFTER.sub("", _BEFORE.sub("", plain))):
             if name in known and (name == plain or field in _PLACES):
                 return field, known.index(name)
     return None, 0
 
 
-def _plain(name: str) -> str:
+def plain_name(name: str) -> str:
     """Return a heading in small letters and digits alone, without the unit in it."""
     decomposed = unicodedata.normalize("NFKD", _UNIT.sub("", name).casefold()[:200])
     words = re.sub(r"[^a-z0-9]+", " ", re.sub(r"[\u0300-\u036f]", "", decomposed)).split()

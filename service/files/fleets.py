@@ -9,6 +9,7 @@ from service.files.places import great_circle
 from service.files.reading import Request, Source, quoted
 
 Stop = dict[str, Any]
+Vehicle = dict[str, Any]
 _SPEED = 30 / 3.6  # metres a second, of a van in a city
 _OF_VISITS = ("demand", "service", "window", "prize")
 
@@ -46,29 +47,58 @@ def note_left_out(source: Source, what: str) -> None:
     source.note("left-out", f"{what} was not used: fleets have no such thing here.")
 
 
-def with_one_vehicle(source: Source, stops: list[Stop], objectives: list[Any]) -> Request:
-    """Return the request for one vehicle from the first stop, that holds all demand.
+def at_depots(
+    stops: Sequence[Stop], vehicles: Sequence[Vehicle]
+) -> tuple[list[Stop], list[Vehicle]]:
+    """Return stops, and vehicles with the places and the shifts that they do not name.
 
-    The first stop is the depot, whose window is the vehicle's shift, unless it has a demand.
+    A vehicle without either place drives from and to the first stop, unless that has a demand. The
+    window of the stop where it starts is its shift. Such a stop is not visited.
     """
-    first = stops[0]
-    depot = not any(first.get("demand", ()))
-    demands = [stop["demand"] for stop in stops if "demand" in stop]
-    vehicle: dict[str, Any] = {"id": "vehicle"}
-    if depot:
-        vehicle |= {"start": first["id"], "end": first["id"]}
-        if "window" in first:
-            vehicle["shift"] = first["window"]
-        kept = {name: value for name, value in first.items() if name not in _OF_VISITS}
-        stops = [kept, *stops[1:]]
+    first, by_id = stops[0], {stop["id"]: stop for stop in stops}
+    home = {} if any(first.get("demand", ())) else dict.fromkeys(("start", "end"), first["id"])
+    placed = [each if each.keys() & {"start", "end"} else each | home for each in vehicles]
+    windows = [by_id.get(each.get("start"), {}).get("window") for each in placed]
+    made = [
+        {"shift": window, **each} if window else each
+        for each, window in zip(placed, windows, strict=True)
+    ]
+    depots = {each.get(end) for each in made for end in ("start", "end")}
+    kept = [
+        {name: value for name, value in stop.items() if name not in _OF_VISITS}
+        if stop["id"] in depots and not any(stop.get("demand", ()))
+        else stop
+        for stop in stops
+    ]
+    return kept, made
+
+
+def all_demand(stops: Sequence[Stop]) -> list[int]:
+    """Return the sum of the demands of stops."""
+    return [sum(each) for each in zip(*(s["demand"] for s in stops if "demand" in s), strict=True)]
+
+
+def fleet_request(
+    stops: list[Stop], vehicles: list[Vehicle], objectives: list[dict[str, Any]]
+) -> Request:
+    """Return the request of a fleet, with a clock where stops or vehicles ask for one."""
+    request: Request = {"stops": stops, "vehicles": vehicles, "objectives": objectives}
+    if timed(stops) or any("shift" in each for each in vehicles):
+        request["clock"] = objectives[1]["name"]
+    return request
+
+
+def with_one_vehicle(source: Source, stops: list[Stop], objectives: list[Any]) -> Request:
+    """Return the request for one vehicle from the first stop, that holds all demand."""
+    first, demands = stops[0], all_demand(stops)
+    stops, [vehicle] = at_depots(stops, [{"id": "vehicle"}])
     if demands:
-        vehicle["capacity"] = [sum(each) for each in zip(*demands, strict=True)]
+        vehicle["capacity"] = demands
     where = (
-        f"from and to the first stop, {quoted(first['id'])}," if depot else "from any stop to any"
+        f"from and to the first stop, {quoted(first['id'])},"
+        if "start" in vehicle
+        else "from any stop to any"
     )
     holds = f" It holds all demand, {vehicle['capacity']}." if demands else ""
     source.note("vehicle", f"The file names no vehicles: one drives {where} was added.{holds}")
-    request: Request = {"stops": stops, "vehicles": [vehicle], "objectives": objectives}
-    if timed(stops) or "shift" in vehicle:
-        request["clock"] = objectives[1]["name"]
-    return request
+    return fleet_request(stops, [vehicle], objectives)

@@ -17,7 +17,8 @@ from service.files.spreadsheets import is_spreadsheet, rows_of
 from service.files.stop_tables import Part, part_of, reading_of
 from service.files.tables import Table, table_of, table_of_csv
 from service.files.texts import text_of
-from service.files.tsplib import costs, is_tsplib, places, plain, split_tsplib
+from service.files.tsplib import TsplibFile, costs, is_tsplib, places, plain, split_tsplib
+from service.files.vehicle_tables import has_vehicles, read_fleet
 
 _BINARY = {
     b"%PDF": "a PDF",
@@ -35,10 +36,10 @@ def read_files(
     wanted: Kind | None = "front",
     unrounded: bool = False,
 ) -> Reading:
-    """Return the request that one file is, or two are with one objective each.
+    """Return the request that one file is, or two are: an objective each, or stops and vehicles.
 
     Args:
-        files: In the order of their objectives.
+        files: In the order of their objectives; or stops, then vehicles.
         bounds: What they may hold.
         wanted: The kind of a request that does not tell its own; None refuses it.
         unrounded: Whether EUC_2D of TSPLIB means planes, not distances rounded as it says.
@@ -54,8 +55,20 @@ def read_files(
     if len(sources) == 1:
         return _read(sources[0], wanted)
     if len(sources) != 2:
-        raise UnreadableFile(f"one file is wanted, or two with an objective each, got {len(files)}")
-    first, second = (_part(source, unrounded) for source in sources)
+        raise UnreadableFile(f"one file is wanted, or two, got {len(files)}")
+    contents = [_content(source) for source in sources]
+    tables = [
+        (source, each)
+        for source, each in zip(sources, contents, strict=True)
+        if isinstance(each, Table)
+    ]
+    if len(tables) == 2 and (wanted == "fleet" or any(has_vehicles(each) for _, each in tables)):
+        stops, vehicles = sorted(tables, key=lambda each: has_vehicles(each[1]))
+        return read_fleet(stops, vehicles)
+    first, second = (
+        part_of(source, each) if isinstance(each, Table) else _tsplib_part(source, each, unrounded)
+        for source, each in zip(sources, contents, strict=True)
+    )
     request = _joined(first, second)
     planes = None
     if first.plane and second.plane:
@@ -99,20 +112,19 @@ def read_table(file: NamedFile, bounds: Bounds) -> tuple[Source, Table]:
     return source, table_of_csv(source, _text(source))
 
 
-def _part(source: Source, unrounded: bool) -> Part:
-    """Return what one file of two says."""
-    if not is_spreadsheet(source.file.data):
-        text = _text(source)
-        if is_tsplib(text):
-            return _tsplib_part(source, text, unrounded)
-        if looks_like_json(text):
-            raise source.refusal("must be a table or TSPLIB where two files are an objective each")
-        return part_of(source, table_of_csv(source, text))
-    return part_of(source, table_of(source, rows_of(source)))
+def _content(source: Source) -> Table | TsplibFile:
+    """Return what one file of two holds."""
+    if is_spreadsheet(source.file.data):
+        return table_of(source, rows_of(source))
+    text = _text(source)
+    if is_tsplib(text):
+        return split_tsplib(source, text)
+    if looks_like_json(text):
+        raise source.refusal("must be a table or TSPLIB, as one of two files")
+    return table_of_csv(source, text)
 
 
-def _tsplib_part(source: Source, text: str, unrounded: bool) -> Part:
-    file = split_tsplib(source, text)
+def _tsplib_part(source: Source, file: TsplibFile, unrounded: bool) -> Part:
     if unrounded:
         if file.kind != "EUC_2D":
             raise source.refusal(f"EDGE_WEIGHT_TYPE must be EUC_2D, got {file.kind}")

@@ -38,16 +38,15 @@ def reading_of(source: Source, table: Table) -> Reading:
         UnreadableFile: A field is not what its column asks for, or columns are missing.
     """
     columns = columns_of(source, table)
-    fields = columns.fields
-    if "place" in fields or {"longitude", "latitude"} <= set(fields) or _degrees(columns):
-        return _located(columns)
-    fleet = [name for name, each in zip(columns.names, fields, strict=True) if each in FLEET]
-    if fleet and {"x", "y"} <= set(fields):
-        return _planar_fleet(columns)
-    if fleet:
-        demand = "must have places, in columns lon and lat or x and y, beside"
-        raise source.refusal(f"{demand} {', '.join(map(quoted, fleet))}")
-    return _two_planes(columns)
+    if any(each in FLEET for each in columns.fields):
+        return _fleet(columns)
+    return _located(columns) if _is_located(columns) else _two_planes(columns)
+
+
+def _is_located(columns: Columns) -> bool:
+    """Return whether a table has places on the earth."""
+    fields = set(columns.fields)
+    return "place" in fields or {"longitude", "latitude"} <= fields or _degrees(columns)
 
 
 def _degrees(columns: Columns) -> bool:
@@ -106,29 +105,45 @@ def _two_planes(columns: Columns) -> Reading:
 
 
 def _located(columns: Columns) -> Reading:
-    """Return the request for stops on the earth, a fleet's where there are demands or windows."""
+    """Return the request for stops on the earth."""
     source = columns.source
     stops = _stops(columns, _places(columns))
     note_places(source, stops)
-    if any(each in FLEET for each in columns.fields):
-        add_visits(columns, stops)
-        columns.tell()
-        objectives = measured(source, stops, timed(stops))
-        return source.reading("fleet", with_one_vehicle(source, stops, objectives))
     second = _second(columns, stops)
     columns.tell()
     distance = {"name": "distance", "from": "great_circle"}
     return source.reading("front", {"stops": stops, "objectives": [distance, second]})
 
 
-def _planar_fleet(columns: Columns) -> Reading:
+def _fleet(columns: Columns) -> Reading:
+    """Return the request for a fleet of one vehicle."""
     source = columns.source
-    xy = columns.numbers([columns.fields.index("x"), columns.fields.index("y")])
-    stops = _stops(columns, None)
+    stops, plane = visits_of(columns)
     add_visits(columns, stops)
     columns.tell()
+    objectives = planar({"coordinates": plane}) if plane else measured(source, stops, timed(stops))
+    return source.reading("fleet", with_one_vehicle(source, stops, objectives))
+
+
+def visits_of(columns: Columns) -> tuple[list[Stop], list[list[float]] | None]:
+    """Return the stops of a fleet, and where they lie in the plane if it is not on the earth.
+
+    Raises:
+        UnreadableFile: There are no places.
+    """
+    source, fields = columns.source, columns.fields
+    if _is_located(columns):
+        stops = _stops(columns, _places(columns))
+        note_places(source, stops)
+        return stops, None
+    if not {"x", "y"} <= set(fields):
+        named = zip(columns.names, fields, strict=True)
+        fleet = ", ".join(quoted(name) for name, each in named if each in FLEET)
+        demand = "must have places, in columns lon and lat or x and y"
+        raise source.refusal(f"{demand}, beside {fleet}" if fleet else demand)
     source.note("objectives", "Distances in the plane of x and y are time as well.")
-    return source.reading("fleet", with_one_vehicle(source, stops, planar({"coordinates": xy})))
+    plane = columns.numbers([fields.index("x"), fields.index("y")])
+    return _stops(columns, None), plane
 
 
 def _places(columns: Columns) -> list[list[float]]:

@@ -21,21 +21,29 @@ _ROUNDING = 1e-6
 _MOST_DECIMALS = 3  # of demands, which become whole numbers
 
 
-def add_visits(columns: Columns, stops: list[Stop]) -> None:
-    """Add what a vehicle's visit needs to stops: demand, window, service and prize."""
+def add_visits(columns: Columns, stops: list[Stop]) -> int:
+    """Add what a vehicle's visit needs to stops: demand, window, service and prize.
+
+    Returns:
+        How many units of the demands here are one in the table.
+    """
     demands = [at for at, each in enumerate(columns.fields) if each == "demand"]
     if (at := columns.find("skills")) is not None:
         columns.fields[at] = None
         note_left_out(columns.source, quoted(columns.names[at]))
-    for name, read in (("service", partial(_seconds, columns)), ("prize", columns.number)):
+    for name, read in (("service", partial(seconds_in, columns)), ("prize", columns.number)):
         if (at := columns.find(name)) is not None:
             for row in _filled(columns, at):
                 stops[row][name] = read(row, at)
-    if demands:
-        _add_demands(columns, demands, stops)
     for row, stop in enumerate(stops):
-        if window := _window(columns, row):
+        if window := span_in(columns, row, "window"):
             stop["window"] = window
+    return _add_demands(columns, demands, stops) if demands else 1
+
+
+def is_time(text: str) -> bool:
+    """Return whether a text is hours and minutes."""
+    return _TIME.fullmatch(text) is not None
 
 
 def _filled(columns: Columns, at: int) -> list[int]:
@@ -43,8 +51,8 @@ def _filled(columns: Columns, at: int) -> list[int]:
     return [row for row in range(len(columns.table.rows)) if columns.text(row, at)]
 
 
-def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> None:
-    """Add demands as whole numbers, of fractions in smaller units."""
+def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> int:
+    """Add demands as whole numbers, of fractions in smaller units; return how many are one."""
     rows = np.array(
         [
             [columns.number(row, at) if columns.text(row, at) else 0.0 for at in demands]
@@ -66,19 +74,20 @@ def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> Non
         )
     for stop, amounts in zip(stops, np.rint(finer[decimals]).astype(int).tolist(), strict=True):
         stop["demand"] = amounts
+    return 10**decimals
 
 
-def _window(columns: Columns, row: int) -> list[float] | None:
-    """Return when a visit may begin, in seconds; None where the fields are empty."""
-    both = columns.find("window")
+def span_in(columns: Columns, row: int, field: str) -> list[float] | None:
+    """Return a window or a shift, in seconds; None where its fields are empty."""
+    both = columns.find(field)
     if both is not None:
         text = columns.text(row, both)
         bounds = _BETWEEN.split(text.strip("[]() "))
         if text and len(bounds) != 2:
             demand = f"{columns.where(row, both)} must be two times, as 8:00-12:30"
             raise columns.source.refusal(f"{demand}, got {quoted(text)}")
-        return [_seconds(columns, row, both, each) for each in bounds] if text else None
-    ends = [columns.find("window_from"), columns.find("window_to")]
+        return [seconds_in(columns, row, both, each) for each in bounds] if text else None
+    ends = [columns.find(f"{field}_from"), columns.find(f"{field}_to")]
     texts = ["" if at is None else columns.text(row, at) for at in ends]
     if not any(texts):
         return None
@@ -87,13 +96,13 @@ def _window(columns: Columns, row: int) -> list[float] | None:
         at = latest if latest is not None else earliest
         assert at is not None
         raise columns.source.refusal(
-            f"{columns.where(row, at)} must say when the window ends, got none"
+            f"{columns.where(row, at)} must say when the {field} ends, got none"
         )
-    start = 0.0 if earliest is None or not texts[0] else _seconds(columns, row, earliest)
-    return [start, _seconds(columns, row, latest)]
+    start = 0.0 if earliest is None or not texts[0] else seconds_in(columns, row, earliest)
+    return [start, seconds_in(columns, row, latest)]
 
 
-def _seconds(columns: Columns, row: int, at: int, text: str | None = None) -> float:
+def seconds_in(columns: Columns, row: int, at: int, text: str | None = None) -> float:
     """Return a time in seconds: hours and minutes, or a number in the unit of its heading."""
     text = columns.text(row, at) if text is None else text.strip()
     if time := _TIME.fullmatch(text):

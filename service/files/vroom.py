@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from service.files.fleets import Stop, measured, note_left_out, timed
+from service.files.fleets import Stop, fleet_request, measured, note_left_out, timed
 from service.files.places import check_range, note_places
-from service.files.reading import Reading, Request, Source, quoted
+from service.files.reading import Reading, Source, quoted
 
 _LEFT_OUT = {
     "jobs": ("skills", "priority", "setup", "pickup"),
@@ -86,11 +86,9 @@ def read_vroom(source: Source, value: dict[str, Any]) -> Reading:
     source.check_count("stops", source.bounds.cities, len(problem.stops))
     clock = timed(problem.stops) or any("shift" in vehicle for vehicle in vehicles)
     objectives = _objectives(problem, value, clock)
-    request: Request = {"stops": problem.stops, "vehicles": vehicles, "objectives": objectives}
+    request = fleet_request(problem.stops, vehicles, objectives)
     if shipments:
         request["shipments"] = shipments
-    if clock:
-        request["clock"] = objectives[1]["name"]
     return source.reading("fleet", request)
 
 

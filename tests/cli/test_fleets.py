@@ -59,9 +59,44 @@ def test_a_table_with_demands_is_planned_as_a_fleet_and_not_as_a_front(
     assert "`paretour fleet` plans that" in refused.stderr
 
 
+VEHICLES = "vehicle,capacity,shift start,shift end\nvan,4,08:00,17:00\nbike,3,,\n"
+
+
+def test_a_table_of_stops_and_one_of_vehicles_are_planned_as_a_fleet(
+    tmp_path: Path, quick_actors: dict[str, str]
+) -> None:
+    (tmp_path / "stops.csv").write_text(ORDERS)
+    (tmp_path / "vehicles.csv").write_text(VEHICLES)
+    options = ("--csv", "--time-limit", 0.1)
+    ended = paretour(
+        "fleet", "stops.csv", "vehicles.csv", *options, folder=tmp_path, **quick_actors
+    )
+    assert ended.returncode == 0, ended.stderr
+    rows = list(csv.DictReader(io.StringIO(ended.stdout)))
+    assert {row["vehicle"] for row in rows} == {"van", "bike"}
+    assert "'capacity' (capacity)" in ended.stderr
+    refused = paretour("fleet", "stops.csv", "stops.csv", folder=tmp_path)
+    assert refused.returncode == 2
+    assert "stops.csv: must have columns of vehicles" in refused.stderr
+
+
+def test_vehicles_or_stops_may_be_standard_input(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, text in (("stops.csv", ORDERS), ("vehicles.csv", VEHICLES)):
+        (tmp_path / name).write_text(text)
+    for files, text in (
+        ((tmp_path / "stops.csv", Path("-")), VEHICLES),
+        ((Path("-"), tmp_path / "vehicles.csv"), ORDERS),
+    ):
+        monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(text.encode())))
+        request = read_fleet(*files, {}).request
+        assert [each["id"] for each in request["vehicles"]] == ["van", "bike"]
+
+
 def test_a_fleet_may_be_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(ORDERS.encode())))
-    request = read_fleet(Path("-"), {"size": 3}).request
+    request = read_fleet(Path("-"), None, {"size": 3}).request
     assert [stop["id"] for stop in request["stops"]] == ["depot", "a", "b"]
     assert (request["size"], request["vehicles"][0]["capacity"]) == (3, [5])
 

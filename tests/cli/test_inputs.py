@@ -1,13 +1,23 @@
 """Files become requests, and what is no such file is refused with a sentence that names it."""
 
 import io
+import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from queue import Queue
+from threading import Thread, Timer
+from typing import Any
 
 import pytest
+from paretour import Client, Plan
+from typer.testing import CliRunner
 
+from service.cli.commands import app
 from service.cli.errors import UnreadableFile
-from service.cli.inputs import read_layer, read_map, read_request
+from service.cli.inputs import read_layer, read_map, read_object, read_request
+from tests.client.test_robots import REQUEST as ROBOTS
+from tests.helpers.fleet_requests import fleet_request
 from tests.helpers.tsplib_files import EUCLIDEAN, EXPLICIT
 
 
@@ -162,6 +172,9 @@ def test_the_ids_of_two_files_are_the_same(tmp_path: Path) -> None:
         read_request([files[0], files[2]])
 
 
+CITIES = [[0, 0, 1, 1], [3, 1, 2, 5], [1, 4, 5, 2], [4, 4, 1, 3]]
+
+
 class Piped:
     """Standard input with these bytes in it."""
 
@@ -188,6 +201,34 @@ def test_one_of_two_files_may_be_standard_input(
         read_request([Path("-"), Path("-")])
 
 
+PIPED: dict[tuple[str, ...], Any] = {
+    ("front", "-"): {"coordinates": CITIES},
+    ("tour", "-", "--knee"): {"coordinates": CITIES},
+    ("fleet", "-", "--csv"): fleet_request(),
+    ("coverage", "-", "--csv"): ROBOTS,
+    ("replan", "FRONT", "-", "--csv"): {"done": [0, 1]},
+}
+
+
+@pytest.mark.parametrize("arguments", PIPED)
+def test_every_command_has_a_service_plan_what_is_piped_into_it(
+    arguments: tuple[str, ...], url: str
+) -> None:
+    with Client(url) as client:
+        front = client.front(coordinates=CITIES, time_limit=0.1).id
+    command = [front if each == "FRONT" else each for each in arguments]
+    piped = Plan("/", PIPED[arguments] | {"time_limit": 0.1}).json
+    ended = CliRunner().invoke(app, [*command, "--url", url], input=piped)
+    assert ended.exit_code == 0, ended.stderr
+    assert ended.stdout
+
+
+def test_a_map_and_its_costs_are_not_both_standard_input() -> None:
+    ended = CliRunner().invoke(app, ["coverage", "-", "--cost-layer", "-"], input=b"P5 1 1 255 a")
+    assert ended.exit_code == 2
+    assert "one of both files, not both" in ended.stderr
+
+
 def test_standard_input_is_named_where_it_cannot_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", Piped(b"1,2,3\n"))
     with pytest.raises(UnreadableFile, match="standard input: must have 4 columns"):
@@ -205,6 +246,45 @@ def test_a_map_is_a_request_or_a_picture(tmp_path: Path) -> None:
     written(tmp_path, ("map.json", '{"grid": [[0]]}'), ("map.png", "PNG"))
     assert read_map(tmp_path / "map.json") == ({"grid": [[0]]}, None)
     assert read_map(tmp_path / "map.png") == ({}, b"PNG")
+
+
+def refusal(read: Callable[[], object]) -> str:
+    """The sentence that a call is refused with, in a thread that holds up nobody if it waits."""
+    said: Queue[str] = Queue()
+
+    def run() -> None:
+        with pytest.raises(UnreadableFile) as refused:
+            read()
+        said.put(str(refused.value))
+
+    Thread(target=run, daemon=True).start()
+    return said.get(timeout=60)
+
+
+READERS: list[Callable[[Path], object]] = [
+    read_layer,
+    read_object,
+    read_map,
+    lambda path: read_request([path]),
+    lambda path: read_request([path], "fleet"),
+    lambda path: read_request([path.with_name("a.csv"), path]),
+]
+
+
+@pytest.mark.parametrize("read", READERS)
+def test_a_pipe_is_read_only_where_a_program_writes_into_it(
+    tmp_path: Path, read: Callable[[Path], object]
+) -> None:
+    written(tmp_path, ("a.csv", "1,2\n3,4\n5,6\n"))
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    demand = "must be a file, or a pipe that a program writes into"
+    assert refusal(lambda: read(pipe)) == f"{pipe}: {demand}"
+    descriptor = os.open(pipe, os.O_RDWR)  # what a program has open that writes nothing yet
+    writer = Timer(0.2, lambda: (os.write(descriptor, b"{ no table"), os.close(descriptor)))
+    writer.start()
+    assert demand not in refusal(lambda: read(pipe))
+    writer.join()
 
 
 def test_costs_on_a_map_are_a_table(tmp_path: Path) -> None:

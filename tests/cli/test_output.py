@@ -5,25 +5,25 @@ import io
 import json
 from typing import Any
 
-import numpy as np
 import pytest
 from paretour import Front, Plan
 from paretour.values import parse_front
 from rich.console import Console
 
+from service.cli.data import csv_text
 from service.cli.errors import UsageError
 from service.cli.labels import ids_of
 from service.cli.output import (
     OutputFormat,
-    front_as_csv,
     front_as_json,
+    front_as_rows,
     front_as_table,
     front_summary,
     print_chart,
     run_front,
     run_tour,
+    stops_of,
     tour_as_json,
-    tour_as_text,
     tour_summary,
 )
 from tests.helpers.answers import FRONT, NAMED
@@ -56,14 +56,14 @@ def test_json_is_the_answer_of_the_service() -> None:
 
 
 def test_csv_has_a_line_for_each_tour() -> None:
-    rows = list(csv.DictReader(io.StringIO(front_as_csv(THE_FRONT))))
+    rows = list(csv.DictReader(io.StringIO(csv_text(front_as_rows(THE_FRONT)))))
     assert rows[0] == {"angle": "60.0", "length_1": "1.0", "length_2": "2.0", "tour": "0 1 2"}
     assert len(rows) == 2
 
 
 def test_csv_has_names_units_and_ids_where_the_request_had_them() -> None:
     ids = ids_of(NAMED_FRONT)
-    rows = list(csv.DictReader(io.StringIO(front_as_csv(NAMED_FRONT, ids))))
+    rows = list(csv.DictReader(io.StringIO(csv_text(front_as_rows(NAMED_FRONT, ids)))))
     first = {"angle": "60.0", "way (m)": "1.0", "risk [red]$": "2.0", "tour": 'depot "b 2" c'}
     assert rows[0] == first
 
@@ -105,7 +105,7 @@ def test_a_summary_says_how_good_a_front_is(changed: dict[str, Any], words: str)
 
 def test_a_tour_is_its_cities_or_an_item_of_the_front() -> None:
     tour = THE_FRONT.nearest(60)
-    assert tour_as_text(np.array([0, 1, 2])) == "0 1 2"
+    assert stops_of(tour.tour) == [0, 1, 2]
     assert json.loads(tour_as_json(tour)) == FRONT["front"][0]  # type: ignore[index]
     assert tour_summary(THE_FRONT, tour) == "balance 0.000, angle 60.00, lengths 1 and 2"
 

@@ -1,5 +1,6 @@
 """Text of files and servers reaches a terminal without what a terminal would obey."""
 
+import csv
 import io
 import json
 import logging
@@ -15,7 +16,7 @@ from typer.testing import CliRunner
 
 from service.cli import backends
 from service.cli.commands import app
-from service.cli.data import csv_text, print_data
+from service.cli.data import csv_text, print_csv, print_data
 from service.cli.labels import labels_of, lengths_as_text
 from service.errors.printable import printable
 from service.telemetry import PlainFormatter
@@ -105,6 +106,21 @@ def test_data_is_harmless_on_a_terminal_and_elsewhere_as_it_is(
     print_data("a,\x1b[31mred\nb,\u202ec")
     expected = "a,?[31mred\nb,?c\n" if stream.isatty() else "a,\x1b[31mred\nb,\u202ec\n"
     assert stream.getvalue() == expected
+
+
+def test_a_row_with_line_breaks_in_it_is_one_line_on_a_terminal_and_elsewhere_as_it_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rows = [("a\nb", 1.5, csv_text([("c\r\n=end", "d")], delimiter=" ")), ("e", 2, "f")]
+    for stream in (Terminal(), io.StringIO()):
+        monkeypatch.setattr("sys.stdout", stream)
+        print_csv(rows)
+        text = stream.getvalue()
+        if stream.isatty():
+            assert len(text.splitlines()) == len(rows)
+            assert OBEYED.search(text) is None
+        else:
+            assert [row[0] for row in csv.reader(io.StringIO(text, newline=""))] == ["a\nb", "e"]
 
 
 def test_names_that_a_service_gives_are_labels_without_escape_sequences() -> None:

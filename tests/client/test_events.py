@@ -36,3 +36,12 @@ def test_a_page_in_place_of_the_events_is_a_broken_connection(connect: Connect) 
     assert list(connect(transport=service).job("f").progress()) == []
     assert len(service.requests) == 2
     assert service.requests[0].headers["accept"] == "text/event-stream"
+
+
+def test_a_stream_that_always_begins_alike_and_ends_is_not_followed_for_ever(
+    connect: Connect,
+) -> None:
+    service = Answers(*[events(status("later"))] * 9)
+    with pytest.raises(httpx.RemoteProtocolError, match="ended before the job did"):
+        list(connect(transport=service, patience=1.5).job("f").progress())
+    assert len(service.requests) < 9

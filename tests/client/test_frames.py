@@ -1,6 +1,8 @@
 """DataFrames in place of arrays and of stops, in requests of the client."""
 
 import json
+import re
+from decimal import Decimal
 from io import BytesIO
 from typing import Any
 
@@ -59,3 +61,113 @@ def test_a_frame_of_stops_without_a_place_is_refused_with_what_it_lacks() -> Non
     request: Any = {"stops": STOPS.drop(columns="Lon")}
     with pytest.raises(ValueError, match=r"stops must have a column lon or lng or longitude, got"):
         front_plan(request)
+
+
+PLACES = pd.DataFrame({"id": ["a", "b"], "lat": [60.1, 60.2], "lon": [24.9, 25.0]}, [5, 6])
+PLANES = pd.DataFrame([[0.0, 1, 2, 3], [4, 5, 6, 7]], columns=["x", "y", "u", "v"])
+
+
+def at(frame: pd.DataFrame, row: int, column: Any, cell: Any) -> pd.DataFrame:
+    """A frame with another cell."""
+    changed = frame.astype(object)
+    changed.iat[row, list(frame.columns).index(column)] = cell
+    return changed
+
+
+EMPTY = [None, np.nan, pd.NA, pd.NaT]
+NO_NUMBERS = [*EMPTY, -np.inf, "60.1", pd.Timestamp(0), 1j, [1.0], "x" * 500]
+NAMED: list[tuple[dict[str, Any], str]] = [
+    *(
+        ({"coordinates": at(PLANES, 1, "u", cell)}, "coordinates: row 1, column 'u' must be a n")
+        for cell in [*NO_NUMBERS, np.inf]
+    ),
+    *(
+        ({"matrices": [COSTS, at(COSTS, 0, "b", cell)]}, "matrices: row 'a', column 'b' must be a")
+        for cell in NO_NUMBERS
+    ),
+    *(
+        ({"stops": at(PLACES, 1, "lat", cell)}, "stops: row 6, column 'lat' must be a number, got")
+        for cell in [*NO_NUMBERS, np.inf]
+    ),
+    *(
+        ({"stops": at(PLACES, 0, "id", cell)}, "stops: row 5, column 'id' must be an id, got")
+        for cell in EMPTY
+    ),
+    *(
+        ({"stops": PLACES.assign(**{name: cell})}, f"stops: row 5, column '{name}' must be")
+        for name in ("demand", "service", "prize", "window")
+        for cell in ("8:00", pd.Timestamp(0), 1j)
+    ),
+    ({"stops": PLACES.assign(window=7)}, "column 'window' must be two times, as [0, 3600], got 7"),
+    (
+        {"stops": PLACES.set_axis(["id", "lat", "lat"], axis=1).assign(lon=1)},
+        "stops must have one column lat, got 'id', 'lat', 'lat', 'lon'",
+    ),
+    ({"stops": PLACES.assign(LAT=1)}, "stops must have one column lat, got"),
+    ({"stops": PLACES["lat"]}, "stops must have a column id or name, got none"),
+    ({"stops": PLACES.set_index("id")}, "stops must have a column id or name, got 'lat', 'lon'"),
+    ({"coordinates": PLANES["u"].replace(6, np.nan)}, "coordinates: row 1 must be a number, got"),
+    (
+        {"matrices": [COSTS, COSTS[["b", "a"]]]},
+        "matrices must have its rows and columns in the same order",
+    ),
+]
+
+
+@pytest.mark.parametrize(("request_", "sentence"), NAMED)
+def test_a_frame_with_a_cell_that_cannot_be_sent_is_refused_by_row_and_column(
+    request_: Any, sentence: str
+) -> None:
+    for plan in (front_plan, fleet_plan):
+        with pytest.raises(ValueError, match=f"^.*{re.escape(sentence)}") as refused:
+            plan(request_)
+        assert len(str(refused.value)) < 250
+
+
+@pytest.mark.parametrize("cell", EMPTY)
+def test_the_diagonal_of_costs_is_disregarded(cell: Any) -> None:
+    plan = front_plan({"matrices": [at(COSTS, 1, "b", cell), COSTS]})
+    assert plan.file is not None
+    np.testing.assert_array_equal(np.load(BytesIO(plan.file.content))[0], COSTS)
+
+
+@pytest.mark.parametrize(
+    ("ids", "sent"),
+    [
+        ([1.0, 2.0], ["1", "2"]),
+        ([1.5, 2.0], ["1.5", "2.0"]),
+        ([1.0, "b"], ["1", "b"]),
+        (["1.0", 7], ["1.0", "7"]),
+        (pd.array([1, 2], dtype="Int64"), ["1", "2"]),
+    ],
+)
+def test_ids_that_are_whole_numbers_have_no_fraction(ids: Any, sent: list[str]) -> None:
+    body = json.loads(front_plan({"stops": PLACES.assign(id=ids)}).json)
+    assert [stop["id"] for stop in body["stops"]] == sent
+
+
+def test_empty_cells_of_what_a_stop_may_lack_are_left_out() -> None:
+    frame = PLACES.assign(
+        demand=pd.array([3, None], dtype="Int64"),
+        prize=[pd.NA, 4],
+        window=[[0, 60], None],
+        service=[np.nan, 5],
+        note=["", None],
+    )
+    first, second = json.loads(fleet_plan({"stops": frame}).json)["stops"]
+    assert first == {"id": "a", "location": [24.9, 60.1], "demand": [3], "window": [0, 60]}
+    assert second == {"id": "b", "location": [25.0, 60.2], "prize": 4, "service": 5}
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        at(PLANES, 0, "x", Decimal("0.5")),
+        PLANES.astype("Float64"),
+        PLANES.astype("Int64"),
+        PLANES.astype("float32"),
+    ],
+)
+def test_numbers_of_any_type_are_sent_as_numbers(frame: pd.DataFrame) -> None:
+    body = json.loads(front_plan({"coordinates": frame}).json)
+    assert body["coordinates"] == frame.astype(float).to_numpy().tolist()

@@ -1,15 +1,10 @@
 """Broken files, 2,000 of them from a seed: each is read or refused in a sentence, and harmless."""
 
 import random
-from pathlib import Path
 
 import pytest
-import typer
 from pydantic_core import to_json
 
-from service.cli.errors import exit_on_error
-from service.cli.fleets.command import read_fleet
-from service.cli.plans import plan_cities, plan_map
 from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile, UnreadableFile
 from tests.files.test_examples import FOLDER
@@ -51,28 +46,6 @@ def test_a_broken_file_is_read_or_refused_in_a_sentence() -> None:
         assert harmless(said), number
         assert len(said) < 4000, number
     assert 200 < refused < 1900
-
-
-def test_the_command_says_what_is_wrong_with_a_broken_file(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    for number in range(COUNT):
-        file = broken(number)
-        path = tmp_path / file.name
-        path.write_bytes(file.data)
-        code = 2
-        try:
-            with exit_on_error():
-                if number % 3 == 0:
-                    plan_cities(path, options={})
-                elif number % 3 == 1:
-                    read_fleet(path, {})
-                else:
-                    plan_map(path, None, {"cell_size": 1, "spacing": 1})
-        except typer.Exit as ended:
-            code = ended.exit_code
-        assert code == 2, number
-        assert harmless(capsys.readouterr().err), number
 
 
 @pytest.mark.parametrize("piece", [b"\n", b" ", b"A:\n", b";\n", b"1,", b"[", b'"', b"POINT("])

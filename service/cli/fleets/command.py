@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 from typer import Option
 
-from service.cli.options import ApiKey, AsJson, FleetFile, Seed, TimeLimit, Url
+from service.cli.options import ApiKey, AsJson, FleetFile, Seed, TimeLimit, Url, VehiclesFile
 
 if TYPE_CHECKING:
     from paretour import Plan
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 def fleet(  # noqa: PLR0913  an option each
     file: FleetFile,
+    vehicles: VehiclesFile = None,
     time_limit: TimeLimit = None,
     size: Annotated[int | None, Option(help="The most plans to give.", show_default="100")] = None,
     seed: Seed = None,
@@ -26,28 +27,30 @@ def fleet(  # noqa: PLR0913  an option each
     from rich.console import Console
 
     from service.cli.backends import backend_for
-    from service.cli.data import print_data
+    from service.cli.data import print_csv, print_data
     from service.cli.errors import UsageError, exit_on_error
-    from service.cli.fleets.output import plans_as_csv, plans_as_table
+    from service.cli.fleets.output import plans_as_rows, plans_as_table
 
     console = Console(stderr=True)
     with exit_on_error():
         if as_json and as_csv:
             raise UsageError("a front is printed as --json or --csv, not as both")
-        plan = read_fleet(file, {"time_limit": time_limit, "size": size, "seed": seed})
+        plan = read_fleet(file, vehicles, {"time_limit": time_limit, "size": size, "seed": seed})
         front = backend_for(url, api_key).fleet(plan, console)
     if as_json:
         print_data(json.dumps(front.document))
     elif as_csv:
-        print_data(plans_as_csv(front))
+        print_csv(plans_as_rows(front))
     else:
         Console().print(plans_as_table(front))
     found = f"{len(front.plans)} of {front.points} plans, hypervolume {front.hypervolume:.6g}"
     console.print(found, highlight=False)
 
 
-def read_fleet(file: Path, options: dict[str, Any]) -> "Plan":
-    """Return the plan in a file, with options that were given in place of its members.
+def read_fleet(file: Path, vehicles: Path | None, options: dict[str, Any]) -> "Plan":
+    """Return the plan in a file, or in two of stops and vehicles.
+
+    Options that were given stand in place of its members.
 
     Raises:
         UnreadableFile: It cannot be read.
@@ -58,6 +61,6 @@ def read_fleet(file: Path, options: dict[str, Any]) -> "Plan":
 
     from service.cli.inputs import read_request
 
-    request, _ = read_request([file], "fleet")
+    request, _ = read_request([file] if vehicles is None else [file, vehicles], "fleet")
     given = {name: value for name, value in options.items() if value is not None}
     return fleet_plan(cast(FleetRequest, {**request, **given}))

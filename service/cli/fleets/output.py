@@ -12,8 +12,8 @@ from service.cli.labels import labels_of
 FrontOfPlans = FleetFront | RobotFront
 
 
-def plans_as_csv(front: FrontOfPlans) -> str:
-    """Return a line for each route: its plan, the plan's lengths, who goes it, and its stops."""
+def plans_as_rows(front: FrontOfPlans) -> list[tuple[object, ...]]:
+    """Return a row for each route: its plan, the plan's lengths, who goes it, and its stops."""
     names = [each.name for each in front.objectives]
     who, where = ("robot", "places") if isinstance(front, RobotFront) else ("vehicle", "stops")
     rows: list[tuple[object, ...]] = [
@@ -24,7 +24,7 @@ def plans_as_csv(front: FrontOfPlans) -> str:
             mover, stops = _members(route)
             lengths = (*plan.lengths.tolist(), mover, *route.lengths.tolist())
             rows.append((number, plan.balance, *lengths, stops))
-    return csv_text(rows)
+    return rows
 
 
 def _plans(front: FrontOfPlans) -> Sequence[FleetPlan | RobotPlan]:

@@ -6,9 +6,9 @@ from paretour import Plan, RobotFront
 from rich.console import Console
 
 from service.cli.backends import Backend
-from service.cli.data import print_data
+from service.cli.data import print_csv, print_data
 from service.cli.errors import exit_on_error
-from service.cli.fleets.output import plans_as_csv, plans_as_table
+from service.cli.fleets.output import plans_as_rows, plans_as_table
 from service.cli.labels import labels_of
 from service.cli.output import OutputFormat, check_plot, end_of_search, print_uncovered, three_tours
 from service.cli.terminal_chart import draw_front
@@ -37,7 +37,7 @@ def _print(front: RobotFront, output: OutputFormat, console: Console) -> None:
     if output.as_json:
         print_data(json.dumps(front.document))
     elif output.as_csv:
-        print_data(plans_as_csv(front))
+        print_csv(plans_as_rows(front))
     else:
         if console.is_terminal and not output.as_table:
             _print_chart(front, console)

@@ -18,7 +18,7 @@ class JobEvents:
     """The events of one job: what arrived, whether it has ended, and when to connect again.
 
     It opens no connection itself. Connections may break, or be refused for now, for `patience`
-    seconds between two events.
+    seconds between two events that differ.
     """
 
     def __init__(self, front_id: str, timeout: float, patience: float) -> None:
@@ -28,6 +28,7 @@ class JobEvents:
         self.timeout = timeout
         self._patience = patience
         self._waited = 0.0
+        self._last: ServerSentEvent | None = None
         self._parser = EventParser()
 
     @property
@@ -70,7 +71,8 @@ class JobEvents:
         return [progress for event in events if (progress := self._read(event)) is not None]
 
     def _read(self, event: ServerSentEvent) -> Progress | None:
-        self._waited = 0.0
+        if event != self._last:  # a stream may begin with the same event for ever, and end
+            self._waited, self._last = 0.0, event
         if event.type == "status":
             self.ended = parse_json(event.data, "status").read("status", text) in FINAL_STATUSES
         return Progress.of(parse_json(event.data, "progress")) if event.type == "progress" else None

@@ -1,57 +1,135 @@
 """Members of requests that are DataFrames, as arrays and stops. No library of them is imported."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
+from decimal import Decimal
+from numbers import Integral, Real
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+COSTS = ("matrices", "matrix", "second_matrix", "costs")  # members that hold costs
 _IDS = ("id", "name")
 _LONGITUDES = ("lon", "lng", "longitude")
 _LATITUDES = ("lat", "latitude")
 _OF_FLEETS = ("demand", "service", "prize", "window")
+_MOST_SHOWN = 80  # characters of what was wrong
+_Cells = list[tuple[str, Any]]  # of a column: where each is, and its value
 
 
 def without_frames(value: Any, name: str = "") -> Any:
     """Return members of a request with arrays, or stops, in place of DataFrames.
 
     A DataFrame of `stops` has columns id, lon and lat, and maybe those of a fleet's stops; every
-    other one is a table of numbers.
+    other one is a table of numbers. Costs may be infinite, and empty on the diagonal.
 
     Raises:
-        ValueError: Stops lack a column; the message names it.
+        ValueError: A column is missing, or a cell is not what its column asks for; named.
     """
     if isinstance(value, Mapping):
         return {key: without_frames(each, key) for key, each in value.items()}
     if isinstance(value, list | tuple):
-        return [without_frames(each) for each in value]
+        return [without_frames(each, name) for each in value]
     if not hasattr(value, "to_numpy"):
         return value
-    return _stops(value) if name == "stops" else value.to_numpy()
+    return _stops(value) if name == "stops" else _numbers(value, name)
+
+
+def _numbers(frame: Any, name: str) -> NDArray[Any]:
+    """Return the numbers of a DataFrame, or of one column, as an array."""
+    cells = np.asarray(frame.to_numpy())
+    rows, columns, costs = _labels(frame), list(getattr(frame, "columns", ())), name in COSTS
+    if costs and rows != columns and set(rows) == set(columns):
+        raise ValueError(f"{name} must have its rows and columns in the same order")
+    numbers = cells if cells.dtype.kind in "iuf" else _as_floats(cells)
+    wrong = ~(np.isfinite(numbers) | (costs & np.isposinf(numbers)))
+    if costs and wrong.any() and len(rows) == len(columns):
+        np.fill_diagonal(wrong, val=False)  # which is disregarded
+        numbers = np.where(np.eye(len(rows), dtype=bool), 0, numbers)
+    for at in map(tuple, np.argwhere(wrong)):
+        column = f", column {columns[at[1]]!r}" if columns else ""
+        raise _wrong(f"{name}: row {rows[at[0]]!r}{column}", "a number", cells[at])
+    return numbers
+
+
+def _as_floats(cells: NDArray[Any]) -> NDArray[np.float64]:
+    """Return cells as numbers, those that are none as nan."""
+    floats = [float(each) if isinstance(each, Real | Decimal) else np.nan for each in cells.flat]
+    return np.array(floats, dtype=np.float64).reshape(cells.shape)
 
 
 def _stops(frame: Any) -> list[dict[str, Any]]:
-    columns = {str(column).lower(): column for column in frame.columns}
-    ids = _column(columns, _IDS)
-    longitudes, latitudes = _column(columns, _LONGITUDES), _column(columns, _LATITUDES)
-    places = zip(frame[ids], frame[longitudes], frame[latitudes], strict=True)
+    ids = _ids(_column(frame, _IDS))
+    longitudes, latitudes = (
+        [_number(cell, where) for where, cell in _column(frame, names)]
+        for names in (_LONGITUDES, _LATITUDES)
+    )
     stops: list[dict[str, Any]] = [
-        {"id": str(id_), "location": [float(longitude), float(latitude)]}
-        for id_, longitude, latitude in places
+        {"id": id_, "location": [longitude, latitude]}
+        for id_, longitude, latitude in zip(ids, longitudes, latitudes, strict=True)
     ]
     for name in _OF_FLEETS:
-        if name in columns:
-            for stop, value in zip(stops, frame[columns[name]], strict=True):
-                _add(stop, name, value.tolist() if hasattr(value, "tolist") else value)
+        for stop, (where, cell) in zip(stops, _column(frame, (name,), needed=False), strict=False):
+            if not _is_empty(cell):
+                stop[name] = _of_fleet(name, cell, where)
     return stops
 
 
-def _add(stop: dict[str, Any], name: str, value: Any) -> None:
-    """Add a member to a stop, unless its cell is empty."""
-    if value is None or value != value:  # not a number: how an empty cell is read
-        return
-    stop[name] = [value] if name == "demand" and not isinstance(value, list | tuple) else value
+def _column(frame: Any, names: Sequence[str], *, needed: bool = True) -> _Cells:
+    """Return the cells of the column that has the first of some names; none where it may lack."""
+    columns = list(getattr(frame, "columns", ()))
+    plain = [str(column).lower() for column in columns]
+    name = next((each for each in names if each in plain), None)
+    if name is None and not needed:
+        return []
+    if name is None or plain.count(name) > 1:
+        demand = f"a column {' or '.join(names)}" if name is None else f"one column {name}"
+        came = ", ".join(map(repr, columns))[:_MOST_SHOWN] or "none"
+        raise ValueError(f"stops must have {demand}, got {came}")
+    column = columns[plain.index(name)]
+    rows = zip(_labels(frame), frame[column], strict=True)
+    return [(f"stops: row {row!r}, column {column!r}", cell) for row, cell in rows]
 
 
-def _column(columns: Mapping[str, Any], names: tuple[str, ...]) -> Any:
-    for name in names:
-        if name in columns:
-            return columns[name]
-    raise ValueError(f"stops must have a column {' or '.join(names)}, got {', '.join(columns)}")
+def _labels(frame: Any) -> list[Any]:
+    """Return the label of each row: that of the index, or a number where a library has none."""
+    return list(getattr(frame, "index", range(len(frame))))
+
+
+def _ids(cells: _Cells) -> list[str]:
+    """Return ids as texts: 1 for 1.0 where all are whole, as a column with a gap becomes floats."""
+    for where, cell in cells:
+        if _is_empty(cell):
+            raise _wrong(where, "an id", cell)
+    floats = [cell for _, cell in cells if isinstance(cell, float)]
+    whole = all(each.is_integer() for each in floats)
+    return [str(int(each) if whole and isinstance(each, float) else each) for _, each in cells]
+
+
+def _of_fleet(name: str, cell: Any, where: str) -> float | list[float]:
+    """Return what a vehicle's visit needs: a number, or a list of them."""
+    listed = isinstance(cell, list | tuple | np.ndarray)
+    if name in ("service", "prize"):
+        return _number(cell, where)
+    if name == "window" and not listed:
+        raise _wrong(where, "two times, as [0, 3600]", cell)
+    return [_number(each, where) for each in (cell if listed else [cell])]
+
+
+def _number(cell: Any, where: str) -> float:
+    if not isinstance(cell, Real | Decimal) or not math.isfinite(cell):
+        raise _wrong(where, "a number", cell)
+    return int(cell) if isinstance(cell, Integral) else float(cell)
+
+
+def _is_empty(cell: Any) -> bool:
+    """Return whether a cell is empty: None, or what does not equal itself, as NaN, NaT and NA."""
+    if cell is None:
+        return True
+    same = cell == cell  # NA of pandas for NA
+    return not isinstance(same, np.ndarray) and not (isinstance(same, bool | np.bool_) and same)
+
+
+def _wrong(where: str, demand: str, cell: Any) -> ValueError:
+    return ValueError(f"{where} must be {demand}, got {cell!r:.{_MOST_SHOWN}}")

@@ -1,12 +1,19 @@
 """The members of requests, as types of dictionaries."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal, Required, TypedDict
+from typing import Any, Literal, Protocol, Required, TypedDict
 
 from numpy.typing import ArrayLike
 
 # From each city (row) to each (column); None, or infinity, where there is no way.
 Costs = ArrayLike | Sequence[Sequence[float | None]]
+
+
+class Frame(Protocol):
+    """A DataFrame of any library."""
+
+    def to_numpy(self) -> Any:
+        """Return its cells as an array."""
 
 
 class PlanOptions(TypedDict, total=False):
@@ -60,7 +67,7 @@ class FrontRequest(PlanRequest, total=False):
 
     coordinates: ArrayLike
     matrices: ArrayLike | Sequence[Costs]
-    stops: Sequence[StopRequest]
+    stops: Sequence[StopRequest] | Frame
     objectives: Sequence[ObjectiveRequest]
     start: int | str | None
     end: int | str | None
@@ -105,7 +112,7 @@ class FleetObjectiveRequest(ObjectiveRequest, total=False):
 class FleetRequest(TypedDict, total=False):
     """The members of a request to POST /fleet; the service's /docs explains them."""
 
-    stops: Required[Sequence[FleetStopRequest]]
+    stops: Required[Sequence[FleetStopRequest] | Frame]
     vehicles: Required[Sequence[VehicleRequest]]
     objectives: Required[Sequence[FleetObjectiveRequest]]
     shipments: Sequence[ShipmentRequest]

@@ -9,7 +9,7 @@ from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.frames import without_frames
+from paretour.frames import COSTS, without_frames
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
@@ -21,7 +21,6 @@ from paretour.values import Front
 
 _DEFAULT_TIME_LIMIT = 1.0  # seconds, the service's own
 _OBJECTIVES = 2
-_COSTS = ("matrices", "matrix", "second_matrix", "costs")  # members that hold costs
 _BOUND_SECONDS = 5.0  # that the service takes at most to prove a bound
 
 
@@ -135,7 +134,7 @@ def _with_null(value: Any, is_cost: bool = False) -> Any:
     if is_cost and isinstance(value, float):
         return None if value == np.inf else value
     if isinstance(value, Mapping):
-        return {name: _with_null(each, is_cost or name in _COSTS) for name, each in value.items()}
+        return {name: _with_null(each, is_cost or name in COSTS) for name, each in value.items()}
     if isinstance(value, list | tuple):
         return [_with_null(each, is_cost) for each in value]
     return _with_null(value.tolist(), is_cost) if hasattr(value, "tolist") else value

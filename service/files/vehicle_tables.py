@@ -1,0 +1,230 @@
+"""A table of vehicles beside one of stops: the request for the fleet that both are."""
+
+import re
+
+from service.files.columns import amount_of, fields_of, fields_of_vehicles, is_about_vehicles
+from service.files.fleets import (
+    Stop,
+    Vehicle,
+    all_demand,
+    at_depots,
+    fleet_request,
+    measured,
+    note_left_out,
+    planar,
+    timed,
+)
+from service.files.places import check_range
+from service.files.reading import Reading, Source, quoted
+from service.files.stop_tables import visits_of
+from service.files.table_columns import Columns, columns_of, ids_of
+from service.files.tables import Table
+from service.files.visits import add_visits, is_time, seconds_in, span_in
+
+_ENDS = {"depot": ("start", "end"), "start": ("start",), "end": ("end",)}  # that each place is
+_KILOMETRE = 1000.0
+_IN_KILOMETRES = re.compile(r"km\b", re.IGNORECASE)
+
+
+def has_vehicles(table: Table) -> bool:
+    """Return whether a table is one of vehicles, by its heading."""
+    return table.heading is not None and is_about_vehicles(table.heading)
+
+
+def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]) -> Reading:
+    """Return the request for the stops of one table and the vehicles of the other.
+
+    Raises:
+        UnreadableFile: A field is not what its column asks for, or columns are missing.
+    """
+    source, other = of_stops[0], of_vehicles[0]
+    visits = columns_of(*of_stops)
+    stops, plane = visits_of(visits)
+    units = add_visits(visits, stops)
+    visits.tell()
+    columns = _columns_of_vehicles(other, of_vehicles[1], stops)
+    vehicles = _Vehicles(columns, stops, located=plane is None).read()
+    _add_capacities(columns, vehicles, visits, stops, units)
+    stops, vehicles = at_depots(stops, vehicles)
+    clock = timed(stops) or any("shift" in each for each in vehicles)
+    objectives = planar({"coordinates": plane}) if plane else measured(source, stops, clock)
+    _add_limits(columns, vehicles, clock)
+    _add_fixed(columns, vehicles, located=plane is None)
+    columns.tell()
+    request = fleet_request(stops, vehicles, objectives)
+    return Reading(
+        "fleet",
+        request,
+        f"{source.name}, {other.name}",
+        (*source.notes, *other.notes),
+        (*source.columns, *other.columns),
+    )
+
+
+def _columns_of_vehicles(source: Source, table: Table, stops: list[Stop]) -> Columns:
+    """Return what the columns are taken for; start and end by their fields: times, or stops."""
+    of_stops = {"latitude", "x", "place", "demand"} & set(fields_of(table.heading or []))
+    if table.heading is None or (of_stops and not is_about_vehicles(table.heading)):
+        raise source.refusal("must have columns of vehicles, as capacity, shift start, shift end")
+    columns = Columns(source, table, table.heading, fields_of_vehicles(table.heading))
+    ids = {stop["id"] for stop in stops}
+    for end, bound in (("start", "shift_from"), ("end", "shift_to")):
+        if (at := columns.find(end)) is None or bound in columns.fields:
+            continue
+        texts = {text for _, row in table.rows if (text := row[at])}
+        if not texts & ids and all(map(is_time, texts)):
+            columns.fields[at] = bound
+    return columns
+
+
+class _Vehicles:
+    """Reads the rows of a table of vehicles; a place that is no stop yet becomes one."""
+
+    def __init__(self, columns: Columns, stops: list[Stop], *, located: bool) -> None:
+        self._columns = columns
+        self._source = columns.source
+        self._stops = stops
+        self._located = located
+        self._ids = {stop["id"] for stop in stops}
+        self._places: dict[tuple[float, ...], str] = {}
+
+    def read(self) -> list[Vehicle]:
+        """Return the vehicles, with ids, counts, places and shifts."""
+        columns = self._columns
+        rows = range(len(columns.table.rows))
+        if "id" in columns.fields:
+            ids = ids_of(columns)
+        else:
+            ids = [f"vehicle {row + 1}" for row in rows]
+            self._source.note("ids", "No column has names of vehicles: they are numbered from 1.")
+        if (at := columns.find("skills")) is not None:
+            columns.fields[at] = None
+            note_left_out(self._source, quoted(columns.names[at]))
+        return [self._vehicle(row, id_) for row, id_ in zip(rows, ids, strict=True)]
+
+    def _vehicle(self, row: int, id_: str) -> Vehicle:
+        columns = self._columns
+        vehicle: Vehicle = {"id": id_}
+        if (at := columns.find("count")) is not None and columns.text(row, at):
+            vehicle["count"] = _whole(columns, row, at)
+        for place, ends in _ENDS.items():
+            if name := self._place(row, place, id_):
+                vehicle |= dict.fromkeys(ends, name)
+        if shift := span_in(columns, row, "shift"):
+            vehicle["shift"] = shift
+        return vehicle
+
+    def _place(self, row: int, place: str, vehicle: str) -> str | None:
+        """Return the id of the stop where a vehicle starts or ends, given as such or as a place."""
+        columns = self._columns
+        at = columns.find(place)
+        if at is not None and (text := " ".join(columns.text(row, at).split())):
+            if text not in self._ids:
+                demand = f"{columns.where(row, at)} must be the id of a stop"
+                raise self._source.refusal(f"{demand}, got {quoted(text)}")
+            return text
+        longitude, latitude = columns.find(f"{place}_longitude"), columns.find(f"{place}_latitude")
+        if longitude is None or latitude is None:
+            return None
+        if not columns.text(row, longitude) and not columns.text(row, latitude):
+            return None
+        if not self._located:
+            demand = f"{columns.where(row, latitude)} must be empty, as stops have x and y"
+            raise self._source.refusal(demand)
+        location = [columns.number(row, longitude), columns.number(row, latitude)]
+        check_range(self._source, location, columns.where(row, latitude))
+        name = self._places.setdefault(tuple(location), f"{place} of {vehicle}")
+        if name not in self._ids:
+            self._ids.add(name)
+            self._stops.append({"id": name, "location": location})
+        return name
+
+
+def _add_capacities(
+    columns: Columns, vehicles: list[Vehicle], visits: Columns, stops: list[Stop], units: int
+) -> None:
+    """Add capacities, in the units and the order of the demands; else they hold all demand."""
+    demands = [at for at, each in enumerate(visits.fields) if each == "demand"]
+    found = [at for at, each in enumerate(columns.fields) if each == "capacity"]
+    if not demands:
+        for at in found:
+            columns.fields[at] = None
+            note_left_out(columns.source, f"{quoted(columns.names[at])} without demands of stops")
+        return
+    if not found:
+        text = f"No column has a capacity: each vehicle holds all demand, {all_demand(stops)}."
+        columns.source.note("vehicle", text)
+        for vehicle in vehicles:
+            vehicle["capacity"] = all_demand(stops)
+        return
+    if len(found) != len(demands):
+        demand = f"must have a column of capacity for each demand of {visits.source.name}"
+        raise columns.source.refusal(f"{demand}, {len(demands)}, got {len(found)}")
+    amounts = [amount_of(visits.names[at]) for at in demands]
+    by_amount = {amount_of(columns.names[at]): at for at in found}
+    if by_amount.keys() == set(amounts) and len(by_amount) == len(amounts):
+        found = [by_amount[amount] for amount in amounts]
+    for row, vehicle in enumerate(vehicles):
+        vehicle["capacity"] = [int(_amount(columns, row, at) * units) for at in found]
+
+
+def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
+    """Add the longest route: its time where there is a clock, else its length."""
+    used, left_out = "longest_time", "longest_distance"
+    if not clock:
+        used, left_out = left_out, used
+    if (at := columns.find(left_out)) is not None:
+        columns.fields[at] = None
+        note_left_out(
+            columns.source, f"{quoted(columns.names[at])} {'with' if clock else 'without'} times"
+        )
+    if (at := columns.find(used)) is None:
+        return
+    for row, vehicle in enumerate(vehicles):
+        if columns.text(row, at):
+            unit = _KILOMETRE if _IN_KILOMETRES.search(columns.names[at]) else 1.0
+            vehicle["longest"] = (
+                seconds_in(columns, row, at) if clock else unit * _amount(columns, row, at)
+            )
+
+
+def _add_fixed(columns: Columns, vehicles: list[Vehicle], *, located: bool) -> None:
+    """Add what a vehicle costs if it is used, as the length that costs as much."""
+    rates = _rates(columns)
+    if (at := columns.find("fixed")) is not None:
+        metre, means = 1.0, "what the distance grows by if a vehicle is used"
+        if len(rates) == 1 and located:
+            metre, means = rates.pop() / _KILOMETRE, "as many metres as cost as much"
+        columns.source.note("fixed", f"{quoted(columns.names[at])} is {means}.")
+        for row, vehicle in enumerate(vehicles):
+            if columns.text(row, at):
+                vehicle["fixed"] = _amount(columns, row, at) / metre
+
+
+def _rates(columns: Columns) -> set[float]:
+    """Return the costs of a kilometre, and note where they differ, as no plan can tell them."""
+    at = columns.find("per_km")
+    if at is None:
+        return set()
+    rates = {_amount(columns, row, at) for row in range(len(columns.table.rows))}
+    if len(rates) > 1 or 0.0 in rates:
+        columns.fields[at] = None
+        note_left_out(columns.source, f"{quoted(columns.names[at])}, which differs by vehicle,")
+    return rates - {0.0}
+
+
+def _whole(columns: Columns, row: int, at: int) -> int:
+    number = columns.number(row, at)
+    if number < 1 or not number.is_integer():
+        demand = f"{columns.where(row, at)} must be a whole number from 1"
+        raise columns.source.refusal(f"{demand}, got {quoted(columns.text(row, at))}")
+    return int(number)
+
+
+def _amount(columns: Columns, row: int, at: int) -> float:
+    number = columns.number(row, at)
+    if number < 0:
+        raise columns.source.refusal(
+            f"{columns.where(row, at)} must not be negative, got {number:g}"
+        )
+    return number
