@@ -99,15 +99,10 @@ def plan_fleet(
     if constructor is not None and not fleet.rules.shipments:
         search.begin_at(constructor)
     terminated = search.run()
-    if not search.found and terminated != "cancelled" and _is_bounded(fleet.rules):
+    if not search.found and terminated != "cancelled" and fleet.rules.has_bounds:
         search = _Search(fleet, options, stop, report, began, loose=True)
         terminated = search.run()
     return search.front(options.size, terminated)
-
-
-def _is_bounded(rules: Rules) -> bool:
-    """Return whether rounding up times or lengths could leave out a plan that keeps every rule."""
-    return rules.has_spans or any(vehicle.longest < inf for vehicle in rules.vehicles)
 
 
 def _constructed(
@@ -152,7 +147,7 @@ class _Search:
         units = Units.of(fleet)
         self._reference_point = units.points(reference_point_of(fleet, options))
         self._translation = Translation(units.fleet, loose)
-        give_up = not loose and _is_bounded(fleet.rules)
+        give_up = not loose and fleet.rules.has_bounds
         self._gives_up = began + options.time_limit / 2 if give_up else inf
         self._archive = SolutionArchive(self._translation)
         self._constructed = 0

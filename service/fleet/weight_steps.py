@@ -23,7 +23,7 @@ def weight_steps(
         yield _weighted(archive, weights, translation, iterations)
     done: set[tuple[Point, Point]] = set()
     while True:
-        points = _in_units(archive.points, translation)
+        points = _in_units(archive.guides, translation)
         edges = [edge for edge in pairwise(_hull(points)) if edge not in done]
         if not edges:
             return
@@ -40,7 +40,7 @@ def _weighted(
     iterations: int,
 ) -> Step:
     """Return a search under weights of both objectives, from the solution that is best there."""
-    points = np.array(_in_units(archive.points, translation))
+    points = np.array(_in_units(archive.guides, translation))
     start = archive.solutions[int((points @ np.array(weights)).argmin())]
     first, second = (max(1, round(STEEPEST * each / max(weights))) for each in weights)
     whole = (first, second) if translation.roles.distance == 0 else (second, first)
