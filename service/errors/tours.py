@@ -1,4 +1,4 @@
-"""The refusal of cities that no tour without a forbidden leg goes through, and names for them."""
+"""The refusal of cities that no tour or plan can have, and names for them."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ class CityNames:
 
 @dataclass(frozen=True)
 class Obstacle:
-    """A reason why there is no tour without a forbidden leg.
+    """A reason why there is no tour without a forbidden leg, or no plan.
 
     Args:
         sentence: With `{cities}` and maybe `{others}` in place of their names, and `{noun}`.
@@ -66,7 +66,7 @@ class Obstacle:
 
 
 class NoTour(Refusal):
-    """There is no tour without a forbidden leg, or none was found.
+    """There is no tour without a forbidden leg or plan of a fleet, or none was found.
 
     Args:
         obstacles: The reasons, one or more.

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import Refusal
+from service.fleet.least_paths import least_paths
 from service.instance import OBJECTIVES, largest_costs, ordinary_costs
 
 Array = NDArray[np.float64]
@@ -220,20 +221,8 @@ def _least_bound(costs: Array, starts: Sequence[int]) -> float:
     if not starts:
         steps = np.where(np.eye(len(costs), dtype=np.bool_), inf, costs).min(axis=0)
         return float(steps.max(where=np.isfinite(steps), initial=0.0))
-    least, bound = np.full(len(costs), inf), 0.0
-    left = np.ones(len(costs), np.bool_)
-    nearest: int | np.intp
-    for nearest in starts:
-        least = np.minimum(least, costs[nearest])
-        left[nearest] = False
-    while left.any():
-        nearest = np.where(left, least, inf).argmin()
-        if not left[nearest] or least[nearest] == inf:
-            break
-        bound = max(bound, float(least[nearest]))
-        left[nearest] = False
-        least = np.minimum(least, costs[nearest])
-    return bound
+    bounds = least_paths(costs, starts, np.maximum)
+    return float(bounds.max(where=np.isfinite(bounds), initial=0.0))
 
 
 def _check_objectives(rules: Rules) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from service.fleet.archive import SolutionArchive
-from service.fleet.fleet import Array
+from service.fleet.least_paths import least_paths
 from service.fleet.scales import UNBOUNDED
 from service.fleet.solver import Step
 from service.fleet.translation import Goal, Translation
@@ -98,21 +98,10 @@ class LimitSteps:
         rules, costs = fleet.rules, self._translation.squeezed.legs[self._maximum]
         alone = np.full(rules.n, np.inf)
         for vehicle in rules.vehicles:
-            there = 0.0 if vehicle.start is None else _shortest(costs, vehicle.start)
-            back = 0.0 if vehicle.end is None else _shortest(costs.T, vehicle.end)
+            there = 0.0 if vehicle.start is None else least_paths(costs, [vehicle.start])
+            back = 0.0 if vehicle.end is None else least_paths(costs.T, [vehicle.end])
             alone = np.minimum(alone, there + back)
         if rules.clock == self._maximum:
             alone += [visit.service for visit in rules.visits]
         required = [s for s in rules.clients if rules.visits[s].prize is None]
         return min(UNBOUNDED, self._limit(float(alone[required].max(initial=0.0))) + _ROUNDED)
-
-
-def _shortest(costs: Array, begin: int) -> Array:
-    """Return the lengths of the shortest paths from a stop to all, as Bellman and Ford do."""
-    lengths = costs[begin]
-    for _ in range(len(costs)):
-        shorter = np.minimum(lengths, (lengths[:, np.newaxis] + costs).min(axis=0))
-        if (shorter == lengths).all():
-            break
-        lengths = shorter
-    return lengths

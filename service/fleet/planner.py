@@ -30,6 +30,7 @@ _REPORT_EVERY = 0.1  # seconds
 _NO_LIMIT = 2**62
 _FORGOTTEN = 0.9  # of the longest pause between two checks of the time, with each check
 _ENUMERATING = 0.5  # of the time limit, after which the search takes over from enumeration
+_FINDING_FAULTS = 0.1  # of the time limit, for necessary conditions
 _BRIEF = 0.25  # seconds for it without a time limit
 _CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
 
@@ -83,7 +84,8 @@ def plan_fleet(
         Cancelled: It was told to stop before it had a plan.
     """
     began = time.monotonic()
-    check_necessary(fleet)
+    checked = began + (_FINDING_FAULTS * options.time_limit or _BRIEF)
+    check_necessary(fleet, lambda: stop() or time.monotonic() > checked)
     if is_enumerable(fleet.rules):
         until = began + (_ENUMERATING * options.time_limit or _BRIEF)
         all_plans = exact_plans(fleet, lambda: stop() or time.monotonic() > until)
