@@ -71,6 +71,8 @@ class SolutionArchive:
             return
         self._compared.add(guide)
         fleet, plan = self._translation.fleet, self._translation.plan(solution)
+        if not weights[0 if self._roles.distance == 0 else 1]:  # nor have its prizes any weight
+            guide = guide[0] + self._translation.extras(plan), guide[1]
         first, second = plan_lengths(fleet, plan)
         if self._is_dominated((first, second)):
             return

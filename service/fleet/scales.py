@@ -134,18 +134,25 @@ def _scaled_bound(value: float, shift: int) -> float:
         return float(np.ldexp(value, shift))
 
 
-def most_total(rules: Rules) -> float:
-    """Return what the costs of all legs of a plan may be together, in the largest leg.
-
-    So that this leg still has enough units.
-    """
-    return _LARGEST / (_HARDEST * _heaviest(rules) * _FINE**2)
+def most_legs(rules: Rules) -> float:
+    """Return what a squeezed leg may cost, in ordinary ones, so that these have enough units."""
+    room = _LARGEST / (8 * rules.n * _heaviest(rules) * _FINE**2)
+    return room / _HARDEST if rules.maximum is None else math.sqrt(room / 2)
 
 
-def scales_of(fleet: Fleet, squeezed: Squeezed, horizon: Horizon) -> tuple[list[float], float]:
-    """Return the powers of ten by which costs are multiplied, and the largest penalty.
+@dataclass(frozen=True)
+class Penalties:
+    """The most that PyVRP may take for a unit over a capacity, and for one over a limit."""
 
-    A unit over a limit must cost more than a leg, and all that could be over must not overflow.
+    load: float
+    limit: float
+
+
+def scales_of(fleet: Fleet, squeezed: Squeezed, horizon: Horizon) -> tuple[list[float], Penalties]:
+    """Return the powers of ten by which costs are multiplied, and the largest penalties.
+
+    A unit over a capacity must cost more than any leg that is not forbidden, and so must one over a
+    limit where limits are swept. All that could be over must not overflow.
 
     Raises:
         Refusal: Times and costs are too far apart.
@@ -154,17 +161,20 @@ def scales_of(fleet: Fleet, squeezed: Squeezed, horizon: Horizon) -> tuple[list[
     largest = squeezed.largest.tolist()
     most = max(1.0, *(total / leg for total, leg in zip(totals, largest, strict=True)))
     heaviest = _heaviest(fleet.rules)
+    highest = max(_HARDEST, 2 * float((squeezed.highest / squeezed.largest).max()))
+    hardest = _HARDEST if fleet.rules.maximum is None else highest
     finest = min(_FINEST, UNBOUNDED / (2 * most))
     if fleet.rules.has_bounds or fleet.rules.maximum is not None:
-        finest = math.sqrt(_LARGEST / (_HARDEST * heaviest)) / math.sqrt(most)
+        finest = math.sqrt(_LARGEST / (hardest * heaviest)) / math.sqrt(most)
     if finest < _COARSEST:
         reason = "times must not be farther apart than {:.1e} costs of a leg, and are {:.1e}"
-        allowed = _LARGEST / (_HARDEST * heaviest * _COARSEST**2)
+        allowed = _LARGEST / (hardest * heaviest * _COARSEST**2)
         raise Refusal("invalid-instance", reason=reason.format(allowed, most))
     digits = [math.floor(math.log10(finest) - math.log10(leg)) for leg in largest]
     scales = [float(f"1e{each}") for each in digits]
-    penalty = _HARDEST * max(s * leg for s, leg in zip(scales, largest, strict=True))
-    return scales, min(penalty, _LARGEST / (heaviest * _largest_load(fleet.rules)))
+    leg = max(scale * leg for scale, leg in zip(scales, largest, strict=True))
+    most_load = _LARGEST / (heaviest * _largest_load(fleet.rules))
+    return scales, Penalties(load=min(highest * leg, most_load), limit=hardest * leg)
 
 
 def _heaviest(rules: Rules) -> int:

@@ -5,6 +5,7 @@ an ordinary plan costs, so only the gaps between such numbers shrink; their orde
 follows squeezed lengths, and plans are compared by their true ones.
 """
 
+import math
 from dataclasses import dataclass
 from math import inf
 
@@ -24,29 +25,32 @@ class Squeezed:
     Args:
         legs: The costs, shape (2, n, n); finite where a leg is forbidden, and higher than others.
         largest: The largest leg that plans are made of, in each objective, shape (2,).
+        highest: The largest leg that is not forbidden, in each objective, shape (2,). Of a sum
+            against a maximum the largest prize or fixed cost if that is more.
         prizes: Of each stop, shape (n,); 0 where it has none.
         fixed: The costs of using a vehicle of each type, shape (v,).
-        changed: Whether any leg that is not forbidden was squeezed.
+        changed: Whether any number was squeezed.
     """
 
     legs: Array
     largest: Array
+    highest: Array
     prizes: Array
     fixed: Array
     changed: bool
 
     @classmethod
-    def of(cls, fleet: Fleet, most_total: float) -> "Squeezed":
+    def of(cls, fleet: Fleet, most_legs: float) -> "Squeezed":
         """Return the squeezed numbers of a fleet.
 
         Args:
             fleet: The fleet.
-            most_total: What the costs of all legs of a plan may be together, in the largest leg.
+            most_legs: What a squeezed leg may cost, in ordinary ones.
         """
         rules = fleet.rules
         prizes = np.array([visit.prize or 0.0 for visit in rules.visits])
         fixed = np.array([vehicle.fixed for vehicle in rules.vehicles])
-        legs, largest = np.empty_like(fleet.costs), np.empty(len(fleet.costs))
+        legs, (largest, highest) = np.empty_like(fleet.costs), np.empty((2, len(fleet.costs)))
         changed = False
         for objective, costs in enumerate(fleet.costs):
             ordinary = float(fleet.ordinary_legs[objective]) or 1.0
@@ -54,19 +58,21 @@ class Squeezed:
             extra = np.concatenate((prizes, fixed)) if objective == 0 else np.empty(0)
             numbers = np.concatenate((costs[np.isfinite(costs)], extra))
             of_plan = max(rules.n, _LEAST_LEGS) * ordinary + waiting
-            scale = _Scale.of(numbers, of_plan, 2 * rules.n)
-            most = min(_HIGHEST, most_total / (2 * rules.n * _FORBIDDEN))
-            top = max(of_plan, most * ordinary)
-            squeezed = np.minimum(scale(costs), top)
+            top = max(of_plan, min(_HIGHEST, most_legs) * ordinary)
+            scale = _Scale.of(numbers, of_plan, top, 2 * rules.n)
+            squeezed = scale(costs)
             forbidden = np.isinf(costs)
-            changed = changed or bool((squeezed < costs)[~forbidden].any())
-            highest = squeezed.max(where=~forbidden, initial=of_plan)
-            legs[objective] = np.where(forbidden, _FORBIDDEN * highest, squeezed)
-            needed = min(float(scale(fleet.needed_legs[objective])), top)
+            highest[objective] = squeezed.max(where=~forbidden, initial=0.0)
+            no_way = _FORBIDDEN * max(of_plan, float(highest[objective]))
+            legs[objective] = np.where(forbidden, no_way, squeezed)
+            needed = float(scale(fleet.needed_legs[objective]))
             largest[objective] = ordinary if needed <= ordinary else needed + ordinary
+            changed = changed or len(scale.huge) > 0
             if objective == 0:
                 prizes, fixed = scale(prizes), scale(fixed)
-        return cls(legs, largest, prizes, fixed, changed)
+        if rules.maximum is not None:
+            highest[0] = max(highest[0], prizes.max(), fixed.max())
+        return cls(legs, largest, highest, prizes, fixed, changed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,16 +83,20 @@ class _Scale:
     squeezed: Array
 
     @classmethod
-    def of(cls, numbers: Array, ordinary: float, ratio: float) -> "_Scale":
+    def of(cls, numbers: Array, ordinary: float, top: float, ratio: float) -> "_Scale":
         """Return the scale of numbers, for what an ordinary plan costs.
 
-        The least huge number becomes as much. The ratio is what two neighbouring ones may have, at
-        most: a plan with one of the higher then costs more than one with any number of the lower.
+        The least huge number becomes as much, and the greatest the top at most. The ratio is what
+        two neighbouring ones have, at most: a plan with one of the higher then costs more than one
+        with any number of the lower.
         """
         huge = np.unique(numbers[numbers > ordinary])
         ratios = huge / np.concatenate((huge[:1], huge[:-1]))
-        with np.errstate(over="ignore"):
-            return cls(huge, ordinary * np.minimum(ratios, ratio).cumprod())
+        steps = np.log(np.minimum(ratios, ratio)).cumsum()
+        most = math.log(top / ordinary)
+        if len(huge) and steps[-1] > most:
+            steps *= most / steps[-1]
+        return cls(huge, ordinary * np.exp(steps))
 
     def __call__(self, numbers: Array) -> Array:
         """Return squeezed numbers; infinite ones stay so."""

@@ -15,12 +15,13 @@ import numpy as np
 import pyvrp
 from numpy.typing import NDArray
 
+from service.fleet.evaluation import unassigned
 from service.fleet.fleet import Array, Fleet, VehicleType
 from service.fleet.plans import Plan, Route
 from service.fleet.scales import (
     UNBOUNDED,
     Horizon,
-    most_total,
+    most_legs,
     round_down,
     round_up,
     scales_of,
@@ -82,10 +83,10 @@ class Translation:
         self.anywhere = rules.n
         self._depots = [*sorted(rules.depots), self.anywhere]
         self._singles = [stop for stop in rules.clients if stop not in rules.shipped]
-        self.squeezed = Squeezed.of(fleet, most_total(rules))
+        self.squeezed = Squeezed.of(fleet, most_legs(rules))
         clock = 0 if rules.clock is None else rules.clock
         self._horizon = Horizon.of(rules, float(self.squeezed.largest[clock]))
-        scales, self.max_penalty = scales_of(fleet, self.squeezed, self._horizon)
+        scales, self.penalties = scales_of(fleet, self.squeezed, self._horizon)
         duration = self.roles.duration
         self.distance_scale = scales[self.roles.distance]
         self.duration_scale = 1.0 if duration is None else scales[duration]
@@ -158,6 +159,12 @@ class Translation:
                 if (visits := [each for each in route.schedule() if not each.is_depot()])
             )
         )
+
+    def extras(self, plan: Plan) -> float:
+        """Return the prizes that a plan loses and its fixed costs, all squeezed."""
+        lost = self.squeezed.prizes[unassigned(self.fleet.rules, plan)]
+        used = self.squeezed.fixed[[route.vehicle for route in plan.routes]]
+        return float(lost.sum() + used.sum())
 
     def solution(self, data: pyvrp.ProblemData, plan: Plan) -> pyvrp.Solution:
         """Return the solution of a plan in data that were made here."""
