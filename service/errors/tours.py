@@ -1,4 +1,4 @@
-"""Refuse an instance whose every tour has a forbidden leg, and name the cities at fault."""
+"""Refuse cities that no tour or plan can have, and name them."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ class CityNames:
 
 @dataclass(frozen=True)
 class Obstacle:
-    """A reason why every tour has a forbidden leg.
+    """A reason why every tour has a forbidden leg, or why a fleet has no plan.
 
     Args:
         sentence: A template with the fields `{cities}`, `{noun}` and optionally `{others}`.
@@ -66,7 +66,7 @@ class Obstacle:
 
 
 class NoTour(Refusal):
-    """Every tour has a forbidden leg, or no other tour was found.
+    """Every tour has a forbidden leg, a fleet has no plan, or none was found.
 
     Args:
         obstacles: The reasons, one or more.

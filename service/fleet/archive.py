@@ -2,14 +2,15 @@
 
 from bisect import bisect_left, bisect_right
 from math import inf
-from operator import neg
 
 import pyvrp
 
-from service.fleet.evaluation import violations
+from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.translation import Translation
 
 Point = tuple[float, float]
+_ROUNDING = 1e-14  # relative, of a sum of doubles: plans of the same lengths differ by as much
+_ROUNDED = 4  # units of each visit: two legs, a service and a window
 
 
 class SolutionArchive:
@@ -28,8 +29,12 @@ class SolutionArchive:
         self._any_distance = limited is not None and by_distance and unlimited
         by_duration = limited is not None and not by_distance
         self._any_time = by_duration and unlimited and not rules.has_spans
+        visits = len(rules.clients) + 1
+        self._slack = [_ROUNDED * visits / translation.scale(objective) for objective in (0, 1)]
         self._firsts: list[float] = []
         self._seconds: list[float] = []
+        self.guides: list[Point] = []  # lengths as PyVRP has them: rounded up, and squeezed
+        self._compared: set[Point] = set()  # such lengths of solutions whose true ones are known
         self.solutions: list[pyvrp.Solution] = []
         self.version = 0  # the number of solutions that were added
 
@@ -38,27 +43,16 @@ class SolutionArchive:
 
     @property
     def points(self) -> list[Point]:
-        """The lengths of the solutions, as PyVRP rounds them."""
+        """The lengths of the solutions."""
         return list(zip(self._firsts, self._seconds, strict=True))
 
-    def length(self, index: int, objective: int) -> float:
-        """Return a length of a solution, as PyVRP rounds it."""
-        return (self._firsts, self._seconds)[objective][index]
-
-    def least(self, objective: int) -> float:
-        """Return the least length in an objective."""
-        return self._firsts[0] if objective == 0 else self._seconds[-1]
-
-    def most(self, objective: int) -> float:
-        """Return the greatest length in an objective."""
-        return self._firsts[-1] if objective == 0 else self._seconds[0]
-
     def best_within(self, objective: int, length: float) -> int | None:
-        """Return the solution that is best in the other objective, of those not longer in one."""
-        if objective == 0:
-            return bisect_right(self._firsts, length) - 1 if length >= self._firsts[0] else None
-        index = bisect_left(self._seconds, -length, key=neg)
-        return index if index < len(self) else None
+        """Return the solution that is best in the other objective, of those not longer in one.
+
+        By their lengths as PyVRP has them.
+        """
+        within = [index for index, guide in enumerate(self.guides) if guide[objective] <= length]
+        return min(within, key=lambda index: self.guides[index][1 - objective], default=None)
 
     def offer(self, solution: pyvrp.Solution, weights: tuple[int, int]) -> None:
         """Add a solution unless it breaks a rule, or another is as good.
@@ -69,22 +63,35 @@ class SolutionArchive:
         """
         if not self._keeps_rules(solution):
             return
-        first, second = self._point(solution, weights)
-        place = bisect_right(self._firsts, first)
-        if place and self._seconds[place - 1] <= second:
+        guide = self._point(solution, weights)
+        # What PyVRP has is not more than the true lengths, up to rounding.
+        if self._is_dominated((guide[0] - self._slack[0], guide[1] - self._slack[1])):
             return
-        if self._translation.is_rounded and violations(
-            self._translation.fleet, self._translation.plan(solution)
-        ):
+        if guide in self._compared and not self._translation.squeezed.changed:
+            return
+        self._compared.add(guide)
+        fleet, plan = self._translation.fleet, self._translation.plan(solution)
+        if not weights[0 if self._roles.distance == 0 else 1]:  # nor have its prizes any weight
+            guide = guide[0] + self._translation.extras(plan), guide[1]
+        first, second = plan_lengths(fleet, plan)
+        if self._is_dominated((first, second)):
+            return
+        if self._translation.is_rounded and violations(fleet, plan):
             return
         begin = bisect_left(self._firsts, first)
         end = begin
-        while end < len(self) and self._seconds[end] >= second:
+        while end < len(self) and self._seconds[end] * (1 + _ROUNDING) >= second:
             end += 1
         self._firsts[begin:end] = [first]
         self._seconds[begin:end] = [second]
+        self.guides[begin:end] = [guide]
         self.solutions[begin:end] = [solution]
         self.version += 1
+
+    def _is_dominated(self, point: Point) -> bool:
+        """Return whether a solution is as good as a point in both lengths, up to rounding."""
+        place = bisect_right(self._firsts, point[0] * (1 + _ROUNDING))
+        return place > 0 and self._seconds[place - 1] <= point[1] * (1 + _ROUNDING)
 
     def _keeps_rules(self, solution: pyvrp.Solution) -> bool:
         return (

@@ -15,7 +15,8 @@ from service.fleet.fleet import Array, Fleet, Rules
 from service.fleet.plans import Plan, Route, path_of
 from service.instance import OBJECTIVES
 
-_TOLERANCE = 1e-9  # relative, in times and lengths: sums of floats differ by their order
+_TOLERANCE = 1e-9  # of the length of a route: sums of floats differ by their order
+_ROUNDING = 2.0**-52  # relative, of each time of a route
 
 
 @dataclass(frozen=True)
@@ -196,17 +197,14 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
             yield f"a vehicle of type {route.vehicle} holds {most} of {capacity}"
     if rules.clock is not None:
         times = schedule(fleet, route)
-        if _exceeds(times.late, 0.0, times.end):
+        rounding = 2 * _ROUNDING * len(times.arrivals) * times.end
+        if times.late > _TOLERANCE * times.duration + rounding:
             yield f"a vehicle of type {route.vehicle} is late by {times.late:g}"
     if vehicle.longest != inf:
         objective = rules.maximum if rules.clock is None else rules.clock
         assert objective is not None
-        if _exceeds(length := _length(fleet, route, objective), vehicle.longest, length):
+        if (length := _length(fleet, route, objective)) * (1 - _TOLERANCE) > vehicle.longest:
             yield f"a route of length {length:g} is longer than {vehicle.longest:g}"
-
-
-def _exceeds(actual: float, most: float, scale: float) -> bool:
-    return actual > most + _TOLERANCE * scale
 
 
 def _loads(rules: Rules, route: Route, dimension: int) -> Iterator[int]:

@@ -1,5 +1,6 @@
 """Fleets: stops, vehicles and rules, and the costs between the stops."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
@@ -9,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import Refusal
-from service.instance import OBJECTIVES, largest_costs, least_steps, ordinary_costs
+from service.fleet.least_paths import least_paths
+from service.instance import OBJECTIVES, largest_costs, ordinary_costs
 
 Array = NDArray[np.float64]
 Over = Literal["sum", "max"]
 Span = tuple[float, float]
 ALWAYS: Span = (0.0, inf)
-_LEAST_LEGS = 10  # the largest, whose sum no leg is counted above
 
 
 def invalid(part: str, demand: str) -> Refusal:
@@ -139,6 +140,11 @@ class Rules:
         spans = [*(visit.window for visit in self.visits), *(each.shift for each in self.vehicles)]
         return any(span != ALWAYS for span in spans)
 
+    @property
+    def has_bounds(self) -> bool:
+        """Whether anything bounds a time or the length of a route."""
+        return self.has_spans or any(vehicle.longest < inf for vehicle in self.vehicles)
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Fleet:
@@ -168,28 +174,55 @@ class Fleet:
         return bool(np.isinf(self.costs[0]).any())
 
     @cached_property
+    def ordinary_legs(self) -> Array:
+        """The largest cost of a leg that is not an outlier, in each objective, shape (2,)."""
+        return ordinary_costs(self.costs, largest_costs(self.costs))
+
+    @cached_property
+    def needed_legs(self) -> Array:
+        """The least cost, shape (2,), so that legs up to it lead to all stops and back from them.
+
+        Stops to which no way leads do not count.
+        """
+        if (largest_costs(self.costs) <= self.ordinary_legs).all():
+            return np.zeros(OBJECTIVES)
+        starts = _places([vehicle.start for vehicle in self.rules.vehicles], self.rules)
+        ends = _places([vehicle.end for vehicle in self.rules.vehicles], self.rules)
+        return np.array([max(_least_bound(c, starts), _least_bound(c.T, ends)) for c in self.costs])
+
+    @cached_property
     def largest_legs(self) -> Array:
         """The largest cost of a leg that plans are made of, in each objective, shape (2,).
 
         Outliers do not count, but for those without which a stop cannot be left or reached.
         """
-        largest = largest_costs(self.costs)
-        ordinary = ordinary_costs(self.costs, largest)
-        least = np.concatenate(least_steps(self.costs), axis=1)
-        needed = least.max(axis=1, where=np.isfinite(least), initial=0.0)
+        ordinary, needed = self.ordinary_legs, self.needed_legs
         legs: Array = np.where(needed > ordinary, needed + ordinary, ordinary)
-        return np.minimum(legs, largest)
+        return np.minimum(legs, largest_costs(self.costs))
 
-    @cached_property
-    def bounded_costs(self) -> Array:
-        """Costs in which no leg costs much more than plans do, shape (2, n, n).
 
-        No leg costs more than n times the largest leg, for n stops, and a forbidden one costs four
-        times that. The length of a plan that has such a leg is not its true one.
-        """
-        most = max(self.rules.n, _LEAST_LEGS) * self.largest_legs[:, np.newaxis, np.newaxis]
-        bounded: Array = np.where(np.isinf(self.costs), 4 * most, np.minimum(self.costs, most))
-        return bounded
+def _places(ends: Sequence[int | None], rules: Rules) -> list[int]:
+    """Return the stops at which routes start, or end: any stop for an open one.
+
+    Several vehicles with open routes may begin anywhere, so they need no leg but the least.
+    """
+    if None not in ends:
+        return sorted({end for end in ends if end is not None})
+    if sum(vehicle.count for vehicle in rules.vehicles) > 1:
+        return []
+    return [0]
+
+
+def _least_bound(costs: Array, starts: Sequence[int]) -> float:
+    """Return the least cost so that legs up to it lead from some starts to all stops. O(n^2).
+
+    Without starts, so that one leads to each stop.
+    """
+    if not starts:
+        steps = np.where(np.eye(len(costs), dtype=np.bool_), inf, costs).min(axis=0)
+        return float(steps.max(where=np.isfinite(steps), initial=0.0))
+    bounds = least_paths(costs, starts, np.maximum)
+    return float(bounds.max(where=np.isfinite(bounds), initial=0.0))
 
 
 def _check_objectives(rules: Rules) -> None:

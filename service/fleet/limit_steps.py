@@ -5,9 +5,10 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from service.fleet.archive import SolutionArchive
-from service.fleet.fleet import Array
+from service.fleet.least_paths import least_paths
+from service.fleet.scales import UNBOUNDED
 from service.fleet.solver import Step
-from service.fleet.translation import UNBOUNDED, Goal, Translation
+from service.fleet.translation import Goal, Translation
 
 _ROUNDED = 3  # units by which the route to one stop and back is rounded up: two legs and a service
 _UNKNOWN = 0.1  # of the greatest sum: by how much more sums may be where none is known, at least
@@ -34,7 +35,7 @@ class LimitSteps:
         """Yield a search just below the longest route of each solution."""
         done: set[int] = set()
         while True:
-            limits = {self._limit(point[self._maximum]) - 1 for point in self._archive.points}
+            limits = {self._limit(guide[self._maximum]) - 1 for guide in self._archive.guides}
             left = limits - done
             if not left:
                 return
@@ -48,7 +49,7 @@ class LimitSteps:
         Each is at a share of the interval between two others, or the ends, in which the front may
         gain the most hypervolume.
         """
-        least, greatest = self._least_limit(), self._limit(self._archive.most(self._maximum))
+        least, greatest = self._least_limit(), self._limit(max(self._lengths(self._maximum)))
         intervals = [(least, max(least, greatest))]
         yield self._step(least)
         for _ in range(most - 1):
@@ -68,9 +69,13 @@ class LimitSteps:
         archive, summed = self._archive, 1 - self._maximum
         index = archive.best_within(self._maximum, self._length(limit))
         if index is not None:
-            return archive.length(index, summed)
-        most = archive.most(summed)
-        return most + max(most - archive.least(summed), _UNKNOWN * most)
+            return archive.guides[index][summed]
+        sums = self._lengths(summed)
+        most = max(sums)
+        return most + max(most - min(sums), _UNKNOWN * most)
+
+    def _lengths(self, objective: int) -> list[float]:
+        return [guide[objective] for guide in self._archive.guides]
 
     def _step(self, limit: int) -> Step:
         goal = Goal(weights=self._translation.sum_weights, limit=max(0, limit))
@@ -90,24 +95,13 @@ class LimitSteps:
     def _least_limit(self) -> int:
         """Return about the least limit that lets each stop be visited at all."""
         fleet = self._translation.fleet
-        rules, costs = fleet.rules, fleet.bounded_costs[self._maximum]
+        rules, costs = fleet.rules, self._translation.squeezed.legs[self._maximum]
         alone = np.full(rules.n, np.inf)
         for vehicle in rules.vehicles:
-            there = 0.0 if vehicle.start is None else _shortest(costs, vehicle.start)
-            back = 0.0 if vehicle.end is None else _shortest(costs.T, vehicle.end)
+            there = 0.0 if vehicle.start is None else least_paths(costs, [vehicle.start])
+            back = 0.0 if vehicle.end is None else least_paths(costs.T, [vehicle.end])
             alone = np.minimum(alone, there + back)
         if rules.clock == self._maximum:
             alone += [visit.service for visit in rules.visits]
         required = [s for s in rules.clients if rules.visits[s].prize is None]
         return min(UNBOUNDED, self._limit(float(alone[required].max(initial=0.0))) + _ROUNDED)
-
-
-def _shortest(costs: Array, begin: int) -> Array:
-    """Return the lengths of the shortest paths from a stop to all, as Bellman and Ford do."""
-    lengths = costs[begin]
-    for _ in range(len(costs)):
-        shorter = np.minimum(lengths, (lengths[:, np.newaxis] + costs).min(axis=0))
-        if (shorter == lengths).all():
-            break
-        lengths = shorter
-    return lengths

@@ -1,34 +1,45 @@
 """Conditions that every feasible plan needs: the first that fails names what to change."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cache, partial
-from itertools import chain
 
 import numpy as np
+from numpy.typing import NDArray
 
-from service.errors import Refusal
+from service.errors import CityNames, NoTour, Obstacle, Refusal
 from service.fleet.evaluation import route_violations
 from service.fleet.fleet import Array, Fleet, Rules, VehicleType
+from service.fleet.least_paths import least_paths
 from service.fleet.plans import Route
-from service.instance import least_steps
+
+NAMES = CityNames("stop")
 
 
-def check_necessary(fleet: Fleet) -> None:
+def check_necessary(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> None:
     """Raise a refusal where some stop fits no vehicle, or all of them do not fit all vehicles.
 
+    Args:
+        fleet: The fleet.
+        ended: Called often; once it returns True the conditions that take long are left out.
+
     Raises:
-        Refusal: A necessary condition fails; that none does is no proof of a plan.
+        NoTour: A necessary condition fails for some stops.
+        Refusal: One fails for all together. That none does is no proof of a plan.
     """
     rules = fleet.rules
-    reasons = chain(
-        _demands(rules),
-        _totals(rules),
-        _without_ways(fleet),
-        _shipped_too_late(rules),
-        _unreachable(fleet),
-    )
-    for reason in reasons:
-        raise Refusal("no-plan", reason=reason)
+    _refuse(_demands(rules))
+    for total in _totals(rules):
+        raise Refusal("no-plan", reason=total)
+    _refuse(_without_ways(fleet))
+    _refuse(_shipped_too_late(rules))
+    _refuse(_unreachable(fleet, ended))
+
+
+def _refuse(obstacles: Iterator[Obstacle]) -> None:
+    """Raise NoTour where there are obstacles."""
+    if found := list(obstacles):
+        raise NoTour(found, NAMES)
 
 
 def least_lengths(fleet: Fleet) -> Array:
@@ -63,11 +74,11 @@ def _required(rules: Rules) -> list[int]:
     ]
 
 
-def _demands(rules: Rules) -> Iterator[str]:
+def _demands(rules: Rules) -> Iterator[Obstacle]:
     for stop in _required(rules):
         demand = rules.visits[stop].demand
         if demand and not any(_holds(vehicle, demand) for vehicle in rules.vehicles):
-            yield f"the demand of stops/{stop} is over the capacity of every vehicle"
+            yield Obstacle("the demand of {cities} is over the capacity of every vehicle", (stop,))
 
 
 def _holds(vehicle: VehicleType, demand: tuple[int, ...]) -> bool:
@@ -88,46 +99,71 @@ def _totals(rules: Rules) -> Iterator[str]:
             )
 
 
-def _unreachable(fleet: Fleet) -> Iterator[str]:
-    """Name a stop that no vehicle can serve even if it serves nothing else.
+def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
+    """Yield the stops that no vehicle can serve even if it serves nothing else.
 
     Where a detour over another stop may be shorter, that is no necessary condition.
     """
     rules = fleet.rules
-    triangle = cache(partial(_triangle_holds, fleet))
+    if not rules.has_bounds:
+        return
+    triangle = cache(partial(_triangle_holds, fleet, ended))
     deliveries = {each.pickup: (each.pickup, each.delivery) for each in rules.shipments}
     for stop in _required(rules):
         stops = deliveries.get(stop, (stop,))
-        served = any(_serves(fleet, vehicle, stops) for vehicle in range(len(rules.vehicles)))
+        served = any(ended() or _serves(fleet, vehicle, stops) for vehicle in _different(rules))
         if not served and triangle():
-            yield (
-                f"stops/{stop} cannot be reached within its window, the shift and the longest"
-                " route of any vehicle, even on a route of its own"
+            sentence = (
+                "{cities} cannot be reached within its window, the shift and the longest route of"
+                " any vehicle, even on a route of its own"
             )
+            yield Obstacle(sentence, (stop,))
 
 
-def _without_ways(fleet: Fleet) -> Iterator[str]:
-    """Name a stop that must be visited and that no way leads to, or away from."""
+def _without_ways(fleet: Fleet) -> Iterator[Obstacle]:
+    """Yield the stops that must be visited and that no vehicle has a way to, and on to its end."""
     if not fleet.forbids:
         return
-    leaving, entering = (least[0] for least in least_steps(fleet.costs))
-    vehicles = fleet.rules.vehicles
-    for stop in _required(fleet.rules):
-        if np.isinf(entering[stop]) and all(each.start is not None for each in vehicles):
-            yield f"no way leads to stops/{stop} from any other stop"
-        if np.isinf(leaving[stop]) and all(each.end is not None for each in vehicles):
-            yield f"no way leads from stops/{stop} to any other stop"
+    rules, costs = fleet.rules, fleet.costs[0]
+    ends = {(vehicle.start, vehicle.end) for vehicle in rules.vehicles}
+    to = {start: _connected(costs, start) for start in {start for start, _ in ends}}
+    back = {end: _connected(costs.T, end) for end in {end for _, end in ends}}
+    deliveries = {each.pickup: each.delivery for each in rules.shipments}
+    required = _required(rules)
+    for stop in sorted([*required, *(deliveries[s] for s in required if s in deliveries)]):
+        if not any(to[start][stop] for start, _ in ends):
+            yield Obstacle("a way must lead to {cities} from the start of a vehicle", (stop,))
+        elif not any(back[end][stop] for _, end in ends):
+            yield Obstacle("a way must lead from {cities} to the end of a vehicle", (stop,))
+        elif not any(to[start][stop] and back[end][stop] for start, end in ends):
+            sentence = "ways must lead to {cities} from the start of one vehicle, and on to its end"
+            yield Obstacle(sentence, (stop,))
 
 
-def _shipped_too_late(rules: Rules) -> Iterator[str]:
-    """Name a shipment that must be delivered before it can be picked up."""
+def _connected(costs: Array, end: int | None) -> NDArray[np.bool_]:
+    """Return to which stops ways lead from one, shape (n,); from anywhere to all."""
+    if end is None:
+        return np.ones(len(costs), np.bool_)
+    connected: NDArray[np.bool_] = np.isfinite(least_paths(costs, [end]))
+    return connected
+
+
+def _shipped_too_late(rules: Rules) -> Iterator[Obstacle]:
+    """Yield the shipments that must be delivered before they can be picked up."""
     for each in rules.shipments:
         pickup, delivery = rules.visits[each.pickup], rules.visits[each.delivery]
         if pickup.prize is None and delivery.window[1] < pickup.window[0] + pickup.service:
-            yield (
-                f"the window of stops/{each.delivery}, where a shipment is delivered, closes before"
-                f" it can be picked up at stops/{each.pickup}"
+            sentence = (
+                "the window of {cities}, where a shipment is delivered, closes before it can be"
+                " picked up at {others}"
             )
+            yield Obstacle(sentence, (each.delivery,), (each.pickup,))
+
+
+def _different(rules: Rules) -> list[int]:
+    """Return a type of vehicles of each kind that can serve different stops."""
+    kinds = {replace(each, count=1, fixed=0.0): i for i, each in enumerate(rules.vehicles)}
+    return list(kinds.values())
 
 
 def _serves(fleet: Fleet, vehicle: int, stops: tuple[int, ...]) -> bool:
@@ -135,10 +171,11 @@ def _serves(fleet: Fleet, vehicle: int, stops: tuple[int, ...]) -> bool:
     return not any(route_violations(fleet, Route(vehicle, stops)))
 
 
-def _triangle_holds(fleet: Fleet) -> bool:
+def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:
     """Return whether no detour over a stop is shorter, in the objective that is limited.
 
-    Where legs are forbidden, it may be that only a detour leads to a stop.
+    Where legs are forbidden, it may be that only a detour leads to a stop. False, too, where it
+    ended before all detours were tried.
     """
     rules = fleet.rules
     objective = rules.maximum if rules.clock is None else rules.clock
@@ -148,4 +185,6 @@ def _triangle_holds(fleet: Fleet) -> bool:
         return True
     costs = fleet.costs[objective]
     slack = 1e-9 * fleet.largest_legs[objective]
-    return all((costs[:, [k]] + costs[[k]] >= costs - slack).all() for k in range(rules.n))
+    return all(
+        not ended() and (costs[:, [k]] + costs[[k]] >= costs - slack).all() for k in range(rules.n)
+    )

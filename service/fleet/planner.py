@@ -31,6 +31,7 @@ _REPORT_EVERY = 0.1  # seconds
 _NO_LIMIT = 2**62
 _FORGOTTEN = 0.9  # of the longest pause between two checks of the time, with each check
 _ENUMERATING = 0.5  # of the time limit, after which the search takes over from enumeration
+_FINDING_FAULTS = 0.1  # of the time limit, for necessary conditions
 _BRIEF = 0.25  # seconds for it without a time limit
 _CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
 
@@ -84,7 +85,8 @@ def plan_fleet(
         Cancelled: It was told to stop before it had a plan.
     """
     began = time.monotonic()
-    check_necessary(fleet)
+    checked = began + (_FINDING_FAULTS * options.time_limit or _BRIEF)
+    check_necessary(fleet, lambda: stop() or time.monotonic() > checked)
     if is_enumerable(fleet.rules):
         until = began + (_ENUMERATING * options.time_limit or _BRIEF)
         all_plans = exact_plans(fleet, lambda: stop() or time.monotonic() > until)
@@ -100,15 +102,10 @@ def plan_fleet(
     if constructor is not None and not fleet.rules.shipments:
         search.begin_at(constructor)
     terminated = search.run()
-    if not search.found and terminated != "cancelled" and _is_bounded(fleet.rules):
+    if not search.found and terminated != "cancelled" and fleet.rules.has_bounds:
         search = _Search(fleet, options, stop, report, began, loose=True)
         terminated = search.run()
     return search.front(options.size, terminated)
-
-
-def _is_bounded(rules: Rules) -> bool:
-    """Return whether rounding up times or lengths could leave out a plan that keeps every rule."""
-    return rules.has_spans or any(vehicle.longest < inf for vehicle in rules.vehicles)
 
 
 def _constructed(
@@ -153,7 +150,7 @@ class _Search:
         units = Units.of(fleet)
         self._reference_point = units.points(reference_point_of(fleet, options))
         self._translation = Translation(units.fleet, loose)
-        give_up = not loose and _is_bounded(fleet.rules)
+        give_up = not loose and fleet.rules.has_bounds
         self._gives_up = began + options.time_limit / 2 if give_up else inf
         self._archive = SolutionArchive(self._translation)
         self._constructed = 0

@@ -7,11 +7,14 @@ from math import inf
 import numpy as np
 
 from service.errors import Refusal
-from service.fleet.fleet import Array, Fleet, VehicleType, Visit
-from service.instance import OBJECTIVES
+from service.fleet.fleet import Array, Fleet, Rules, VehicleType, Visit
+from service.fleet.squeezing import Squeezed
 
 _LARGEST = 2.0**61  # that a penalty for all routes together may be: PyVRP's integers have 64 bits
+UNBOUNDED = 2**44  # more than every route
 _COARSEST = 1000  # units of the longest leg, at least
+_FINEST = 1e6  # as many at most where nothing is limited: these are no better
+_FINE = 1e4  # as many as no squeezed leg may leave fewer
 _ROUNDING = 1e-12  # relative, of what a float has too much or too little
 STEEPEST = 1000  # weight of one of two sums, with 1 of the other
 _HARDEST = 10  # costs of the longest leg, for one unit over a limit or a capacity
@@ -36,12 +39,14 @@ class Horizon:
     end: float = 0.0
 
     @classmethod
-    def of(cls, fleet: Fleet) -> "Horizon":
-        """Return the horizon of a fleet; of one without a clock no time at all."""
-        rules = fleet.rules
+    def of(cls, rules: Rules, leg: float) -> "Horizon":
+        """Return the horizon of a fleet, whose routes have legs up to a length.
+
+        Without a clock that is no time at all.
+        """
         if rules.clock is None:
             return cls()
-        route = _longest_route(fleet, rules.clock)
+        route = rules.n * leg + _services(rules)
         spans = [visit.window for visit in rules.visits]
         shifts = [vehicle.shift for vehicle in rules.vehicles]
         bounds = [time for span in (*spans, *shifts) for time in span if 0 < time < inf]
@@ -49,13 +54,6 @@ class Horizon:
         begin = max(0.0, first, min(begin for begin, _ in shifts))
         latest = max(begin for begin, _ in (*spans, *shifts))
         return cls(begin, max(begin, latest) + 2 * route)
-
-
-def _longest_route(fleet: Fleet, objective: int) -> float:
-    """Return a bound on the length of a route without waiting."""
-    timed = objective == fleet.rules.clock
-    services = sum(visit.service for visit in fleet.rules.visits) if timed else 0.0
-    return float(fleet.bounded_costs[objective].max(axis=1).sum()) + services
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,36 +134,72 @@ def _scaled_bound(value: float, shift: int) -> float:
         return float(np.ldexp(value, shift))
 
 
-def scales_of(fleet: Fleet, horizon: Horizon) -> tuple[list[float], float]:
-    """Return the powers of ten by which costs are multiplied, and the largest penalty.
+def most_legs(rules: Rules) -> float:
+    """Return what a squeezed leg may cost, in ordinary ones, so that these have enough units."""
+    room = _LARGEST / (8 * rules.n * _heaviest(rules) * _FINE**2)
+    return room / _HARDEST if rules.maximum is None else math.sqrt(room / 2)
 
-    A unit over a limit must cost more than a leg, and all that could be over must not overflow.
+
+@dataclass(frozen=True)
+class Penalties:
+    """The most that PyVRP may take for a unit over a capacity, and for one over a limit."""
+
+    load: float
+    limit: float
+
+
+def scales_of(fleet: Fleet, squeezed: Squeezed, horizon: Horizon) -> tuple[list[float], Penalties]:
+    """Return the powers of ten by which costs are multiplied, and the largest penalties.
+
+    A unit over a capacity must cost more than any leg that is not forbidden, and so must one over a
+    limit where limits are swept. All that could be over must not overflow.
 
     Raises:
-        Refusal: Times, prizes and costs are too far apart.
+        Refusal: Times and costs are too far apart.
     """
-    largest = [float(leg) or 1.0 for leg in fleet.largest_legs]
-    totals = [_largest_total(fleet, objective, horizon) for objective in range(OBJECTIVES)]
+    totals = [_largest_total(fleet, squeezed, objective, horizon) for objective in (0, 1)]
+    largest = squeezed.largest.tolist()
     most = max(1.0, *(total / leg for total, leg in zip(totals, largest, strict=True)))
-    # Penalties are multiplied by weights, as costs are.
-    heaviest = STEEPEST if fleet.rules.maximum is None else 1
-    finest = math.sqrt(_LARGEST / (_HARDEST * heaviest * fleet.rules.n)) / math.sqrt(most)
+    heaviest = _heaviest(fleet.rules)
+    highest = max(_HARDEST, 2 * float((squeezed.highest / squeezed.largest).max()))
+    hardest = _HARDEST if fleet.rules.maximum is None else highest
+    finest = min(_FINEST, UNBOUNDED / (2 * most))
+    if fleet.rules.has_bounds or fleet.rules.maximum is not None:
+        finest = math.sqrt(_LARGEST / (hardest * heaviest)) / math.sqrt(most)
     if finest < _COARSEST:
-        reason = "costs, prizes and times must not be farther apart than {:.1e}, and are {:.1e}"
-        allowed = _LARGEST / (_HARDEST * heaviest * fleet.rules.n * _COARSEST**2)
+        reason = "times must not be farther apart than {:.1e} costs of a leg, and are {:.1e}"
+        allowed = _LARGEST / (hardest * heaviest * _COARSEST**2)
         raise Refusal("invalid-instance", reason=reason.format(allowed, most))
     digits = [math.floor(math.log10(finest) - math.log10(leg)) for leg in largest]
     scales = [float(f"1e{each}") for each in digits]
-    return scales, _HARDEST * max(s * leg for s, leg in zip(scales, largest, strict=True))
+    leg = max(scale * leg for scale, leg in zip(scales, largest, strict=True))
+    most_load = _LARGEST / (heaviest * _largest_load(fleet.rules))
+    return scales, Penalties(load=min(highest * leg, most_load), limit=hardest * leg)
 
 
-def _largest_total(fleet: Fleet, objective: int, horizon: Horizon) -> float:
-    """Return a bound on lengths of routes, on times, and on what is added to the objective."""
-    rules = fleet.rules
-    total = _longest_route(fleet, objective)
-    if objective == 0:
-        total += sum(visit.prize or 0.0 for visit in rules.visits)
-        total += max(vehicle.fixed for vehicle in rules.vehicles)
-    if objective == rules.clock:
-        total += horizon.end - horizon.begin
+def _heaviest(rules: Rules) -> int:
+    """Return the largest weight of a goal: penalties are multiplied by weights, as costs are."""
+    return STEEPEST if rules.maximum is None else 1
+
+
+def _largest_total(fleet: Fleet, squeezed: Squeezed, objective: int, horizon: Horizon) -> float:
+    """Return a bound on the lengths of all routes of a plan, and on what they could be late.
+
+    A leg leads to each visit, and the last of a route away from one. At each visit a route can be
+    late by no more than the horizon.
+    """
+    legs = squeezed.legs[objective]
+    total = float(legs.max(axis=0).sum() + legs.max(axis=1).sum())
+    if objective == fleet.rules.clock:
+        total += _services(fleet.rules) + fleet.rules.n * (horizon.end - horizon.begin)
     return total
+
+
+def _largest_load(rules: Rules) -> int:
+    """Return the most that all vehicles could hold too much, in any dimension; 1 at least."""
+    demands = (visit.demand for visit in rules.visits if visit.demand)
+    return max(1, *(sum(dimension) for dimension in zip(*demands, strict=True)), 1)
+
+
+def _services(rules: Rules) -> float:
+    return sum(visit.service for visit in rules.visits)

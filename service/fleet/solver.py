@@ -15,6 +15,7 @@ from pyvrp.IteratedLocalSearch import (
 )
 from pyvrp.PenaltyManager import PenaltyManager, PenaltyParams
 
+from service.fleet.scales import Penalties
 from service.fleet.translation import Goal, Translation, Weights
 
 _FEW = 100  # stops, of which a search of the whole neighbourhood takes some 50 ms at most
@@ -70,11 +71,7 @@ class Solver:
         goal = step.goal
         data = self._translation.data(goal)
         local_search = self._local_search(data, goal)
-        # A unit over a capacity must cost more than a leg, under the weights as well.
-        max_penalty = self._translation.max_penalty * max(goal.weights)
-        parameters = PenaltyParams(max_penalty=max_penalty)
-        penalties = parameters.midpoint_penalties(data)
-        manager = PenaltyManager(penalties, parameters)
+        manager = _Penalties(data, self._translation.penalties, max(goal.weights))
         initial = self._initial(data, step.start, local_search, manager)
         self._offer(initial, goal.weights)
         watcher = _Watcher(self._offer, self._stop, goal.weights, step.iterations)
@@ -109,6 +106,33 @@ class Solver:
         if self._deadline is not None and time.monotonic() + seconds > self._deadline:
             return random
         return local_search(random, manager.max_cost_evaluator(), exhaustive=True)
+
+
+class _Penalties(PenaltyManager):
+    """PyVRP's penalties, with another greatest one for what is over a limit.
+
+    Args:
+        data: What is searched.
+        most: The greatest penalties.
+        weight: The largest weight of the goal, which multiplies them as it does costs.
+    """
+
+    def __init__(self, data: pyvrp.ProblemData, most: Penalties, weight: int) -> None:
+        parameters = PenaltyParams(max_penalty=weight * most.load)
+        loads, _, _ = parameters.midpoint_penalties(data)
+        self._most_limit = weight * most.limit
+        super().__init__((loads, self._most_limit / 2, self._most_limit / 2), parameters)
+
+    def cost_evaluator(self) -> pyvrp.CostEvaluator:
+        """Return the evaluator of the current penalties."""
+        loads, time, distance = self.penalties()
+        most = self._most_limit
+        return pyvrp.CostEvaluator(loads, min(time, most), min(distance, most))
+
+    def max_cost_evaluator(self) -> pyvrp.CostEvaluator:
+        """Return the evaluator of the greatest penalties."""
+        loads = [self._params.max_penalty] * len(self.penalties()[0])
+        return pyvrp.CostEvaluator(loads, self._most_limit, self._most_limit)
 
 
 class _Watcher(IteratedLocalSearchCallbacks):

@@ -15,11 +15,20 @@ import numpy as np
 import pyvrp
 from numpy.typing import NDArray
 
+from service.fleet.evaluation import unassigned
 from service.fleet.fleet import Array, Fleet, VehicleType
 from service.fleet.plans import Plan, Route
-from service.fleet.scales import Horizon, round_down, round_up, scales_of
+from service.fleet.scales import (
+    UNBOUNDED,
+    Horizon,
+    most_legs,
+    round_down,
+    round_up,
+    scales_of,
+)
+from service.fleet.squeezing import Squeezed
 
-UNBOUNDED = 2**44  # more than every route
+_MOST_EXTRA = 2**50  # a prize or a fixed cost: 500 of them together do not overflow
 Weights = tuple[int, int]
 
 
@@ -74,8 +83,10 @@ class Translation:
         self.anywhere = rules.n
         self._depots = [*sorted(rules.depots), self.anywhere]
         self._singles = [stop for stop in rules.clients if stop not in rules.shipped]
-        self._horizon = Horizon.of(fleet)
-        scales, self.max_penalty = scales_of(fleet, self._horizon)
+        self.squeezed = Squeezed.of(fleet, most_legs(rules))
+        clock = 0 if rules.clock is None else rules.clock
+        self._horizon = Horizon.of(rules, float(self.squeezed.largest[clock]))
+        scales, self.penalties = scales_of(fleet, self.squeezed, self._horizon)
         duration = self.roles.duration
         self.distance_scale = scales[self.roles.distance]
         self.duration_scale = 1.0 if duration is None else scales[duration]
@@ -84,10 +95,10 @@ class Translation:
     @cached_property
     def _matrices(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         distance, duration = self.roles.distance, self.roles.duration
-        distances = self._matrix(self.fleet.bounded_costs[distance], self.distance_scale)
+        distances = self._matrix(self.squeezed.legs[distance], self.distance_scale)
         if duration is None:
             return distances, np.zeros_like(distances)
-        return distances, self._matrix(self.fleet.bounded_costs[duration], self.duration_scale)
+        return distances, self._matrix(self.squeezed.legs[duration], self.duration_scale)
 
     def _matrix(self, costs: Array, scale: float) -> NDArray[np.int64]:
         padded = np.zeros((len(costs) + 1, len(costs) + 1), np.int64)
@@ -124,8 +135,7 @@ class Translation:
         """Return PyVRP's data for a goal."""
         if self._unlimited is None or self._unlimited[0] != goal.weights:
             self._unlimited = goal.weights, self._unlimited_data(Goal(weights=goal.weights))
-        vehicles = [self._vehicle(vehicle, goal) for vehicle in self.fleet.rules.vehicles]
-        return self._unlimited[1].replace(vehicle_types=vehicles)
+        return self._unlimited[1].replace(vehicle_types=self._vehicles(goal))
 
     def _unlimited_data(self, goal: Goal) -> pyvrp.ProblemData:
         distances, durations = self._matrices
@@ -133,7 +143,7 @@ class Translation:
             self._locations,
             [self._client(stop, goal) for stop in self._singles],
             [pyvrp.Depot(location) for location in self._depots],
-            [self._vehicle(vehicle, goal) for vehicle in self.fleet.rules.vehicles],
+            self._vehicles(goal),
             [distances],  # type: ignore[list-item]  # PyVRP's stub means arrays of integers
             [durations],  # type: ignore[list-item]
             [],
@@ -149,6 +159,12 @@ class Translation:
                 if (visits := [each for each in route.schedule() if not each.is_depot()])
             )
         )
+
+    def extras(self, plan: Plan) -> float:
+        """Return the prizes that a plan loses and its fixed costs, all squeezed."""
+        lost = self.squeezed.prizes[unassigned(self.fleet.rules, plan)]
+        used = self.squeezed.fixed[[route.vehicle for route in plan.routes]]
+        return float(lost.sum() + used.sum())
 
     def solution(self, data: pyvrp.ProblemData, plan: Plan) -> pyvrp.Solution:
         """Return the solution of a plan in data that were made here."""
@@ -173,7 +189,8 @@ class Translation:
         rules = self.fleet.rules
         pairs = ((rules.visits[s.pickup], rules.visits[s.delivery]) for s in rules.shipments)
         too_late = any(later.window[1] < earlier.window[0] for earlier, later in pairs)
-        return self._slack > 0 or self.fleet.forbids or too_late
+        changed = self.fleet.forbids or self.squeezed.changed
+        return self._slack > 0 or changed or too_late
 
     def _stop(self, activity: pyvrp.Activity) -> int:
         if activity.is_client():
@@ -191,7 +208,7 @@ class Translation:
             service_duration=service,
             tw_early=early,
             tw_late=late,
-            prize=self._extra(visit.prize or 0.0, goal),
+            prize=self._extra(self.squeezed.prizes[stop], goal),
             required=visit.prize is None,
         )
 
@@ -203,13 +220,17 @@ class Translation:
                 *self._times(each.pickup),
                 *self._times_after(each.delivery, each.pickup),
                 self._load(self.fleet.rules.visits[each.pickup].demand),
-                self._extra(self.fleet.rules.visits[each.pickup].prize or 0.0, goal),
+                self._extra(self.squeezed.prizes[each.pickup], goal),
                 self.fleet.rules.visits[each.pickup].prize is None,
             )
             for each in self.fleet.rules.shipments
         ]
 
-    def _vehicle(self, vehicle: VehicleType, goal: Goal) -> pyvrp.VehicleType:
+    def _vehicles(self, goal: Goal) -> list[pyvrp.VehicleType]:
+        vehicles = zip(self.fleet.rules.vehicles, self.squeezed.fixed, strict=True)
+        return [self._vehicle(vehicle, fixed, goal) for vehicle, fixed in vehicles]
+
+    def _vehicle(self, vehicle: VehicleType, fixed: float, goal: Goal) -> pyvrp.VehicleType:
         distance, duration = goal.weights
         longest_distance, longest_duration = self._longest(vehicle, goal.limit)
         early = self._early(vehicle.shift[0])
@@ -218,7 +239,7 @@ class Translation:
             list(vehicle.capacity),
             self._depot(vehicle.start),
             self._depot(vehicle.end),
-            fixed_cost=self._extra(vehicle.fixed, goal),
+            fixed_cost=self._extra(fixed, goal),
             tw_early=early,
             tw_late=max(early, self._late(vehicle.shift[1])),
             shift_duration=longest_duration,
@@ -244,7 +265,7 @@ class Translation:
         is_distance = self.roles.distance == 0
         weight = goal.weights[0 if is_distance else 1]
         scale = self.distance_scale if is_distance else self.duration_scale
-        return min(round(cost * scale) * weight, UNBOUNDED)
+        return min(round(min(cost * scale, _MOST_EXTRA)) * weight, _MOST_EXTRA)
 
     def _load(self, demand: Sequence[int]) -> list[int]:
         return list(demand or (0,) * self.fleet.rules.dimensions)

@@ -18,12 +18,16 @@ from service.fleet.translation import Goal, Translation
 def weight_steps(
     translation: Translation, archive: SolutionArchive, iterations: int
 ) -> Iterator[Step]:
-    """Yield searches under the weights of both ends of the front, and of all edges of its hull."""
-    for weights in ((STEEPEST, 1), (1, STEEPEST)):
+    """Yield searches under the weights of both ends of the front, and of all edges of its hull.
+
+    No weight outweighs huge numbers of the other objective, so that one has none then, before.
+    """
+    alone = [(1, 0), (0, 1)] if translation.squeezed.changed else []
+    for weights in [*alone, (STEEPEST, 1), (1, STEEPEST)]:
         yield _weighted(archive, weights, translation, iterations)
     done: set[tuple[Point, Point]] = set()
     while True:
-        points = _in_units(archive.points, translation)
+        points = _in_units(archive.guides, translation)
         edges = [edge for edge in pairwise(_hull(points)) if edge not in done]
         if not edges:
             return
@@ -40,11 +44,16 @@ def _weighted(
     iterations: int,
 ) -> Step:
     """Return a search under weights of both objectives, from the solution that is best there."""
-    points = np.array(_in_units(archive.points, translation))
+    points = np.array(_in_units(archive.guides, translation))
     start = archive.solutions[int((points @ np.array(weights)).argmin())]
-    first, second = (max(1, round(STEEPEST * each / max(weights))) for each in weights)
+    first, second = (_whole(each / max(weights)) for each in weights)
     whole = (first, second) if translation.roles.distance == 0 else (second, first)
     return Step(Goal(weights=whole), start, iterations)
+
+
+def _whole(weight: float) -> int:
+    """Return a weight, of which the larger is 1, as a whole number: 0 only where it is none."""
+    return max(1, round(STEEPEST * weight)) if weight else 0
 
 
 def _in_units(points: list[Point], translation: Translation) -> list[Point]:

@@ -109,7 +109,7 @@ def test_a_fleet_without_a_plan_is_refused_with_the_reason(client: httpx.Client)
     request = fleet_request()
     request["stops"][1]["demand"] = [9]
     refused = problem(client.post("/fleet", json=request), 422, "no-plan")
-    assert refused["detail"] == "the demand of stops/1 is over the capacity of every vehicle"
+    assert refused["detail"] == "the demand of stop 'stop-1' is over the capacity of every vehicle"
     accepted = client.post("/fleet", json=request, headers={"Prefer": "respond-async"})
     path = accepted.headers["Location"]
     while (front := client.get(path).json())["status"] in ("queued", "running"):

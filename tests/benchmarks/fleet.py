@@ -31,7 +31,8 @@ from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import Fleet, Rules, VehicleType, Visit
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import Plan
-from service.fleet.translation import UNBOUNDED, Goal, Translation
+from service.fleet.scales import UNBOUNDED
+from service.fleet.translation import Goal, Translation
 from service.pareto import hypervolume, nondominated
 from tests.benchmarks import printed
 from tests.benchmarks.fleet_table import OURS, PLAIN, compared

@@ -9,6 +9,7 @@ import numpy as np
 from service.errors import Refusal
 from service.fleet.fleet import Array, Fleet, Rules, VehicleType, Visit
 from service.fleet.plans import Plan
+from service.fleet.scales import Horizon
 from service.fleet.splitting.optimal_split import (
     RouteCosts,
     best_split,
@@ -16,7 +17,13 @@ from service.fleet.splitting.optimal_split import (
     states_of,
     stock_of,
 )
-from service.fleet.splitting.route_table import Indices, arrays_of, most_stops, route_table
+from service.fleet.splitting.route_table import (
+    FleetArrays,
+    Indices,
+    arrays_of,
+    most_stops,
+    route_table,
+)
 from service.instance import OBJECTIVES
 
 _MOST_ROUTES = 2**22  # in the tables of all sequences together: 64 MB
@@ -49,7 +56,7 @@ class Cutter:
     ) -> None:
         self._fleet = fleet
         self._stop = stop
-        arrays = arrays_of(fleet)
+        arrays = _from_begin(fleet, arrays_of(fleet))
         most = max(most_stops(arrays, sequence) for sequence in sequences)
         routes = len(fleet.rules.vehicles) * len(sequences[0]) * most
         _check_cuttable(fleet, routes, routes * states_of(fleet.rules))
@@ -106,6 +113,18 @@ class Cutter:
             bounded=np.ascontiguousarray(bounded),  # of the layout that is compiled
             skipping=np.array([inf if prize is None else weights[0] * prize for prize in prizes]),
         )
+
+
+def _from_begin(fleet: Fleet, arrays: FleetArrays) -> FleetArrays:
+    """Return arrays whose times count from when the first vehicle may have to leave.
+
+    The tolerance of what is late is relative to times: those since 1970 would allow a second.
+    """
+    if fleet.rules.clock is None:
+        return arrays
+    begin = Horizon.of(fleet.rules, float(fleet.largest_legs[fleet.rules.clock])).begin
+    window, shift = (np.maximum(0.0, spans - begin) for spans in (arrays.window, arrays.shift))
+    return arrays._replace(window=window, shift=shift)
 
 
 def warm_up() -> None:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from service.actor import NamedActor
+from service.errors import NoTour
 from service.fleet.fleet import Fleet
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront
@@ -50,7 +51,10 @@ def run_fleet(
     began = time.perf_counter()
     fleet = subject.fleet()
     timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
-    front = plan_front(task, fleet, actor, stop, reporting(report, encoded))
+    try:
+        front = plan_front(task, fleet, actor, stop, reporting(report, encoded))
+    except NoTour as refusal:
+        raise refusal.named(task.city_names) from None
     return encoded(replace(front, timings={**timings, **front.timings}))
 
 
