@@ -3,14 +3,13 @@
 from functools import partial
 from pathlib import Path
 from threading import Lock
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.actor_info import RELEASED, ActorInfo, read_actor_info, read_actor_infos
+from service.actor_info import RELEASED, read_actor_info, read_actor_infos
 from service.construction.call_estimate import CallEstimate
-from service.construction.first_tours import Constructor
 from service.errors import Cancelled
 from service.instance import PLANE, Instance
 from service.onnx_runtime import onnxruntime
@@ -27,17 +26,6 @@ _MARGIN = 0.25  # around the unit square, in which cities far from all others ar
 _LEAST_PREFERENCE = 1e-3  # for an objective: else all cities that coincide in the other are alike
 _JITTER = 1e-6  # relative: inputs with ties are joined one pair after another, and take minutes
 _SAMPLED = 32  # rows of matrices, in which ties are looked for
-
-
-class NamedActor(Constructor, Protocol):
-    """A constructor of tours with a name and a digest."""
-
-    @property
-    def info(self) -> ActorInfo:
-        """The information in its file."""
-
-    def load(self) -> None:
-        """Do what only the first call would have to, unless it is done."""
 
 
 class OnnxActor:

@@ -21,7 +21,8 @@ from starlette.responses import Response
 
 from service.api.middleware import AnsweredRequest
 from service.jobs.engine import EngineStats
-from service.jobs.front_document import FrontDocument
+from service.kinds.front_document import FrontDocument
+from service.kinds.table import KINDS
 
 AnyMetric = TypeVar("AnyMetric", Counter, Histogram)
 _METHODS = ("GET", "HEAD", "POST", "DELETE", "OPTIONS")
@@ -134,7 +135,7 @@ class Metrics:
 
     def planned(self, front: FrontDocument) -> None:
         """Count a planned front, its phases, and the hypervolume that the search gained."""
-        self._fronts(_kind_of(front), front.terminated).inc()
+        self._fronts(KINDS[front.kind].label, front.terminated).inc()
         cities = _size_class(front.cities)
         for phase, milliseconds in front.timings_ms.phases.items():
             self._planning(phase, cities).observe(milliseconds / 1000)
@@ -173,13 +174,6 @@ class _WorkerCollector(Collector):
 
 class _Exposition(Response):
     media_type = CONTENT_TYPE_PLAIN_0_0_4
-
-
-def _kind_of(front: FrontDocument) -> str:
-    """Return what a front is of: tours, or plans of a fleet or of robots on a map."""
-    if not front.holds_plans:
-        return "tours"
-    return "fleet" if front.places is None else "robots"
 
 
 def _size_class(n: int) -> str:

@@ -32,10 +32,10 @@ from service.api.responses import (
 )
 from service.api.stored_fronts import find_record
 from service.api.task_parser import TaskParser
-from service.jobs.empty_document import empty_document
 from service.jobs.engine import Engine, record_in_time
 from service.jobs.record import Record
 from service.jobs.store import Store
+from service.kinds.table import empty_document
 from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront, not_replannable
 from service.requests.replan.parser import ReplanSource

@@ -20,6 +20,7 @@ from service.front import Termination
 from service.instance import OBJECTIVES
 from service.jobs.record import Status
 from service.requests.stop_fields import StopItem
+from service.requests.task import KindName
 
 PROBLEM_JSON = "application/problem+json"
 Lengths = Annotated[list[float], Field(min_length=OBJECTIVES, max_length=OBJECTIVES)]
@@ -95,6 +96,7 @@ class FrontAnswer(BaseModel):
     id: str
     status: Status
     problem: Problem | SkipJsonSchema[None] = Field(default=None, description="why it failed")
+    kind: KindName = Field(description="front, coverage, fleet or robots: what was planned")
     cities: int
     front: list[TourItem]
     points: int = Field(description="nondominated points found; front holds at most `size`")

@@ -27,6 +27,7 @@ from service.front import Progress
 from service.jobs.engine import Engine, JobState
 from service.jobs.record import Record
 from service.jobs.store import Store
+from service.kinds.table import KINDS
 from service.requests.schemas import GEOMETRY, Geometry, NonNegativeInteger
 from service.requests.tour import TourQuery
 
@@ -103,7 +104,7 @@ class StoredFrontRoutes:
         """Return one tour of a front: at an angle, at a balance, within a budget, or the knee."""
         query.check()
         record = await self._record(request, query.front)
-        if record.front.holds_plans:
+        if KINDS[record.front.kind].of_plans:
             raise Refusal("no-tours", front=record.id)
         if not record.front.tours:
             raise Refusal("no-tour", front=record.id)

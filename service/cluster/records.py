@@ -18,7 +18,6 @@ from redis import exceptions
 from service.errors import Cancelled, DeadlineExceeded
 from service.errors.printable import printable
 from service.front import Progress
-from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason
 from service.jobs.store import (
     SOURCE_COLUMNS,
@@ -28,6 +27,7 @@ from service.jobs.store import (
     record_from,
     source_from,
 )
+from service.kinds.front_document import FrontDocument
 from service.requests.task import TaskSource
 
 SCRIPT = "".join(

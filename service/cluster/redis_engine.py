@@ -30,9 +30,9 @@ from service.errors import (
     StoreUnavailable,
 )
 from service.jobs.engine import EngineStats, JobState, final_record
-from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason, as_ended, as_failed
 from service.jobs.store import STORE_BYTES
+from service.kinds.front_document import FrontDocument
 from service.requests.task import Task
 
 _POLL = 2.0  # seconds without a notification after which a record is read all the same

@@ -27,11 +27,11 @@ from service.cluster.records import StoredRecord
 from service.cluster.worker_store import TakenOver, WorkerStore
 from service.errors import Cancelled, DeadlineExceeded, WorkerLost
 from service.front import Progress
-from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason, as_ended, as_failed
 from service.jobs.runner import MakeRunner, Reporter, Runner
 from service.jobs.submission import MOST_ATTEMPTS
 from service.jobs.workers.worker_pool import GRACE, STOP_SECONDS
+from service.kinds.front_document import FrontDocument
 
 _CHECK_EVERY = 0.05  # seconds between two checks whether a record is still wanted
 _TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: a call may be about to begin

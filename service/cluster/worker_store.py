@@ -29,9 +29,9 @@ from service.cluster.records import (
     stored_record,
 )
 from service.front import Progress
-from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, StopReason
 from service.jobs.store import UnreadableRecord, log_dropped
+from service.kinds.front_document import FrontDocument
 
 _SECONDS = 2.0  # the longest that one reply of Redis may take
 _PATIENCE = 60.0  # seconds for which a call is tried again while Redis is away

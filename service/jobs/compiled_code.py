@@ -20,7 +20,7 @@ from numba.core.event import Event, Listener, install_listener
 
 from service import jit, own_code
 from service.coverage import shortest_paths
-from service.jobs.fleets import fleet_run
+from service.kinds.fleet import run as fleet_run
 from service.replanning import insertion
 from service.search import improve
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from service.errors import Cancelled, DeadlineExceeded, Refusal
-from service.jobs.front_document import FrontDocument
+from service.kinds.front_document import FrontDocument
 from service.requests.task import TaskSource
 
 Status = Literal["queued", "running", "done", "cancelled", "failed"]

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Protocol
 
 from service.front import Progress
-from service.jobs.front_document import FrontDocument
+from service.kinds.front_document import FrontDocument
+from service.kinds.kind import Report
 from service.requests.limits import Limits
 from service.requests.task import Task, TaskSource
 from service.roads.router import RouterSettings
@@ -14,8 +15,6 @@ from service.roads.router import RouterSettings
 REPORT_TOURS = 100  # at most in a reported front
 REPORT_SECONDS = 0.25  # at least between two reports
 REPORT_SHARE = 0.05  # the share of the time that reports may take
-
-Report = Callable[[Progress, Callable[[int], FrontDocument]], None]
 
 
 class Runner(Protocol):

@@ -12,8 +12,8 @@ from typing import Any, Protocol, get_args
 import numpy as np
 from pydantic_core import to_json
 
-from service.jobs.front_document import FrontDocument
 from service.jobs.record import Record, Status
+from service.kinds.front_document import FrontDocument
 from service.requests.task import TaskKind, TaskSource
 
 

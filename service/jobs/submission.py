@@ -7,8 +7,8 @@ from time import perf_counter
 
 from service.errors import Cancelled, DeadlineExceeded
 from service.front import Progress
-from service.jobs.front_document import FrontDocument
 from service.jobs.record import StopReason
+from service.kinds.front_document import FrontDocument
 from service.requests.task import Task
 
 MOST_ATTEMPTS = 2

@@ -19,12 +19,7 @@ _POLL_SECONDS = 0.05  # between two checks whether to stop
 
 def needs_roads(task: Task) -> bool:
     """Return whether a task lacks costs by road."""
-    match task.subject:
-        case Stops() as stops:
-            return bool(stops.road_measures)
-        case UnmeasuredFleet(stops=stops):
-            return bool(stops.road_measures)
-    return False
+    return task.stops is not None and bool(task.stops.road_measures)
 
 
 async def measured_by_road(task: Task, client: RoadClient) -> Task:
@@ -38,7 +33,7 @@ async def measured_by_road(task: Task, client: RoadClient) -> Task:
     assert isinstance(subject, Stops | UnmeasuredFleet)
     assert labels is not None
     began = time.perf_counter()
-    stops = subject.stops if isinstance(subject, UnmeasuredFleet) else subject
+    stops = subject if isinstance(subject, Stops) else subject.stops
     costs = await client.costs(stops.locations, [stop.id for stop in labels.stops])
     if isinstance(subject, Stops):
         check_ways(np.isinf(costs.seconds), subject.ends, task.city_names, "no-road")

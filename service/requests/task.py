@@ -8,13 +8,21 @@ from service.construction.repairs import TOURS_REPAIRED
 from service.coverage.coverage import Coverage
 from service.errors import CityNames
 from service.front import PlanOptions
+from service.instance import Instance
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.maps.robots import SharedCoverage
 from service.requests.schemas import Geometry
 from service.requests.stops import Labels, Stops
 
+KindName = Literal["front", "coverage", "fleet", "robots"]
 _BRIEF = 5000  # preferences times cities
+_KINDS: Mapping[type, KindName] = {
+    Stops: "front",
+    Coverage: "coverage",
+    UnmeasuredFleet: "fleet",
+    SharedCoverage: "robots",
+}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -44,6 +52,27 @@ class Task:
     labels: Labels | None = None
     timings: Mapping[str, float] = field(default_factory=dict)
     earlier: EarlierTours | None = None
+
+    @property
+    def kind(self) -> KindName:
+        """The kind of its front."""
+        return _KINDS[type(self.subject)]
+
+    @property
+    def stops(self) -> Stops | None:
+        """The stops, with the sources of the costs between them; None on a map."""
+        match self.subject:
+            case Stops() as stops:
+                return stops
+            case UnmeasuredFleet(stops=stops):
+                return stops
+        return None
+
+    @property
+    def known_instance(self) -> Instance | None:
+        """The instance that is planned, where nothing has to be measured or surveyed for it."""
+        stops = self.subject if isinstance(self.subject, Stops) else None
+        return None if stops is None or not stops.measured else stops.instance
 
     @property
     def city_names(self) -> CityNames:

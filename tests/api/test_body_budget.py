@@ -17,8 +17,8 @@ from starlette.types import Message
 from service.api.app import Edge
 from service.api.body_budget import AnswerBudget, BodyBounds, BodyBudget
 from service.errors import Refusal
-from service.jobs.json_parts import joined
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
+from service.kinds.json_parts import joined
 from tests.helpers.actors import Shuffler
 from tests.helpers.scripted_runner import document
 from tests.helpers.serving import app_of, problem, serving

@@ -1,6 +1,7 @@
 """What Prometheus is told, against a live server."""
 
 from dataclasses import dataclass, replace
+from typing import get_args
 
 import httpx
 import numpy as np
@@ -9,12 +10,14 @@ from prometheus_client.parser import text_string_to_metric_families
 from service.api.app import Edge
 from service.api.metrics import Metrics
 from service.jobs.engine import EngineStats
-from service.jobs.front_document import FrontDocument, Timings
+from service.kinds.front_document import FrontDocument, Timings
+from service.requests.task import KindName
 from tests.helpers.actors import Broken
 from tests.helpers.processes import serve_process
 from tests.helpers.serving import app_of, serving
 
 FOUND = FrontDocument(
+    kind="front",
     cities=3,
     points=1,
     hypervolume=0.5,
@@ -87,16 +90,14 @@ def test_the_workers_are_asked_whenever_prometheus_asks() -> None:
 
 def test_fronts_of_tours_of_fleets_and_of_robots_are_counted_apart() -> None:
     metrics = Metrics()
-    over = [{"name": name, "unit": None, "over": name} for name in ("sum", "max")]
-    plans = {"objectives": over, "terminated": "time_limit"}
-    unnamed = [{"name": name, "unit": None} for name in "ab"]
-    for members in ({}, {"objectives": unnamed}, plans, {**plans, "places": [[0, 0]]}):
-        metrics.planned(replace(FOUND, **members))
+    kinds: tuple[KindName, ...] = get_args(KindName)
+    for kind in kinds:
+        metrics.planned(replace(FOUND, kind=kind))
     with serving(app_of(edge=Edge(metrics=metrics))) as url:
         counted = samples(url)
     assert counted["paretour_fronts_total", "tours", "converged"] == 2
-    assert counted["paretour_fronts_total", "fleet", "time_limit"] == 1
-    assert counted["paretour_fronts_total", "robots", "time_limit"] == 1
+    assert counted["paretour_fronts_total", "fleet", "converged"] == 1
+    assert counted["paretour_fronts_total", "robots", "converged"] == 1
 
 
 def test_fronts_are_counted_by_phase_and_size_class(quick_actors: dict[str, str]) -> None:

@@ -15,7 +15,6 @@ import httpx
 import pytest
 import redis
 
-from service.actor import NamedActor
 from service.api.app import Edge
 from service.cluster.celery_app import make_celery
 from service.cluster.redis_engine import connect
@@ -24,6 +23,7 @@ from service.jobs.compiled_code import warm_up
 from service.jobs.runner import MakeRunner
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.workers.worker_pool import WorkerPool
+from service.kinds.kind import NamedActor
 from tests.helpers.cluster_state import ClusterState
 from tests.helpers.redis_server import Redis
 from tests.helpers.serving import LIMITS, app_of, engine_app, runner_of, serving, workers_of

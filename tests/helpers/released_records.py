@@ -3,6 +3,8 @@
 Stored records outlive a release, so that each release has to read those of the last.
 """
 
+import re
+
 SQLITE_SCHEMA = """
 CREATE TABLE front (number INTEGER PRIMARY KEY, kept REAL, id, caller, request_id, status,
 key, digest, problem, members, tours, ends, angles, kind, body, upload);
@@ -197,10 +199,19 @@ _RELEASED = {
     b':"ab12"},"front":[{"angle":68.19859051364818,"lengths":[1.0,2.5],"tour":[0,1'
     b',2]},{"angle":26.56505117707799,"lengths":[2.0,1.0],"tour":[0,2,1]}]}',
 }
-# Its tours had no balance: they get theirs when they are read.
-ANSWERS = {
-    id_: answer.replace(b',"lengths":[1.0,2.5]', b',"balance":0.0,"lengths":[1.0,2.5]').replace(
-        b',"lengths":[2.0,1.0]', b',"balance":1.0,"lengths":[2.0,1.0]'
+# Its fronts did not say their kind, and its tours had no balance: they get theirs when read.
+_KINDS = {"done": b"coverage", "waiting": b"coverage", "lost": b"coverage", "running": b"front"}
+
+
+def _with_kind(answer: bytes, kind: bytes) -> bytes:
+    return re.sub(
+        rb'("status":"\w+",)("problem":\{.*?\},)?', rb'\1\2"kind":"%b",' % kind, answer, count=1
     )
+
+
+ANSWERS = {
+    id_: _with_kind(answer, _KINDS[id_])
+    .replace(b',"lengths":[1.0,2.5]', b',"balance":0.0,"lengths":[1.0,2.5]')
+    .replace(b',"lengths":[2.0,1.0]', b',"balance":1.0,"lengths":[2.0,1.0]')
     for id_, answer in _RELEASED.items()
 }

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from service.front import Front, PlanOptions, Progress
-from service.jobs.front_document import FrontDocument
-from service.jobs.runner import Report
-from service.jobs.tour_document import encode_front
 from service.jobs.workers.worker_pool import WorkerPool
+from service.kinds.front_document import FrontDocument
+from service.kinds.kind import Report
+from service.kinds.tour_document import encode_front
 from service.requests.stops import Plane, Stops
 from service.requests.task import Task, TaskSource
 

@@ -13,7 +13,6 @@ from typing import Any
 import httpx
 from fastapi import FastAPI
 
-from service.actor import NamedActor
 from service.api.app import Edge, create_app
 from service.api.transport.connections import ConnectionLimits, Connections
 from service.jobs.engine import Engine
@@ -23,6 +22,7 @@ from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
 from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
+from service.kinds.kind import NamedActor
 from service.requests.limits import Limits
 from service.requests.stored_task import read_task
 from service.server import Ending, build, make_server

@@ -6,17 +6,18 @@ from dataclasses import replace
 import pytest
 
 from service.errors import NotFound, StoreUnavailable
-from service.jobs.front_document import FrontDocument, Timings
 from service.jobs.local_engine import LocalEngine
 from service.jobs.record import Record, as_finished
 from service.jobs.retries import UnsavedRecords
 from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
+from service.kinds.front_document import FrontDocument, Timings
 from service.requests.task import Task, TaskSource
 from tests.helpers.actors import Shuffler
 from tests.helpers.scripted_runner import document, task
 
 FRONT = FrontDocument(
+    kind="front",
     cities=3,
     points=0,
     hypervolume=0.0,

@@ -10,9 +10,9 @@ import pytest
 
 from service.coverage.frame import MapFrame
 from service.errors import Refusal
-from service.jobs.front_document import FrontDocument
-from service.jobs.json_parts import joined
 from service.jobs.task_runner import TaskRunner
+from service.kinds.front_document import FrontDocument
+from service.kinds.json_parts import joined
 from service.requests.limits import Limits
 from service.requests.parser import parse_task
 from service.requests.replan.earlier_front import StoredFront

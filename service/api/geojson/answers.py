@@ -24,6 +24,7 @@ from service.api.geojson.lines import Line
 from service.api.responses import json_bytes
 from service.errors import Fault, Refusal
 from service.jobs.record import Record
+from service.kinds.table import KINDS
 from service.requests.schemas import Geometry
 
 VARY = {"Vary": "Accept"}
@@ -176,7 +177,7 @@ def _check_plan(request: Request, record: Record, plan: int) -> None:
     plans = len(record.front.split())
     if not accepts_geojson(request):
         sentence = f"plan is of answers in GeoJSON: send Accept: {GEOJSON}"
-    elif not record.front.holds_plans:
+    elif not KINDS[record.front.kind].of_plans:
         sentence = f"plan is of a fleet's front, and front {record.id} is of tours: ask GET /tour"
     elif plan >= plans:
         sentence = f"plan must be less than {plans}, the number of plans, got {plan}"

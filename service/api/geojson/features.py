@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
 from service.api.geojson.lines import Line, encode_line
-from service.jobs.json_parts import with_member
 from service.jobs.record import Record
+from service.kinds.json_parts import with_member
+from service.kinds.table import KINDS
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +38,7 @@ class Drawing:
             first: The number of the first one.
         """
         parsed = from_json(tours)
-        if record.front.holds_plans:
+        if KINDS[record.front.kind].of_plans:
             return cls._of_plans(record, parsed, first)
         # Fronts have this member only if their tours are open routes.
         returns = record.front.closed is None or record.front.cities == 1

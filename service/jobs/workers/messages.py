@@ -8,7 +8,7 @@ from socket import socket
 from typing import Any
 
 from service.front import Progress
-from service.jobs.front_document import FrontDocument
+from service.kinds.front_document import FrontDocument
 from service.requests.task import Task
 
 _LENGTH = struct.Struct("!Q")

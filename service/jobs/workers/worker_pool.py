@@ -14,12 +14,12 @@ from itertools import count
 
 from service.errors import Cancelled, DeadlineExceeded, ShuttingDown, WarmingUp, WorkerLost
 from service.jobs.fair_queue import FairQueue, check_place, places_of_client
-from service.jobs.front_document import FrontDocument
 from service.jobs.record import StopReason
 from service.jobs.runner import MakeRunner
 from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.workers.messages import Do, Done, Failed, Found, Stop
 from service.jobs.workers.worker_set import Worker, WorkerSet
+from service.kinds.front_document import FrontDocument
 from service.requests.task import Task
 
 GRACE = 0.15  # seconds for a stopped task to give its front; then its last report is the answer

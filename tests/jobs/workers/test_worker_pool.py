@@ -23,9 +23,9 @@ from service.errors import (
     WarmingUp,
     WorkerLost,
 )
-from service.jobs.front_document import FrontDocument
 from service.jobs.runner import Runner
 from service.jobs.workers.worker_pool import WorkerPool
+from service.kinds.front_document import FrontDocument
 from tests.helpers.scripted_runner import ScriptedRunner, brief_task, task, worker_pool
 
 

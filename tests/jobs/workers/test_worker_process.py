@@ -10,8 +10,8 @@ from threading import Event
 
 import pytest
 
-from service.jobs.front_document import FrontDocument
 from service.jobs.workers.worker_process import _WorkerLoop
+from service.kinds.front_document import FrontDocument
 
 ROOT = Path(__file__).parents[3]
 

@@ -11,11 +11,11 @@ from service.coverage.path import CoveragePath
 from service.coverage.survey import Survey
 from service.fleet.evaluation import route_lengths
 from service.fleet.plans import FleetFront, Plan, Route
-from service.jobs.fleets.fleet_document import directions
-from service.jobs.fleets.robot_fleet import RobotFleet
-from service.jobs.front_document import FrontDocument, Timings
-from service.jobs.json_parts import encode_path, joined, with_member
-from service.jobs.tour_document import on_map
+from service.kinds.fleet.document import directions
+from service.kinds.front_document import FrontDocument, Timings
+from service.kinds.json_parts import encode_path, joined, with_member
+from service.kinds.robots.as_fleet import RobotFleet
+from service.kinds.tour_document import on_map
 from service.pareto import balances
 from service.requests.maps.robots import SharedCoverage
 
@@ -51,6 +51,7 @@ class RobotEncoder:
             for plan, (balance, lengths) in zip(front.plans, members, strict=True)
         )
         return FrontDocument(
+            kind="robots",
             cities=len(self.surveyed.places),
             points=front.found,
             hypervolume=front.hypervolume,

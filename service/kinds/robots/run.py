@@ -4,43 +4,23 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-from service.actor import NamedActor
 from service.coverage.path import CoveragePath
 from service.coverage.survey import Survey, survey
 from service.errors import Cancelled
 from service.fleet.plans import FleetFront
-from service.jobs.fleets.fleet_run import Report, identity_of, plan_front, reporting
-from service.jobs.fleets.robot_document import RobotEncoder
-from service.jobs.fleets.robot_fleet import RobotFleet, robot_fleet
-from service.jobs.front_document import FrontDocument
-from service.requests.limits import Limits
+from service.kinds.fleet.run import identity_of, plan_front, reporting
+from service.kinds.front_document import FrontDocument
+from service.kinds.kind import Report, Tools
+from service.kinds.robots.as_fleet import RobotFleet, robot_fleet
+from service.kinds.robots.document import RobotEncoder
 from service.requests.maps.robots import SharedCoverage
 from service.requests.task import Task
 
 
-def run_robots(
-    task: Task,
-    subject: SharedCoverage,
-    actor: NamedActor | None,
-    limits: Limits,
-    stop: Callable[[], bool],
-    report: Report,
-) -> FrontDocument:
-    """Return the front of plans of a task for several robots.
-
-    Args:
-        task: The task.
-        subject: The map that they share.
-        actor: The network.
-        limits: The limits of places, and of the cells of all paths.
-        stop: Called often.
-        report: Called now and then, with plans without paths.
-
-    Raises:
-        InvalidCoverage: The map, its places or the ends of robots cannot be covered.
-        Refusal: No plan was found, or the paths are too long.
-        Cancelled: It was told to stop before it had a plan.
-    """
+def run_robots(task: Task, tools: Tools, stop: Callable[[], bool], report: Report) -> FrontDocument:
+    """Return the front of plans of a task; see `Run`."""
+    subject, actor, limits = task.subject, tools.actors.get(task.actor), tools.limits
+    assert isinstance(subject, SharedCoverage)
     began = time.perf_counter()
     surveyed = survey(subject.coverage, limits.most_places(shared=True), stop)
     fleet = robot_fleet(surveyed, subject.over)

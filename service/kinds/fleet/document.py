@@ -10,8 +10,8 @@ from pydantic_core import to_json
 from service.fleet.evaluation import route_lengths, schedule, unassigned
 from service.fleet.fleet import Fleet
 from service.fleet.plans import FleetFront, Plan, Route, path_of
-from service.jobs.front_document import FrontDocument, Timings
-from service.jobs.json_parts import joined
+from service.kinds.front_document import FrontDocument, Timings
+from service.kinds.json_parts import joined
 from service.pareto import balances
 from service.preferences import angles
 from service.requests.fleets.subject import UnmeasuredFleet
@@ -38,6 +38,7 @@ def encode_fleet(
         for balance, lengths, plan in members
     )
     return FrontDocument(
+        kind="fleet",
         cities=front.fleet.rules.n,
         points=front.found,
         hypervolume=front.hypervolume,

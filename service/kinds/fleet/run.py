@@ -5,43 +5,25 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from service.actor import NamedActor
 from service.errors import NoTour
 from service.fleet.fleet import Fleet
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront
 from service.front import Progress
-from service.jobs.fleets.fleet_document import encode_fleet
-from service.jobs.front_document import FrontDocument
+from service.kinds.fleet.document import encode_fleet
+from service.kinds.front_document import FrontDocument
+from service.kinds.kind import NamedActor, Report, Tools
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import check_reference_point
 from service.requests.task import Task
 
-Report = Callable[[Progress, Callable[[int], FrontDocument]], None]
 ReportPlans = Callable[[Progress, Callable[[int], FleetFront]], None]
 
 
-def run_fleet(
-    task: Task,
-    subject: UnmeasuredFleet,
-    actor: NamedActor | None,
-    stop: Callable[[], bool],
-    report: Report,
-) -> FrontDocument:
-    """Return the front of plans of a task, whose stops are measured.
-
-    Args:
-        task: The task.
-        subject: The fleet.
-        actor: The network whose tours are cut into the first plans.
-        stop: Called often; planning ends soon after it returns True.
-        report: Called now and then with the progress, and with a function that writes the n
-            best plans found so far.
-
-    Raises:
-        Refusal: No plan keeps every rule, or none was found.
-        Cancelled: It was told to stop before it had a plan.
-    """
+def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report) -> FrontDocument:
+    """Return the front of plans of a task; see `Run`."""
+    subject, actor = task.subject, tools.actors.get(task.actor)
+    assert isinstance(subject, UnmeasuredFleet)
     assert task.labels is not None
     labels = task.labels
 

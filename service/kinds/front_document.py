@@ -16,8 +16,9 @@ from pydantic_core import to_json
 
 from service.front import Termination
 from service.instance import OBJECTIVES
-from service.jobs.json_parts import joined, split
+from service.kinds.json_parts import joined, split
 from service.pareto import balances
+from service.requests.task import KindName
 
 _HEAD = 100  # the first bytes of a tour, which contain its first members
 
@@ -68,6 +69,7 @@ class FrontDocument:
         gained: The hypervolume that the search added, for the metrics.
     """
 
+    kind: KindName
     cities: int
     points: int
     hypervolume: float
@@ -95,6 +97,7 @@ class FrontDocument:
         theirs.
         """
         known = {name: members[name] for name in _MEMBERS if name in members}
+        known.setdefault("kind", _kind_of_earlier_version(members))
         timings = Timings.from_json(known.pop("timings_ms"))
         return cls(**known, timings_ms=timings, **encoded).with_balances()
 
@@ -118,11 +121,6 @@ class FrontDocument:
         """Return the answer as JSON, beginning with these other members."""
         members = to_json({**more, **self.members()})
         return b"".join((members[:-1], b',"front":[', self.tours, b"]}"))
-
-    @property
-    def holds_plans(self) -> bool:
-        """Whether it is a front of plans for several vehicles or robots, and not of tours."""
-        return bool(self.objectives) and all("over" in each for each in self.objectives or ())
 
     @property
     def directions(self) -> NDArray[np.float64]:
@@ -178,6 +176,14 @@ _ENCODED = ("tours", "ends", "angles", "gained")
 _MEMBER_FIELDS = [field for field in fields(FrontDocument) if field.name not in _ENCODED]
 _MEMBERS = tuple(field.name for field in _MEMBER_FIELDS)
 _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
+
+
+def _kind_of_earlier_version(members: Mapping[str, Any]) -> KindName:
+    """Return the kind of a front that version 0.1 stored, which did not say it."""
+    on_map = members.get("places") is not None
+    if any("over" in objective for objective in members.get("objectives") or ()):
+        return "robots" if on_map else "fleet"
+    return "coverage" if on_map else "front"
 
 
 def _between(text: bytes, before: bytes, after: bytes, begin: int) -> bytes:

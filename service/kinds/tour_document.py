@@ -11,8 +11,8 @@ from pydantic_core import to_json
 from service.coverage.path import CoveragePath
 from service.coverage.survey import Survey
 from service.front import Front
-from service.jobs.front_document import FrontDocument, Timings
-from service.jobs.json_parts import encode_path, encode_tours, joined, split, with_member
+from service.kinds.front_document import FrontDocument, Timings
+from service.kinds.json_parts import encode_path, encode_tours, joined, split, with_member
 from service.pareto import balances
 from service.requests.stops import Labels
 
@@ -40,6 +40,7 @@ def encode_front(
             for tour, path in zip(split(tours, ends), paths, strict=True)
         )
     return FrontDocument(
+        kind="front" if surveyed is None else "coverage",
         cities=front.n,
         points=front.found,
         hypervolume=front.hypervolume,

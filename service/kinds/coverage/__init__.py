@@ -1,0 +1,1 @@
+"""Fronts of a robot's tours over a map: `POST /coverage`."""

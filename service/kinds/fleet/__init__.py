@@ -1,0 +1,1 @@
+"""Fronts of plans for several vehicles: `POST /fleet`."""

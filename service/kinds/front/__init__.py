@@ -1,0 +1,1 @@
+"""Fronts of tours through stops or cities: `POST /front`."""

@@ -1,0 +1,74 @@
+"""The interface of a kind of plan, which each has a value of: what differs between the kinds."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from service.actor_info import ActorInfo
+from service.construction.first_tours import Constructor
+from service.front import Progress
+from service.kinds.front_document import FrontDocument
+from service.requests.limits import Limits
+from service.requests.task import KindName, Task
+
+Report = Callable[[Progress, Callable[[int], FrontDocument]], None]
+
+
+class NamedActor(Constructor, Protocol):
+    """A constructor of tours with a name and a digest."""
+
+    @property
+    def info(self) -> ActorInfo:
+        """The information in its file."""
+
+    def load(self) -> None:
+        """Do what only the first call would have to, unless it is done."""
+
+
+@dataclass(frozen=True)
+class Tools:
+    """What a worker plans with: the actors by name, and the limits of its service."""
+
+    actors: Mapping[str, NamedActor]
+    limits: Limits
+
+
+class Run(Protocol):
+    """Plans the front of a task of one kind."""
+
+    def __call__(
+        self, task: Task, tools: Tools, stop: Callable[[], bool], report: Report
+    ) -> FrontDocument:
+        """Return the front of a task, whose costs by road are measured.
+
+        Args:
+            task: The task.
+            tools: The actors and limits.
+            stop: Called often; planning ends soon after it returns True.
+            report: Called now and then with the progress, and with a function that writes the best
+                n tours or plans found so far.
+
+        Raises:
+            Refusal: It has no tour or plan, or none was found; or what it asks for is too much.
+            Cancelled: It was told to stop before it had one.
+        """
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kind:
+    """A kind of plan.
+
+    Args:
+        name: As answers have it.
+        of_plans: Whether its fronts are of plans for several vehicles or robots, not of tours.
+        label: Of its fronts, in the metrics.
+        outline: Returns the number of cities of a task, and the members of its answer that are
+            known before anything is planned.
+        run: Plans the front of a task. It imports what plans when it is called.
+    """
+
+    name: KindName
+    of_plans: bool
+    label: str
+    outline: Callable[[Task], tuple[int, dict[str, Any]]]
+    run: Run

@@ -1,0 +1,48 @@
+"""Plan the tours of an instance for a task: those of stops, and those of the places of a map."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.coverage.survey import Survey
+from service.errors import NoTour
+from service.front import Front, Progress
+from service.instance import Instance, cumulated_lengths
+from service.kinds.kind import Report, Tools
+from service.kinds.tour_document import encode_front
+from service.planner import plan
+from service.replanning.replan import replan
+from service.requests.task import Task
+
+
+def plan_tours(
+    task: Task,
+    instance: Instance,
+    tools: Tools,
+    stop: Callable[[], bool],
+    report: Report,
+    surveyed: Survey | None = None,
+) -> Front:
+    """Return the front of a task, planned or replanned; the last argument is that of a map."""
+    actor = tools.actors[task.actor]
+
+    def report_encoded(progress: Progress, best: Callable[[int], Front]) -> None:
+        report(
+            progress,
+            lambda size: encode_front(
+                best(size), actor.info.identity, surveyed, labels=task.labels
+            ),
+        )
+
+    try:
+        if task.earlier is not None:
+            return replan(actor, instance, task.options, task.earlier, stop, report_encoded)
+        return plan(actor, instance, task.options, stop, report_encoded)
+    except NoTour as refusal:
+        raise refusal.named(task.city_names) from None
+
+
+def arrivals_of(task: Task, instance: Instance, front: Front) -> NDArray[np.float64] | None:
+    """Return both lengths of each tour up to each of its stops, where the task asks for them."""
+    return cumulated_lengths(instance, front.tours) if task.arrivals else None
