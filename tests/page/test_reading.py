@@ -57,8 +57,11 @@ class Held:
 
     def release(self) -> None:
         """Let them pass, once there is one."""
-        while not self._routes:
+        for _ in range(1000):
+            if self._routes:
+                break
             self._page.wait_for_timeout(20)
+        assert self._routes
         routes, self._routes = self._routes, None
         for route in routes:
             route.continue_()
