@@ -168,6 +168,16 @@ def test_a_good_file_takes_the_place_of_an_example_under_way(opened: Page) -> No
     assert [stop["id"] for stop in curl_body(opened)["stops"]] == ["a", "b", "d"]
 
 
+def test_nothing_is_planned_before_the_page_is_loaded(browser: Browser, released: str) -> None:
+    with open_page(browser, f"{released}/page/icon.svg") as page:
+        script = Held(page, "**/page/main.js")
+        page.goto(released, wait_until="commit")
+        expect(button(page, "Plan")).to_be_disabled()
+        script.release()
+        wait_until_planned(page)
+        expect(button(page, "Plan")).to_be_enabled()
+
+
 @pytest.mark.parametrize("first", ["the file", "the list of examples"])
 def test_a_bad_file_at_the_start_leaves_the_first_example(
     browser: Browser, released: str, first: str
