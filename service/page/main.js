@@ -384,6 +384,7 @@ addEventListener("hashchange", openLinked);
 
 const equipment = service.get("page/map.json").catch(() => null);
 const started = start();
+offer(); // from now on: before, the browser itself would send the form
 openChosen(); // while the page was being loaded
 equipment.then((map) => map && result.equip(map, service));
 

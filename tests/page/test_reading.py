@@ -57,8 +57,11 @@ class Held:
 
     def release(self) -> None:
         """Let them pass, once there is one."""
-        while not self._routes:
+        for _ in range(1000):
+            if self._routes:
+                break
             self._page.wait_for_timeout(20)
+        assert self._routes
         routes, self._routes = self._routes, None
         for route in routes:
             route.continue_()
@@ -163,6 +166,16 @@ def test_a_good_file_takes_the_place_of_an_example_under_way(opened: Page) -> No
     held.release()
     expect(opened.get_by_label("Example")).to_have_value("")
     assert [stop["id"] for stop in curl_body(opened)["stops"]] == ["a", "b", "d"]
+
+
+def test_nothing_is_planned_before_the_page_is_loaded(browser: Browser, released: str) -> None:
+    with open_page(browser, f"{released}/page/icon.svg") as page:
+        script = Held(page, "**/page/main.js")
+        page.goto(released, wait_until="commit")
+        expect(button(page, "Plan")).to_be_disabled()
+        script.release()
+        wait_until_planned(page)
+        expect(button(page, "Plan")).to_be_enabled()
 
 
 @pytest.mark.parametrize("first", ["the file", "the list of examples"])
