@@ -12,6 +12,7 @@ from service.files.reading import (
     Request,
     Source,
     UnreadableFile,
+    reading_of_both,
 )
 from service.files.spreadsheets import is_spreadsheet, rows_of
 from service.files.stop_tables import Part, part_of, reading_of
@@ -73,9 +74,7 @@ def read_files(
     planes = None
     if first.plane and second.plane:
         planes = [[*one, *other] for one, other in zip(first.plane, second.plane, strict=True)]
-    notes = tuple(note for source in sources for note in source.notes)
-    columns = tuple(column for source in sources for column in source.columns)
-    return Reading("front", request, f"{first.name}, {second.name}", notes, columns, planes)
+    return reading_of_both("front", request, sources, planes)
 
 
 def _read(source: Source, wanted: Kind | None) -> Reading:
