@@ -12,6 +12,7 @@ from service.files.reading import (
     Request,
     Source,
     UnreadableFile,
+    reading_of_both,
 )
 from service.files.spreadsheets import is_spreadsheet, rows_of
 from service.files.stop_tables import Part, part_of, reading_of
@@ -56,26 +57,26 @@ def read_files(
         return _read(sources[0], wanted)
     if len(sources) != 2:
         raise UnreadableFile(f"one file is wanted, or two, got {len(files)}")
-    contents = [_content(source) for source in sources]
-    tables = [
-        (source, each)
-        for source, each in zip(sources, contents, strict=True)
-        if isinstance(each, Table)
-    ]
+    return _read_two(sources, wanted, unrounded)
+
+
+def _read_two(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -> Reading:
+    """Return the request of an objective in each of two files, or of stops and vehicles."""
+    contents = [(source, _content(source)) for source in sources]
+    tables = [(source, each) for source, each in contents if isinstance(each, Table)]
+    if wanted == "fleet" and len(tables) != 2:
+        raise UnreadableFile("two files of a fleet must be a table of stops and one of vehicles")
     if len(tables) == 2 and (wanted == "fleet" or any(has_vehicles(each) for _, each in tables)):
         stops, vehicles = sorted(tables, key=lambda each: has_vehicles(each[1]))
         return read_fleet(stops, vehicles)
     first, second = (
         part_of(source, each) if isinstance(each, Table) else _tsplib_part(source, each, unrounded)
-        for source, each in zip(sources, contents, strict=True)
+        for source, each in contents
     )
-    request = _joined(first, second)
     planes = None
     if first.plane and second.plane:
         planes = [[*one, *other] for one, other in zip(first.plane, second.plane, strict=True)]
-    notes = tuple(note for source in sources for note in source.notes)
-    columns = tuple(column for source in sources for column in source.columns)
-    return Reading("front", request, f"{first.name}, {second.name}", notes, columns, planes)
+    return reading_of_both("front", _joined(first, second), sources, planes)
 
 
 def _read(source: Source, wanted: Kind | None) -> Reading:

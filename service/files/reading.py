@@ -1,6 +1,6 @@
 """Files and readings: named bytes under bounds; a request, notes and columns; refusals."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
@@ -127,6 +127,16 @@ class Source:
     def reading(self, kind: Kind, request: Request) -> Reading:
         """Return the reading of this file alone."""
         return Reading(kind, request, self.name, tuple(self.notes), tuple(self.columns))
+
+
+def reading_of_both(
+    kind: Kind, request: Request, sources: Sequence[Source], planes: list[list[float]] | None = None
+) -> Reading:
+    """Return the reading of several files together."""
+    notes = tuple(note for source in sources for note in source.notes)
+    columns = tuple(column for source in sources for column in source.columns)
+    name = ", ".join(source.name for source in sources)
+    return Reading(kind, request, name, notes, columns, planes)
 
 
 def quoted(text: object) -> str:

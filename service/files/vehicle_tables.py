@@ -15,7 +15,7 @@ from service.files.fleets import (
     timed,
 )
 from service.files.places import check_range
-from service.files.reading import Reading, Source, quoted
+from service.files.reading import Reading, Source, quoted, reading_of_both
 from service.files.stop_tables import visits_of
 from service.files.table_columns import Columns, columns_of, ids_of
 from service.files.tables import Table
@@ -52,13 +52,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     _add_fixed(columns, vehicles, located=plane is None)
     columns.tell()
     request = fleet_request(stops, vehicles, objectives)
-    return Reading(
-        "fleet",
-        request,
-        f"{source.name}, {other.name}",
-        (*source.notes, *other.notes),
-        (*source.columns, *other.columns),
-    )
+    return reading_of_both("fleet", request, (source, other))
 
 
 def _columns_of_vehicles(source: Source, table: Table, stops: list[Stop]) -> Columns:

@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import shutil
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -10,6 +11,7 @@ from types import SimpleNamespace
 import pytest
 
 from service.cli.fleets.command import read_fleet
+from tests.files.test_examples import FOLDER as EXAMPLES
 from tests.helpers.command import paretour
 from tests.helpers.fleet_requests import fleet_request
 
@@ -78,6 +80,10 @@ def test_a_table_of_stops_and_one_of_vehicles_are_planned_as_a_fleet(
     refused = paretour("fleet", "stops.csv", "stops.csv", folder=tmp_path)
     assert refused.returncode == 2
     assert "stops.csv: must have columns of vehicles" in refused.stderr
+    shutil.copy(EXAMPLES / "cvrp.vrp", tmp_path)
+    refused = paretour("fleet", "cvrp.vrp", "vehicles.csv", folder=tmp_path)
+    assert refused.returncode == 2
+    assert "must be a table of stops and one of vehicles" in refused.stderr
 
 
 def test_vehicles_or_stops_may_be_standard_input(

@@ -4,6 +4,7 @@ import copy
 import io
 import json
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache
 from http import HTTPStatus
 from pathlib import Path
@@ -21,6 +22,7 @@ from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile, UnreadableFile
 from service.jobs import compiled_code, runner
 from service.requests.task import Task, TaskSource, parse_task
+from tests.cli.test_terminal_text import REQUEST
 from tests.client.test_robots import REQUEST as ROBOTS
 from tests.client.test_unexpected_answers import answers_of
 from tests.files.test_examples import ACTORS
@@ -116,13 +118,19 @@ def command(folder: Path, number: int) -> list[object]:
     return [[kind, path], [kind, path, "--seed", 3], ["tour", path, "--start", "a"]][number % 3]
 
 
-def test_a_broken_file_ends_the_whole_command_with_a_sentence(
-    tmp_path: Path, screen: Screen, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def planless(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have the command plan nothing, and read its settings once."""
     settings = configuration.load_settings()
     monkeypatch.setattr(configuration, "load_settings", lambda: settings)
     monkeypatch.setattr(runner, "load_runner", lambda *_: Planless())
     monkeypatch.setattr(compiled_code, "warm_up", lambda: None)
+
+
+@pytest.mark.usefixtures("planless")
+def test_a_broken_file_ends_the_whole_command_with_a_sentence(
+    tmp_path: Path, screen: Screen
+) -> None:
     ended: dict[int, int] = {}
     for number in range(COUNT):
         code, stdout, stderr = screen.run(*command(tmp_path, number))
@@ -151,6 +159,36 @@ def with_hostile(document: Any, path: tuple[Any, ...]) -> Any:
         at = at[key]
     at[path[-1]] += HOSTILE
     return changed
+
+
+def hostile_files() -> Iterator[tuple[str, bytes]]:
+    """The names and bytes of files with one hostile text: of every JSON, and of a map.yaml."""
+    requests: list[tuple[str, Any]] = [("fleet", fleet_request()), ("front", REQUEST)]
+    names = [name for name in FILES if name.lower().endswith("json")]
+    for name in names:
+        with suppress(ValueError):
+            requests.append((name, json.loads(FILES[name])))
+    for name, document in requests:
+        for path in places_of_texts(document):
+            yield name, json.dumps(with_hostile(document, path)).encode()
+    lines = FILES["map.yaml"].decode().splitlines()
+    for at, line in enumerate(lines):
+        changed = f"{line.partition(':')[0]}: {json.dumps(HOSTILE)}"
+        yield "map.yaml", "\n".join([*lines[:at], changed, *lines[at + 1 :]]).encode()
+
+
+@pytest.mark.usefixtures("planless")
+def test_no_text_of_a_file_is_obeyed_by_a_terminal(tmp_path: Path, screen: Screen) -> None:
+    shown = 0
+    for name, content in hostile_files():
+        (tmp_path / name).write_bytes(content)
+        for kind in ("front", "fleet", "coverage"):
+            code, stdout, stderr = screen.run(kind, tmp_path / name)
+            assert code in (2, PLANNED), (name, stderr)
+            assert stdout == ""
+            assert harmless(stderr), (name, content, stderr)
+            shown += "owned" in stderr
+    assert shown > 20
 
 
 class Service:

@@ -1,5 +1,6 @@
 """A front drawn into a file."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -30,3 +31,9 @@ def test_axes_have_names_and_units_as_they_are(tmp_path: Path) -> None:
 def test_a_path_that_cannot_be_drawn_into_is_refused(tmp_path: Path, name: str) -> None:
     with pytest.raises(UsageError, match=f"got {tmp_path / name}"):
         check_path(tmp_path / name)
+
+
+def test_a_pipe_is_not_drawn_into(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "front.png")
+    with pytest.raises(UsageError, match=r"--plot must be a file, got .*front\.png"):
+        check_path(tmp_path / "front.png")
