@@ -7,6 +7,7 @@ follows squeezed lengths, and plans are compared by their true ones.
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from math import inf
 
 import numpy as np
@@ -15,6 +16,7 @@ from service.fleet.fleet import Array, Fleet, Rules
 
 _LEAST_LEGS = 10  # that an ordinary plan costs, at least
 _HIGHEST = 1e4  # squeezed leg, in ordinary ones: more would leave these too few units
+_MOST_STEPS = 1000  # different huge numbers whose differences are looked at
 _FORBIDDEN = 4.0  # times the highest squeezed leg
 
 
@@ -91,12 +93,12 @@ class _Scale:
         with any number of the lower.
         """
         huge = np.unique(numbers[numbers > ordinary])
+        squeezed = _stepwise(huge[:_MOST_STEPS], ordinary, ratio)
+        if len(huge) <= _MOST_STEPS and squeezed.max(initial=0.0) <= top:
+            return cls(huge, squeezed)
         ratios = huge / np.concatenate((huge[:1], huge[:-1]))
         steps = np.log(np.minimum(ratios, ratio)).cumsum()
-        most = math.log(top / ordinary)
-        if len(huge) and steps[-1] > most:
-            steps *= most / steps[-1]
-        return cls(huge, ordinary * np.exp(steps))
+        return cls(huge, ordinary * np.exp(steps * min(1.0, math.log(top / ordinary) / steps[-1])))
 
     def __call__(self, numbers: Array) -> Array:
         """Return squeezed numbers; infinite ones stay so."""
@@ -106,6 +108,16 @@ class _Scale:
         is_huge = (numbers >= self.huge[0]) & np.isfinite(numbers)
         squeezed: Array = np.where(is_huge, self.squeezed[places], numbers)
         return squeezed
+
+
+def _stepwise(huge: Array, ordinary: float, ratio: float) -> Array:
+    """Return squeezed numbers whose small differences are true, and others those of plans."""
+    squeezed = [ordinary] * min(1, len(huge))
+    for lower, number in pairwise(huge.tolist()):
+        last = squeezed[-1]
+        step = max(ordinary, last * (min(number / lower, ratio) - 1))
+        squeezed.append(last + min(number - lower, step))
+    return np.array(squeezed)
 
 
 def waiting_of(rules: Rules) -> float:
