@@ -13,6 +13,7 @@ from math import inf
 import numpy as np
 
 from service.fleet.fleet import Array, Fleet, Rules
+from service.instance import OUTLYING
 
 _LEAST_LEGS = 10  # that an ordinary plan costs, at least
 _HIGHEST = 1e4  # squeezed leg, in ordinary ones: more would leave these too few units
@@ -27,8 +28,8 @@ class Squeezed:
     Args:
         legs: The costs, shape (2, n, n); finite where a leg is forbidden, and higher than others.
         largest: The largest leg that plans are made of, in each objective, shape (2,).
-        highest: The largest leg that is not forbidden, in each objective, shape (2,). Of a sum
-            against a maximum the largest prize or fixed cost if that is more.
+        highest: The largest leg that is not forbidden, in each objective, shape (2,); in the first
+            the largest prize or fixed cost if that is more.
         prizes: Of each stop, shape (n,); 0 where it has none.
         fixed: The costs of using a vehicle of each type, shape (v,).
         changed: Whether any number was squeezed.
@@ -55,7 +56,7 @@ class Squeezed:
         legs, (largest, highest) = np.empty_like(fleet.costs), np.empty((2, len(fleet.costs)))
         changed = False
         for objective, costs in enumerate(fleet.costs):
-            ordinary = float(fleet.ordinary_legs[objective]) or 1.0
+            ordinary = _ordinary(costs)
             waiting = waiting_of(rules) if objective == rules.clock else 0.0
             extra = np.concatenate((prizes, fixed)) if objective == 0 else np.empty(0)
             numbers = np.concatenate((costs[np.isfinite(costs)], extra))
@@ -72,8 +73,7 @@ class Squeezed:
             changed = changed or len(scale.huge) > 0
             if objective == 0:
                 prizes, fixed = scale(prizes), scale(fixed)
-        if rules.maximum is not None:
-            highest[0] = max(highest[0], prizes.max(), fixed.max())
+        highest[0] = max(highest[0], prizes.max(), fixed.max())
         return cls(legs, largest, highest, prizes, fixed, changed)
 
 
@@ -108,6 +108,19 @@ class _Scale:
         is_huge = (numbers >= self.huge[0]) & np.isfinite(numbers)
         squeezed: Array = np.where(is_huge, self.squeezed[places], numbers)
         return squeezed
+
+
+def _ordinary(costs: Array) -> float:
+    """Return the largest cost of up to a hundred times what the next stop typically costs.
+
+    Not of a typical leg: of two clusters half of all legs may be bridges.
+    """
+    nearest = np.where(costs > 0, costs, inf).min(axis=1)
+    nearest = nearest[np.isfinite(nearest)]
+    if not len(nearest):
+        return 1.0
+    limit = OUTLYING * float(np.median(nearest))
+    return float(costs.max(where=costs <= limit, initial=0.0))
 
 
 def _stepwise(huge: Array, ordinary: float, ratio: float) -> Array:
