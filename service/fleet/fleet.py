@@ -174,18 +174,11 @@ class Fleet:
         return bool(np.isinf(self.costs[0]).any())
 
     @cached_property
-    def ordinary_legs(self) -> Array:
-        """The largest cost of a leg that is not an outlier, in each objective, shape (2,)."""
-        return ordinary_costs(self.costs, largest_costs(self.costs))
-
-    @cached_property
     def needed_legs(self) -> Array:
         """The least cost, shape (2,), so that legs up to it lead to all stops and back from them.
 
         Stops to which no way leads do not count.
         """
-        if (largest_costs(self.costs) <= self.ordinary_legs).all():
-            return np.zeros(OBJECTIVES)
         starts = _places([vehicle.start for vehicle in self.rules.vehicles], self.rules)
         ends = _places([vehicle.end for vehicle in self.rules.vehicles], self.rules)
         return np.array([max(_least_bound(c, starts), _least_bound(c.T, ends)) for c in self.costs])
@@ -196,9 +189,10 @@ class Fleet:
 
         Outliers do not count, but for those without which a stop cannot be left or reached.
         """
-        ordinary, needed = self.ordinary_legs, self.needed_legs
+        largest, needed = largest_costs(self.costs), self.needed_legs
+        ordinary = ordinary_costs(self.costs, largest)
         legs: Array = np.where(needed > ordinary, needed + ordinary, ordinary)
-        return np.minimum(legs, largest_costs(self.costs))
+        return np.minimum(legs, largest)
 
 
 def _places(ends: Sequence[int | None], rules: Rules) -> list[int]:

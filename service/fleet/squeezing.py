@@ -7,14 +7,17 @@ follows squeezed lengths, and plans are compared by their true ones.
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from math import inf
 
 import numpy as np
 
 from service.fleet.fleet import Array, Fleet, Rules
+from service.instance import OUTLYING
 
 _LEAST_LEGS = 10  # that an ordinary plan costs, at least
 _HIGHEST = 1e4  # squeezed leg, in ordinary ones: more would leave these too few units
+_MOST_STEPS = 1000  # different huge numbers whose differences are looked at
 _FORBIDDEN = 4.0  # times the highest squeezed leg
 
 
@@ -25,8 +28,8 @@ class Squeezed:
     Args:
         legs: The costs, shape (2, n, n); finite where a leg is forbidden, and higher than others.
         largest: The largest leg that plans are made of, in each objective, shape (2,).
-        highest: The largest leg that is not forbidden, in each objective, shape (2,). Of a sum
-            against a maximum the largest prize or fixed cost if that is more.
+        highest: The largest leg that is not forbidden, in each objective, shape (2,); in the first
+            the largest prize or fixed cost if that is more.
         prizes: Of each stop, shape (n,); 0 where it has none.
         fixed: The costs of using a vehicle of each type, shape (v,).
         changed: Whether any number was squeezed.
@@ -53,7 +56,7 @@ class Squeezed:
         legs, (largest, highest) = np.empty_like(fleet.costs), np.empty((2, len(fleet.costs)))
         changed = False
         for objective, costs in enumerate(fleet.costs):
-            ordinary = float(fleet.ordinary_legs[objective]) or 1.0
+            ordinary = _ordinary(costs)
             waiting = waiting_of(rules) if objective == rules.clock else 0.0
             extra = np.concatenate((prizes, fixed)) if objective == 0 else np.empty(0)
             numbers = np.concatenate((costs[np.isfinite(costs)], extra))
@@ -70,8 +73,7 @@ class Squeezed:
             changed = changed or len(scale.huge) > 0
             if objective == 0:
                 prizes, fixed = scale(prizes), scale(fixed)
-        if rules.maximum is not None:
-            highest[0] = max(highest[0], prizes.max(), fixed.max())
+        highest[0] = max(highest[0], prizes.max(), fixed.max())
         return cls(legs, largest, highest, prizes, fixed, changed)
 
 
@@ -91,12 +93,12 @@ class _Scale:
         with any number of the lower.
         """
         huge = np.unique(numbers[numbers > ordinary])
+        squeezed = _stepwise(huge[:_MOST_STEPS], ordinary, ratio)
+        if len(huge) <= _MOST_STEPS and squeezed.max(initial=0.0) <= top:
+            return cls(huge, squeezed)
         ratios = huge / np.concatenate((huge[:1], huge[:-1]))
         steps = np.log(np.minimum(ratios, ratio)).cumsum()
-        most = math.log(top / ordinary)
-        if len(huge) and steps[-1] > most:
-            steps *= most / steps[-1]
-        return cls(huge, ordinary * np.exp(steps))
+        return cls(huge, ordinary * np.exp(steps * min(1.0, math.log(top / ordinary) / steps[-1])))
 
     def __call__(self, numbers: Array) -> Array:
         """Return squeezed numbers; infinite ones stay so."""
@@ -106,6 +108,29 @@ class _Scale:
         is_huge = (numbers >= self.huge[0]) & np.isfinite(numbers)
         squeezed: Array = np.where(is_huge, self.squeezed[places], numbers)
         return squeezed
+
+
+def _ordinary(costs: Array) -> float:
+    """Return the largest cost of up to a hundred times what the next stop typically costs.
+
+    Not of a typical leg: of two clusters half of all legs may be bridges.
+    """
+    nearest = np.where(costs > 0, costs, inf).min(axis=1)
+    nearest = nearest[np.isfinite(nearest)]
+    if not len(nearest):
+        return 1.0
+    limit = OUTLYING * float(np.median(nearest))
+    return float(costs.max(where=costs <= limit, initial=0.0))
+
+
+def _stepwise(huge: Array, ordinary: float, ratio: float) -> Array:
+    """Return squeezed numbers whose small differences are true, and others those of plans."""
+    squeezed = [ordinary] * min(1, len(huge))
+    for lower, number in pairwise(huge.tolist()):
+        last = squeezed[-1]
+        step = max(ordinary, last * (min(number / lower, ratio) - 1))
+        squeezed.append(last + min(number - lower, step))
+    return np.array(squeezed)
 
 
 def waiting_of(rules: Rules) -> float:
