@@ -3,6 +3,7 @@
 Nothing else in the service reads the environment. The documentation lists every description.
 """
 
+import math
 import os
 import re
 from collections.abc import Iterable, Mapping
@@ -12,7 +13,14 @@ from typing import Annotated
 from urllib.parse import urlsplit
 
 from limits import parse
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from service.api.auth import KeyHash
@@ -20,6 +28,23 @@ from service.api.site.tiles import checked_template
 from service.jobs.store import STORE_BYTES
 from service.requests.limits import Limits
 from service.roads.router import DEFAULT_PROFILES, RouterName, RouterSettings
+
+_WEEK = 7 * 86_400  # seconds; timers that count milliseconds in 32 bits end after 24 days
+_YEAR = 366 * 86_400  # seconds
+_MOST_BYTES = 2**40  # in 64 bits, with which the system and SQLite count, even when added up
+_MOST_BODY_BYTES = 2**28  # one value of Redis has at most 2**29 bytes, one of SQLite 10**9
+_MOST_PROCESSES = 1024  # and threads
+_MOST_WAITING = 100_000
+_MOST_CONNECTIONS = 2**20  # the most descriptors that Linux lets a process open by default
+_MOST_REQUESTS = 1_000_000  # of one caller: the time of each is remembered
+_MOST_CITIES = 1_000_000  # the search's arrays of a row for each city take gigabytes
+_MOST_PAIRED_CITIES = 46_000  # their pairs are numbered in 32 bits
+_MOST_FLEET_STOPS = 10_000  # a matrix of their costs in 64 bits takes 800 MB
+_MOST_CELLS = 2**28  # the paths over them number three times as many in 32 bits
+_MOST_PATH_CELLS = 2**23  # of up to 40 bytes each, which are stored as one value
+_MOST_TOURS = 10_000  # choosing these from the search's 50,000 takes 2 GB
+_MOST_ENTRIES = 1_000_000
+_LEAST = 0.001  # of shares, seconds and metres
 
 
 def _cores() -> int:
@@ -46,7 +71,13 @@ def _key_hash(value: object) -> object:
 
 
 def _checked_rate(value: str) -> str:
-    parse(value)
+    try:
+        rate = parse(value)
+    except ValueError:
+        rate = None
+    if rate is None or not (1 <= rate.amount <= _MOST_REQUESTS and 1 <= rate.get_expiry() <= _YEAR):
+        demand = f"with 1 to {_MOST_REQUESTS} requests in a second, or longer, up to a year"
+        raise ValueError(f"must be like 1000/minute, {demand}")
     return value
 
 
@@ -59,21 +90,38 @@ def _checked_address(value: str) -> str:
     return value
 
 
-def _checked_network_cities(cities: int) -> int:
-    if cities > _MOST_NETWORK_CITIES:
-        raise ValueError(
-            f"must be at most {_MOST_NETWORK_CITIES}: networks number pairs of cities in 32 bits"
-        )
-    return cities
+def _whole(least: int, most: int) -> WrapValidator:
+    """Return the check that a setting is a whole number in a range, which its error names."""
+    return _between(least, most, "whole number")
 
 
+def _number(least: float, most: float) -> WrapValidator:
+    """Return the check that a setting is a finite number in a range, which its error names."""
+    return _between(least, most, "number")
+
+
+def _between(least: float, most: float, kind: str) -> WrapValidator:
+    def check(value: object, read: ValidatorFunctionWrapHandler) -> float:
+        try:
+            number: float = read(value)
+        except ValidationError:
+            number = math.nan
+        if not least <= number <= most:
+            raise ValueError(f"must be a {kind} from {least} to {most}")
+        return number
+
+    return WrapValidator(check)
+
+
+Share = Annotated[float, _number(_LEAST, 1)]
+Seconds = Annotated[float, _number(_LEAST, _WEEK)]
+KeptSeconds = Annotated[float, _number(_LEAST, 10 * _YEAR)]
 Words = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)]
 KeyHashes = Annotated[
     tuple[Annotated[KeyHash, BeforeValidator(_key_hash)], ...], NoDecode, BeforeValidator(_split)
 ]
 RedisUrl = Annotated[str, AfterValidator(_checked_redis_url)]
 Rate = Annotated[str, AfterValidator(_checked_rate)]
-NetworkCities = Annotated[int, AfterValidator(_checked_network_cities)]
 Address = Annotated[str, AfterValidator(_checked_address)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,50}$")]
 
@@ -85,31 +133,37 @@ class Settings(BaseSettings):
 
     # The address, and the processes that plan.
     host: str = Field("127.0.0.1", description="address to listen on")
-    port: int = Field(8000, ge=0, le=65535, description="port to listen on; 0 takes a free one")
+    port: Annotated[int, _whole(0, 65_535)] = Field(
+        8000, description="port to listen on; 0 takes a free one"
+    )
     actors: Path = Field(
         Path(__file__).parent / "actors", description="directory of the networks, ONNX files"
     )
     own_actors: Path | None = Field(
         None, description="directory of more networks, which are served beside those"
     )
-    workers: int = Field(
-        default_factory=_cores, ge=1, description="processes that plan, one request at a time each"
+    workers: Annotated[int, _whole(1, _MOST_PROCESSES)] = Field(
+        default_factory=_cores, description="processes that plan, one request at a time each"
     )
-    threads: int = Field(1, ge=1, description="threads of one inference call")
-    queue: int = Field(16, ge=0, description="requests that may wait for a worker")
-    caller_share: float = Field(
-        0.5, gt=0, le=1, description="share of workers, queue and bodies that one caller may fill"
+    threads: Annotated[int, _whole(1, _MOST_PROCESSES)] = Field(
+        1, description="threads of one inference call"
+    )
+    queue: Annotated[int, _whole(0, _MOST_WAITING)] = Field(
+        16, description="requests that may wait for a worker"
+    )
+    caller_share: Share = Field(
+        0.5, description="share of workers, queue and bodies that one caller may fill"
     )
 
     # Connections.
-    connections: int = Field(
-        1000, ge=1, description="open connections; fewer where descriptors (`ulimit -n`) are few"
+    connections: Annotated[int, _whole(1, _MOST_CONNECTIONS)] = Field(
+        1000, description="open connections; fewer where descriptors (`ulimit -n`) are few"
     )
-    connection_share: float = Field(
-        0.25, gt=0, le=1, description="share of these that one address may hold, but for proxies"
+    connection_share: Share = Field(
+        0.25, description="share of these that one address may hold, but for proxies"
     )
-    head_seconds: float = Field(
-        10.0, gt=0, description="how long a request's head may take, and a connection be silent"
+    head_seconds: Seconds = Field(
+        10.0, description="how long a request's head may take, and a connection be silent"
     )
 
     forwarded_allow_ips: str = Field(
@@ -125,49 +179,68 @@ class Settings(BaseSettings):
     tiles_credit: str = Field("© OpenStreetMap contributors", description="whom the tiles are by")
 
     # Limits of a request.
-    max_body_bytes: int = Field(2**24, ge=1, description="the longest request body")
-    bodies_bytes: int = Field(
+    max_body_bytes: Annotated[int, _whole(1, _MOST_BODY_BYTES)] = Field(
+        2**24, description="the longest request body"
+    )
+    bodies_bytes: Annotated[int, _whole(2**20, _MOST_BYTES)] = Field(
         2**27,
-        ge=2**20,
         description="bytes of all bodies of requests under way, and of answers",
     )
-    parse_seconds: float = Field(20.0, gt=0, description="how long a body may take to parse")
-    parse_bytes: int = Field(
-        2**29 + 2**28, ge=2**26, description="memory that parsing a body may take"
+    parse_seconds: Seconds = Field(20.0, description="how long a body may take to parse")
+    parse_bytes: Annotated[int, _whole(2**26, _MOST_BYTES)] = Field(
+        2**29 + 2**28, description="memory that parsing a body may take"
     )
-    max_cities: int = Field(10_000, ge=1, description="the most cities of an instance")
-    max_matrix_cities: int = Field(1000, ge=1, description="the most where costs are matrices")
-    max_network_cities: NetworkCities = Field(
-        5000, ge=1, description="the most in tours of a network"
+    max_cities: Annotated[int, _whole(1, _MOST_CITIES)] = Field(
+        10_000, description="the most cities of an instance"
     )
-    max_fleet_stops: int = Field(
-        500, ge=1, description="the most stops of a fleet, and places that robots share"
+    max_matrix_cities: Annotated[int, _whole(1, _MOST_PAIRED_CITIES)] = Field(
+        1000, description="the most where costs are matrices"
     )
-    max_cells: int = Field(2**20, ge=1, description="the most cells of a map")
-    max_path_cells: int = Field(2**21, ge=1, description="the most cells, or stops, of an answer")
-    max_preferences: int = Field(200, ge=1, description="the most preferences of a request")
-    max_repairs: int = Field(200, ge=0, description="the most repairs of the network's tours")
-    max_size: int = Field(1000, ge=1, description="the most tours that a request may ask for")
-    max_time_limit: float = Field(60.0, ge=0, description="the most seconds of planning")
+    max_network_cities: Annotated[int, _whole(1, _MOST_PAIRED_CITIES)] = Field(
+        5000, description="the most in tours of a network"
+    )
+    max_fleet_stops: Annotated[int, _whole(1, _MOST_FLEET_STOPS)] = Field(
+        500, description="the most stops of a fleet, and places that robots share"
+    )
+    max_cells: Annotated[int, _whole(1, _MOST_CELLS)] = Field(
+        2**20, description="the most cells of a map"
+    )
+    max_path_cells: Annotated[int, _whole(1, _MOST_PATH_CELLS)] = Field(
+        2**21, description="the most cells, or stops, of an answer"
+    )
+    max_preferences: Annotated[int, _whole(1, _MOST_TOURS)] = Field(
+        200, description="the most preferences of a request"
+    )
+    max_repairs: Annotated[int, _whole(0, _MOST_TOURS)] = Field(
+        200, description="the most repairs of the network's tours"
+    )
+    max_size: Annotated[int, _whole(1, _MOST_TOURS)] = Field(
+        1000, description="the most tours that a request may ask for"
+    )
+    max_time_limit: Annotated[float, _number(0, _WEEK)] = Field(
+        60.0, description="the most seconds of planning"
+    )
 
     # Deadlines.
-    request_seconds: float = Field(
-        90.0, gt=0, description="when a request is ended with the best front so far"
+    request_seconds: Seconds = Field(
+        90.0, description="when a request is ended with the best front so far"
     )
-    drain_seconds: int = Field(20, ge=0, description="time to finish what is under way at SIGTERM")
-    body_seconds: float = Field(30.0, gt=0, description="how long a body may take to arrive")
+    drain_seconds: Annotated[int, _whole(0, _WEEK)] = Field(
+        20, description="time to finish what is under way at SIGTERM"
+    )
+    body_seconds: Seconds = Field(30.0, description="how long a body may take to arrive")
 
     # The store of fronts and jobs.
     store: str = Field(
         ":memory:", description="file of fronts and jobs, which then outlive the service"
     )
-    store_entries: int = Field(
-        256, ge=1, description="fronts kept for later questions; callers with most make way"
+    store_entries: Annotated[int, _whole(1, _MOST_ENTRIES)] = Field(
+        256, description="fronts kept for later questions; callers with most make way"
     )
-    store_bytes: int = Field(
-        STORE_BYTES, ge=1, description="the most bytes of those; callers with most make way"
+    store_bytes: Annotated[int, _whole(1, _MOST_BYTES)] = Field(
+        STORE_BYTES, description="the most bytes of those; callers with most make way"
     )
-    store_seconds: float = Field(3600.0, gt=0, description="how long a front is kept")
+    store_seconds: KeptSeconds = Field(3600.0, description="how long a front is kept")
     redis_url: RedisUrl | None = Field(
         None,
         description="Redis of all replicas: rates, fronts and jobs, which `paretour work` plans",
@@ -182,30 +255,28 @@ class Settings(BaseSettings):
         None,
         description="its means of transport; by default auto for valhalla and driving for osrm",
     )
-    router_snap: float = Field(
-        250.0, gt=0, le=10_000, description="metres that a stop may lie from a road"
+    router_snap: Annotated[float, _number(_LEAST, 10_000)] = Field(
+        250.0, description="metres that a stop may lie from a road"
     )
-    router_seconds: float = Field(
+    router_seconds: Seconds = Field(
         20.0,
-        gt=0,
         description="how long it may take for the costs of a request, or its streets",
     )
-    router_pairs: int = Field(
-        2500, ge=1, le=10_000, description="the most pairs of stops that it is asked about at once"
+    router_pairs: Annotated[int, _whole(1, 10_000)] = Field(
+        2500, description="the most pairs of stops that it is asked about at once"
     )
-    router_cache_bytes: int = Field(
+    router_cache_bytes: Annotated[int, _whole(0, _MOST_BYTES)] = Field(
         2**26,
-        ge=0,
         description="bytes of costs and streets that are remembered, so that it is asked once",
     )
-    router_cache_seconds: float = Field(
-        3600.0, gt=0, description="how long costs and streets are remembered"
+    router_cache_seconds: KeptSeconds = Field(
+        3600.0, description="how long costs and streets are remembered"
     )
-    router_legs: int = Field(
-        5000, ge=1, description="the most ways from stop to stop whose streets an answer draws"
+    router_legs: Annotated[int, _whole(1, _MOST_ENTRIES)] = Field(
+        5000, description="the most ways from stop to stop whose streets an answer draws"
     )
-    router_positions: int = Field(
-        2**20, ge=2, description="the most positions of all lines along streets of an answer"
+    router_positions: Annotated[int, _whole(2, 2**24)] = Field(
+        2**20, description="the most positions of all lines along streets of an answer"
     )
 
     # Access.
@@ -265,7 +336,6 @@ class Settings(BaseSettings):
 
 
 PREFIX = "PARETOUR_"
-_MOST_NETWORK_CITIES = 46_000
 _ROUTER_SHARE = 0.9  # of a request's seconds that its costs by road may take
 # Of the command line, and what Kubernetes and Docker set for services beside ours.
 _OTHERS = re.compile(

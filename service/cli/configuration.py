@@ -11,7 +11,9 @@ from service.cli.errors import UsageError
 from service.settings import Settings, unknown_variables, variable_of
 
 T = TypeVar("T")
-_PASSWORD = re.compile(r"//[^/]*@|(?<=password=)[^&\s']+", re.IGNORECASE)  # of a URL
+_PASSWORD = re.compile(
+    r"(//)[^/]*@|((?:password|[?&][^=&\s']*)=)[^&\s']+", re.IGNORECASE
+)  # of a URL
 _SECRET = "api_keys"  # the setting of which nothing is shown
 
 
@@ -51,8 +53,8 @@ def _sentence(error: ValidationError, options: Mapping[str, Any]) -> str:
 
 
 def _masked(text: str) -> str:
-    """Return a text with *** in place of the passwords of URLs."""
-    return _PASSWORD.sub(lambda found: "//***@" if found[0].startswith("//") else "***", text)
+    """Return a text with *** in place of the passwords of URLs, and of what follows their =."""
+    return _PASSWORD.sub(lambda found: "//***@" if found[1] else f"{found[2]}***", text)
 
 
 def _written(location: tuple[int | str, ...], options: Mapping[str, Any]) -> str:

@@ -79,6 +79,10 @@ def test_variables_of_the_command_and_of_orchestrators_pass(
         ("PARETOUR_REDIS_URL", "redis://:sesame@"),
         ("PARETOUR_REDIS_URL", "http://redis?password=sesame"),
         ("PARETOUR_ROUTER_URL", "ftp://us:sesame@router"),
+        ("PARETOUR_ROUTER_URL", "http://router/?key=sesame"),
+        ("PARETOUR_TILES", "https://tiles.example/{z}/{x}.png?api_key=sesame"),
+        ("PARETOUR_TILES", "https://tiles.example/{z}/{x}.png?v=1&api_key=sesame"),
+        ("PARETOUR_PORT", "redis://:sesame@redis:6379"),
     ],
 )
 def test_a_wrong_setting_that_may_hold_a_secret_is_named_without_it(
