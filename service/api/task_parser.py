@@ -20,7 +20,7 @@ from service.requests.limits import Limits, check_structure
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.task import Task, TaskSource, parse_task
-from service.requests.validation import check_json, parse_json
+from service.requests.validation import check_depth, parse_json
 
 _SHORT = 2**17  # bytes that are parsed here, in a few milliseconds
 _FEW_QUOTES = 2000  # those of 300 stops; as many faults take a few milliseconds
@@ -138,13 +138,13 @@ class TaskParser:
         return await self._in_turn(parse_replan, source, source.length)
 
     def _check(self, body: bytes) -> None:
-        """Raise a refusal where a body is too complex or, unless it is long, is not JSON.
+        """Raise a refusal where a body is too complex or, unless it is long, nested too deeply.
 
-        JSON that is too deep is refused here: it need not wait until a process is started.
+        Such a body then need not wait until a process is started.
         """
         check_structure(body, self._limits)
         if len(body) <= _MEDIUM:
-            check_json(body)
+            check_depth(body)
 
     async def read_files(self, files: Sequence[NamedFile]) -> bytes:
         """Return what the reader makes of files, as JSON; never here, whatever their length.

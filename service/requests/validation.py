@@ -6,6 +6,7 @@ from difflib import get_close_matches
 from functools import cache
 from typing import Any, TypeVar
 
+import numpy as np
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails, from_json, to_json
 
@@ -13,6 +14,8 @@ from service.errors import MOST_FAULTS, Fault, Refusal
 
 Model = TypeVar("Model", bound=BaseModel)
 _ANYTHING: Mapping[str, Any] = {}
+_DEEPEST = 100  # levels, half of what pydantic parses
+_NO_BRACKETS = bytes(set(range(256)).difference(b"[]{}"))
 
 
 def parse_json(model: type[Model], body: bytes) -> Model:
@@ -31,12 +34,20 @@ def parse_json(model: type[Model], body: bytes) -> Model:
         raise refusal_of(errors, schema=_schema_of(model)) from None
 
 
-def check_json(body: bytes) -> None:
-    """Raise a refusal where a body is not JSON, or is nested more deeply than parse_json takes.
+def check_depth(body: bytes) -> None:
+    """Raise a refusal where a body is JSON that is nested more deeply than parse_json takes.
+
+    Brackets in strings are counted too, as that takes a tenth of the time: they may hide the
+    depth from this check, and then parse_json refuses the body.
 
     Raises:
-        Refusal: It is not.
+        Refusal: It is nested too deeply, or not JSON before that depth.
     """
+    brackets = np.frombuffer(body.translate(None, _NO_BRACKETS), np.uint8)
+    opening = (brackets == ord("[")) | (brackets == ord("{"))
+    depths = np.cumsum(np.where(opening, 1, -1))
+    if depths.max(initial=0) <= _DEEPEST:
+        return
     try:
         from_json(body)
     except ValueError as error:

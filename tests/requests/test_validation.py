@@ -5,7 +5,7 @@ import pytest
 from service.errors import MOST_FAULTS, Refusal
 from service.requests.front import FrontRequest
 from service.requests.schemas import PlanRequest
-from service.requests.validation import parse_json, shorten
+from service.requests.validation import check_depth, parse_json, shorten
 
 
 def refusal(body: bytes) -> Refusal:
@@ -79,3 +79,41 @@ def test_where_one_length_is_right_it_is_named(body: bytes, sentence: str) -> No
     with pytest.raises(Refusal) as refused:
         parse_json(FrontRequest, body)
     assert refused.value.detail == sentence
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        b"",
+        b"[1, 2]",
+        b'{"size": 1]]',
+        99 * b"[" + 99 * b"]",
+        1000 * b"[],",
+        b'{"actor":"' + 1000 * b"[" + b'"}',
+    ],
+    ids=["empty", "flat", "malformed", "deep enough", "side by side", "in a string"],
+)
+def test_a_body_that_is_not_too_deep_passes_the_check_of_depth(body: bytes) -> None:
+    check_depth(body)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        1000 * b"[" + 1000 * b"]",
+        1000 * b'{"a":[',
+        b'{"actor":"' + 1000 * b"]" + b'","x":' + 2000 * b"[",
+    ],
+    ids=["arrays", "objects", "behind a string of brackets"],
+)
+def test_a_body_that_is_too_deep_is_refused_by_the_check_of_depth(body: bytes) -> None:
+    with pytest.raises(Refusal, match="recursion limit"):
+        check_depth(body)
+
+
+def test_the_check_of_depth_leaves_a_flat_body_unparsed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def parse(_: bytes) -> None:
+        raise AssertionError("the body was parsed")
+
+    monkeypatch.setattr("service.requests.validation.from_json", parse)
+    check_depth(b'{"coordinates":[' + 20_000 * b"[0.25,0.5,0.75,1]," + b"[0,0,0,0]]}")
