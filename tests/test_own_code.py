@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,10 +13,10 @@ import psutil
 import pytest
 
 from tests.helpers.ports import free_port
+from tests.helpers.processes import PATIENCE, until_ok
 
 PARETOUR = str(Path(sys.executable).with_name("paretour"))
 CITIES = [[float(i), float(i * i % 7), float(i * 3 % 5), float(i)] for i in range(12)]
-PATIENCE = 300.0  # seconds, against hanging
 
 
 @contextmanager
@@ -46,19 +45,6 @@ def log_of(folder: Path) -> Path:
     return folder.with_name(f"{folder.name}-log")
 
 
-def until_ok(process: subprocess.Popen[bytes], url: str) -> None:
-    ends = time.monotonic() + PATIENCE
-    while time.monotonic() < ends:
-        assert process.poll() is None, "the service has ended"
-        try:
-            if httpx.get(url).status_code == 200:
-                return
-        except httpx.TransportError:
-            pass
-        time.sleep(0.02)
-    raise TimeoutError
-
-
 @pytest.mark.usefixtures("compiled")
 @pytest.mark.parametrize("name", ["service/__init__.py", "service.py", "numpy.py", "signal.py"])
 def test_a_module_in_the_current_folder_stands_in_for_none_that_is_installed(
@@ -68,7 +54,7 @@ def test_a_module_in_the_current_folder_stands_in_for_none_that_is_installed(
     module.parent.mkdir(exist_ok=True)
     module.write_text("raise RuntimeError('not the one that is installed')")
     with served(tmp_path, **quick_actors) as (process, url):
-        until_ok(process, f"{url}/health/ready")
+        until_ok(f"{url}/health/ready", process, log_of(tmp_path))
         answer = httpx.post(f"{url}/front", json={"coordinates": CITIES, "time_limit": 0.1})
         assert answer.status_code == 200
         # A long body is parsed in a process of its own.
@@ -105,14 +91,16 @@ def connections(process: psutil.Process) -> set[str]:
     return found
 
 
+@pytest.mark.usefixtures("compiled")
 def test_a_service_writes_its_cache_alone_and_connects_to_nobody(tmp_path: Path) -> None:
-    home, work = tmp_path / "home", tmp_path / "work"
+    # A long path: there is no room behind it for the names of sockets.
+    home, work = tmp_path / "home", tmp_path / ("work" * 20)
     home.mkdir()
     work.mkdir()
     places = {f"XDG_{kind}_HOME": str(home / kind) for kind in ("CACHE", "CONFIG", "DATA", "STATE")}
     outward = set()
     with served(work, HOME=str(home), TMPDIR=str(work), **places) as (process, url):
-        until_ok(process, f"{url}/health/ready")
+        until_ok(f"{url}/health/ready", process, log_of(work))
         for limit in (0, 0.2):
             body = {"coordinates": CITIES, "time_limit": limit}
             assert httpx.post(f"{url}/front", json=body).status_code == 200

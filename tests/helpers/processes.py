@@ -11,11 +11,14 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from pathlib import Path
 
 import httpx
 
 from tests.helpers.ports import free_port
 
+PATIENCE = 300.0  # seconds, against hanging
+_LINES = 20  # of a log, in an error
 UNLIMITED = "1000000/second"  # for tests and benchmarks, which all call from one address
 
 
@@ -53,18 +56,18 @@ def serve_process(
     defaults = {"NUMBA_DISABLE_JIT": "0" if ready else "1", "PARETOUR_RATE": UNLIMITED}
     environment = {**os.environ, **defaults, **settings}
     with (
-        tempfile.TemporaryFile() as log,
+        tempfile.NamedTemporaryFile() as log,
         subprocess.Popen(command, env=environment, stderr=log) as process,
     ):
         service = ServeProcess(f"http://127.0.0.1:{port}", process)
         try:
-            _wait_until_ok(f"{service.url}/health/{'ready' if ready else 'live'}")
+            url = f"{service.url}/health/{'ready' if ready else 'live'}"
+            until_ok(url, process, Path(log.name))
             yield service
         finally:
             process.send_signal(signal.SIGTERM)
             process.wait(timeout=60)
-            log.seek(0)
-            service.log = log.read()
+            service.log = Path(log.name).read_bytes()
 
 
 @contextmanager
@@ -80,11 +83,15 @@ def work_process(settings: Mapping[str, str]) -> Iterator[subprocess.Popen[bytes
             process.wait(timeout=60)
 
 
-def _wait_until_ok(url: str) -> None:
-    deadline = time.monotonic() + 300
-    while time.monotonic() < deadline:
-        with suppress(httpx.ConnectError):
+def until_ok(url: str, process: subprocess.Popen[bytes], log: Path) -> None:
+    """Wait until a service answers with 200; an error has the last lines that it logged."""
+    ends = time.monotonic() + PATIENCE
+    while time.monotonic() < ends and process.poll() is None:
+        with suppress(httpx.TransportError):
             if httpx.get(url).status_code == 200:
                 return
         time.sleep(0.05)
-    raise TimeoutError(f"{url} must answer within five minutes")
+    # Our own questions are logged too.
+    lines = [line for line in log.read_text().splitlines() if '"request"' not in line]
+    came = f"in {PATIENCE:g} s" if process.poll() is None else "before the service ended"
+    raise TimeoutError("\n".join([f"{url} did not answer with 200 {came}:", *lines[-_LINES:]]))

@@ -5,6 +5,7 @@ import multiprocessing
 import os
 import pickle
 import signal
+import tempfile
 import time
 import traceback
 from asyncio import Protocol, WriteTransport
@@ -36,6 +37,9 @@ _TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin
 
 _CONTEXT = multiprocessing.get_context("forkserver")
 _CONTEXT.set_forkserver_preload(["service.jobs.workers.preloaded"])
+# Python puts the socket of the fork server at TMPDIR/pymp-12345678/listener-12345678.
+_LONGEST_FOLDER = 107 - 32  # bytes; the path of a socket has at most 107
+_SHORT_FOLDERS = ("/tmp", "/var/tmp", "/dev/shm")
 
 
 def run_worker(tasks: socket, signals: socket, make_runner: MakeRunner) -> None:
@@ -238,6 +242,7 @@ class WorkerProcess:
                 process = _CONTEXT.Process(
                     target=run_worker, args=arguments, name="planner", daemon=True
                 )
+                _use_short_temporary_folder()
                 process.start()
             writing, inbox = await loop.create_connection(_Inbox, sock=own_tasks)
             ours.callback(writing.close)
@@ -277,6 +282,13 @@ class WorkerProcess:
         self._tasks.close()
         self._signals.close()
         await asyncio.to_thread(self._process.join)
+
+
+def _use_short_temporary_folder() -> None:
+    """Use a temporary folder with a shorter path where a socket in this one could not be opened."""
+    if len(os.fsencode(tempfile.gettempdir())) > _LONGEST_FOLDER:
+        usable = (each for each in _SHORT_FOLDERS if os.access(each, os.W_OK | os.X_OK))
+        tempfile.tempdir = next(usable, tempfile.tempdir)
 
 
 def _socket_pair(ours: ExitStack, theirs: ExitStack) -> tuple[socket, socket]:

@@ -3,9 +3,12 @@
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 from socket import socketpair
 from threading import Event
+
+import pytest
 
 from service.jobs.front_document import FrontDocument
 from service.jobs.workers.worker_process import _WorkerLoop
@@ -42,6 +45,33 @@ def test_no_worker_outlives_a_service_that_is_killed(tmp_path: Path) -> None:
         # Which ends when the last process that could write to it has ended.
         assert service.stdout.read() == b""
     assert not any(Path(f"/proc/{pid}").exists() and not zombie(pid) for pid in pids)
+
+
+START = """
+import asyncio
+from service.jobs.workers.worker_process import WorkerProcess
+
+async def main():
+    process = await WorkerProcess.start(dict)
+    process.kill()
+    await process.join()
+
+if __name__ == "__main__":
+    asyncio.run(main())
+"""
+
+
+@pytest.mark.parametrize("length", [75, 76, 200])
+def test_a_process_starts_however_long_the_path_of_the_temporary_folder_is(
+    tmp_path: Path, length: int
+) -> None:
+    script = tmp_path / "start.py"
+    script.write_text(START)
+    with tempfile.TemporaryDirectory(dir="/tmp") as short:
+        folder = Path(short) / ("f" * (length - len(short) - 1))
+        folder.mkdir()
+        environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(folder)}
+        subprocess.run([sys.executable, script], env=environment, check=True, timeout=600)
 
 
 def zombie(pid: int) -> bool:
