@@ -63,12 +63,12 @@ class Ending:
 
 
 def build(settings: Settings, ending: Ending) -> FastAPI:
-    """Return the application of the service, which fails where no worker gets ready.
+    """Return the application of the service, which shuts down if no worker gets ready.
 
     Raises:
         ValueError: There are no actors, the store cannot be opened, or an extra is not installed.
     """
-    # The workers load the actors, too: here only their facts are needed.
+    # Only what the files say of the actors is needed: the workers load them again.
     actors = load_actors(settings.actors, settings.threads, settings.own_actors)
     infos = {name: actor.info for name, actor in actors.items()}
     metrics = Metrics()
@@ -138,7 +138,7 @@ def make_server(app: FastAPI, connections: Connections, drain_seconds: int) -> F
     """Return a server of HTTP/1.1 alone, over these connections."""
     config = uvicorn.Config(
         app,
-        http=partial(Connection, connections),  # type: ignore[arg-type]  # called as a class is
+        http=partial(Connection, connections),  # type: ignore[arg-type]  # called like a class
         ws="none",
         # Not uvloop: 1 % more answers, but it does not shut down while Redis is connected.
         loop="asyncio",

@@ -1,6 +1,6 @@
 """The settings of the service and of its workers, from environment variables.
 
-Nothing else in the service reads the environment. The documentation lists every description.
+Nothing else in the service reads the environment. The guide lists every setting.
 """
 
 import math
@@ -82,7 +82,7 @@ def _checked_rate(value: str) -> str:
 
 
 def _checked_address(value: str) -> str:
-    """Return an http or https URL of a server, maybe with a path, to which more is added."""
+    """Return an http or https URL of a server, which may end in a path."""
     parts = urlsplit(value)
     whole = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
     if not whole or parts.query or parts.fragment or not value.isascii() or " " in value:
@@ -140,7 +140,7 @@ class Settings(BaseSettings):
         Path(__file__).parent / "actors", description="directory of the networks, ONNX files"
     )
     own_actors: Path | None = Field(
-        None, description="directory of more networks, which are served beside those"
+        None, description="directory of more networks, served in addition"
     )
     workers: Annotated[int, _whole(1, _MOST_PROCESSES)] = Field(
         default_factory=_cores, description="processes that plan, one request at a time each"
@@ -152,7 +152,7 @@ class Settings(BaseSettings):
         16, description="requests that may wait for a worker"
     )
     caller_share: Share = Field(
-        0.5, description="share of workers, queue and bodies that one caller may fill"
+        0.5, description="share of workers, queue and bodies that one caller may use"
     )
 
     # Connections.
@@ -160,23 +160,25 @@ class Settings(BaseSettings):
         1000, description="open connections; fewer where descriptors (`ulimit -n`) are few"
     )
     connection_share: Share = Field(
-        0.25, description="share of these that one address may hold, but for proxies"
+        0.25, description="share of the connections that one address may hold; proxies are exempt"
     )
     head_seconds: Seconds = Field(
-        10.0, description="how long a request's head may take, and a connection be silent"
+        10.0, description="how long a request's head may take, and a connection may be idle"
     )
 
     forwarded_allow_ips: str = Field(
         "127.0.0.1",
         validation_alias="FORWARDED_ALLOW_IPS",
-        description="proxies whose X-Forwarded-For is believed, with commas between; or *",
+        description="proxies whose X-Forwarded-For is trusted, separated by commas; or *",
     )
 
     # Map tiles under the stops on the page, which browsers load from there.
     tiles: Annotated[str, AfterValidator(checked_template)] | None = Field(
-        None, description="address of map tiles with {z}, {x}, {y}; none draws no streets"
+        None, description="address of map tiles with {z}, {x}, {y}; without it no streets are drawn"
     )
-    tiles_credit: str = Field("© OpenStreetMap contributors", description="whom the tiles are by")
+    tiles_credit: str = Field(
+        "© OpenStreetMap contributors", description="credit for the map tiles, shown on the map"
+    )
 
     # Limits of a request.
     max_body_bytes: Annotated[int, _whole(1, _MOST_BODY_BYTES)] = Field(
@@ -184,7 +186,7 @@ class Settings(BaseSettings):
     )
     bodies_bytes: Annotated[int, _whole(2**20, _MOST_BYTES)] = Field(
         2**27,
-        description="bytes of all bodies of requests under way, and of answers",
+        description="the most bytes of all request bodies in progress; as many for answers",
     )
     parse_seconds: Seconds = Field(20.0, description="how long a body may take to parse")
     parse_bytes: Annotated[int, _whole(2**26, _MOST_BYTES)] = Field(
@@ -194,19 +196,19 @@ class Settings(BaseSettings):
         10_000, description="the most cities of an instance"
     )
     max_matrix_cities: Annotated[int, _whole(1, _MOST_PAIRED_CITIES)] = Field(
-        1000, description="the most where costs are matrices"
+        1000, description="the most cities where costs are matrices"
     )
     max_network_cities: Annotated[int, _whole(1, _MOST_PAIRED_CITIES)] = Field(
-        5000, description="the most in tours of a network"
+        5000, description="the most cities for which a network builds tours"
     )
     max_fleet_stops: Annotated[int, _whole(1, _MOST_FLEET_STOPS)] = Field(
-        500, description="the most stops of a fleet, and places that robots share"
+        500, description="the most stops of a fleet, and places that several robots share"
     )
     max_cells: Annotated[int, _whole(1, _MOST_CELLS)] = Field(
         2**20, description="the most cells of a map"
     )
     max_path_cells: Annotated[int, _whole(1, _MOST_PATH_CELLS)] = Field(
-        2**21, description="the most cells, or stops, of an answer"
+        2**21, description="the most path cells, or stops of tours, of an answer"
     )
     max_preferences: Annotated[int, _whole(1, _MOST_TOURS)] = Field(
         200, description="the most preferences of a request"
@@ -223,71 +225,76 @@ class Settings(BaseSettings):
 
     # Deadlines.
     request_seconds: Seconds = Field(
-        90.0, description="when a request is ended with the best front so far"
+        90.0, description="seconds after which a request is answered with the best front so far"
     )
     drain_seconds: Annotated[int, _whole(0, _WEEK)] = Field(
-        20, description="time to finish what is under way at SIGTERM"
+        20, description="seconds to finish requests in progress after SIGTERM"
     )
     body_seconds: Seconds = Field(30.0, description="how long a body may take to arrive")
 
     # The store of fronts and jobs.
     store: str = Field(
-        ":memory:", description="file of fronts and jobs, which then outlive the service"
+        ":memory:",
+        description="file for fronts and jobs, which survive a restart; by default memory",
     )
     store_entries: Annotated[int, _whole(1, _MOST_ENTRIES)] = Field(
-        256, description="fronts kept for later questions; callers with most make way"
+        256, description="the most fronts kept; when full, the client with most loses its oldest"
     )
     store_bytes: Annotated[int, _whole(1, _MOST_BYTES)] = Field(
-        STORE_BYTES, description="the most bytes of those; callers with most make way"
+        STORE_BYTES,
+        description="the most bytes of all fronts kept",
     )
     store_seconds: KeptSeconds = Field(3600.0, description="how long a front is kept")
     redis_url: RedisUrl | None = Field(
         None,
-        description="Redis of all replicas: rates, fronts and jobs, which `paretour work` plans",
+        description="Redis shared by all replicas: rates, fronts, and jobs for `paretour work`",
     )
 
     # The routing engine.
     router_url: Address | None = Field(
-        None, description="routing engine that knows costs by road; none refuses these"
+        None, description="address of the routing engine; without it costs by road are refused"
     )
-    router: RouterName = Field("valhalla", description="whose interface that has, valhalla or osrm")
+    router: RouterName = Field(
+        "valhalla", description="interface of the routing engine: valhalla or osrm"
+    )
     router_profile: Name | None = Field(
         None,
-        description="its means of transport; by default auto for valhalla and driving for osrm",
+        description="its profile, such as auto; by default auto for valhalla, driving for osrm",
     )
     router_snap: Annotated[float, _number(_LEAST, 10_000)] = Field(
-        250.0, description="metres that a stop may lie from a road"
+        250.0, description="the most metres from a stop to a road"
     )
     router_seconds: Seconds = Field(
         20.0,
-        description="how long it may take for the costs of a request, or its streets",
+        description="how long the routing engine may take for one request's costs, or streets",
     )
     router_pairs: Annotated[int, _whole(1, 10_000)] = Field(
-        2500, description="the most pairs of stops that it is asked about at once"
+        2500, description="the most pairs of stops in one question to the routing engine"
     )
     router_cache_bytes: Annotated[int, _whole(0, _MOST_BYTES)] = Field(
         2**26,
-        description="bytes of costs and streets that are remembered, so that it is asked once",
+        description="the most bytes of remembered costs and streets, which are asked for once",
     )
     router_cache_seconds: KeptSeconds = Field(
         3600.0, description="how long costs and streets are remembered"
     )
     router_legs: Annotated[int, _whole(1, _MOST_ENTRIES)] = Field(
-        5000, description="the most ways from stop to stop whose streets an answer draws"
+        5000, description="the most legs whose streets one answer draws"
     )
     router_positions: Annotated[int, _whole(2, 2**24)] = Field(
-        2**20, description="the most positions of all lines along streets of an answer"
+        2**20, description="the most positions in all lines along streets of one answer"
     )
 
     # Access.
     api_keys: KeyHashes = Field(
-        (), description="who may call, as CALLER:HASH with commas between; none lets everybody in"
+        (),
+        description="callers and their keys, as CALLER:HASH,CALLER:HASH; without it all may call",
     )
     rate: Rate = Field(
-        "1000/minute", description="requests that each key may make; without keys, each address"
+        "1000/minute", description="the most requests of each caller; without keys, of each address"
     )
     origins: Words = Field(
-        (), description="origins whose pages may call (CORS), with commas between; or *"
+        (), description="origins whose pages may call (CORS), separated by commas; or *"
     )
 
     # Observation.
@@ -307,7 +314,7 @@ class Settings(BaseSettings):
             router=self.router,
             profile=self.router_profile or DEFAULT_PROFILES[self.router],
             snap=self.router_snap,
-            # So that a slow engine is named as the cause, before the request is overdue.
+            # Less than the request's, so that the error names the slow engine as the cause.
             seconds=min(self.router_seconds, _ROUTER_SHARE * self.request_seconds),
             pairs=self.router_pairs,
             cache_bytes=self.router_cache_bytes,
@@ -336,8 +343,8 @@ class Settings(BaseSettings):
 
 
 PREFIX = "PARETOUR_"
-_ROUTER_SHARE = 0.9  # of a request's seconds that its costs by road may take
-# Of the command line, and what Kubernetes and Docker set for services beside ours.
+_ROUTER_SHARE = 0.9  # the share of a request's seconds that its costs by road may take
+# Variables of the command line, and those that Kubernetes and Docker set for other services.
 _OTHERS = re.compile(
     r"PARETOUR_(API_KEY|(\w+_)?SERVICE_(HOST|PORT(_\w+)?)|(\w+_)?PORT_\d+_(TCP|UDP|SCTP)(_\w+)?)"
 )
@@ -345,12 +352,12 @@ _LINK = re.compile(r"(tcp|udp|sctp)://")
 
 
 def variable_of(name: str) -> str:
-    """Return the environment variable of a field, or the alias that it is."""
+    """Return the environment variable of a setting, given its field or its alias."""
     return f"{PREFIX}{name.upper()}" if name in Settings.model_fields else name
 
 
 def unknown_variables(environment: Mapping[str, str]) -> Iterable[str]:
-    """Yield a sentence for each variable that begins as a setting and is none."""
+    """Yield a sentence for each variable that has the prefix but is not a setting."""
     known = {variable_of(name) for name in Settings.model_fields}
     for name, value in sorted(environment.items()):
         upper = name.upper()
@@ -359,4 +366,4 @@ def unknown_variables(environment: Mapping[str, str]) -> Iterable[str]:
         if upper.endswith("_PORT") and _LINK.match(value):
             continue
         nearest = get_close_matches(upper, known, 1)
-        yield f"{name} is no setting" + (f"; did you mean {nearest[0]}?" if nearest else "")
+        yield f"{name} is not a setting" + (f"; did you mean {nearest[0]}?" if nearest else "")

@@ -40,7 +40,7 @@ from service.requests.limits import Limits
 
 @dataclass(frozen=True, kw_only=True)
 class Edge:
-    """The settings of the application's edge: who may call, from which pages, and how fast.
+    """The settings of the application's edge: access, origins, deadlines and budgets.
 
     Args:
         access: API keys and rates; by default everybody may call, as one caller.
@@ -132,7 +132,7 @@ def create_app(
     app.include_router(_actor_router(actors), **edge.guard)
     app.include_router(edge.metrics.router(), **edge.guard)
     app.include_router(_health_router(engine))
-    # Last: routes are tried in their order, and these are many.
+    # Last, because routes are tried in order and these are many.
     app.routes.extend(
         [edge.tiles.route(edge.streets is not None), *static_routes(), *guide_routes()]
     )

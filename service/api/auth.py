@@ -1,8 +1,8 @@
 """Authentication by API keys, and a rate limit for each caller.
 
 A key is 256 random bits. The settings hold its SHA-256 alone, which needs no salt: nobody guesses
-256 bits. Without keys everybody may call: as one caller, whose fronts all who know their
-ids can see, while each address has a rate and a latest front of its own.
+256 bits. Without keys everybody may call, as one caller: anybody who knows the id of a front can
+read it. Each address then has its own rate and its own latest front.
 """
 
 import hashlib
@@ -30,7 +30,7 @@ from service.api.middleware import ANONYMOUS
 from service.api.transport.addresses import network_of
 from service.errors import Refusal
 
-_REDIS_SECONDS = 0.5  # that a request waits for Redis at most
+_REDIS_SECONDS = 0.5  # the longest that a request waits for Redis
 _NAME = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _LOG = logging.getLogger("paretour")
 _BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API key")
@@ -38,9 +38,9 @@ _BEARER = HTTPBearer(auto_error=False, scheme_name="key", description="an API ke
 
 @dataclass(frozen=True, kw_only=True)
 class KeyHash:
-    """The name of a caller and the SHA-256 of a key that it may show, in hexadecimal.
+    """The name of a caller and the SHA-256 of one of its keys, in hexadecimal.
 
-    No error repeats what was given: it may be a key that was put in the place of either.
+    Errors do not show the values: one may be a key, written in the wrong place.
     """
 
     caller: str
@@ -60,7 +60,7 @@ class KeyHash:
 
 
 def new_key() -> tuple[str, str]:
-    """Return a new key, which its caller alone keeps, and its hash for the settings."""
+    """Return a new key, for its caller alone, and its hash, for the settings."""
     key = secrets.token_urlsafe(32)
     return key, _digest(key)
 
@@ -69,7 +69,7 @@ class Rates:
     """A limit on the requests of each caller, in the notation of the package `limits`: 9/second.
 
     Requests are counted in memory, or in Redis for all replicas together. Where Redis does not
-    answer, every request passes: a rate is a protection, and must not be an outage.
+    answer, every request passes: an outage of Redis must not become one of the service.
 
     Raises:
         ValueError: The extra for Redis is not installed.
@@ -79,7 +79,7 @@ class Rates:
         self._rate: RateLimitItem = parse(rate)
         storage = _storage(redis_url)
         self._callers = MovingWindowRateLimiter(storage)
-        # Two numbers for each address: there may be very many.
+        # It keeps two numbers for each address: there may be very many addresses.
         self._addresses = SlidingWindowCounterRateLimiter(storage)
 
     async def check(self, caller: str) -> None:
@@ -120,14 +120,14 @@ class Rates:
 
 
 def caller_of(request: Request) -> str:
-    """Return the name of the caller; all callers without a key are one."""
+    """Return the name of the caller; all callers without a key share one name."""
     return str(request.scope["caller"])
 
 
 def client_of(request: Request) -> str:
-    """Return for whom places in the queue are counted: the caller, without keys its address.
+    """Return the client that places in the queue are counted for.
 
-    Of an IPv6 address it is the network of 64 bits, which one client may have to itself.
+    It is the caller, or without keys the address. For IPv6 that is the network of 64 bits, all of whose addresses one client may have.
     """
     if request.scope["caller"] != ANONYMOUS:
         return caller_of(request)
@@ -135,7 +135,7 @@ def client_of(request: Request) -> str:
 
 
 class Access:
-    """Authenticates the callers of guarded routes, and holds each to its rate."""
+    """Authenticates the callers of guarded routes, and limits the rate of each."""
 
     def __init__(self, keys: Iterable[KeyHash] = (), rates: Rates | None = None) -> None:
         self._keys = tuple(keys)
@@ -149,7 +149,7 @@ class Access:
         return [Depends(self.count_address)] if self._rates is not None else []
 
     async def count_address(self, request: Request) -> None:
-        """Hold the address of the client to its rate; behind a proxy, the one that it names.
+        """Count a request of the client's address; behind a proxy, of the address that it names.
 
         Raises:
             Refusal: The address is over the rate.
@@ -161,7 +161,7 @@ class Access:
         """Write the caller into the request's scope.
 
         Raises:
-            Refusal: The key is nobody's, or its caller is over the rate.
+            Refusal: The key is unknown, or its caller is over the rate.
         """
         request.scope["caller"] = caller = self._caller(request)
         if self._rates is not None:
@@ -170,12 +170,12 @@ class Access:
     def _caller(self, request: Request) -> str:
         scheme, _, key = request.headers.get("authorization", "").partition(" ")
         if scheme.lower() != "bearer":
-            raise _unauthorized("Bearer and an API key, and there was none")
+            raise _unauthorized("Bearer and an API key, and it was missing")
         digest = _digest(key.strip())
-        # No early end: how long it takes says nothing of which hash comes near.
+        # All hashes are compared, so that the time taken does not tell how near a guess was.
         matches = [hash_.caller for hash_ in self._keys if _same(hash_.digest, digest)]
         if not matches:
-            raise _unauthorized("an API key of this service; this is none")
+            raise _unauthorized("an API key of this service; this one is unknown")
         return matches[0]
 
 

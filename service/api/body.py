@@ -20,12 +20,12 @@ async def receive_source(
 ) -> TaskSource:
     """Receive the body of a request for a front.
 
-    The body is JSON; or multipart/form-data with the part `request`, which is JSON, and the file
-    `matrices` or `map`. That of a request to replan is JSON alone.
+    The body is JSON, or multipart/form-data with the part `request`, which is JSON, and the file
+    `matrices` or `map`. The body of a request to replan is always JSON.
 
     Raises:
-        Refusal: The body is too long, of another type, or of other parts; or all bodies under way
-            leave it no room.
+        Refusal: The body is too long, of another type, or has other parts; or the budget of all
+            bodies has no room for it.
     """
     content_type = _checked_content_type(request)
     body = await _receive(request, most_bytes, allowance)
@@ -34,7 +34,7 @@ async def receive_source(
     if kind not in _UPLOADS:
         raise Refusal("not-json", came=content_type)
     upload = _UPLOADS[kind]
-    # In a thread, beside the event loop: of many megabytes it takes a tenth of a second.
+    # In a thread, beside the event loop: many megabytes take a tenth of a second.
     parts = await asyncio.to_thread(split_parts, content_type, body, ("request", upload))
     return TaskSource(kind, parts["request"], parts[upload])
 
@@ -69,7 +69,7 @@ async def _receive(request: Request, most_bytes: int, allowance: BodyAllowance) 
         if int(declared) > most_bytes:
             raise _too_long(most_bytes, int(declared))
         allowance.reserve(int(declared))
-    # Joined at the end: to let many megabytes grow copies them time and again.
+    # Joined at the end: appending would copy many megabytes again and again.
     chunks, length = [], 0
     async for chunk in request.stream():
         chunks.append(chunk)
@@ -77,7 +77,7 @@ async def _receive(request: Request, most_bytes: int, allowance: BodyAllowance) 
         if length > most_bytes:
             raise _too_long(most_bytes)
         allowance.add(chunk)
-    # In a thread where it takes a while: join lets go of the interpreter.
+    # A long body in a thread: join releases the interpreter's lock.
     if length < _LONG_TO_JOIN:
         return b"".join(chunks)
     return await asyncio.to_thread(b"".join, chunks)

@@ -10,17 +10,17 @@ from starlette.types import Receive, Scope, Send
 from service.api.task_parser import ParserBounds
 from service.errors import Refusal
 
-_SMALL_SHARE = 8  # one part of so many is left to small bodies
+_SMALL_SHARE = 8  # an eighth of the budget is left to small bodies
 _SMALL = 2**17  # bytes
 _PART = 2**18  # bytes of an answer that are sent at once
 
 
 @dataclass(frozen=True, kw_only=True)
 class BodyBounds:
-    """What the bodies of all requests may take together, and those of all answers.
+    """The bytes that the bodies of all requests may take together, and those of all answers.
 
     Args:
-        under_way: Bytes of all bodies of requests under way, and as many of those of answers.
+        under_way: Bytes of all bodies of requests in progress; as many for answers.
         share: The share of these that the long bodies of one client may take.
         parser: The bounds of a process that parses.
     """
@@ -31,7 +31,7 @@ class BodyBounds:
 
 
 class BodyBudget:
-    """So many bytes for the bodies that are being received, parsed and planned for a caller.
+    """A number of bytes for all request bodies that are being received, parsed or planned.
 
     A part of it is left to bodies of at most 128 KiB, so that long ones do not keep them out.
 
@@ -58,10 +58,10 @@ class BodyBudget:
         return BodyAllowance(self, client)
 
     def take(self, client: str, count: int, held: int) -> None:
-        """Take bytes for a body of a client, which holds some already.
+        """Take more bytes for a body of a client, which holds some already.
 
         Raises:
-            Refusal: They are not there.
+            Refusal: The budget has fewer left.
         """
         if held + count <= _SMALL:
             room = self._limit - self._used
@@ -80,7 +80,7 @@ class BodyBudget:
             del self._used_by[client]
 
     def _room_of(self, client: str, held: int) -> int:
-        """Return how many bytes more a client may take for a long body, which holds some."""
+        """Return how many more bytes a client may take for a long body that holds some already."""
         used = self._used_by[client]
         return self._limit if used == held else self._limit_of_client - used
 
@@ -102,7 +102,7 @@ class BodyAllowance:
         self._held = 0
 
     def hand_over(self) -> "BodyAllowance":
-        """Return an allowance that has the bytes of this one, which has none any more."""
+        """Move the bytes of this allowance to a new one, and return that."""
         other = BodyAllowance(self._budget, self._client)
         other._held, self._held = self._held, 0
         return other
@@ -110,19 +110,19 @@ class BodyAllowance:
     def reserve(self, declared: int) -> None:
         """Take the bytes of a body of a declared length before it comes.
 
-        Else of many long bodies that come together each would be received in part, and most then
-        refused.
+        Otherwise many long bodies that come together would each be received in part, and most of
+        them refused later.
 
         Raises:
-            Refusal: They are not there.
+            Refusal: The budget has fewer left.
         """
         self._take(declared)
 
     def add(self, chunk: bytes) -> None:
-        """Take what it takes to hold a chunk that has come, beyond what is reserved.
+        """Take the bytes of a chunk that has come, as far as they go beyond those reserved.
 
         Raises:
-            Refusal: It is not there.
+            Refusal: The budget has fewer left.
         """
         self._came += sys.getsizeof(chunk)
         self._take(self._came)
@@ -135,14 +135,15 @@ class BodyAllowance:
 
 
 class AnswerBudget:
-    """So many bytes for the long answers that are being made and sent.
+    """A number of bytes for all long answers that are being made and sent.
 
-    Short ones, of at most 128 KiB, are not counted. A long one may take more than there is where
-    it is the only one.
+    Answers of at most 128 KiB are not counted. A long answer may exceed the budget if it is the
+    only one.
 
     Args:
         limit: Bytes of all long answers.
-        share: The share of them that the answers of one client may take; one alone may take more.
+        share: The share of them that the answers of one client may take. A single answer may take
+            more.
     """
 
     def __init__(self, limit: int, share: float) -> None:
@@ -160,9 +161,9 @@ class AnswerBudget:
         """Return the allowance of an answer, a context that gives its bytes back at its end.
 
         Args:
-            client: For whom it is.
+            client: The client that gets the answer.
             count: Its bytes.
-            always: Whether it is counted even where there is no room.
+            always: Whether to admit it even where there is no room.
 
         Raises:
             Refusal: There is no room.

@@ -1,4 +1,4 @@
-"""Clients that go away before they are answered: the work for them is stopped."""
+"""Stop the work for clients that disconnect before they are answered."""
 
 import asyncio
 from collections.abc import Coroutine
@@ -21,7 +21,7 @@ async def unless_disconnected(request: Request, work: Coroutine[Any, Any, _Resul
     """Return the result of work, which is cancelled when the client goes away.
 
     Raises:
-        Cancelled: It went away.
+        Cancelled: The client went away.
     """
     working = asyncio.create_task(work)
     gone = asyncio.create_task(disconnected(request))

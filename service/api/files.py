@@ -55,12 +55,13 @@ class FileRoutes:
         return router
 
     async def read_files(self, request: Request) -> Response:
-        """Read files as people have them: the request that they become, and what was assumed.
+        """Read files of stops, fleets or maps, and return the request that they describe.
 
-        A file is CSV of any separator, XLSX, GeoJSON, JSON, TSPLIB, CVRPLIB, Solomon's, Li and
-        Lim's or VROOM's, or a map: a picture, maybe with its map.yaml. Two tables or files of
-        TSPLIB are an objective each. Nothing is planned: the request in the answer is for `POST
-        /front`, `/fleet` or `/coverage`, as its `kind` says.
+        A file is CSV with any separator, XLSX, GeoJSON, JSON, TSPLIB, CVRPLIB, in the format of
+        Solomon, of Li and Lim or of VROOM, or a map: a picture, with or without its map.yaml. Two
+        tables or TSPLIB files are one objective each. The answer also lists what was assumed.
+        Nothing is planned: the request in the answer is for `POST /front`, `/fleet` or
+        `/coverage`, as its `kind` says.
         """
         client = client_of(request)
         with self._budget.open(client) as allowance:

@@ -35,7 +35,7 @@ class StatsSource(Protocol):
     """An engine whose workers are counted."""
 
     async def stats(self) -> EngineStats:
-        """Return how many fronts wait and are planned, and how many workers were lost."""
+        """Return how many fronts wait, how many are being planned, and how many workers died."""
 
 
 class Metrics:
@@ -112,20 +112,20 @@ class Metrics:
         return router
 
     async def exposition(self) -> Response:
-        """Give everything counted, in the text format of Prometheus."""
+        """Return all metrics in the text format of Prometheus."""
         if self._engine is not None:
             self._workers.stats = await self._engine.stats()
         return _Exposition(generate_latest(self._registry))
 
     def answered(self, answered: AnsweredRequest) -> None:
         """Count a request that was answered."""
-        # A method that a client made up must not become a label: each costs memory for good.
+        # An invented method must not become a label: each label takes memory for ever.
         method = answered.method if answered.method in _METHODS else "other"
         self._requests(method, answered.path, answered.status).inc()
         self._request_seconds(method, answered.path).observe(answered.seconds)
 
     def watch(self, engine: StatsSource) -> None:
-        """Report the workers of an engine as they are at each scrape."""
+        """Report the workers of an engine at each scrape."""
         self._engine = engine
 
     def routed(self, outcome: str, seconds: float) -> None:
@@ -144,9 +144,9 @@ class Metrics:
 
 
 def _children(metric: AnyMetric) -> Callable[..., AnyMetric]:
-    """Return a function that finds the child of a metric with given labels, each time the same.
+    """Return a function that finds the child of a metric with given labels.
 
-    It remembers them: to look for a child takes longer than to count in it.
+    It remembers the children: to look one up takes longer than to count in it.
     """
     return cache(metric.labels)
 
@@ -177,7 +177,7 @@ class _Exposition(Response):
 
 
 def _kind_of(front: FrontDocument) -> str:
-    """Return what a front is of: tours, or plans of a fleet or of robots on a map."""
+    """Return the kind of a front: tours, or plans of a fleet or of robots on a map."""
     if not holds_plans(front):
         return "tours"
     return "fleet" if front.places is None else "robots"

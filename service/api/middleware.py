@@ -32,7 +32,7 @@ _SECURITY_HEADERS = {
 
 
 def _set_headers(start: Message, headers: RawHeaders) -> None:
-    """Give an answer that starts these headers, in place of any of the same names."""
+    """Set headers of an answer that begins, in place of any with the same names."""
     names = [name for name, _ in headers]
     others = [each for each in start.get("headers", ()) if each[0] not in names]
     start["headers"] = [*others, *headers]
@@ -99,7 +99,7 @@ class RequestIdMiddleware:
         try:
             await self._app(scope, receive, send_with_id)
         except asyncio.CancelledError:
-            # Only a server that shuts down cancels; nobody else waits for this task.
+            # Only a server that shuts down cancels this task.
             if not started:
                 await problem_response(ShuttingDown(), request_id)(scope, receive, send_with_id)
         except Exception:
@@ -112,7 +112,7 @@ class RequestIdMiddleware:
 
 
 UNMATCHED = "unmatched"
-# In the log and the metrics alone, as nginx has it: the client went away before its body had ended.
+# Only in the log and the metrics, as in nginx: the client went away before its body had ended.
 _CLIENT_CLOSED_REQUEST = 499
 
 
@@ -120,8 +120,8 @@ _CLIENT_CLOSED_REQUEST = 499
 class AnsweredRequest:
     """A request and its answer, for the log and the metrics.
 
-    `path` is the template that the request matched, as /front/{id}. `seconds` last to the end of
-    the answer.
+    `path` is the template that the request matched, such as /front/{id}. `seconds` is the time
+    until the end of the answer.
     """
 
     request_id: str
@@ -180,9 +180,9 @@ def log_request(answered: AnsweredRequest) -> None:
 
 
 class ProblemMiddleware:
-    """Turns errors that the framework answers as plain text into problem documents.
+    """Turns the framework's errors in plain text into problem documents.
 
-    These are refused preflights (CORS), and ranges that a file does not have.
+    They are refused preflights (CORS), and ranges outside a file.
     """
 
     def __init__(self, app: ASGIApp) -> None:
@@ -219,7 +219,7 @@ def _is_plain_error(message: Message) -> bool:
 
 
 def _framework_refusal(method: str, start: Message, text: str) -> Refusal:
-    """Return the refusal that says what the framework said, with its headers."""
+    """Return a refusal with the framework's sentence and headers."""
     status = start["status"]
     if method == "OPTIONS":
         refusal = Refusal("preflight-refused", reason=text)
@@ -251,7 +251,7 @@ class BodyTimeoutMiddleware:
 
         async def receive_in_time() -> Message:
             nonlocal whole
-            if whole:  # the one message left is that the client goes away, which has no deadline
+            if whole:  # the only message left, that the client has gone, has no deadline
                 return await receive()
             try:
                 async with asyncio.timeout_at(deadline):

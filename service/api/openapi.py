@@ -1,9 +1,9 @@
 """The OpenAPI document: FastAPI's, with problem documents, security, summaries and examples.
 
 An operation's summary is the first line of its docstring. Examples are in
-`service/reference/examples.json`: requests and answers by operation, as "POST /front"; and for each
-code of a refusal the values that fill in its sentence, under the code, or under "code of POST
-/front" where one operation needs another example than the rest.
+`service/reference/examples.json`: requests and answers by operation, such as "POST /front"; and for
+each code of a refusal the values for its sentence, under the code, or under "code of POST /front"
+where one operation needs an example of its own.
 """
 
 import json
@@ -19,7 +19,7 @@ _REQUEST_ID = "2348e4bd4d8a4a028a885757e2b342af"
 
 
 def complete(document: dict[str, Any], schemas: Mapping[str, Any]) -> None:
-    """Add to FastAPI's document all that it does not know of the service.
+    """Complete FastAPI's document with what only the service knows.
 
     Args:
         document: The document.
@@ -29,13 +29,13 @@ def complete(document: dict[str, Any], schemas: Mapping[str, Any]) -> None:
     components["schemas"].update(schemas)
     components["schemas"]["Problem"] = _problem_schema()
     components["securitySchemes"] = {"key": {"type": "http", "scheme": "bearer"}}
-    document["security"] = [{}, {"key": []}]  # a key is needed where the settings hold any
+    document["security"] = [{}, {"key": []}]  # a key is needed if the settings have any
     _remove_default_refusals(document)
     _add_examples(document)
 
 
 def example_refusal(code: str, operation: str = "") -> Refusal:
-    """Return the example of a refusal, in general or by an operation, as "POST /front"."""
+    """Return the example of a refusal, for an operation such as "POST /front" or for all."""
     return _example_refusal(_examples()["refusals"], code, operation)
 
 
@@ -55,7 +55,7 @@ def _problem_schema() -> dict[str, Any]:
 
 
 def _remove_default_refusals(document: dict[str, Any]) -> None:
-    """Remove FastAPI's own refusals of wrong parameters: nothing is refused so here."""
+    """Remove FastAPI's own refusals of wrong parameters: the service never sends them."""
     for name in ("HTTPValidationError", "ValidationError"):
         document["components"]["schemas"].pop(name, None)
     for _, operation in _operations(document):
@@ -64,7 +64,7 @@ def _remove_default_refusals(document: dict[str, Any]) -> None:
 
 
 def _operations(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the name of each operation, as "POST /front", and its entry."""
+    """Yield the name of each operation, such as "POST /front", and its entry."""
     for path, methods in document["paths"].items():
         for method, operation in methods.items():
             yield f"{method.upper()} {path}", operation

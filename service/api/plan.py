@@ -48,19 +48,19 @@ _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
 
 @dataclass(frozen=True)
 class _Body:
-    """A body as it came, when, and the id of the front that is replanned, if one is."""
+    """A body as it came, the time when it came, and the id of a front to replan, if any."""
 
     source: TaskSource
     front: str | None
-    received: float  # by time.monotonic()
+    received: float  # of time.monotonic()
 
 
 class PlanRoutes:
     """Parses a request for a front, has the engine plan it, and answers at once or when it is done.
 
-    A request without an idempotency key ends when its client goes away. With one the client is
-    expected to come back, so the planning goes on, also after the request was answered with the
-    best front so far because its `seconds` were over.
+    A request without an idempotency key ends when its client goes away. With a key the client is
+    expected to come back, so planning continues, even after the `seconds` of the request are over
+    and it was answered with the best front so far.
     """
 
     def __init__(  # noqa: PLR0913  what the routes are made of
@@ -142,7 +142,7 @@ class PlanRoutes:
         return await self._plan(request, "coverage")
 
     async def plan_fleet(self, request: Request) -> Response:
-        """Plan the front of plans for several vehicles, each with the routes that they drive.
+        """Plan the front of plans for several vehicles. A plan has a route for each vehicle used.
 
         With `Accept: application/geo+json`, and stops that have locations, the answer is GeoJSON.
 
@@ -152,20 +152,20 @@ class PlanRoutes:
         return await self._plan(request, "fleet")
 
     async def replan_front(self, request: Request, id: str) -> Response:  # noqa: A002
-        """Plan the rest of the way of a front, from what has changed.
+        """Plan the rest of a tour that is being driven, after something has changed.
 
-        Stops are done, added or removed, the vehicle is elsewhere, costs or a map have changed.
-        The answer is a front of open routes from the position through what is left to the old end,
-        or of a closed tour back to its start. Each tour has `kept`, the share of the driven tour's
-        remaining legs that it keeps. The front that is replanned stays as it is.
+        Stops were done, added or removed, the vehicle is elsewhere, or costs or the map changed.
+        The answer is a front of open routes from the position through the remaining stops to the
+        old end; for a closed tour, back to its start. Each tour has `kept`, the share of the
+        driven tour's remaining legs that it keeps. The earlier front stays as it is.
 
-        Headers are as of `POST /front`. The answer is a front of its own, to be replanned again.
+        Headers work as in `POST /front`. The answer is a new front, which can be replanned too.
         """
         return await self._plan(request, "replan", id)
 
     async def _plan(self, request: Request, kind: TaskKind, front: str | None = None) -> Response:
         await self._check_place(request)
-        # Until there is an answer: what waits for a worker, or is planned, has its body as well.
+        # Until there is an answer: a task that waits or is being planned still holds its body.
         with self.budget.open(client_of(request)) as allowance:
             received = await receive_source(request, kind, self._limits.body_bytes, allowance)
             body = _Body(received, front, time.monotonic())
@@ -177,10 +177,10 @@ class PlanRoutes:
             return await self._planned(request, source, body, allowance)
 
     async def _rest(self, request: Request, body: TaskSource, front: str) -> TaskSource:
-        """Return the rest of the way of a stored front, with its task.
+        """Return the task for the rest of the way of a stored front.
 
         Raises:
-            Refusal: There is no such front, it cannot be replanned, or not as the body says.
+            Refusal: The front does not exist, or cannot be replanned, or not as the body asks.
         """
         self.parser.check_replan(body.body)
         record = await find_record(self._store, request, front)
@@ -196,7 +196,7 @@ class PlanRoutes:
     async def _planned(
         self, request: Request, source: TaskSource, body: _Body, allowance: BodyAllowance
     ) -> Response:
-        """Have the engine plan a task, and answer as the request's headers ask for."""
+        """Have the engine plan a task, and answer as the request's headers ask."""
         assert source.task is not None
         geometry = source.task.geometry
         record = await self._new_record(request, source, body)
@@ -212,11 +212,11 @@ class PlanRoutes:
         if record.problem is None:
             left = self._seconds - (time.monotonic() - body.received)
             return await self._answers.front(request, record, geometry, left)
-        # The problem may be that of an earlier request, of which this one is a repeat.
+        # The problem may be that of an earlier request that this one repeats.
         return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
 
     async def _submit(self, record: Record, allowance: BodyAllowance) -> Record:
-        """Submit a job, whose body counts until the engine holds it no more."""
+        """Submit a job, whose body counts until the engine no longer holds it."""
         first = await self._engine.submit(record)
         if first.id == record.id:
             holding = asyncio.create_task(self._hold(record, allowance.hand_over()))
@@ -229,7 +229,7 @@ class PlanRoutes:
             await self._engine.release(record)
 
     async def _check_place(self, request: Request) -> None:
-        """Raise a refusal, before the body is received, where the engine takes no more work."""
+        """Raise a refusal, before the body is received, if the engine takes no more tasks."""
         await self._engine.check_open()
         # A repeat may need no place.
         if idempotency_key(request) is None:
@@ -269,7 +269,7 @@ def _accepted_response(record: Record, geometry: Geometry) -> Response:
 
 
 def _digest(body: _Body) -> str:
-    """Return the SHA-256 of a body, by which one idempotency key is held to one body."""
+    """Return the SHA-256 of a body, by which a reused idempotency key is recognised."""
     digest = hashlib.sha256()
     source = body.source
     front = [] if body.front is None else [body.front.encode()]

@@ -1,7 +1,7 @@
 """The request bodies of the operations that plan, in the OpenAPI document.
 
-Each is JSON; or of fronts and coverage, multipart/form-data of a part `request`, which is JSON,
-and a file.
+Each is JSON. For fronts and coverage it may also be multipart/form-data with a part `request`,
+which is JSON, and a file.
 """
 
 from collections.abc import Iterable
@@ -17,7 +17,7 @@ Schema = dict[str, Any]
 
 
 def request_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
-    """Return the schemas that bodies refer to, by name, under these limits, with these actors."""
+    """Return the schemas that bodies refer to, by name, for these limits and actors."""
     names = list(actors)
     file = "a .npy file of shape (2, n, n), as numpy.save writes it"
     image = "a PNG or PGM file of the map, dark where there is an obstacle"
@@ -32,7 +32,7 @@ def request_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
 
 
 def _body(request: Schema, form: str) -> Schema:
-    """Return the entry of a body of this schema as JSON, or of this one as a form."""
+    """Return the entry of a body with one schema as JSON and another as a form."""
     parts = {"schema": reference_to(form), "encoding": {"request": {"contentType": _JSON}}}
     return {"required": True, "content": {_JSON: {"schema": request}, "multipart/form-data": parts}}
 

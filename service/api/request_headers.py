@@ -38,10 +38,10 @@ def prefers_async(request: Request) -> bool:
 
 
 def idempotency_key(request: Request) -> str | None:
-    """Return the key that repeats of the request share, None where there is none.
+    """Return the idempotency key, which repeats of the request share; None without one.
 
     Raises:
-        Refusal: The key is too long, empty, or not of printable ASCII.
+        Refusal: The key is empty, too long, or not printable ASCII.
     """
     key = request.headers.get("idempotency-key")
     if key is not None and re.fullmatch(_KEY, key) is None:

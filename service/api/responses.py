@@ -1,7 +1,7 @@
 """Answers and problem documents: their schemas for OpenAPI, and how they become responses.
 
-The schemas document answers, and do not make them: a front is written as JSON once, by the worker
-that found it.
+The schemas only document the answers: a front is written as JSON once, by the worker that found
+it.
 """
 
 from collections.abc import Mapping
@@ -247,7 +247,7 @@ class RobotsAnswer(FrontAnswer):
 
 
 class ActorItem(ActorName):
-    """A network and what its file says of it."""
+    """A network, as its file describes it."""
 
     inputs: str = Field(description="the kind of instance that it reads")
     commit: str
@@ -265,7 +265,7 @@ class ActorsAnswer(BaseModel):
 
 
 class NoteItem(BaseModel):
-    """One thing that was taken for granted."""
+    """One assumption about the files."""
 
     file: str
     text: str
@@ -280,7 +280,7 @@ class ColumnItem(BaseModel):
 
 
 class FileAnswer(BaseModel):
-    """The request that files are, and what was taken for granted."""
+    """The request that the files describe, and the assumptions made."""
 
     kind: Kind = Field(description="the operation that takes the request")
     request: dict[str, Any]
@@ -297,7 +297,7 @@ class FileAnswer(BaseModel):
 
 
 class HealthAnswer(BaseModel):
-    """How the service is."""
+    """The state of the service."""
 
     status: str
 
@@ -308,7 +308,7 @@ def json_response(answer: Any, status: int = 200) -> Response:
 
 
 def json_bytes(answer: bytes, status: int = 200) -> Response:
-    """Return an answer that is JSON already as a response."""
+    """Return an answer that is already JSON as a response."""
     return Response(answer, status, media_type="application/json")
 
 

@@ -35,11 +35,11 @@ PLAN = (
     "of a fleet's front in GeoJSON, the one plan whose routes are drawn, by its place from 0; by"
     " default all are"
 )
-HEARTBEAT = 15.0  # seconds of silence before a comment says that the stream is alive
+HEARTBEAT = 15.0  # seconds without an event, after which a comment shows that the stream is alive
 
 
 class StoredFrontRoutes:
-    """Answers each caller about its own fronts alone."""
+    """Answers each caller, about its own fronts only."""
 
     def __init__(self, store: Store, engine: Engine, answers: FrontAnswers) -> None:
         self._store = store
@@ -84,12 +84,12 @@ class StoredFrontRoutes:
         geometry: Annotated[Geometry, Query(description=GEOMETRY)] = "straight",
         plan: Annotated[NonNegativeInteger | SkipJsonSchema[None], Query(description=PLAN)] = None,
     ) -> Response:
-        """Give a front again, or the best so far of one that is being planned."""
+        """Return a front; while it is being planned, the best so far."""
         record = await self._record(request, id)
         return await self._answers.front(request, record, geometry, plan=plan)
 
     async def forget(self, request: Request, id: str) -> Response:  # noqa: A002
-        """Forget a front; one that is being planned ends with what was found, and is kept."""
+        """Delete a front. One that is being planned is stopped, and kept with what it has found."""
         record = await self._record(request, id)
         if record.finished:
             await self._store.delete(record)
@@ -97,11 +97,11 @@ class StoredFrontRoutes:
         return json_bytes((await self._engine.cancel(record)).json())
 
     async def events(self, request: Request, id: str) -> Response:  # noqa: A002
-        """Tell how the planning of a front goes, until it has ended."""
+        """Send the progress of a front as events, until it is finished."""
         return event_stream(self._engine.watch(await self._record(request, id)))
 
     async def tour(self, request: Request, query: Annotated[TourQuery, Query()]) -> Response:
-        """Give one tour of a front: at an angle, at a balance, within a budget, or the knee."""
+        """Return one tour of a front: at an angle, at a balance, within a budget, or the knee."""
         query.check()
         record = await self._record(request, query.front)
         if holds_plans(record.front):
@@ -119,10 +119,11 @@ class StoredFrontRoutes:
 async def find_record(store: Store, request: Request, id: str | None) -> Record:  # noqa: A002
     """Return the caller's record with an id, as it is stored; without an id its latest.
 
-    All callers without a key are one, but the latest front is that of the request's address.
+    All callers without a key share their fronts, but the latest one is that of the request's
+    address.
 
     Raises:
-        Refusal: There is none, or none any more.
+        Refusal: The front does not exist, or no longer.
     """
     caller = caller_of(request)
     try:
@@ -150,7 +151,7 @@ async def _events(states: AsyncIterator[JobState]) -> AsyncIterator[bytes]:
         if state is None:
             yield KEEPALIVE_COMMENT
             continue
-        # Progress first: the status may be the one that ends the stream.
+        # Progress first: the status may end the stream.
         if state.progress is not None and state.progress is not progress:
             progress = state.progress
             yield _progress_event(progress)
@@ -160,7 +161,7 @@ async def _events(states: AsyncIterator[JobState]) -> AsyncIterator[bytes]:
 
 
 async def _with_heartbeats(states: AsyncIterator[JobState]) -> AsyncIterator[JobState | None]:
-    """Yield the states, and None for each while without one."""
+    """Yield the states, and None whenever a while passes without one."""
     coming = asyncio.ensure_future(anext(states, None))
     try:
         while True:

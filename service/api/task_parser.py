@@ -1,4 +1,4 @@
-"""Parse request bodies into tasks: short ones here, others in processes with bounds."""
+"""Parse request bodies into tasks: short ones in this process, others in bounded ones."""
 
 import asyncio
 import logging
@@ -22,13 +22,13 @@ from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.task import Task, TaskSource, parse_task
 from service.requests.validation import check_depth, parse_json
 
-_SHORT = 2**17  # bytes that are parsed here, in a few milliseconds
-_FEW_QUOTES = 2000  # those of 300 stops; as many faults take a few milliseconds
+_SHORT = 2**17  # bytes that this process parses, in a few milliseconds
+_FEW_QUOTES = 2000  # as 300 stops have; so many faults take a few milliseconds to describe
 _MEDIUM = 2**20  # bytes that take a tenth of a second or two
 _ATTEMPTS = 2
 _MOST_WAITING = 16  # bodies for each process
-_NICENESS = 5  # as of the processes that plan: the event loop comes first
-_MOST_WARNINGS = 10  # of one body, that are logged
+_NICENESS = 5  # like the processes that plan: the event loop comes first
+_MOST_WARNINGS = 10  # the most of one body that are logged
 _LONGEST_WARNING = 500  # characters
 _LOG = logging.getLogger("py.warnings")
 
@@ -52,24 +52,24 @@ _Parse = Callable[[S, Limits, Mapping[str, ActorInfo]], T]
 
 
 class _Outcome(NamedTuple, Generic[T]):
-    """What a process made of a body, and the warnings of Python on the way."""
+    """The result of parsing a body in a process, and Python's warnings meanwhile."""
 
     result: T | Refusal
     warnings: list[str]
 
 
 class _Lane:
-    """A process that parses one body at a time, and the line before it."""
+    """A process that parses one body at a time, and the bodies that wait for it."""
 
     def __init__(self) -> None:
         self._turn = asyncio.Lock()
         self._waiting = 0
 
     async def enter(self, seconds: float) -> None:
-        """Wait for the turn.
+        """Wait for a turn.
 
         Raises:
-            QueueFull: The line is too long, or takes too long.
+            QueueFull: Too many bodies wait, or they take too long.
         """
         if self._waiting >= _MOST_WAITING:
             raise QueueFull
@@ -83,15 +83,15 @@ class _Lane:
             self._waiting -= 1
 
     def leave(self) -> None:
-        """Let the next one have its turn."""
+        """Give the turn to the next body."""
         self._turn.release()
 
 
 class TaskParser:
-    """Parses bodies under these limits, for these actors: others than short ones in a process.
+    """Parses bodies under these limits, for these actors: short ones itself, others in a process.
 
     There are two processes, one for bodies of up to 1 MiB and one for longer ones, so that the
-    first need not wait for the second. Each is started for its first body, and again where it was
+    shorter need not wait for the longer. Each is started for its first body, and again if it was
     lost. A body that takes too long, or too much memory, ends its process.
     """
 
@@ -123,7 +123,7 @@ class TaskParser:
         return await self._in_turn(parse_task, source, length)
 
     def check_replan(self, body: bytes) -> None:
-        """Raise a refusal where a short body is no request to replan; others are parsed later."""
+        """Raise a refusal if a short body is not a request to replan; others are parsed later."""
         if len(body) <= _SHORT and body.count(b'"') <= _FEW_QUOTES:
             check_structure(body, self._limits)
             parse_json(ReplanRequest, body)
@@ -131,7 +131,7 @@ class TaskParser:
             self._check(body)
 
     async def replan(self, source: ReplanSource) -> TaskSource:
-        """Return the rest of the way of a checked request, with its task; errors as of parse."""
+        """Return the task for the rest of the way of a checked request; raise as parse does."""
         quotes = source.body.count(b'"') + source.front.source.body.count(b'"')
         if source.length <= _SHORT and quotes <= _FEW_QUOTES:
             return parse_replan(source, self._limits, self._actors)
@@ -147,7 +147,7 @@ class TaskParser:
             check_depth(body)
 
     async def read_files(self, files: Sequence[NamedFile]) -> bytes:
-        """Return what the reader makes of files, as JSON; never here, whatever their length.
+        """Return the request that files describe, as JSON. Files are always read in a process.
 
         Raises:
             Refusal: They cannot be read, or hold too much.
@@ -166,10 +166,10 @@ class TaskParser:
     async def _parse_in_process(self, parse: _Parse[S, T], source: S) -> T:
         seconds = self._bounds.seconds
         for _ in range(_ATTEMPTS):
-            # To join the body took a while, and to send it will: let other requests in between.
+            # Joining the body took a while, and so will sending it: let other requests in between.
             await asyncio.sleep(0)
             try:
-                # At the end of its time the call is cancelled, which kills the process.
+                # After that time the call is cancelled, which kills the process.
                 async with asyncio.timeout(seconds):
                     outcome = await to_process.run_sync(
                         _parse_bounded,
@@ -190,7 +190,7 @@ class TaskParser:
 
 
 def _checked(outcome: _Outcome[T]) -> T:
-    """Log the warnings, as the process has no log, and return the result or raise the refusal."""
+    """Log the warnings, as the process cannot, and return the result or raise the refusal."""
     for warning in outcome.warnings:
         _LOG.warning("%s", warning)
     if isinstance(outcome.result, Refusal):
@@ -201,7 +201,7 @@ def _checked(outcome: _Outcome[T]) -> T:
 def _parse_bounded(
     parse: _Parse[S, T], source: S, limits: Limits, actors: Mapping[str, ActorInfo], memory: int
 ) -> _Outcome[T]:
-    """Parse a body in a process that may take so many bytes more than when it was idle."""
+    """Parse a body in this process, which may take `memory` bytes more than when idle."""
     _bound_process(memory)
     with warnings.catch_warnings(record=True) as caught:
         result: T | Refusal
@@ -220,7 +220,7 @@ def _warning_text(caught: warnings.WarningMessage) -> str:
 
 
 def _bound_process(memory: int) -> None:
-    """Bound the memory of this process, and let the event loop come first, once."""
+    """Bound the memory of this process and lower its priority, the first time."""
     _, bound = resource.getrlimit(resource.RLIMIT_DATA)
     if bound == resource.RLIM_INFINITY:
         os.nice(_NICENESS)

@@ -21,7 +21,7 @@ def load_settings(**options: Any) -> Settings:
     """Return the settings, with those options in place that are not None.
 
     Raises:
-        UsageError: A setting has a wrong value, or a variable is no setting.
+        UsageError: A setting has a wrong value, or a variable is not a setting.
     """
     if unknown := list(unknown_variables(os.environ)):
         raise UsageError("; ".join(unknown))

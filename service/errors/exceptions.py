@@ -15,7 +15,7 @@
     │   ├── DeadlineExceeded      a task took too long before it had a front
     │   ├── IdempotencyMismatch   a key was used for another body
     │   ├── OffRoad, NoRoad       stops without a road, or a way to another; see `roads.py`
-    │   ├── NoTour                no tour is without a forbidden leg; see `tours.py`
+    │   ├── NoTour                every tour has a forbidden leg; see `tours.py`
     │   ├── RouterUnavailable, RouterUnusable, RouterTooSlow
     │   ├── StreetsTooLong        lines along streets are too many, or too long
     │   └── StoreUnavailable      the store does not answer
@@ -23,7 +23,7 @@
         ├── NotFound              the store has no front with this id
         └── Expired               the store had one, and dropped it
 
-Their statuses and sentences stand by code in `problems.py`.
+`problems.py` has the status and the sentence of each code.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -33,7 +33,7 @@ from typing import Any
 
 from service.errors.problems import PROBLEMS
 
-MOST_FAULTS = 20  # that one problem document lists
+MOST_FAULTS = 20  # the most that one problem document lists
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ class InvalidInstance(Refusal, ValueError):
 
 
 class InvalidCoverage(InvalidInstance):
-    """The map, or its places, cannot be covered; a fault is a part, as places/3, and a demand."""
+    """The map, or its places, cannot be covered. A fault is a part (places/3) and a demand."""
 
     code = "invalid-request"
 
@@ -144,7 +144,7 @@ class _Plain(Refusal):
 
 
 class NoWorker(Refusal):
-    """No worker process runs, and none can be started; it is tried again."""
+    """No worker process runs or can be started; the service keeps trying."""
 
     def __init__(self, reason: str) -> None:
         super().__init__("no-worker", reason=reason)
@@ -172,7 +172,7 @@ class ShuttingDown(_Plain):
 
 
 class WarmingUp(_Plain):
-    """The search is still being compiled, which happens once, or loaded."""
+    """The search is still being loaded, or compiled, which happens once."""
 
     code = "warming-up"
 
@@ -208,7 +208,7 @@ class StoreUnavailable(_Plain):
 
 
 class NotFound(LookupError):
-    """The caller has no front with this id, and had none that the store remembers."""
+    """The caller has no front with this id, and the store remembers none."""
 
 
 class Expired(LookupError):

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 _ALL = ("*",)
-_NONE = ()  # no operation is at fault, but the path, the method or the service
+_NONE = ()  # codes about the path, the method or the service, not about an operation
 _REPLAN = ("POST /front/{id}/replan",)
 _FLEET = ("POST /fleet",)
 _PLANNED = ("POST /front", "POST /coverage", *_REPLAN)
@@ -37,7 +37,9 @@ PROBLEMS: Mapping[str, Problem] = {
     "malformed-json": Problem(400, "the body must be JSON: {reason}", _PLANS),
     "malformed-multipart": Problem(400, "the body must be multipart/form-data: {reason}", _BODIES),
     "unauthorized": Problem(401, "Authorization must be {demand}"),
-    "no-front": Problem(404, "a tour is of a front: plan one with POST /front first", _TOUR),
+    "no-front": Problem(
+        404, "there is no front to choose a tour from: plan one with POST /front", _TOUR
+    ),
     "no-such-path": Problem(404, "there is nothing at {path}; /docs says what is", _NONE),
     "no-such-tour": Problem(
         404,
@@ -46,7 +48,7 @@ PROBLEMS: Mapping[str, Problem] = {
     ),
     "no-tour": Problem(404, "front {front} must have a tour, and has none yet", _TOUR),
     "no-tours": Problem(
-        404, "front {front} must be of tours, and is of plans of a fleet: read it whole", _TOUR
+        404, "front {front} has plans of a fleet, not tours: read the whole front", _TOUR
     ),
     "unknown-front": Problem(404, "there is no front {front}"),
     "no-locations": Problem(
@@ -62,9 +64,7 @@ PROBLEMS: Mapping[str, Problem] = {
     "not-replannable": Problem(
         409, "front {front} must be one that can be replanned, and is not: {reason}", _REPLAN
     ),
-    "front-expired": Problem(
-        410, "front {front} was kept for a while and is no more: plan it again"
-    ),
+    "front-expired": Problem(410, "front {front} is no longer kept: plan it again"),
     "body-too-long": Problem(413, "the body must have at most {limit} bytes, got {came}"),
     "body-too-complex": Problem(413, "the body must {demand}", _BODIES),
     "file-too-large": Problem(413, "{detail}", _FILES),
@@ -74,8 +74,8 @@ PROBLEMS: Mapping[str, Problem] = {
     "too-many-cities": Problem(413, "{detail}"),
     "too-many-for-network": Problem(
         413,
-        "this {name} asks for tours of a network, which builds those of at most {limit} cities, got"
-        " {actual}: ask for a time_limit above 0, without preferences",
+        "this {name} needs tours of a network, which builds tours of at most {limit} cities, got"
+        " {actual}: give a time_limit above 0 and no preferences",
         _PLANNED,
     ),
     "not-json": Problem(
@@ -84,9 +84,7 @@ PROBLEMS: Mapping[str, Problem] = {
     "not-files": Problem(415, "Content-Type must be multipart/form-data, got {came}", _FILES),
     "not-plain": Problem(415, "Content-Encoding must be identity, got {came}"),
     "unsatisfiable-range": Problem(416, "the range must be within the file", _NONE),
-    "idempotency-mismatch": Problem(
-        422, "an Idempotency-Key must be of one body, got another", _PLANS
-    ),
+    "idempotency-mismatch": Problem(422, "this Idempotency-Key was used with another body", _PLANS),
     "invalid-instance": Problem(422, "{reason}", _PLANS),
     "invalid-parts": Problem(422, "{reason}", _BODIES),
     "invalid-request": Problem(422, "{detail}", (*_PLANS, _STORED, *_TOUR)),
@@ -133,7 +131,9 @@ PROBLEMS: Mapping[str, Problem] = {
         502, "the routing engine must answer as documented, and does not: {reason}", _ROADS
     ),
     "bodies-full": Problem(
-        503, "all bodies under way must fit {limit} bytes: ask again", (*_BODIES, _STORED)
+        503,
+        "the bodies of all requests in progress must fit into {limit} bytes: ask again",
+        (*_BODIES, _STORED),
     ),
     "no-worker": Problem(
         503, "a worker must be running, and none is: {reason}", ("GET /health/ready", *_PLANS)
@@ -146,12 +146,12 @@ PROBLEMS: Mapping[str, Problem] = {
     ),
     "share-full": Problem(
         503,
-        "a caller may have {limit} fronts waiting or being planned, and has as many: ask again",
+        "a caller may have {limit} fronts waiting or being planned, and has that many: ask again",
         _PLANS,
     ),
     "shutting-down": Problem(503, "the server is shutting down"),
     "stopped": Problem(503, "the work was stopped before there was a front", _PLANS),
-    "store-unavailable": Problem(503, "what fronts are kept in must answer, and does not"),
+    "store-unavailable": Problem(503, "the store of fronts does not answer"),
     "too-many-connections": Problem(
         503, "all connections, or all that one address may have, are busy: ask again", _NONE
     ),
@@ -162,7 +162,7 @@ PROBLEMS: Mapping[str, Problem] = {
         (*_PLANS, "GET /health/ready"),
     ),
     "worker-lost": Problem(
-        503, "the work must leave its worker alive, and two were lost over it", _PLANS
+        503, "two worker processes were lost while they planned this request", _PLANS
     ),
     "router-too-slow": Problem(
         504,

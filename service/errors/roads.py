@@ -8,7 +8,7 @@ _LONGEST_NAME = 100  # characters of a caller's name for a stop, where it is quo
 
 
 class OffRoad(Refusal):
-    """Stops, given by index and id, lie farther from every road than so many metres."""
+    """Stops, given by index and id, lie too many metres from every road."""
 
     def __init__(self, stops: Sequence[tuple[int, str]], snap: float) -> None:
         faults = [
@@ -24,7 +24,7 @@ class OffRoad(Refusal):
 class NoRoad(Refusal):
     """There is no way by road between some stops.
 
-    Of each way it is given the index of the stop to look at, and the ids of both its ends.
+    Each missing way is given as the index of the stop to look at, and the ids of both its ends.
     """
 
     def __init__(self, ways: Sequence[tuple[int, str, str]]) -> None:
@@ -47,21 +47,21 @@ class RouterUnavailable(Refusal):
 
 
 class RouterUnusable(Refusal):
-    """The routing engine answers something else than it should; the reason quotes no text of it."""
+    """The routing engine's answer is not as documented; the reason quotes none of its text."""
 
     def __init__(self, reason: str) -> None:
         super().__init__("router-unusable", reason=reason)
 
 
 class RouterTooSlow(Refusal):
-    """The routing engine takes longer than so many seconds."""
+    """The routing engine took longer than its time limit."""
 
     def __init__(self, seconds: float) -> None:
         super().__init__("router-too-slow", limit=seconds)
 
 
 class StreetsTooLong(Refusal):
-    """Lines along streets have more parts, as different legs, than one answer may have."""
+    """Lines along streets have more legs or positions than one answer may have."""
 
     def __init__(self, parts: str, limit: int, actual: int | None = None) -> None:
         super().__init__("streets-too-long", parts=parts, limit=limit, actual=actual)

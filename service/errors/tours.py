@@ -1,4 +1,4 @@
-"""The refusal of cities that no tour without a forbidden leg goes through, and names for them."""
+"""Refuse an instance whose every tour has a forbidden leg, and name the cities at fault."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ class CityNames:
     part: str | None = None
 
     def of(self, cities: Sequence[int]) -> str:
-        """Return the names of some cities, of at most a few of them."""
+        """Return the names of some cities; of many, only the first few."""
         noun = self.noun if len(cities) == 1 else _PLURALS[self.noun]
         names = [self._name(city) for city in cities[:_MOST_NAMED]]
         if len(cities) > _MOST_NAMED:
@@ -43,10 +43,10 @@ class CityNames:
 
 @dataclass(frozen=True)
 class Obstacle:
-    """A reason why there is no tour without a forbidden leg.
+    """A reason why every tour has a forbidden leg.
 
     Args:
-        sentence: With `{cities}` and maybe `{others}` in place of their names, and `{noun}`.
+        sentence: A template with the fields `{cities}`, `{noun}` and optionally `{others}`.
         cities: Those to look at first.
         others: Those that the sentence names beside them.
     """
@@ -66,7 +66,7 @@ class Obstacle:
 
 
 class NoTour(Refusal):
-    """There is no tour without a forbidden leg, or none was found.
+    """Every tour has a forbidden leg, or no other tour was found.
 
     Args:
         obstacles: The reasons, one or more.

@@ -42,7 +42,7 @@ def test_a_part_is_left_to_small_bodies() -> None:
     budget = BodyBudget(BUDGET, share=0.5)
     with budget.open() as long, budget.open() as small:
         long.add(bytes(600_000))
-        with pytest.raises(Refusal, match="all bodies under way must fit 800000 bytes"):
+        with pytest.raises(Refusal, match="must fit into 800000 bytes"):
             long.add(bytes(150_000))
         small.add(bytes(100_000))
         with pytest.raises(Refusal):
@@ -171,7 +171,7 @@ def test_an_answer_gives_its_bytes_back_once_it_is_sent_or_has_failed() -> None:
 def test_long_answers_have_room_beside_others_or_alone() -> None:
     budget = AnswerBudget(BUDGET, share=0.5)
     with budget.open("one", 2 * BUDGET), budget.open("other", 1000):
-        with pytest.raises(Refusal, match="all bodies under way must fit 800000 bytes"):
+        with pytest.raises(Refusal, match="must fit into 800000 bytes"):
             budget.open("other", 200_000)
         with budget.open("other", 200_000, always=True):
             assert budget.used == 2 * BUDGET + 200_000

@@ -39,11 +39,11 @@ def test_an_entry_of_a_list_is_named_by_its_number(monkeypatch: pytest.MonkeyPat
 @pytest.mark.parametrize(
     ("variable", "sentence"),
     [
-        ("PARETOUR_WORKER", "PARETOUR_WORKER is no setting; did you mean PARETOUR_WORKERS?"),
-        ("PARETOUR_APIKEYS", "PARETOUR_APIKEYS is no setting; did you mean PARETOUR_API_KEYS?"),
-        ("Paretour_Quue", "Paretour_Quue is no setting; did you mean PARETOUR_QUEUE?"),
-        ("PARETOUR_", "PARETOUR_ is no setting"),
-        ("PARETOUR_XYZZY", "PARETOUR_XYZZY is no setting"),
+        ("PARETOUR_WORKER", "PARETOUR_WORKER is not a setting; did you mean PARETOUR_WORKERS?"),
+        ("PARETOUR_APIKEYS", "PARETOUR_APIKEYS is not a setting; did you mean PARETOUR_API_KEYS?"),
+        ("Paretour_Quue", "Paretour_Quue is not a setting; did you mean PARETOUR_QUEUE?"),
+        ("PARETOUR_", "PARETOUR_ is not a setting"),
+        ("PARETOUR_XYZZY", "PARETOUR_XYZZY is not a setting"),
     ],
 )
 def test_a_misspelled_variable_is_named_with_the_nearest_setting(

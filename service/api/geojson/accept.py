@@ -8,7 +8,7 @@ GEOJSON = "application/geo+json"
 
 
 def accepts_geojson(request: Request) -> bool:
-    """Return whether the caller accepts GeoJSON, and no less than JSON."""
+    """Return whether the caller accepts GeoJSON, and prefers it to JSON or has no preference."""
     accept = ",".join(request.headers.getlist("accept"))
     if GEOJSON not in accept.lower():  # most do not name it, and each request asks several times
         return False
@@ -26,7 +26,7 @@ def _media_ranges(accept: str) -> Iterator[tuple[str, float]]:
 
 
 def _number(text: str) -> float:
-    """Return a quality, 0 where it is none."""
+    """Return a quality as a number; 0 where the text is not a quality."""
     try:
         return float(text)
     except ValueError:

@@ -77,11 +77,11 @@ class FrontAnswers:
         self.budget = budget
 
     def check(self, request: Request, stops: Stops | None, geometry: Geometry) -> None:
-        """Raise a refusal where a request accepts GeoJSON, and there can be no such lines.
+        """Raise a refusal where a request accepts GeoJSON that cannot be made.
 
         Raises:
-            Refusal: There are no stops with ids, or some have no location; or streets are asked
-                for without GeoJSON, or without a routing engine.
+            Refusal: There are no stops with ids, or some have no location; or the lines shall
+                follow streets, but the answer is not GeoJSON or there is no routing engine.
         """
         if geometry == "roads":
             self._check_roads(request)
@@ -98,7 +98,7 @@ class FrontAnswers:
     ) -> Response:
         """Return a front as GeoJSON where the request accepts that, else as JSON.
 
-        One that was planned for this request alone is answered even where there is no room.
+        A front that was planned for this request is sent even where the budget has no room.
 
         Args:
             request: The request to answer.
@@ -108,8 +108,8 @@ class FrontAnswers:
             plan: The number of the one plan to draw; None draws all that the front holds.
 
         Raises:
-            Refusal: As of `check`, and of RoadClient.lines; or there is no such plan to draw, or
-                too many answers are being sent.
+            Refusal: As `check` and RoadClient.lines do; or the plan does not exist, or too many
+                answers are being sent.
         """
         self.check(request, record.front.stops, geometry)
         if plan is not None:
@@ -166,14 +166,14 @@ class FrontAnswers:
 
 
 def _fault(request: Request, sentence: str) -> Fault:
-    """Return what is wrong with the geometry, which is in the body or in the query."""
+    """Return a refusal of the geometry that the body or the query asks for."""
     if request.method == "POST":
         return Fault(sentence, pointer="/geometry")
     return Fault(sentence, parameter="geometry")
 
 
 def _check_plan(request: Request, record: Record, plan: int) -> None:
-    """Raise a refusal unless a plan of this number is to be drawn, and is there."""
+    """Raise a refusal unless the front has a plan of this number, if one is asked for."""
     plans = len(record.front.split())
     if not accepts_geojson(request):
         sentence = f"plan is of answers in GeoJSON: send Accept: {GEOJSON}"

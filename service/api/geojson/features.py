@@ -21,7 +21,7 @@ class Drawing:
     Args:
         record: The record of the front, whose stops all have locations.
         tours: The tours, as in its JSON.
-        ways: The stops that each tour comes by, two at least: its end, too.
+        ways: The stops of each tour in order, two or more, with its end.
     """
 
     record: Record
@@ -33,14 +33,14 @@ class Drawing:
         """Return the drawing of tours of a front, or of the routes of its plans.
 
         Args:
-            record: As of the class.
+            record: As in the class.
             tours: Tours or plans that follow one another in the front, a JSON array.
             first: The number of the first one.
         """
         parsed = from_json(tours)
         if holds_plans(record.front):
             return cls._of_plans(record, parsed, first)
-        # Fronts have this member where tours are open routes alone.
+        # Fronts have this member only if their tours are open routes.
         returns = record.front.closed is None or record.front.cities == 1
         orders = [tour["tour"] for tour in parsed]
         ways = [[*order, order[0]] if returns else order for order in orders]
@@ -56,7 +56,7 @@ class Drawing:
             for route in plan["routes"]
         ]
         ways = [[indexes[stop] for stop in route["stops"]] for route in routes]
-        # A line has two positions at least, also that of a route that is one stop.
+        # A line has two or more positions, even the line of a route of one stop.
         return cls(record, routes, [way if len(way) > 1 else way * 2 for way in ways])
 
     @property

@@ -38,7 +38,7 @@ def guide_routes() -> list[BaseRoute]:
 
 
 class Guide:
-    """The pages of a folder of Markdown, of which `index.md` lists all others in groups."""
+    """The pages of a folder of Markdown; its `index.md` lists all others in groups."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -85,7 +85,7 @@ class Guide:
 
 
 def _address(name: str) -> str:
-    """Return the address of a page, as seen from the others."""
+    """Return the address of a page, relative to the others."""
     return "./" if name == _INDEX else name
 
 
@@ -110,7 +110,7 @@ async def _to_the_index(_: Request) -> Response:
 
 
 def _page(request: Request) -> Response:
-    """Answer with a page; in a thread, for the first to be asked for renders all of them."""
+    """Answer with a page; in a thread, because the first request renders all pages."""
     name = request.path_params.get("name", _INDEX)
     if name not in _guide().pages:
         raise HTTPException(404)

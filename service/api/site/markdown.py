@@ -46,8 +46,8 @@ def render(text: str, resolve: Resolve) -> Page:
 
     Args:
         text: The Markdown, which is trusted: HTML in it is kept.
-        resolve: Returns the address of the target of a link or picture, or None where there is
-            none; such a link becomes its text.
+        resolve: Returns the address of the target of a link or picture, or None; a link without
+            a target is replaced by its text.
     """
     tokens = _RENDERER.parse(text)
     anchors = _Anchors()
@@ -57,7 +57,7 @@ def render(text: str, resolve: Resolve) -> Page:
         elif token.type == "inline" and token.children:
             token.children = list(_resolved(token.children, resolve))
         elif token.type in ("th_open", "td_open") and "style" in token.attrs:
-            # The service tells browsers to obey no style inside a document.
+            # The service tells browsers to ignore styles inside a document.
             token.attrs = {"class": str(token.attrs["style"]).removeprefix("text-align:")}
     sections = tuple(_sections(tokens))
     html = _RENDERER.renderer.render(tokens, _RENDERER.options, {})
@@ -76,8 +76,8 @@ def slug(heading: str) -> str:
 def _with_scrolling_tables(html: str) -> str:
     """Return the HTML with each table in a block of its own, which scrolls on narrow screens.
 
-    It can be focused, as blocks of code can, so that keys scroll them too. A heading without a word
-    is a cell, since a screen reader would read it as a heading of nothing.
+    It can be focused, like blocks of code, so that keys scroll it too. An empty heading becomes an
+    ordinary cell, since a screen reader would announce a heading without text.
     """
     html = html.replace("<th></th>", "<td></td>")
     html = html.replace("<table>", '<div class="wide" tabindex="0"><table>')
@@ -85,7 +85,7 @@ def _with_scrolling_tables(html: str) -> str:
 
 
 class _Anchors:
-    """The anchors of one page: where a heading comes again, a number follows."""
+    """The anchors of one page; a repeated heading gets a number."""
 
     def __init__(self) -> None:
         self._counts: dict[str, int] = {}
@@ -126,7 +126,7 @@ def _sections(tokens: list[Token]) -> Iterator[Section]:
 
 
 def _text(token: Token) -> str:
-    """Return what a reader sees of a block of text or code."""
+    """Return the visible text of a block of text or code."""
     if token.children is None:
         return token.content
     return "".join(

@@ -14,7 +14,7 @@ _SERVICE = Path(__file__).parents[2]
 _PAGE = _SERVICE / "page"
 _REFERENCE = _SERVICE / "reference"
 _EXAMPLES = _SERVICE / "examples"
-_COMPRESSED = [Middleware(GZipMiddleware)]  # text alone, which anybody may read
+_COMPRESSED = [Middleware(GZipMiddleware)]  # plain text, which anybody may read
 REVALIDATE = {"Cache-Control": "no-cache"}  # a browser asks each time, and gets 304 if unchanged
 
 _Endpoint = Callable[[Request], Awaitable[Response]]
@@ -39,7 +39,7 @@ def _index(folder: Path) -> _Endpoint:
 
 
 def files(folder: Path, suffix: str = "") -> _Endpoint:
-    """Return an endpoint that answers with the file of a folder named by `path` and the suffix."""
+    """Return an endpoint that serves the file of a folder named by `path` and the suffix."""
     static = StaticFiles(directory=folder)
 
     async def answer(request: Request) -> Response:

@@ -15,12 +15,12 @@ _PARTS = ("{z}", "{x}", "{y}")
 
 @dataclass(frozen=True)
 class Tiles:
-    """A server of map tiles, or none.
+    """A server of map tiles, if there is one.
 
     Args:
-        url: The template of a tile's address, with {z}, {x}, {y}, and maybe {s} in the server's
-            name for one of a, b and c; None where there are no tiles.
-        credit: Whom the map is by, as its licence demands it to be shown.
+        url: The template of a tile's address, with {z}, {x}, {y}, and optionally {s} for one of a,
+            b and c in the server's name; None if there are no tiles.
+        credit: The credit for the map, which its licence demands to be shown.
     """
 
     url: str | None = None
@@ -28,7 +28,7 @@ class Tiles:
 
     @property
     def source(self) -> str:
-        """The tiles' server as a source of a content security policy; empty where there is none."""
+        """The tiles' server as a source of a content security policy; empty without one."""
         if self.url is None:
             return ""
         scheme, server, *_ = urlsplit(self.url)
@@ -38,7 +38,7 @@ class Tiles:
         """Return the route by which the page learns what it may draw on its map.
 
         Args:
-            roads: Whether tours can be drawn along the streets, as a routing engine knows them.
+            roads: Whether tours can be drawn along streets, which a routing engine knows.
         """
         answer = {"tiles": self.url, "credit": self.credit, "roads": roads}
 
@@ -52,7 +52,7 @@ def checked_template(url: str) -> str:
     """Return the template of a tile's address.
 
     Raises:
-        ValueError: It is no such template.
+        ValueError: The text is not such a template.
     """
     server = urlsplit(url).netloc.removeprefix("{s}.") if _TEMPLATE.fullmatch(url) else "{"
     if "{" in server or not all(url.count(part) == 1 for part in _PARTS):

@@ -1,4 +1,4 @@
-"""Accept connections, and serve a few in each turn of the event loop, by address in turn."""
+"""Accept connections, and serve a few in each turn of the event loop, one address after another."""
 
 import asyncio
 import logging
@@ -13,9 +13,9 @@ from service.api.transport.connections import PROXY, Connections
 from service.api.transport.listener import MOST_WAITING
 
 _SERVED_AT_ONCE = 4  # new connections in a turn of the event loop: more would hold up all others
-_ACCEPTED_AT_ONCE = 64  # of a listening socket, in a turn
+_ACCEPTED_AT_ONCE = 64  # connections of a listening socket accepted in a turn
 _IN_KERNEL = 1024  # connections that wait until they are accepted
-_PAUSE = 1.0  # seconds without a try, after one has failed
+_PAUSE = 1.0  # seconds after which a failed accept is tried again
 _NONE_WAITS = (BlockingIOError, InterruptedError, ConnectionAbortedError)
 _LOG = logging.getLogger("paretour")
 
@@ -23,10 +23,10 @@ MakeProtocol = Callable[[], asyncio.Protocol]
 
 
 class WaitingConnections:
-    """Accepted connections that are not yet served: the next is of the address that waits longest.
+    """Accepted connections that are not yet served; the address that waits longest is next.
 
     Args:
-        most: How many may wait. Beyond that the address with most of them loses its last one.
+        most: How many may wait. Beyond that the address with the most loses its newest.
     """
 
     def __init__(self, most: int = MOST_WAITING) -> None:
@@ -38,7 +38,7 @@ class WaitingConnections:
         return sum(map(len, self._lines.values()))
 
     def make_room(self) -> bool:
-        """Return whether one more may wait, after one of the longest line was closed.
+        """Return whether one more may wait; where too many do, close one of the longest line.
 
         The line of proxies is not cut: their connections are of many clients.
         """
@@ -74,8 +74,8 @@ class WaitingConnections:
 class Acceptor:
     """Accepts the connections of listening sockets, so that a crowd at one address delays no other.
 
-    They are accepted as they come, which costs little, and served in turn by address. Where none
-    can be accepted, mostly for want of descriptors, an idle one is closed and all wait for a while.
+    They are accepted as they come, which costs little, and served by address in turn. If accepting
+    fails, mostly for lack of descriptors, an idle connection is closed and all wait for a while.
     """
 
     def __init__(self, connections: Connections) -> None:
@@ -91,14 +91,14 @@ class Acceptor:
         self._sockets, self._make_protocol = sockets, make_protocol
         for listening in sockets:
             listening.setblocking(False)
-            # Its connections inherit this: else the body of an answer waits 40 ms for the client's
+            # Its connections inherit this: without it an answer's body waits 40 ms for the client's
             # acknowledgement of the head, which asyncio prevents for sockets that it makes itself.
             listening.setsockopt(IPPROTO_TCP, TCP_NODELAY, 1)
             listening.listen(_IN_KERNEL)
             self._watch(listening)
 
     def close(self) -> None:
-        """Accept no more, and close the sockets and what waits."""
+        """Stop accepting, and close the sockets and the waiting connections."""
         loop = asyncio.get_running_loop()
         for listening in self._sockets:
             loop.remove_reader(listening)
@@ -160,7 +160,7 @@ class FairServer(uvicorn.Server):
         self._acceptor.start(sockets or [], self._protocol)
 
     async def shutdown(self, sockets: list[socket] | None = None) -> None:  # noqa: ARG002
-        """Accept no more connections, end those that there are, and close the application."""
+        """Accept no more connections, end the open ones, and close the application."""
         self._acceptor.close()
         await super().shutdown(sockets=[])
 

@@ -1,4 +1,4 @@
-"""The open connections of a server: how many there may be, in all and from one address."""
+"""The open connections of a server, bounded in number, in all and from one address."""
 
 import logging
 import math
@@ -10,9 +10,9 @@ from typing import Protocol
 from service.api.transport.addresses import network_of, proxies_of
 from service.api.transport.turns import Turns
 
-_REFUSED_AT_ONCE = 32  # connections beyond the limits that are told so, at a time
+_REFUSED_AT_ONCE = 32  # the most refused connections that are being told so
 _LOG_EVERY = 1.0  # seconds between two lines about connections that make way
-PROXY = ""  # in place of an address, for connections that count for none
+PROXY = ""  # in place of the network of connections that count for no address
 _LOG = logging.getLogger("paretour")
 
 
@@ -20,18 +20,18 @@ class OpenConnection(Protocol):
     """A connection that can be closed to make way for another."""
 
     def abort(self) -> None:
-        """Close the connection at once, whatever is under way."""
+        """Close the connection at once, even during a request."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ConnectionLimits:
-    """The most connections, and for how long one may be silent.
+    """The most connections, and how long one may be silent.
 
     Args:
         connections: The most open connections.
-        share: The share of them that one address may hold, of IPv6 one network of 64 bits.
-        proxies: Addresses and networks of proxies, with commas between, or *. The share does not
-            hold for them: their connections are of many clients.
+        share: The share of them that one address, or one IPv6 network of 64 bits, may hold.
+        proxies: Addresses and networks of proxies, separated by commas, or *. They are exempt from
+            the share: their connections are of many clients.
         head_seconds: Seconds until the head of a request has arrived.
     """
 
@@ -49,12 +49,11 @@ class ConnectionLimits:
 class Connections:
     """The open connections of a server.
 
-    One that is idle makes way for a new one when there are too many, in all or from its address:
-    the one of these that has waited longest for a request. Where none is idle, the new one is
-    refused.
+    When there are too many, in all or from one address, the one of these that has been idle longest
+    is closed to make way for a new one. If none is idle, the new one is refused.
 
     Attributes:
-        turns: The turns in which these connections parse what came at once.
+        turns: The turns in which these connections parse much that came at once.
     """
 
     def __init__(self, limits: ConnectionLimits) -> None:
@@ -79,7 +78,7 @@ class Connections:
         return False
 
     def network_of_peer(self, peer: str) -> str:
-        """Return the network that a connection of a peer counts for, PROXY where it is one."""
+        """Return the network that a peer's connection counts for, or PROXY for a proxy."""
         return PROXY if self._is_proxy(peer) else network_of(peer)
 
     def make_room(self) -> bool:
@@ -91,7 +90,7 @@ class Connections:
         return oldest is not None
 
     def set_idle(self, connection: OpenConnection, idle: bool) -> None:
-        """Take note of whether a connection waits for a request."""
+        """Remember whether a connection waits for a request."""
         if not idle:
             self._idle.pop(connection, None)
         elif connection in self._open:
@@ -108,14 +107,14 @@ class Connections:
         self._refused.pop(connection, None)
 
     def _has_room(self) -> bool:
-        """Return whether there may be one connection more, after an idle one has made way."""
+        """Return whether there is room for one more, if necessary by closing an idle one."""
         if len(self._open) < self.limits.connections or self.make_room():
             return True
         self._log("a connection was refused: %d are busy", len(self._open))
         return False
 
     def _has_place(self, network: str) -> bool:
-        """Return the same of one network, for which one of its own makes way."""
+        """Return the same for one network, if necessary by closing one of its own."""
         if network == PROXY or self._held[network] < self.limits.of_address:
             return True
         oldest = next((each for each in self._idle if self._open[each] == network), None)

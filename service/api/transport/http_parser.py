@@ -1,20 +1,20 @@
-"""A parser of HTTP/1.1: refuses requests whose end is in doubt, and parses a little at a time."""
+"""A parser of HTTP/1.1 that refuses requests whose end is ambiguous, and parses in small steps."""
 
 from typing import Any
 
 import h11
 
-_EVENTS_AT_ONCE = 32  # chunks of a body, mostly: as many take a third of a millisecond
-_READ_AHEAD = 2**13  # bytes of requests behind the one that is not answered yet
+_EVENTS_AT_ONCE = 32  # mostly chunks of a body; these take a third of a millisecond
+_READ_AHEAD = 2**13  # bytes of requests that wait behind an unanswered one
 
 
 class StrictParser(h11.Connection):
-    """A parser of requests that refuses two framings of one body, and keeps what it refused.
+    """A parser of requests that refuses a body whose length is given in two ways.
 
-    A proxy that believes the other of the two would take the end of the body for a request.
+    A proxy that believes the other way would take the end of the body for a new request.
 
     Attributes:
-        error: What was refused.
+        error: The error with which a request was refused.
         method: The method of the latest request.
         cut_off: Whether there is more to parse, which waits until begin_turn is called.
     """
@@ -26,21 +26,21 @@ class StrictParser(h11.Connection):
     _paused = False
 
     def begin_turn(self) -> None:
-        """Allow for as many events as may come at once."""
+        """Allow the events of one more turn."""
         self._left = _EVENTS_AT_ONCE
 
     @property
     def has_more(self) -> bool:
-        """Whether bytes have come that are not parsed."""
+        """Whether received bytes are not parsed yet."""
         return bool(self.trailing_data[0])
 
     @property
     def has_enough(self) -> bool:
-        """Whether no more should be read until what was read is parsed."""
+        """Whether to read no more until the received bytes are parsed."""
         return self.cut_off or (self._paused and len(self.trailing_data[0]) > _READ_AHEAD)
 
     def next_event(self) -> Any:
-        """Return the next event, as h11.Connection does; NEED_DATA where no more may come now."""
+        """Return the next event, as h11.Connection does; NEED_DATA at the end of a turn."""
         self.cut_off = not self._left
         if self.cut_off:
             return h11.NEED_DATA

@@ -1,4 +1,4 @@
-"""The sockets to listen to, and how many connections descriptors are left for."""
+"""The sockets to listen to, and the number of connections that descriptors allow."""
 
 import logging
 import resource
@@ -8,12 +8,12 @@ MOST_WAITING = 128  # accepted connections that wait to be served
 
 # Files, libraries, the store, the log, connections to Redis, and those that wait or are refused.
 _RESERVE = 128 + MOST_WAITING
-_RESERVE_PER_WORKER = 8  # its two sockets, and pipes while it is started
+_RESERVE_PER_WORKER = 8  # its two sockets, and pipes during its start
 _FEWEST = 8
 
 
 def bound_sockets(host: str, port: int) -> list[socket.socket]:
-    """Return a socket for each address of the host, and log where they will listen.
+    """Return a bound socket for each address of the host, and log the addresses.
 
     Raises:
         OSError: An address is unknown, not of this machine, or in use.
@@ -40,7 +40,7 @@ def bound_sockets(host: str, port: int) -> list[socket.socket]:
 
 
 def most_connections(wanted: int, workers: int) -> int:
-    """Return how many connections there may be: no more than descriptors are left for."""
+    """Return how many connections there may be: fewer than wanted if descriptors are few."""
     descriptors, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
     if descriptors == resource.RLIM_INFINITY:
         return wanted

@@ -1,4 +1,4 @@
-"""The protocol of a connection: how long it may be silent or slow, and how it is closed."""
+"""The protocol of a connection: its deadlines for silent or slow clients, and its orderly end."""
 
 import asyncio
 import socket
@@ -15,28 +15,28 @@ from service.api.transport.connections import Connections
 from service.api.transport.http_parser import StrictParser
 from service.errors import Refusal
 
-_LINGER_SECONDS = 10.0  # that the rest of a refused body is read and dropped
-_LINGER_BYTES = 2**26  # of that rest: four times the longest body
-_STALL_SECONDS = 30.0  # after which a client must have read some of its answer
+_LINGER_SECONDS = 10.0  # for which the rest of a refused body is read and dropped
+_LINGER_BYTES = 2**26  # bytes of that rest: four times the longest body
+_STALL_SECONDS = 30.0  # within which a client must read some of its answer
 _READ_AT_ONCE = 2**16  # bytes
-_HALF_CLOSED_SECONDS = 0.1  # between two looks at whether a client that sends no more still reads
+_HALF_CLOSED_SECONDS = 0.1  # between checks whether a client that sends no more still reads
 _EVERY_ANSWER = b"HTTP/1.1 "
 _NO_MORE_BODY = (h11.IDLE, h11.DONE, h11.MUST_CLOSE, h11.CLOSED)
 
 
 class Connection(H11Protocol):
-    """A connection of uvicorn with a deadline for each request's head, and an end in peace.
+    """A connection of uvicorn with a deadline for each request's head, and an orderly end.
 
-    A refusal may be sent before the body is read. To close the connection then would be to reset
-    it, and the client would lose the answer: the rest of the body is read and dropped first, up to
-    a limit of bytes and seconds.
+    A refusal may be sent before the body is read. Closing the connection then would reset it, and
+    the client would lose the answer. So the rest of the body is read and dropped first, up to a
+    limit of bytes and seconds.
 
-    A client may send many requests, or many chunks of a body, at once. They are parsed a little in
-    each turn of the event loop, and no more of them is read meanwhile.
+    A client may send many requests, or many chunks of a body, at once. Each turn of the event loop
+    parses a few of them, and no more is read meanwhile.
 
-    A client that has ended its side of the connection may still read: it is answered. Whether it
-    has gone altogether, its machine says only where something is sent. Every answer begins with
-    `HTTP/1.1 `: letters of that are sent ahead, one at a time.
+    A client that has closed its side of the connection may still read, so it is answered. Only
+    sending something shows whether it has gone altogether. Every answer begins with `HTTP/1.1 `,
+    so letters of that are sent early, one at a time.
     """
 
     def __init__(self, connections: Connections, **arguments: Any) -> None:
@@ -56,7 +56,7 @@ class Connection(H11Protocol):
         self.lingering = False
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
-        """Begin to wait for a request, or refuse the connection where there are too many."""
+        """Begin to wait for a request, or refuse the connection if there are too many."""
         self._socket = transport
         transport.max_size = _READ_AT_ONCE  # type: ignore[attr-defined]  # asyncio's is 256 KiB
         self._output = _Output(transport, self)
@@ -80,7 +80,7 @@ class Connection(H11Protocol):
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Parse what came, or drop it where it is the rest of a refused body."""
+        """Parse what came, or drop it if it is the rest of a refused body."""
         if self.lingering or self._rest_follows:
             self._dropped += len(data)
             if self._dropped > _LINGER_BYTES:
@@ -101,7 +101,7 @@ class Connection(H11Protocol):
         return True
 
     def handle_events(self) -> None:
-        """Parse a little of what came; at once, or where more waits, at the turn of its network."""
+        """Parse a little of what came: at once, or if more waits, in its network's turn."""
         if self._waits_for_turn:
             return
         self.conn.begin_turn()
@@ -111,7 +111,7 @@ class Connection(H11Protocol):
         self._output.update_reading()
 
     def on_response_complete(self) -> None:
-        """Begin to wait for the next request; one that has come already waits for its turn."""
+        """Begin to wait for the next request; one that is already here waits for its turn."""
         if self.conn.has_more:
             self._wait_for_turn()
         super().on_response_complete()
@@ -143,7 +143,7 @@ class Connection(H11Protocol):
             self._stall_timer = None
 
     def close(self) -> None:
-        """Close the connection, in peace where the client is still sending."""
+        """Close the connection; if the client is still sending, read that first."""
         if self.lingering or self._socket.is_closing():
             return
         if self.conn.their_state in _NO_MORE_BODY:
@@ -153,13 +153,13 @@ class Connection(H11Protocol):
             self._linger()
 
     def abort(self) -> None:
-        """Close the connection at once, whatever is under way."""
+        """Close the connection at once, even during a request."""
         self._connections.remove(self)
         self._socket.abort()
 
     @property
     def _owes_answer(self) -> bool:
-        """Whether a request has come as a whole that is not answered, or may be among what came."""
+        """Whether a whole request is unanswered, or may be among the bytes not parsed yet."""
         answering = self.cycle is not None and not self.cycle.response_complete
         return self._waits_for_turn or (answering and not self.cycle.more_body)
 
@@ -181,9 +181,9 @@ class Connection(H11Protocol):
             self._socket.close()
 
     def _check_half_closed(self, count: int = 1) -> None:
-        """Close the connection where the client has gone, as far as its machine has said so.
+        """Close the connection if the client's machine has said that the client has gone.
 
-        A letter is sent ahead at the 1st, 2nd, 4th, 8th check and so on: nine last for 26 seconds.
+        A letter is sent early at the 1st, 2nd, 4th, 8th check and so on: nine last 26 seconds.
         """
         if self._socket.get_extra_info("socket").getsockopt(socket.SOL_SOCKET, socket.SO_ERROR):
             self.abort()
@@ -196,14 +196,14 @@ class Connection(H11Protocol):
 
     @property
     def _rest_follows(self) -> bool:
-        """Whether a request is answered whose body has not ended."""
+        """Whether a request is being answered before its body has ended."""
         return self.conn.our_state is h11.DONE and self.conn.their_state is h11.SEND_BODY
 
     def _unsupported_upgrade_warning(self) -> None:
-        """Say nothing of an upgrade that is not there: a client could fill the log."""
+        """Do not log that an upgrade is not supported: a client could fill the log."""
 
     def _note_idle(self) -> None:
-        """Start the deadline for a request's head, or end it where a request is under way."""
+        """Start the deadline for a request's head, or end it once the head has come."""
         idle = self.cycle is None or self.cycle.response_complete
         self._connections.set_idle(self, idle)
         if not idle:
@@ -244,14 +244,14 @@ class Connection(H11Protocol):
             self._output.write(self.conn.send(event) or b"")
 
     def _linger(self) -> None:
-        """Send no more, and drop what comes until the client has read its answer and closes."""
+        """Send no more, and drop what comes until the client closes."""
         if self.lingering or self._socket.is_closing():
             return
         self.lingering = True
         self._unset_keepalive_if_required()
         try:
             self._socket.write_eof()
-        except OSError:  # the client has reset the connection since its answer was written
+        except OSError:  # the client reset the connection after its answer was written
             self.abort()
             return
         self.flow.resume_reading()
@@ -259,7 +259,7 @@ class Connection(H11Protocol):
         self._linger_timer = self.loop.call_later(_LINGER_SECONDS, self.abort)
 
     def _expect_reading(self) -> None:
-        """Close the connection once the client has read nothing of its answer for a while."""
+        """Close the connection if the client has read nothing of its answer for a while."""
         if self._stall_timer is None:
             unsent = self._socket.get_write_buffer_size()
             self._stall_timer = self.loop.call_later(_STALL_SECONDS, self._check_reading, unsent)
@@ -273,13 +273,13 @@ class Connection(H11Protocol):
 
 
 class _Output:
-    """The transport of a connection, which the connection closes and reads in its own way."""
+    """The transport of a connection, which lets the connection decide when to read and close."""
 
     def __init__(self, transport: asyncio.Transport, connection: Connection) -> None:
         self._transport = transport
         self._connection = connection
         self._reading = True
-        self._ahead = 0  # bytes of the next answer that are sent
+        self._ahead = 0  # bytes of the next answer that are already sent
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._transport, name)
@@ -290,25 +290,25 @@ class _Output:
         self.update_reading()
 
     def resume_reading(self) -> None:
-        """Read on, once what was read is parsed."""
+        """Read more, once the received bytes are parsed."""
         self._reading = True
         self.update_reading()
 
     def update_reading(self) -> None:
-        """Read, or do not, as was asked last and as much as the parser holds."""
+        """Read or pause, as was asked last, unless the parser holds enough."""
         if not self._reading or self._connection.conn.has_enough:
             self._transport.pause_reading()
         elif not self._connection.half_closed:
             self._transport.resume_reading()
 
     def write(self, data: bytes) -> None:
-        """Send some bytes of an answer, but for those that were sent ahead."""
+        """Send bytes of an answer, without those that were sent early."""
         if data:
             self._transport.write(data[self._ahead :])
             self._ahead = 0
 
     def send_ahead(self) -> None:
-        """Send a letter of what every answer begins with, while there is one."""
+        """Send the next letter with which every answer begins, if one is left."""
         self._transport.write(_EVERY_ANSWER[self._ahead : self._ahead + 1])
         self._ahead = min(self._ahead + 1, len(_EVERY_ANSWER))
 

@@ -1,4 +1,4 @@
-"""Turns of the event loop: each network takes one step at a time, and others come in between."""
+"""Let networks take turns in the event loop, one step at a time."""
 
 import asyncio
 from collections import deque
@@ -8,17 +8,16 @@ Step = Callable[[], None]
 
 
 class Turns:
-    """Runs the steps of each network one after another: one in each turn of the event loop.
+    """Runs one step of each network in each turn of the event loop.
 
-    However many connections a network has, and however much they have sent, it takes one step
-    between two of anybody else.
+    A network with many connections, or with much to parse, gets no more steps than another.
     """
 
     def __init__(self) -> None:
         self._lines: dict[str, deque[Step]] = {}  # by network
 
     def wait(self, network: str, step: Step) -> None:
-        """Run a step in a later turn, after the steps of this network that wait already."""
+        """Run a step in a later turn, after those of this network that already wait."""
         if not self._lines:
             asyncio.get_running_loop().call_soon(self._run)
         self._lines.setdefault(network, deque()).append(step)
