@@ -42,10 +42,10 @@ class NamedActor(Constructor, Protocol):
 
 
 class OnnxActor:
-    """An ONNX file, whose network runs in so many threads.
+    """An ONNX file, whose network runs in a number of threads.
 
     The file's metadata are read at once. Its inference session is opened by `load`, or by the first
-    call, since that takes up to two seconds, and many need few of the actors that there are.
+    call, since that takes up to two seconds, and a process often needs few of the actors.
 
     Raises:
         ValueError: The file is not ONNX, lacks metadata, or reads neither coordinates nor matrices.
@@ -66,7 +66,7 @@ class OnnxActor:
         """Open the inference session, unless it is open.
 
         Raises:
-            ValueError: The file is no network that ONNX Runtime can run.
+            ValueError: ONNX Runtime cannot run the file as a network.
         """
         with self._loading:
             if self._session is None:
@@ -76,8 +76,8 @@ class OnnxActor:
         """Return tours, shape (k, n), one for each preference, shape (k, 2), by one inference.
 
         Cities at one place are one city to the network, and follow one another in the tours.
-        With repairs, each tour is repaired so many times, and as many rows follow, shape (2k, n):
-        for each preference another tour that was visited on the way.
+        With repairs, each tour is repaired that many times, and k more rows follow, shape (2k, n):
+        for each preference another tour that the repairs passed through.
 
         Raises:
             ValueError: Repairs are asked for, and the file has no input for them.
@@ -112,15 +112,15 @@ class OnnxActor:
         return np.argsort(np.argsort(tours, axis=1)[:, place], axis=1, kind="stable")
 
     def terminate(self) -> None:
-        """End the call of `tours` that is under way, if there is one, within some ms.
+        """End the running call of `tours`, if there is one, within some milliseconds.
 
-        For any thread, and any number of times. A call that begins later is not affected.
+        May be called in any thread, repeatedly. A call that begins later is not affected.
         """
         with self._lock:
             self._running.terminate = True
 
     def _begin(self, size: int) -> onnxruntime.RunOptions:
-        """Return the options of a call of so many cities or preferences, which `terminate` ends."""
+        """Return the options of a call, which `terminate` ends."""
         many = size > _FEW
         with self._lock:
             if self._running.terminate or many != self._running_many:
@@ -149,11 +149,11 @@ def load_actors(
 ) -> dict[str, OnnxActor]:
     """Return the actors of the ONNX files in a directory, and in one of the user's, by name.
 
-    Each runs in so many threads. Those that are not released are opened at once: a file that ONNX
-    Runtime cannot run is to be seen at the start.
+    Each runs in a number of threads. The user's are opened at once, so that a file that ONNX
+    Runtime cannot run shows at the start.
 
     Raises:
-        ValueError: There is no file in a directory, one is no actor, or two have the same name.
+        ValueError: A directory has no file, a file is not an actor, or two have the same name.
     """
     actors: dict[str, OnnxActor] = {}
     files: dict[str, Path] = {}
@@ -262,9 +262,9 @@ def _options(threads: int) -> onnxruntime.SessionOptions:
 def _run_options(many: bool) -> onnxruntime.RunOptions:
     """Return the options of a call, of many cities or preferences or of few."""
     options = onnxruntime.RunOptions()
-    options.log_severity_level = _FATAL  # to be terminated is no error
+    options.log_severity_level = _FATAL  # being terminated is not an error
     if many:
-        # Else memory that the largest instance needed is never freed (onnxruntime#11627). To free
-        # a little and to allocate it again takes 2 % of a call at 40 cities.
+        # Otherwise memory that the largest instance needed is never freed (onnxruntime#11627).
+        # Freeing and allocating a little again takes 2 % of a call at 40 cities.
         options.add_run_config_entry("memory.enable_memory_arena_shrinkage", "cpu:0")
     return options

@@ -37,7 +37,7 @@ class PlanOptions:
 
     Args:
         angles: Of the preferences for which tours are constructed, in degrees, shape (k,).
-        fewer: Whether within a time limit fewer preferences will do: at most k, evenly spread, as
+        fewer: Whether fewer preferences will do within a time limit: up to k, evenly spread, as
             many as fit into the network's share of it.
         size: The greatest number of tours of the front.
         start: The city from which every closed tour is reported.
@@ -45,7 +45,7 @@ class PlanOptions:
             the instance's.
         time_limit: Seconds for construction, search and selection together, not for the bound;
             at 0 there is no search.
-        initial_tours: Shape (m, n): tours that the front shall dominate or equal as well.
+        initial_tours: Shape (m, n): tours that the front shall dominate or equal.
         bound: Whether to compute an upper bound on the hypervolume of any front.
         seed: Of the search's random choices.
         touched: Where the initial tours are of an earlier front: the cities at which they may have
@@ -144,7 +144,7 @@ def plan(
         options: What front is wanted, and how much may be spent on it.
         stop: Called every millisecond or two; True ends the planning with what was found so far.
         report: Called about ten times a second with the progress of the search, and with a function
-            that gives the best front so far of at most so many tours.
+            that returns the best front so far of at most n tours.
 
     Raises:
         Cancelled: It was told to stop before it had a tour.
@@ -203,7 +203,7 @@ def _constructed(constructor: Constructor, instance: Instance, options: PlanOpti
 
 
 def _first_tours(instance: Instance, constructed: Tours, options: PlanOptions) -> Tours:
-    """Return the constructed tours, then the caller's; of one or two cities all there are."""
+    """Return the constructed tours, then the caller's; for one or two cities all tours."""
     tours = [constructed]
     if instance.n < MIN_CONSTRUCTED:
         tours.append(plain_tours(instance).astype(np.int64))
@@ -220,7 +220,7 @@ def _improved(
     stop: Callable[[], bool],
     report: Callable[[Progress, Callable[[int], SearchResult]], None],
 ) -> SearchResult:
-    """Return what the search finds until the time that selecting from it is going to take."""
+    """Return the result of a search that leaves enough time to select from it."""
     if options.time_limit == 0:
         points = tour_lengths(instance, tours)
         front = nondominated(points)
@@ -267,7 +267,7 @@ def _report_front(
 
 
 def _no_tour(instance: Instance, options: PlanOptions, result: SearchResult) -> NoTour:
-    """Return the refusal of an instance of which no tour without a forbidden leg was found."""
+    """Return the refusal of an instance for which no tour without a forbidden leg was found."""
     if options.time_limit == 0:
         found = "was built by the network: a time_limit above 0 has a search look for one"
     elif instance.n <= MAX_ENUMERATED and result.terminated == "converged":

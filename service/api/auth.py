@@ -127,7 +127,8 @@ def caller_of(request: Request) -> str:
 def client_of(request: Request) -> str:
     """Return the client that places in the queue are counted for.
 
-    It is the caller, or without keys the address. For IPv6 that is the network of 64 bits, all of whose addresses one client may have.
+    It is the caller, or without keys the address: of IPv6 the network of 64 bits, all of whose
+    addresses one client may have.
     """
     if request.scope["caller"] != ANONYMOUS:
         return caller_of(request)

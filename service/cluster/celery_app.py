@@ -22,7 +22,7 @@ _LOADING = 300.0  # seconds that a process may take to load, or to compile
 
 
 def make_celery(redis_url: str, seconds: float) -> Celery:
-    """Return the application at this Redis, whose tasks take no more than so many seconds."""
+    """Return the application at this Redis, whose tasks are killed soon after their time limit."""
     celery = Celery("paretour", broker=redis_url, set_as_current=False)
     celery.conf.broker_transport = TRANSPORT
     if redis_url.startswith("rediss:"):

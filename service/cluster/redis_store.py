@@ -73,7 +73,7 @@ class RedisStore:
         return await self._earlier(record.caller, "repeated", *_identity(record)[1:])
 
     async def submit(self, record: Record, queue: int, share: float, waits: bool = False) -> Record:
-        """Admit a record, if there is a place for it, which is no use to a repeat.
+        """Admit a record if there is a place for it; a repeat needs none.
 
         Args:
             record: The record.
@@ -84,7 +84,7 @@ class RedisStore:
         Raises:
             NoWorker: The client waits, and no worker is there.
             QueueFull: No place is left.
-            ShareFull: The client holds as many as it may.
+            ShareFull: The client holds its share of the places.
             IdempotencyMismatch: The caller used the key for another body.
             StoreUnavailable: Redis does not answer.
         """
@@ -139,7 +139,7 @@ class RedisStore:
             raise StoreUnavailable from error
 
     async def _repair(self, error: ResponseError) -> None:
-        """Make the key anew that the script has failed at; raise the error if there is none."""
+        """Recreate the key at which the script failed; raise the error if it names none."""
         key = damaged_key(error)
         if key is None:
             raise error
@@ -221,7 +221,7 @@ def _check_reply(reply: Any) -> None:
     Raises:
         IdempotencyMismatch: The key is of another body.
         QueueFull: No place is left.
-        ShareFull: The client holds as many as it may.
+        ShareFull: The client holds its share of the places.
         NoWorker: The client would wait for a worker, and none is there.
     """
     match reply:

@@ -1,4 +1,4 @@
-"""The transport of Celery's messages over Redis, which drops what is no message of the service."""
+"""The transport of Celery's messages over Redis, which drops messages of anybody else."""
 
 import logging
 from queue import Empty
@@ -11,7 +11,7 @@ _SHOWN = 80  # bytes of an element in the log
 
 
 class Channel(redis.Channel):
-    """A channel that survives an element of its list that is no JSON."""
+    """A channel that survives an element of its list that is not JSON."""
 
     def _brpop_read(self, **options: Any) -> Any:
         try:
@@ -49,7 +49,7 @@ def _check(message: Any) -> None:
 
 def _log_dropped(element: str | bytes, error: Exception) -> None:
     logging.getLogger("paretour").warning(
-        "an element of the list of messages is none of the service's and is dropped: %r (%s: %s)",
+        "an element of the list of messages is not the service's and is dropped: %r (%s: %s)",
         element[:_SHOWN],
         type(error).__name__,
         str(error)[:_SHOWN],

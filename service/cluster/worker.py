@@ -45,7 +45,7 @@ class Draining(Exception):
 
 
 class RecordWorker:
-    """Plans the fronts of records in this process, each within so many seconds."""
+    """Plans the fronts of records in this process, each within a time limit."""
 
     def __init__(
         self, runner: Runner, store: WorkerStore, seconds: float, is_draining: IsDraining
@@ -195,7 +195,7 @@ MakeRecordWorker = Callable[[IsDraining], RecordWorker]
 
 @dataclass(frozen=True, kw_only=True)
 class CeleryWorker:
-    """A Celery worker with so many processes.
+    """A Celery worker with a number of processes.
 
     When it is told to shut down, its processes have `drain_seconds` to finish their records, and
     then hand them back.

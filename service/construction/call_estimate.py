@@ -45,7 +45,7 @@ class CallEstimate:
         self._factor = 1.0  # of this network on this machine, against the formula
 
     def seconds(self, n: int, k: int, repairs: int = 0) -> float:
-        """Return the estimate for n cities, k preferences and so many repairs."""
+        """Return the estimated seconds for n cities, k preferences and some repairs."""
         least, each, power, first, *_ = self._formula
         building = least + each * (k + first) * n**power
         return self._factor * (building + repairs * self._repair(n, k))
@@ -64,7 +64,7 @@ class CallEstimate:
         return max(math.floor(left / (self._factor * self._repair(n, k))), 0)
 
     def correct(self, n: int, k: int, seconds: float, repairs: int = 0) -> None:
-        """Correct the estimate by a call that took so many seconds."""
+        """Correct the estimate by the seconds that a call took."""
         self._factor *= math.sqrt(seconds / self.seconds(n, k, repairs))
 
     def correct_ended(self) -> None:

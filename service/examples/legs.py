@@ -17,7 +17,7 @@ from service.roads.router import Array, Line, RouterSettings
 from service.roads.trails import Leg
 
 Place = tuple[int, int]  # steps east and north of the origin
-Way = list[int]  # nodes, of which the first and the last are stops
+Way = list[int]  # nodes; the first and the last are stops
 
 
 def legs(router_url: str, stops: list[dict[str, Any]]) -> dict[str, Any]:

@@ -11,7 +11,7 @@ VANS = 6
 CAPACITY = 24  # parcels
 OPENS, CLOSES = 8 * 3600, 12 * 3600  # when the first van may leave, and the last must be back
 _SERVICE = 240  # seconds at a customer
-_TIMED = 3  # every so many customers one has named an hour
+_TIMED = 3  # every third customer has named an hour
 
 
 def vans(one_van: dict[str, Any]) -> dict[str, Any]:

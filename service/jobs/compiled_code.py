@@ -1,7 +1,7 @@
 """The compiled code that requests need: compiled once, and loaded by later processes.
 
-Compiling takes one process a minute and a half. So where processors and a cache are there, several
-compile a part each into the cache, and the process that needs it all loads it from there.
+Compiling takes one process a minute and a half. With several processors and a cache, several
+processes compile a part each into the cache, and the process that needs it all loads it from there.
 
 `python -m service.jobs.compiled_code FIRST STEP` compiles every STEP-th part from the FIRST on, and
 ends when its standard input does.
@@ -38,7 +38,7 @@ _PARTS: Sequence[Callable[[], None]] = (
 
 
 def warm_up() -> None:
-    """Compile everything that is compiled, or load it from the cache, unless it is there."""
+    """Compile all parts, or load them from the cache, unless that is done."""
     if load_from_cache():
         return
     processes = len(os.sched_getaffinity(0))
@@ -49,9 +49,9 @@ def warm_up() -> None:
 
 
 def load_from_cache() -> bool:
-    """Do as `warm_up` does, until something would have to be compiled; return whether all is there.
+    """Load all parts from the cache; stop and return False if one would have to be compiled.
 
-    Where numba's compilation is switched off, nothing has to be.
+    Where numba's compilation is switched off, none has to be.
     """
     if config.DISABLE_JIT:  # type: ignore[attr-defined]  # set from the environment
         return True
@@ -77,8 +77,8 @@ class _RefuseCompilation(Listener):
 
 
 def _compile_elsewhere(processes: int) -> None:
-    """Compile everything into the cache in processes, which end with this one at the latest."""
-    # In a group of its own, which no Ctrl-C ends.
+    """Compile all parts into the cache in processes, which end with this one at the latest."""
+    # In a process group of its own, so that Ctrl-C does not end it.
     environment = {**os.environ, **own_code.variables()}
     with ExitStack() as stack:
         running = []

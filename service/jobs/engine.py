@@ -21,7 +21,7 @@ class JobState:
 
 @dataclass(frozen=True, kw_only=True)
 class EngineStats:
-    """Numbers of tasks that wait, of workers that run any, and of those lost and replaced."""
+    """The numbers of waiting tasks, of busy workers, and of workers lost and replaced."""
 
     waiting: int
     working: int
@@ -50,28 +50,28 @@ class Engine(Protocol):
         """Raise WarmingUp until the search is compiled."""
 
     async def check_ready(self) -> None:
-        """Raise a refusal when some task would be refused at the moment."""
+        """Raise a refusal when some kinds of tasks would be refused at the moment."""
 
     async def run(self, record: Record, disconnected: Future[None]) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it.
 
         Raises:
             QueueFull: No place is left.
-            ShareFull: The client holds as many as it may.
+            ShareFull: The client holds its share of the places.
             ShuttingDown: No more jobs are taken.
-            StoreUnavailable: The store takes no more fronts.
+            StoreUnavailable: The store accepts no fronts at the moment.
         """
 
     async def submit(self, record: Record) -> Record:
-        """Store and begin a job, and return its record; or that of which it is a repeat.
+        """Store and begin a job, and return its record, or the record of the job that it repeats.
 
-        Either both happens or nothing: nobody sees a record that was not begun.
+        Either both happen or neither: nobody sees the record of a job that was not begun.
 
         Raises:
             QueueFull: No place is left.
-            ShareFull: The client holds as many as it may.
+            ShareFull: The client holds its share of the places.
             ShuttingDown: No more jobs are taken.
-            StoreUnavailable: The store takes no more fronts.
+            StoreUnavailable: The store accepts no fronts at the moment.
             IdempotencyMismatch: The caller used the key for another body.
         """
 
@@ -82,20 +82,20 @@ class Engine(Protocol):
         """Yield the state of a job now and after each change, until it is finished."""
 
     async def release(self, record: Record) -> None:
-        """Wait until this process no longer holds what a job that was submitted is planned from."""
+        """Wait until this process no longer holds the source of a submitted job."""
 
     async def cancel(self, record: Record) -> Record:
         """End a job at once, with what was found so far, and return its final record."""
 
 
-_GRACE = 0.5  # seconds for a job that ends at the same time limit
+_GRACE = 0.5  # seconds to wait longer, for a job that ends at the same time limit
 
 
 async def record_in_time(engine: Engine, record: Record, seconds: float) -> Record:
-    """Return the record of a job once it is finished, or after so many seconds as it is then.
+    """Return the record of a job once it is finished, or its present state after some seconds.
 
     Raises:
-        DeadlineExceeded: Nothing was found in these seconds. The job goes on.
+        DeadlineExceeded: Nothing was found in this time. The job goes on.
         ShuttingDown: It is left unfinished for the next start.
     """
     try:

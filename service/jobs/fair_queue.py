@@ -10,7 +10,7 @@ from service.jobs.submission import Submission
 
 
 def places_of_client(workers: int, queue: int, share: float) -> int:
-    """Return how many places one client may hold: its share, but more than there are workers.
+    """Return how many places one client may hold: its share, and at least one more than workers.
 
     >>> places_of_client(2, 16, 0.5), places_of_client(4, 2, 0.5), places_of_client(1, 0, 0.5)
     (9, 5, 2)
@@ -18,13 +18,13 @@ def places_of_client(workers: int, queue: int, share: float) -> int:
     return max(math.ceil(share * (workers + queue)), workers + 1)
 
 
-_REMEMBERED = 1000  # clients whose latest turns are known
+_REMEMBERED = 1000  # clients whose latest turn is remembered
 
 
 class FairQueue:
-    """Submissions that wait: the next is that of the client whose turn is longest ago.
+    """Waiting submissions; the client whose latest turn is longest ago is next.
 
-    A client for which one is being run waits behind those for which none is.
+    Clients with a running submission wait behind those without.
     """
 
     def __init__(self) -> None:
@@ -53,7 +53,7 @@ class FairQueue:
         """Remove the next submission and return it.
 
         Args:
-            served: The clients for which one is being run.
+            served: The clients with a running submission.
 
         Raises:
             IndexError: None waits.
@@ -89,17 +89,17 @@ class FairQueue:
 
 
 def check_place(held: Iterable[Submission], client: str, places: int, of_client: int) -> None:
-    """Raise a refusal where no place is left for one more submission of a client.
+    """Raise a refusal if no place is left for one more submission of a client.
 
     Args:
         held: The submissions that hold a place.
-        client: For whom there is one more.
+        client: The client with one more submission.
         places: How many may be held in all.
         of_client: How many the client may hold.
 
     Raises:
         QueueFull: All places are held.
-        ShareFull: The client holds as many as it may.
+        ShareFull: The client holds its share of the places.
     """
     clients = [submission.client for submission in held]
     if len(clients) >= places:

@@ -1,4 +1,4 @@
-"""A front as JSON: the one form in which it travels between processes, is stored and answered.
+"""A front as JSON: the one form in which it is sent between processes, stored and answered.
 
 To add a member to the answer, add a field to `FrontDocument` and fill it in `encode_front` and
 `empty_front`. Stores, engines and routes pass all members on by themselves. A field that is not in
@@ -22,12 +22,12 @@ from service.requests.stops import Labels, UnmeasuredStops
 from service.requests.task import Task
 from service.search.improve import Termination
 
-_HEAD = 100  # bytes of a tour in which its first members are
+_HEAD = 100  # the first bytes of a tour, which contain its first members
 
 
 @dataclass(frozen=True)
 class Timings:
-    """Milliseconds of each phase of planning, and from the request to its end, once it has ended.
+    """Milliseconds of each phase of planning; once it has ended, also those since the request.
 
     Their JSON form is one object: the time in the queue, the phases, the total.
     """
@@ -65,7 +65,7 @@ class FrontDocument:
         objectives: Name and unit of each objective, where the caller named them.
         stops: Id and location of each stop, where the caller named them.
         uncovered: The free cells of a map that are out of reach.
-        tours: The JSON of all tours, with commas between, without brackets.
+        tours: The JSON of all tours, separated by commas, without brackets.
         ends: Where each tour ends in `tours`, as m native integers of 8 bytes.
         angles: The direction of each tour in degrees, as m native floats of 8 bytes.
         gained: The hypervolume that the search added, for the metrics.
@@ -94,15 +94,15 @@ class FrontDocument:
     def from_members(cls, members: Mapping[str, Any], **encoded: Any) -> Self:
         """Return the document of parsed members, with the other fields as given.
 
-        Members that this release does not know are dropped. Tours of releases that knew no balance
-        get theirs.
+        Members that this release does not know are dropped. Tours of releases without balances get
+        theirs.
         """
         known = {name: members[name] for name in _MEMBERS if name in members}
         timings = Timings.from_json(known.pop("timings_ms"))
         return cls(**known, timings_ms=timings, **encoded).with_balances()
 
     def with_balances(self) -> Self:
-        """Return the front with the balance of each tour, where they have none yet."""
+        """Return the front with the balance of each tour, computed where it is missing."""
         if b'"balance":' in self.tours[:_HEAD]:
             return self
         tours, ends = joined(
@@ -141,11 +141,11 @@ class FrontDocument:
         return self.split()[index]
 
     def without_tours(self) -> Self:
-        """Return the front with none of its tours."""
+        """Return the front without its tours."""
         return replace(self, tours=b"", ends=b"", angles=b"")
 
     def ended(self, seconds: float, *, late: bool) -> Self:
-        """Return the front as it ended, so many seconds after the request.
+        """Return the front with its timings at the end.
 
         Args:
             seconds: From the request to the end.
@@ -165,7 +165,7 @@ _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
 
 
 def _lengths(tour: bytes) -> list[float]:
-    """Return the lengths in the JSON of a tour, whose first members are numbers and they."""
+    """Return the lengths in the JSON of a tour; only members that are numbers come before them."""
     lengths: list[float] = from_json(tour[: tour.index(b"]") + 1] + b"}")["lengths"]
     return lengths
 
@@ -180,7 +180,7 @@ def encode_front(
 ) -> FrontDocument:
     """Write a front as JSON: its tours with the ids of labels, and with arrivals and paths if any.
 
-    Of a map it has the places and what is uncovered, as they were surveyed.
+    The front of a map has the places and the uncovered cells of the survey.
 
     The actor is left out where it built no tours. Arrivals have shape (m, stops, 2).
     """
@@ -213,7 +213,7 @@ def encode_front(
 
 
 def on_map(surveyed: Survey | None) -> dict[str, Any]:
-    """Return the members of a document that say where places lie on a map, and what is not."""
+    """Return the members of a document about a map: its places and its uncovered cells."""
     if surveyed is None:
         return {}
     return {"places": surveyed.places.tolist(), "uncovered": asdict(surveyed.uncovered)}
@@ -237,14 +237,14 @@ def _rows(front: Front, arrivals: NDArray[np.float64] | None) -> list[dict[str, 
 
 
 def _optional(name: str, values: NDArray[np.float64] | None, front: Front) -> list[dict[str, Any]]:
-    """Return a member of each tour of a front, or none where there are no values."""
+    """Return a member for each tour of a front; without values, no members."""
     if values is None:
         return [{}] * len(front.tours)
     return [{name: value} for value in values.tolist()]
 
 
 def _with_stops(encoded: list[bytes], tours: NDArray[np.integer], labels: Labels) -> list[bytes]:
-    """Return the JSON of each tour with the ids of its stops, each of which is encoded once."""
+    """Return the JSON of each tour with the ids of its stops. Each id is encoded once."""
     ids = np.array([to_json(stop.id) for stop in labels.stops], object)
     return [
         with_member(tour, b"stops", b"[%b]" % b",".join(stops))
@@ -258,7 +258,7 @@ def _named(labels: Labels | None) -> dict[str, Any]:
 
 
 def empty_front(task: Task) -> FrontDocument:
-    """Return the document of a task, not of a fleet, of which nothing has been found yet."""
+    """Return the document of a task of tours before anything is found."""
     subject: Any = task.subject
     reference_point = task.options.reference_point
     if isinstance(subject, Instance):
@@ -269,7 +269,7 @@ def empty_front(task: Task) -> FrontDocument:
         cities, scale, places = subject.n, None, None
     else:
         places = [] if subject.places is None else subject.places.tolist()
-        cities, scale = len(places), None  # a worker finds out what they cost
+        cities, scale = len(places), None  # a worker finds out their costs
     return FrontDocument(
         cities=cities,
         points=0,

@@ -1,4 +1,4 @@
-"""JSON in parts: tours in one, objects that get a member more, and paths, which are long."""
+"""Put JSON together from parts: tours, objects with one more member, and long paths."""
 
 from array import array
 from collections.abc import Iterable
@@ -15,9 +15,9 @@ PATH_PART = 2**14  # cells of a path that are written at once
 
 
 def encode_tours(rows: list[dict[str, Any]]) -> tuple[bytes, bytes]:
-    """Return the JSON of all tours in one, given their members, and where each ends in it.
+    """Encode all tours at once, given their members; return the JSON and where each tour ends.
 
-    That takes less time than one by one. Between the braces of each there are only numbers.
+    That is faster than one by one. The members must be numbers, so that a brace ends a tour.
     """
     encoded = to_json(rows)[1:-1]
     ends = np.flatnonzero(np.frombuffer(encoded, np.uint8) == ord("}")) + 1
@@ -25,21 +25,21 @@ def encode_tours(rows: list[dict[str, Any]]) -> tuple[bytes, bytes]:
 
 
 def joined(tours: Iterable[bytes]) -> tuple[bytes, bytes]:
-    """Return the JSON of all tours in one, and where each ends in it."""
+    """Join the JSON of tours; return it and where each tour ends in it."""
     each = list(tours)
     ends = accumulate(each, lambda end, tour: end + 1 + len(tour), initial=-1)
     return b",".join(each), array("q", islice(ends, 1, None)).tobytes()
 
 
 def split(tours: bytes, ends: bytes) -> list[bytes]:
-    """Return the JSON of each tour, of all in one and where each ends in it."""
+    """Split joined JSON into that of each tour, given where each ends in it."""
     lasts = np.frombuffer(ends, np.int64).tolist()
     begins = [0, *(last + 1 for last in lasts)]
     return [tours[begin:last] for begin, last in zip(begins, lasts, strict=False)]
 
 
 def with_member(encoded: bytes, name: bytes, value: bytes) -> bytes:
-    """Return the JSON of an object, not an empty one, with one member more, last."""
+    """Return the JSON of an object that is not empty, with one more member at its end."""
     return b"".join((encoded[:-1], b',"', name, b'":', value, b"}"))
 
 

@@ -25,7 +25,7 @@ from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.road_measurer import RoadMeasurer
 
-_PAUSE = 0.5  # seconds between two tries to resume the job of an earlier process
+_PAUSE = 0.5  # seconds between tries to resume the job of an earlier process
 _LOG = logging.getLogger("paretour")
 
 
@@ -33,11 +33,11 @@ class LocalEngine:
     """Runs jobs in a pool of worker processes.
 
     Jobs that are unfinished when the service ends stay in the store; the next service with that
-    store resumes them. Where the store does not take a finished record, its front is told all the
-    same and stored later; until it is, no new job is taken.
+    store resumes them. If the store does not accept a finished record, its front is reported all
+    the same and stored later; until then no new job is accepted.
 
-    Costs by road are asked for here, not in the workers: while a job waits for the routing engine
-    it holds its place, but no process.
+    This process asks for costs by road, not the workers: a job that waits for the routing engine
+    holds its place, but no process.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class LocalEngine:
         self._workers.check_warm()
 
     async def check_ready(self) -> None:
-        """Raise a refusal when some task would be refused at the moment."""
+        """Raise a refusal when some kinds of tasks would be refused at the moment."""
         self._workers.check_ready()
         self._unsaved.check_none()
 
@@ -119,7 +119,7 @@ class LocalEngine:
             if earlier := await self._store.repeated(record):
                 return earlier
             raise
-        # Before it is stored, so that it is found here by whoever finds it there.
+        # Before it is stored: a client that sees it in the store must find it here too.
         self._jobs[job.id] = job
         try:
             first = await self._admit(record)
@@ -185,7 +185,7 @@ class LocalEngine:
         self._spawn(self._follow(job))
 
     def _queue(self, submission: Submission) -> None:
-        """Queue a submission that has a place, at once or when its costs by road are there."""
+        """Queue a submission that has a place, at once or when its costs by road have come."""
         if self._measurer is None or not self._measurer.needed(submission.source):
             self._workers.queue(submission)
         else:
@@ -203,7 +203,7 @@ class LocalEngine:
             submission.fail(error)
         finally:
             asking.cancel()
-            # One that has ended only gives its place back.
+            # One that has ended only returns its place.
             self._workers.queue(submission)
 
     def _drop(self, job: RunningJob) -> None:
@@ -218,7 +218,7 @@ class LocalEngine:
         task.add_done_callback(self._tasks.discard)
 
     async def _resume(self, jobs: list[RunningJob]) -> None:
-        """Begin jobs of an earlier process, whichever of them are not cancelled meanwhile."""
+        """Begin the jobs of an earlier process, except those cancelled meanwhile."""
         for job in jobs:
             try:
                 while not job.ended and not await self._is_resumed(job):
@@ -246,9 +246,9 @@ class LocalEngine:
             self._jobs.pop(job.id, None)
 
     async def _end(self, job: RunningJob, ended: Record) -> None:
-        """Store the final record of a job, then tell it; where it cannot be stored, tell it first.
+        """Store the final record of a job, then report it; if it cannot be stored, report it first.
 
-        Until it is stored, the job remains, with its final record.
+        The job remains, with its final record, until that is stored.
         """
         try:
             await self._store.put(ended)

@@ -23,13 +23,13 @@ class Record:
         caller: The name of the API key, which alone may see the record.
         request_id: Of the request that submitted the job; it is named in the problem document.
         front: The best front found so far.
-        source: What the task is parsed from, and of a finished job what it was: stores keep it
-            where they can, and return it by itself; None of a job that failed.
+        source: The source of the task. Of a finished job, stores keep it if they can and return it
+            separately; of a failed job it is None.
         key: The Idempotency-Key, if the request had one.
         digest: SHA-256 of the body, which tells a repeat from a key used twice.
         problem: The problem document of a job that failed.
-        client: Whose share of the places it takes: the caller, or an address where there are no
-            keys. It is not stored.
+        client: The client whose share of the places it takes: the caller, or an address where
+            there are no keys. It is not stored.
     """
 
     id: str
@@ -62,7 +62,7 @@ def as_ended(
     Args:
         record: The record of the job.
         front: The best front found.
-        reason: The reason for which the job was stopped; None where it ended by itself.
+        reason: Why the job was stopped; None if it was not.
         seconds: From the request to the end.
     """
     late = reason is DeadlineExceeded
@@ -86,7 +86,7 @@ def as_cancelled(record: Record) -> Record:
 def as_failed(record: Record, error: Exception, front: FrontDocument) -> Record:
     """Log the error, and return the record with its problem document and the best front so far."""
     if isinstance(error, Refusal):
-        # Its sentence may quote the caller's names of stops, which no log is to have.
+        # Its sentence may quote the caller's names of stops, which must not be logged.
         _LOG.warning("front %s is refused: %s", record.id, error.code)
         refusal = error
     else:

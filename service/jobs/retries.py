@@ -10,7 +10,7 @@ from service.jobs.store import Store
 
 
 class GrowingPause:
-    """A pause of so many seconds at first, twice as long each time, up to the longest."""
+    """A pause that doubles each time, from the shortest to the longest, in seconds."""
 
     def __init__(self, shortest: float, longest: float) -> None:
         self._shortest = shortest
@@ -18,7 +18,7 @@ class GrowingPause:
         self._seconds = shortest
 
     async def wait(self) -> None:
-        """Wait, the longer the more often."""
+        """Wait; the next pause is longer."""
         seconds, self._seconds = self._seconds, min(2 * self._seconds, self._longest)
         await asyncio.sleep(seconds)
 
@@ -27,14 +27,14 @@ class GrowingPause:
         self._seconds = self._shortest
 
 
-_PATIENCE = 600.0  # seconds for which a front is kept for the store
+_PATIENCE = 600.0  # seconds for which storing a front is tried
 _SHORTEST_PAUSE = 0.25  # seconds between two tries
 _LONGEST_PAUSE = 5.0
 _LOG = logging.getLogger("paretour")
 
 
 class UnsavedRecords:
-    """Saves records that the store did not take at first."""
+    """Saves records that the store did not accept at first."""
 
     def __init__(self, store: Store, patience: float = _PATIENCE) -> None:
         self._store = store
@@ -42,14 +42,14 @@ class UnsavedRecords:
         self._ids: set[str] = set()
 
     def check_none(self) -> None:
-        """Raise StoreUnavailable while there is a record that the store has not taken."""
+        """Raise StoreUnavailable while the store has not accepted some record."""
         if self._ids:
             raise StoreUnavailable
 
     async def save(self, record: Record, error: Exception) -> None:
-        """Try to store a finished record until the store has taken it.
+        """Try to store a finished record until the store accepts it.
 
-        After minutes the front is given up, and what is stored is that it could not be.
+        After some minutes the front is given up, and a failed record is stored instead.
 
         Args:
             record: The record.

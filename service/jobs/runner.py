@@ -52,7 +52,7 @@ class Runner(Protocol):
             task: The task, or its source.
             stop: Called often; planning ends soon after it returns True.
             report: Called now and then with the progress, and with a function that writes the best
-                so many tours found so far, which may be called until it returns.
+                n tours found so far, which is valid until the report returns.
         """
 
     def terminate(self) -> None:

@@ -32,7 +32,7 @@ STEPS = (
     DROP INDEX IF EXISTS finished;
     CREATE INDEX finished ON front (caller, number, kept, size) WHERE NOT {UNFINISHED};
     """,
-    # Records make way by client: the caller, or an address where there are no keys.
+    # Records are dropped by client: the caller, or an address where there are no keys.
     f"""
     ALTER TABLE front ADD COLUMN client;
     UPDATE front SET client = caller;
@@ -52,7 +52,7 @@ def open_file(path: str) -> sqlite3.Connection:
 
     Raises:
         OSError: The file cannot be made or opened.
-        sqlite3.Error: It is no file of SQLite, or another process has it.
+        sqlite3.Error: It is not a file of SQLite, or another process has it.
         ValueError: It is another program's, of a later release, or damaged.
     """
     if path != IN_MEMORY:
@@ -113,7 +113,7 @@ def _create(path: Path) -> None:
         # SQLite gives the files beside it the same mode.
         os.close(os.open(path, os.O_RDWR | os.O_CREAT, _PRIVATE))
     elif not path.is_file():
-        raise ValueError("it is no regular file")
+        raise ValueError("it is not a regular file")
 
 
 def _make_private(path: str) -> None:

@@ -40,7 +40,7 @@ _READ = ", ".join(
     for name in COLUMNS
 )
 _AT_ONCE = 16  # records that are written together
-_SLACK = 16  # one part in so many may be put too much, until records are read
+_SLACK = 16  # records may exceed the limits by a sixteenth until some are read
 _LOG = logging.getLogger("paretour")
 
 

@@ -84,7 +84,7 @@ class Store(Protocol):
 
 
 STORE_BYTES = 2**28  # of finished records, by default
-SOURCE_SHARE = 4  # of a store, one part in so many may be the source of one finished record
+SOURCE_SHARE = 4  # the source of a finished record may take up to a quarter of a store
 FRONT_COLUMNS = ("members", "tours", "ends", "angles")
 SOURCE_COLUMNS = ("kind", "body", "upload")
 COLUMNS = (
@@ -134,7 +134,7 @@ def record_size(columns: Mapping[str, Any]) -> int:
 
 
 def record_from(columns: Mapping[str, Any]) -> Record:
-    """Return the record in these columns, of which those that are None may be missing.
+    """Return the record in these columns. Columns that would be None may be missing.
 
     Raises:
         UnreadableRecord: They are damaged, or of another program.
@@ -147,7 +147,7 @@ def record_from(columns: Mapping[str, Any]) -> Record:
 
 
 def source_from(columns: Mapping[str, Any]) -> TaskSource:
-    """Return the source in these columns, of which `upload` may be missing."""
+    """Return the source in these columns. The column `upload` may be missing."""
     return TaskSource(columns["kind"], columns["body"], columns.get("upload"))
 
 
@@ -179,7 +179,7 @@ def _decode(columns: Mapping[str, Any]) -> Record:
 
 
 def _check(record: Record) -> None:
-    """Raise ValueError where a record would fail whoever uses it."""
+    """Raise ValueError where a record could not be used later."""
     front, source = record.front, record.source
     texts = (record.id, record.caller, record.request_id, record.status, record.digest)
     if not all(isinstance(text, str) for text in texts):
@@ -190,7 +190,7 @@ def _check(record: Record) -> None:
     if source is not None and source.kind not in get_args(TaskKind):
         raise ValueError(f"kind is {source.kind!r}")
     if not isinstance(record.problem, dict | None):
-        raise ValueError("problem is no object")
+        raise ValueError("problem is not an object")
     if len(front.angles) != len(front.ends):
         raise ValueError("angles and ends differ in number")
     if (int(ends[-1]) if len(ends) else 0) != len(front.tours) or (np.diff(ends) < 1).any():

@@ -107,7 +107,7 @@ class Submission:
         self._has_ended.set()
 
     def cut_short(self) -> None:
-        """End with the best front so far; where there is none, with the reason of the stop."""
+        """End with the best front so far; without one, with the reason of the stop."""
         if self.best_front is None:
             self.fail((self.stop_reason or Cancelled)())
         else:

@@ -113,7 +113,7 @@ class FrontRequest(PlanRequest):
 
     @cached_property
     def labels(self) -> Labels | None:
-        """The names of stops and objectives; None where there are none."""
+        """The names of stops and objectives; None if they have none."""
         if not self.stops:
             return None
         return Labels(read_stops(self.stops), read_objectives(self.objectives))

@@ -1,4 +1,4 @@
-"""The limits of a service: on what a request may bring or ask for, as checks and as JSON schema."""
+"""The limits of a service on the contents of requests, as checks and as JSON schema."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
@@ -12,27 +12,26 @@ from service.requests.stops import ROAD_MEASURES, Measured, UnmeasuredStops, bas
 from service.requests.validation import invalid
 
 _TOURS_BY_ID = 100  # initial tours that may name every stop by its id
-_ID_BYTES = 40  # in an answer, of an id that counts for one cell: a UUID with its quotation marks
+_ID_BYTES = 40  # of an id in an answer that count as one cell: a UUID with its quotation marks
 AnyPlanRequest = TypeVar("AnyPlanRequest", bound=PlanFields)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """The most that a request may bring or ask for.
+    """The largest amounts that a request may contain or ask for.
 
     Args:
         body_bytes: Bytes of a body.
         cities: Cities in two planes.
-        matrix_cities: Cities whose costs are matrices: as they come, as they are measured, or over
-            a map.
-        network_cities: Cities of which a network builds tours.
+        matrix_cities: Cities whose costs are matrices: sent, measured, or computed on a map.
+        network_cities: Cities for which a network builds tours.
         fleet_stops: Stops of a fleet, and places that several robots share.
         cells: Cells of a map.
         path_cells: Cells of all paths of an answer, and stops of all its tours; long ids of stops
             count for more.
         preferences: Preferences of a front.
         repairs: Repairs of the network's tours.
-        size: Tours to return, or to bring as initial tours.
+        size: Tours to return, or initial tours in a request.
         seconds: The time limit of planning.
         roads: Whether a routing engine is configured, so that costs may be those of roads.
     """
@@ -107,7 +106,7 @@ def check_amounts(request: PlanFields, n: int, limits: Limits, id_bytes: int = 0
 
 
 def check_size(size: int, n: int, id_bytes: int, limits: Limits) -> None:
-    """Raise a refusal where an answer of so many tours of n cities would be too large.
+    """Raise a refusal where an answer with `size` tours of n cities would be too large.
 
     Args:
         size: The number of tours.
@@ -157,14 +156,14 @@ def _check_ends(request: PlanRequest, n: int) -> None:
 def check_reference_point(
     options: PlanOptions, least: Callable[[], Array], noun: str = "tour"
 ) -> None:
-    """Raise a refusal where it is plain that no tour, or plan, lies below the reference point.
+    """Raise a refusal if clearly no tour, or plan, lies below the reference point.
 
-    Every hypervolume would be 0. Where that is not plain, it is.
+    Every hypervolume would be 0. That may still happen where it is not clear beforehand.
 
     Args:
         options: The options, with the reference point if one was given.
-        least: Returns lengths, shape (2,), that none goes below.
-        noun: What a front is of.
+        least: Returns lower bounds of all lengths, shape (2,).
+        noun: What the front consists of, for the sentence.
 
     Raises:
         Refusal: In one objective, every tour or plan is as long or longer.
@@ -179,10 +178,11 @@ def check_reference_point(
 
 
 def within_network(options: PlanOptions, n: int, limits: Limits) -> PlanOptions:
-    """Return the options of n cities; of more than a network serves, without its tours.
+    """Return the options for n cities; for more than a network serves, without its tours.
 
     Raises:
-        Refusal: Of more, its tours are asked for: by preferences, or by no time for a search.
+        Refusal: There are more, and the request needs its tours: it has preferences, or no time
+            for a search.
     """
     if n <= limits.network_cities:
         return options
@@ -211,7 +211,7 @@ def check_router(stops: UnmeasuredStops, limits: Limits) -> None:
 def lower_defaults(
     request: AnyPlanRequest, n: int, limits: Limits, id_bytes: int = 0
 ) -> AnyPlanRequest:
-    """Return a request with the limit, as of `defaults`, in place of every default over it."""
+    """Return a request in which each default above its limit is lowered to it, as in `defaults`."""
     given, values = request.model_fields_set, defaults(limits, n, id_bytes)
     lowered = {k: v for k, v in values.items() if k not in given and v < getattr(request, k)}
     if not lowered:
@@ -223,7 +223,7 @@ def lower_defaults(
 
 
 def defaults(limits: Limits, n: int = 1, id_bytes: int = 0) -> dict[str, float]:
-    """Return the defaults under these limits, for n cities: silence is never over a limit.
+    """Return the defaults for n cities, lowered so that none is over a limit.
 
     Args:
         limits: The limits.

@@ -85,7 +85,7 @@ class Measured:
 
 @dataclass(frozen=True, eq=False)
 class Changed:
-    """A source of costs: another one, of which the costs of some steps have changed.
+    """A source of costs: another source, with changed costs of some steps.
 
     Args:
         base: The other source.

@@ -26,7 +26,7 @@ def _optional(description: str) -> Any:
 
 
 class TourQuery(BaseModel):
-    """The query parameters of `GET /tour`: which tour, by one of five ways, and of which front."""
+    """The query parameters of `GET /tour`: the front, and one of five ways to choose its tour."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -35,8 +35,12 @@ class TourQuery(BaseModel):
         "the tour nearest to this balance: 0 at the front's least first length, 1 at its least"
         " second"
     )
-    first_at_most: _Length = _optional("the least second length of which the first is within this")
-    second_at_most: _Length = _optional("the least first length of which the second is within this")
+    first_at_most: _Length = _optional(
+        "the tour with the least second length whose first length is at most this"
+    )
+    second_at_most: _Length = _optional(
+        "the tour with the least first length whose second length is at most this"
+    )
     knee: _Flag = Field(
         default=False, description="the least sum of both lengths, each in the front's own box"
     )

@@ -27,7 +27,7 @@ _Model = TypeVar("_Model", bound=BaseModel)
 
 
 def read(model: type[_Model], content: bytes) -> _Model:
-    """Return an answer as a model, of which other members are disregarded.
+    """Return an answer as a model; other members are ignored.
 
     Raises:
         Unintelligible: It is not JSON, or not of the model's form.

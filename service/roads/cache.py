@@ -10,7 +10,7 @@ BYTES_OF_ENTRY = 512  # what an array, its key and its place take beside its num
 
 
 class ArrayCache:
-    """Arrays by their keys; when there is no room, the one longest unused makes way.
+    """Arrays by their keys; when there is no room, the least recently used is dropped.
 
     Args:
         most_bytes: What all arrays may take together.
@@ -28,7 +28,7 @@ class ArrayCache:
         self._entries: OrderedDict[bytes, tuple[float, Array]] = OrderedDict()
 
     def get(self, key: bytes) -> Array | None:
-        """Return the array of a key, None where there is none or it is too old."""
+        """Return the array of a key, None if it is missing or too old."""
         if key not in self._entries:
             return None
         put_at, array = self._entries[key]

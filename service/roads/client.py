@@ -153,7 +153,7 @@ class RoadClient:
         return Questions(self._router, self._transport, places, ids)
 
     async def _in_time(self, answers: Awaitable[_Result], seconds: float) -> _Result:
-        """Return answers within so many seconds, or log why there are none."""
+        """Return answers within a time limit, or log why there are none."""
         try:
             async with asyncio.timeout(seconds):
                 return await answers

@@ -42,7 +42,7 @@ class Questions:
         self._refused = np.zeros((n, n), np.bool_)
 
     async def check_snapped(self, snap: float) -> None:
-        """Raise OffRoad where stops lie farther from every road than so many metres."""
+        """Raise OffRoad if stops lie too many metres from every road."""
         parts = _parts(len(self._places), _PLACES_AT_ONCE)
         distances = [await self._snapped(part) for part in parts]
         off = np.flatnonzero(np.concatenate(distances) > snap).tolist()
@@ -50,7 +50,7 @@ class Questions:
             raise OffRoad([(i, self._ids[i]) for i in off], snap)
 
     async def costs(self, pairs: int) -> Array:
-        """Return both matrices, shape (2, n, n), of blocks of at most so many pairs.
+        """Return both matrices, shape (2, n, n), asked for in blocks of a bounded number of pairs.
 
         They are infinite where there is no way.
 
@@ -96,7 +96,7 @@ class Questions:
         self._costs[:, sources[:, np.newaxis], targets] = await self._table(sources, targets)
 
     async def _route(self, trail: list[int]) -> list[Line]:
-        """Return the line of each leg of a trail, of which halves are asked for if it has none."""
+        """Return the line of each leg of a trail; if the engine has none, ask for its halves."""
         answer = await self._transport.ask(self._router.ask_route(self._places_of(trail)))
         try:
             # In a thread, because of ten thousands of small lines that it may be of.
@@ -121,7 +121,7 @@ class Questions:
                 raise RouterUnusable("a line must begin and end at its stops")
 
     async def _snapped(self, part: _Indices) -> Array:
-        """Return how many metres places lie from a road, infinity where there is none."""
+        """Return the metres from places to the nearest road, infinity where there is none."""
         places = self._places_of(part.tolist())
         answer = await self._transport.ask(self._router.ask_snapped(places))
         try:
@@ -186,7 +186,7 @@ async def _for_each(items: Iterable[_Item], do: Callable[[_Item], Awaitable[None
 
 
 def _parts(n: int, most: int) -> list[_Indices]:
-    """Return the indices 0 to n - 1 in parts of about equal size, of at most so many each."""
+    """Return the indices 0 to n - 1 in parts of about equal, bounded size."""
     return np.array_split(np.arange(n), ceil(n / most))
 
 

@@ -16,7 +16,7 @@ Indices = NDArray[np.int64]
 def count_legs(ways: Sequence[Indices]) -> dict[Leg, int]:
     """Return how often each leg occurs in ways through stops, shape (m,) each, m at least 2.
 
-    They are in the order of the ways, of which `trails` then makes few.
+    They are in the order of the ways, so that `trails` joins them to few trails.
 
     >>> count_legs([np.array([0, 1, 2, 0]), np.array([0, 1])])
     {(0, 1): 2, (1, 2): 1, (2, 0): 1}
@@ -29,7 +29,7 @@ def count_legs(ways: Sequence[Indices]) -> dict[Leg, int]:
 
 
 class LegLines:
-    """The lines of legs as they are found, each of which counts as often as its leg occurs.
+    """The lines of legs as they are found. Each counts as often as its leg occurs.
 
     Args:
         counts: How often each leg occurs.

@@ -6,7 +6,7 @@ Leg = tuple[int, int]  # from one stop to another
 
 
 def trails(legs: Iterable[Leg], most: int) -> list[list[int]]:
-    """Return sequences of at most so many stops that go along every leg once.
+    """Return sequences of stops, of bounded length, that go along every leg once.
 
     Args:
         legs: Each from one stop to another; repeats count once.

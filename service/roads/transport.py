@@ -106,7 +106,7 @@ async def _content(response: httpx.Response, most: int) -> bytes:
     """Return the body of a response.
 
     Raises:
-        RouterUnusable: It is longer than so many bytes.
+        RouterUnusable: It has too many bytes.
     """
     content = bytearray()
     async for chunk in response.aiter_raw():

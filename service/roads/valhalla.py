@@ -73,7 +73,7 @@ class _Route(BaseModel):
 
 @dataclass(frozen=True)
 class Valhalla:
-    """Asks for ways by one costing model, between places at most so many metres from a road."""
+    """Asks for ways by one costing model, between places within some metres of a road."""
 
     costing: str
     snap: float

@@ -124,6 +124,6 @@ def test_a_file_that_is_not_the_stores_is_refused_and_left_as_it_is(
 
 def test_a_device_is_refused_and_keeps_its_mode() -> None:
     before = mode(Path(os.devnull))
-    with pytest.raises(ValueError, match="no regular file"):
+    with pytest.raises(ValueError, match="not a regular file"):
         SqliteStore(os.devnull, entries=1, max_age=1)
     assert mode(Path(os.devnull)) == before

@@ -157,7 +157,7 @@ def test_what_cannot_be_planned_is_refused() -> None:
             "matrices",
             "pa-one",
             "unfit-actor",
-            "actor must read matrices, as one that is loaded, and there is none; "
+            "actor must read matrices, as one that is loaded, and none is; "
             "pa-one reads coordinates alone",
         ),
     ],

@@ -1,4 +1,4 @@
-"""The front of a task of which nothing has been found yet."""
+"""The front of a task before anything is found."""
 
 from service.jobs.fleets.fleet_document import empty_fleet
 from service.jobs.fleets.robot_document import empty_robot_plans
@@ -9,7 +9,7 @@ from service.requests.task import Task
 
 
 def empty_document(task: Task) -> FrontDocument:
-    """Return the document of a task, of tours or of plans, of which nothing has been found yet."""
+    """Return the document of a task, of tours or of plans, before anything is found."""
     match task.subject:
         case UnmeasuredFleet():
             return empty_fleet(task)

@@ -55,7 +55,7 @@ def encode_fleet(
 
 
 def empty_fleet(task: Task) -> FrontDocument:
-    """Return the document of a fleet's task of which nothing has been found yet."""
+    """Return the document of a fleet's task before anything is found."""
     assert isinstance(task.subject, UnmeasuredFleet)
     assert task.labels is not None
     reference_point = task.options.reference_point
@@ -74,7 +74,7 @@ def empty_fleet(task: Task) -> FrontDocument:
 
 
 def holds_plans(front: FrontDocument) -> bool:
-    """Return whether a front is of plans of a fleet, and not of tours."""
+    """Return whether a front has plans of a fleet instead of tours."""
     return bool(front.objectives) and all("over" in each for each in front.objectives or ())
 
 

@@ -86,7 +86,7 @@ class RobotEncoder:
 
 
 def empty_robot_plans(task: Task, subject: SharedCoverage) -> FrontDocument:
-    """Return the document of a task for robots of which nothing has been found yet."""
+    """Return the document of a task for robots before anything is found."""
     of_one_robot = empty_front(replace(task, subject=subject.coverage))
     return replace(of_one_robot, **_kind_of_plans(subject))
 

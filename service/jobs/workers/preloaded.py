@@ -1,10 +1,11 @@
-"""Import what workers are forked with, once, in the process that forks them.
+"""Import the modules of all workers once, in the process that forks them.
 
-They have these modules then, and the compiled code, where an earlier process has left it in the
-cache. Where it has not, one of them compiles it: that takes minutes, and until this is imported
-there are no workers, not even for what the network does alone.
+Workers then start with these modules, and with the compiled code if an earlier process left it in
+the cache. If not, one worker compiles it later: that takes minutes, and there are no workers, not
+even for requests of the network alone, until this module is imported.
 
-Not the service nor ONNX Runtime: a fork copies the locks of their threads, but not the threads.
+Do not import the service or ONNX Runtime: a fork copies the locks of their threads, but not the
+threads.
 """
 
 import scipy.linalg  # numba imports it when it first loads compiled code

@@ -2,9 +2,9 @@
 
 Brief tasks that wait share a turn of a process, which answers them together.
 
-To stop a task is not to end its process: whoever waits is answered, and the process takes no more
-work until it has noticed. Only one that does not notice for seconds is killed. Until the search is
-compiled, processes run tasks that need the network alone.
+Stopping a task does not end its process: the client is answered at once, and the process takes no
+new task until it has noticed the stop. It is killed only if it does not notice for seconds. Until
+the search is compiled, processes run only tasks that need just the network.
 """
 
 import asyncio
@@ -28,7 +28,7 @@ STOP_SECONDS = 5.0  # seconds for a stopped task to notice before its process is
 
 
 class WorkerPool:
-    """So many worker processes, and a queue of so many submissions beside those that they run.
+    """A number of worker processes, and a bounded queue of submissions that wait for them.
 
     Args:
         make_runner: Called in each process; it must be picklable.
@@ -140,7 +140,7 @@ class WorkerPool:
 
         Raises:
             QueueFull: No place is left.
-            ShareFull: The client holds as many as it may.
+            ShareFull: The client holds its share of the places.
             ShuttingDown: The pool is closed.
         """
         self.check_open()

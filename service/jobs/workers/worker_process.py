@@ -231,7 +231,7 @@ class WorkerProcess:
         """Start a process, which sends Started once its networks are loaded.
 
         Raises:
-            OSError: There are no descriptors or processes left.
+            OSError: No descriptors or processes are left.
         """
         loop = asyncio.get_running_loop()
         with ExitStack() as ours:  # closed where this fails, with which the process ends

@@ -30,12 +30,12 @@ class Worker:
     started: bool = False
     warming: bool = False
     warm: bool = False
-    reason: str = ""  # why it ends, where it said so
+    reason: str = ""  # why it ends, if it has told
     submissions: dict[int, Submission] = field(default_factory=dict)
 
 
 class WorkerSet:
-    """So many worker processes, until the set is closed.
+    """A number of worker processes, each replaced when lost, until the set is closed.
 
     Args:
         make_runner: Called in each process; it must be picklable.
@@ -71,7 +71,7 @@ class WorkerSet:
         self.was_warm = False
 
     def __iter__(self) -> Iterator[Worker]:
-        """Iterate over the workers that there are."""
+        """Iterate over the present workers."""
         return iter(self._workers)
 
     async def start(self) -> None:

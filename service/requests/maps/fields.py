@@ -74,7 +74,7 @@ class MapRequest(PlanRequest):
     free_thresh: _Share = Field(
         default=0.0,
         description="a pixel lighter than this is free, those between are unknown; without it"
-        " every pixel that is no obstacle is free, but for grey 205, which is unknown",
+        " every pixel that is not an obstacle is free, except grey 205, which is unknown",
     )
     obstacle_from: Annotated[int, Field(ge=1, le=100), AsInteger] = Field(
         default=50,

@@ -68,7 +68,7 @@ class OccupancyGrid(_Message):
         """Return x, y and the yaw of the lower left corner.
 
         Raises:
-            Refusal: The orientation is no rotation about the z axis.
+            Refusal: The orientation is not a rotation about the z axis.
         """
         at, turn = self.info.origin.position, self.info.origin.orientation
         length = math.hypot(turn.z, turn.w)

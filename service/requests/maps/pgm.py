@@ -21,7 +21,7 @@ def read_pgm(content: bytes, most_cells: int) -> NDArray[np.uint8]:
     """Return the shades in a PGM file, black 0 to white 255, shape (rows, columns).
 
     Raises:
-        Refusal: The file is no PGM file with a byte for each cell, or has too many cells.
+        Refusal: The file is not PGM with a byte for each cell, or has too many cells.
     """
     header = _HEADER.match(content[:_LONGEST_HEADER])
     if header is None:

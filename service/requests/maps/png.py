@@ -67,7 +67,7 @@ def _decode(picture: bytes, most_cells: int) -> NDArray[np.uint8]:
 
 
 def _check_header(headers: list[bytes], chunks: list[tuple[bytes, bytes]], most: int) -> None:
-    """Raise a refusal unless there is one header, at the beginning, of so many cells at most."""
+    """Raise a refusal unless the file begins with its only header, and it has few enough cells."""
     if len(headers) != 1 or chunks[0][1] is not headers[0]:
         demand = "must be a PNG file with one header, at its beginning"
         raise invalid("grid", f"{demand}, got {len(headers)}")

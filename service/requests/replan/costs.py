@@ -201,7 +201,7 @@ def changed_stops(request: ReplanRequest, stops: AllStops) -> NDArray[np.int64]:
     """Return the stops to or from which a request changes single costs, as `all_costs` finds them.
 
     Raises:
-        Refusal: One is no stop.
+        Refusal: One is not a stop.
     """
     ids = stops.ids
     found = [

@@ -19,7 +19,7 @@ from service.requests.task import TaskSource
 from service.search.open_routes import rotated
 
 Array = NDArray[np.float64]
-MOST_TOURS = 50  # of an earlier front, from which the search sets out, as many as it has weights
+MOST_TOURS = 50  # of an earlier front to start the search from: the search has as many weights
 _NAMES = ("first", "second")  # of objectives that the front's request did not name
 # What is read of a tour: not its path, whose millions of cells take seconds and half a gigabyte.
 _READ = re.compile(rb'"lengths":\s*\[([^]]*)],\s*"tour":\s*\[([^]]*)]')
@@ -74,7 +74,7 @@ class EarlierFront:
         return len(self.labels.stops)
 
     def balance_of(self, tour: NDArray[np.int64]) -> float | None:
-        """Return the balance of a tour in the front; None where it is none of its tours."""
+        """Return the balance of a tour in the front; None if the front does not have it."""
         same = (self.from_start(self.known) == self.from_start(tour[np.newaxis])).all(axis=1)
         return float(self.balances[same.argmax()]) if same.any() else None
 
@@ -120,7 +120,7 @@ def with_tours(
             the first of them, shape (n,).
 
     Raises:
-        Refusal: It has no tours, or such as are not of so many stops.
+        Refusal: It has no tours, or tours with another number of stops.
     """
     tours, lengths = _read_tours(stored, n)
     chosen = np.linspace(0, len(tours) - 1, min(len(tours), MOST_TOURS)).astype(np.intp)

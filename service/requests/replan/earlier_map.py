@@ -31,7 +31,7 @@ class EarlierMap:
     """A front of a map that is replanned.
 
     Args:
-        coverage: The task of which it is the front.
+        coverage: The task that it is the front of.
         cells: Row and column of each place, shape (n, 2), also of those laid out by a spacing.
         front: Its tours through the places, which are named by their indexes.
     """
@@ -64,7 +64,7 @@ def read_earlier_map(stored: StoredFront, limits: Limits) -> EarlierMap:
 
 
 def _ends(coverage: Coverage, tour: NDArray[np.int64]) -> RouteEnds:
-    """Return the ends of all tours, of which this is one, as places."""
+    """Return the ends that all tours share, given one of them, as places."""
     if coverage.ends.closed:
         return CLOSED
     starts = coverage.start_pose is not None or coverage.ends.start is not None

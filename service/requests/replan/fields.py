@@ -55,7 +55,7 @@ class NewStop(BaseModel):
         Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
     ] = Field(
         default_factory=list,
-        description="for each objective the costs to and from all stops, null if it is no matrix",
+        description="for each objective the costs to and from all stops, null if not a matrix",
     )
 
 

@@ -30,7 +30,7 @@ def all_places(earlier: EarlierMap, coverage: Coverage, request: ReplanRequest) 
     """Return the places of the front and the new ones.
 
     Raises:
-        Refusal: A new one is no cell of the grid, or has no costs.
+        Refusal: A new one is not a cell of the grid, or has no costs.
     """
     new = []
     for index, item in enumerate(request.add):
@@ -58,7 +58,7 @@ def _position_cell(coverage: Coverage, request: ReplanRequest) -> tuple[str, lis
     """Return the cell where the way goes on, None if that is a place, and the field that says it.
 
     Raises:
-        Refusal: It is said twice, is no cell of the grid, or is in a frame that nobody knows.
+        Refusal: It is given twice, is not a cell of the grid, or is in an unknown frame.
     """
     if not request.pose:
         if isinstance(request.position, list):

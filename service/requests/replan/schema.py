@@ -7,7 +7,7 @@ from service.requests.limits import Limits, limited_schema
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.map_fields import describe_map_changes
 
-_SHARED = "ObjectiveItem"  # of which each form has a name of its own, as in `front_schemas`
+_SHARED = "ObjectiveItem"  # each form has its own name for it, as in `front_schemas`
 _OBJECTIVES = ("MatrixObjective", "PlaneObjective", "MeasuredObjective")
 
 

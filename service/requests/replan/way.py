@@ -100,10 +100,9 @@ def left_of_tours(
 ) -> tuple[Tours, NDArray[np.int64]]:
     """Return what is left of the earlier tours, shape (m, k), and the stops with new neighbours.
 
-    In indexes of all stops. The first tour is left of the one being driven, shape (n,). One that
-    begins with its last stops, more of which are done than of its first, is driven the other way
-    round. New neighbours may have the ends, and the stops beside which another has gone from a
-    tour.
+    In indexes of all stops. The first row is what is left of the driven tour. If more of its last
+    stops than of its first are done, it is driven the other way round. New neighbours are possible
+    at the ends, and for stops beside one that is no longer in a tour.
     """
     [driven] = front.from_start(driven[np.newaxis])
     driven = _as_driven(front, driven, rest.done)
