@@ -16,7 +16,7 @@ _TYPES = {
     "leans": "float[r, {e}]",
     "kept": "int64[1]",
 }
-_BY_END = ("ends", "partners", "open", "leans")  # of which those that are kept are sliced off
+_BY_END = ("ends", "partners", "open", "leans")  # from which the kept ends are sliced
 
 
 class GraphSizes(NamedTuple):
@@ -25,10 +25,10 @@ class GraphSizes(NamedTuple):
     Args:
         room: Entries of lists and of costs in a block.
         lists: Of the shortlists.
-        many: The cities, more than which are joined more often a round.
-        early: The cities that a repair looks at, and of these cuts out, at most.
+        many: The number of cities above which a round has more joinings.
+        early: The most cities that a repair looks at, and that it cuts out.
         late: The same of late repairs.
-        late_from: Repairs, after which they are late.
+        late_from: The number of repairs after which they are late.
     """
 
     room: int

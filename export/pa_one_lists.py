@@ -84,7 +84,7 @@ class _Begin(nn.Module):
 
 
 class _Round(nn.Module):
-    """The fragments after one more round, of so many joinings."""
+    """The fragments after one more round of `joinings` joinings."""
 
     def __init__(self, actor: OneActor, joinings: int) -> None:
         super().__init__()

@@ -2,13 +2,13 @@
 
 A block has as many preferences as there is room for their lists, and for the costs between the
 ends of a contracted problem. It begins with a round of all cities; further rounds work on the ends
-that are still open, of which there are fewer each time. A loop of a few passes finds where on its
-tour each city comes. When all tours are there, a last loop repairs them. The functions of the
+that are still open, fewer each time. A loop of a few passes finds the place of each city on its
+tour. When all tours are built, a last loop repairs them. The functions of the
 domain `paretour` are the parts that `export.pa_one` puts in.
 
 There is one text for coordinates and for matrices. Where costs have directions, the tables of
-costs, the shortlists and the fragments have tensors of leans more, and there are prices, of which
-a block takes its rows.
+costs, the shortlists and the fragments also have tensors of leans, and there are prices; a block
+takes the prices of its rows.
 """
 
 from string import Template

@@ -126,7 +126,7 @@ def repair_parts(
 ) -> dict[str, Part]:
     """Return the parts that repair, by name, to be traced at these sizes.
 
-    So many cities are looked at by a repair, and so many of them cut out.
+    `cities_cut` are the cities that a repair looks at, and those of them that it cuts out.
     """
     costs, rows, _ = problem
     tables = tuple(costs)

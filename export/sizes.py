@@ -29,7 +29,7 @@ _UNCHANGING = ("Expand", "Reshape", "Flatten")  # where the shape is the same be
 
 
 class Size(NamedTuple):
-    """A number of times a size of an input, or the product of two, and so many more."""
+    """A size of an input, or the product of two, times a number, plus a number."""
 
     of: tuple[tuple[str, int], ...]  # inputs and axes
     times: int = 1
@@ -105,9 +105,9 @@ def _all_tensors(
 def with_shared_sizes(
     model: ModelProto, first: Sequence[Array], second: Sequence[Array]
 ) -> ModelProto:
-    """Return a graph of which each size is computed once.
+    """Return a graph that computes each size once.
 
-    It has been traced with the first inputs, and can be run on the second, whose sizes all differ.
+    The graph was traced with the first inputs, and runs on the second, whose sizes all differ.
     """
     runs = Runs(model, first, second)
     changed = ModelProto()

@@ -26,7 +26,7 @@ EdgeLogits = Callable[[Costs, Fragments, Candidates], Tensor]
 
 
 class Judgement(NamedTuple):
-    """How a network judges edges: those to so many candidates, for so many joinings each time."""
+    """How a network judges edges: to how many candidates, and once for how many joinings."""
 
     edge_logits: EdgeLogits
     candidates: int
@@ -53,7 +53,7 @@ def joined_by_chance(
     generator: Generator,
     enough: int = 1,
 ) -> tuple[Fragments, Float[Tensor, " r"]]:
-    """Join fragments of each row until so many are left, and return the log-likelihoods."""
+    """Join fragments of each row until `enough` are left, and return the log-likelihoods."""
     likelihoods = torch.zeros_like(costs.means[:, 0, 0])
     while bool((fragments.left > enough).any()):
         candidates = cheapest_candidates(costs, fragments, judgement.candidates)

@@ -39,7 +39,7 @@ _ROUNDING = 2e-6  # of a length: what sums of float32 may be wrong by
 
 
 def _patterns(near: int, seed: int) -> Float[Tensor, "p near"]:
-    """Return keys for each pattern, of which the greatest are the ranks that it takes.
+    """Return keys for each pattern; the ranks with the greatest keys are those that it takes.
 
     Ranks are drawn without replacement (Gumbel-top-k), nearer ones rather than others.
     """
@@ -73,7 +73,7 @@ def repaired_tours(
     preferences: Float[Tensor, "k 2"],
     repairs: int,
 ) -> tuple[Int[Tensor, "b k n"], Int[Tensor, "b k n"]]:
-    """Return a tour of each instance for each preference after so many repairs, and one visited."""
+    """Return a tour of each instance and preference after the repairs, and one they visited."""
     rows = weights(turned_outwards(preferences))
     built = actor.tours(instances, preferences)
     states = [

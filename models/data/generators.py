@@ -89,7 +89,7 @@ def drawn_map(generator: Generator, kind: str, side: int) -> Mask:
     """Draw the mask of free cells, shape (side, side), of a map of this kind.
 
     Raises:
-        ValueError: there is no such kind.
+        ValueError: the kind is unknown.
     """
     match kind:
         case "random":

@@ -33,7 +33,7 @@ def city_count(least: int, most: int, generator: Generator) -> int:
 def distinct_starts(
     count: int, cities: int, starts: int, generator: Generator, device: torch.device
 ) -> Int[Tensor, "b s"]:
-    """Draw different cities for each instance, as many as there are starts, in random order.
+    """Draw a different city for each start of each instance, in random order.
 
     Where there are fewer cities than starts, cities repeat.
     """

@@ -106,7 +106,7 @@ class StepwiseActor(Actor):
     """An actor that builds tours city by city: an encoder of instances, then a decoder."""
 
     construction = "stepwise"
-    groups: ClassVar[int] = 1  # of preferences, for each of which it encodes an instance once
+    groups: ClassVar[int] = 1  # of preferences; it encodes an instance once for each group
     encoder: nn.Module
     decoder: Decoder
 

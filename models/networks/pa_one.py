@@ -145,10 +145,10 @@ class OneActor(Actor):
         return toured(problem, expanded(fragments, solved))
 
     def are_listed(self, before: Fragments, after: Fragments) -> Bool[Tensor, ""]:
-        """Return whether the candidates of the next look are to come from lists.
+        """Return whether the candidates of the next round come from lists.
 
-        They are while the last look joined some fragments in a row in which many ends are open.
-        Then the problem is contracted to the open ends, of which all pairs are looked at.
+        They do while the last round joined fragments in some row with many open ends. After that
+        the problem is contracted to the open ends, and all pairs of them are candidates.
         """
         return (self._many_open(after) & (after.left < before.left)).any()
 
@@ -162,9 +162,9 @@ class OneActor(Actor):
         return (count > self.list_sizes.ends) & (self.list_sizes.share * count > n)
 
     def joined_to_one(self, costs: Costs, fragments: Fragments, joinings: int) -> Fragments:
-        """Return one fragment for each row, of a few: the last two are joined the cheaper way.
+        """Join the few fragments of each row to one; the last two are joined the cheaper way.
 
-        There are so many joinings for one evaluation of the network.
+        The network is evaluated once for each `joinings` joinings.
         """
         while bool((fragments.left > ENOUGH).any()):
             fragments = self.round_of_few(costs, fragments, joinings).trimmed()
@@ -184,7 +184,7 @@ class OneActor(Actor):
         candidates: Candidates,
         joinings: int,
     ) -> Fragments:
-        """Return the fragments after joining them, so many times, by the best of these edges."""
+        """Return the fragments after joining them, `joinings` times, by the best of these edges."""
         logits = self.edge_logits(costs, fragments, candidates)
         mates = mutual_best(fragments, candidates.positions, logits)
         after = joined_at_cost(costs, fragments, mates)
@@ -195,7 +195,7 @@ class OneActor(Actor):
         return after
 
     def judgement(self, joinings: int) -> Judgement:
-        """Return how this actor judges edges, for so many joinings each time."""
+        """Return how this actor judges edges, once for each `joinings` joinings."""
         return Judgement(self.edge_logits, self.candidates, joinings)
 
     def _weighted_one_by_one(self, instances: Tensor, weights: Float[Tensor, "k 2"]) -> Costs:

@@ -37,6 +37,6 @@ def changed(rows: Rows, change: Callable[[Tensor], Tensor]) -> Rows:
     return _made(type(rows), (member if member is None else change(member) for member in rows))
 
 
-# A NamedTuple takes its members one by one, of which the bound on its type knows nothing.
+# A NamedTuple takes its members one by one, which the bound on its type does not express.
 def _made(kind: Callable[..., Rows], members: Iterable[Any]) -> Rows:
     return kind(*members)

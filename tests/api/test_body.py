@@ -20,7 +20,7 @@ from tests.helpers.serving import LIMITS, app_of, problem, serving
 JSON = {"Content-Type": "application/json"}
 CITIES = np.random.default_rng(5).random((12, 4)).tolist()
 
-# Some tenths of a second of work for whoever reads it.
+# Reading it takes some tenths of a second.
 WRONG = b'{"matrices":[[[' + 4_000_000 * b"0," + b"0]],[[0]]]}"
 
 

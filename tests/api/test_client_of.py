@@ -1,4 +1,4 @@
-"""For whom places in the queue are counted: the caller, or an address where there are no keys."""
+"""The client that places in the queue are counted for: the caller, or without keys the address."""
 
 import pytest
 from starlette.requests import Request

@@ -48,7 +48,7 @@ def test_two_tables_are_an_objective_each(address: str) -> None:
 
 
 def spreadsheet(sheet: bytes, times: int = 1) -> bytes:
-    """A spreadsheet whose one sheet has these bytes, so many times."""
+    """A spreadsheet whose one sheet repeats these bytes."""
     packed = io.BytesIO()
     book = openpyxl.Workbook()
     book.save(packed)

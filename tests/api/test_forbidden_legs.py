@@ -26,7 +26,7 @@ def client() -> Iterator[httpx.Client]:
 
 
 def costs_with_no_way(seed: int, share: float = 0.3) -> np.ndarray:
-    """Costs of which some are infinite, each in one objective, and a diagonal of anything."""
+    """Costs, some of them infinite in one objective, and an arbitrary diagonal."""
     rng = np.random.default_rng(seed)
     costs = rng.integers(1, 20, (2, N, N)).astype(float)
     costs[rng.random((2, N, N)) < share / 2] = np.inf
@@ -98,7 +98,7 @@ def test_what_is_plainly_impossible_is_refused_at_once_and_named(client: httpx.C
 
 
 def test_a_job_that_finds_no_tour_fails_with_the_reason(client: httpx.Client) -> None:
-    spider = np.full((2, 7, 7), np.inf)  # three legs of two cities, of which a route has two
+    spider = np.full((2, 7, 7), np.inf)  # three legs of two cities; a route can have two of them
     for origin, destination in ((0, 1), (1, 2), (0, 3), (3, 4), (0, 5), (5, 6)):
         spider[:, origin, destination] = spider[:, destination, origin] = 1.0
     request = {"matrices": as_json(spider), "closed": False, "start": None, "time_limit": 0.2}

@@ -66,7 +66,7 @@ def measured(actor: OnnxActor, corner: float, instance: Instance) -> dict[str, f
 
 
 def unmet(stored: dict[str, Any]) -> list[str]:
-    """Sentences on the kinds of which repaired tours are further behind than they may be."""
+    """Sentences on the kinds whose repaired tours are further behind than they may be."""
     means = {kind: _behind(stored[kind], "repaired").mean() for kind in _MOST if kind in stored}
     return [
         f"{kind}: {behind:.2f} % behind the search, and {_MOST[kind]:g} is the most"

@@ -91,7 +91,7 @@ def _within(seconds: float, actor: OnnxActor, instance: Instance, demand: PlanOp
 
 
 def _improved(seconds: float, actor: OnnxActor, instance: Instance, demand: PlanOptions) -> Front:
-    """Return the front after so many seconds of search, which come after the network."""
+    """Return the front after some seconds of search, which follow the network."""
     first = plan(actor, instance, demand).tours
     return _searched(seconds, actor, instance, replace(demand, initial_tours=first))
 

@@ -175,7 +175,7 @@ def _bare(processes: int, threads: int, seconds: float) -> dict[str, float]:
 
 
 def _loop(threads: int, seconds: float) -> tuple[int, float]:
-    """How often a session with so many threads was run, and its seconds of the processor."""
+    """How often a session with a number of threads was run, and its processor seconds."""
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = threads
     session = onnxruntime.InferenceSession(ACTORS / f"{NAME}.onnx", options)

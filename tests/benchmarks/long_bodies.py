@@ -24,7 +24,7 @@ class Long(NamedTuple):
 
 
 def kinds() -> Mapping[str, Long]:
-    """What can be planned, what cannot, what is no JSON, and what is compressed."""
+    """Bodies that can be planned, that cannot, that are not JSON, and that are compressed."""
     n = 510
     rng = np.random.default_rng(0)
     costs = rng.random((2, n, n)).tolist()

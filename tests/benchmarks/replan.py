@@ -120,7 +120,7 @@ def measured(client: httpx.Client, n: int, shape: str, share: int, seed: int) ->
 
 
 def removed_and_added(n: int, share: int, seed: int) -> tuple[int, int]:
-    """How many stops are removed and added where so many per cent of n stops change."""
+    """How many stops are removed and added if a percentage of n stops changes."""
     pairs = round(n * share / 200)
     if pairs == 0:
         return (1, 0) if seed % 2 == 0 else (0, 1)

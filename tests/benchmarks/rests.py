@@ -32,7 +32,7 @@ class Stops:
     """The stops that a benchmark draws: those of a front, and others that may be added.
 
     Exactly one of coordinates, shape (m, 4), and matrices, shape (2, m, m), is given, of all stops,
-    of which the first n are the front's.
+    the first n are the front's.
     """
 
     n: int
@@ -102,7 +102,7 @@ def _road_stops(n: int, changed: int, generator: Generator) -> Stops:
 def with_stops_changed(
     stops: Stops, front: dict[str, Any], removals: int, additions: int, generator: Generator
 ) -> Rest:
-    """Return the rest where so many stops are removed, and so many added."""
+    """Return the rest after a number of stops were removed and added."""
     driven, done = _driven(front)
     removed = generator.choice(driven[done + 1 :], removals, replace=False).tolist()
     added = list(range(stops.n, stops.n + additions))
@@ -119,7 +119,7 @@ def with_stops_changed(
 def with_costs_changed(
     stops: Stops, front: dict[str, Any], changed: int, generator: Generator
 ) -> Rest:
-    """Return the rest where so many steps of the driven tour cost more, in both directions."""
+    """Return the rest after some steps of the driven tour became dearer, in both directions."""
     assert stops.matrices is not None
     driven, done = _driven(front)
     at = generator.choice(np.arange(done, len(driven) - 1), changed, replace=False)

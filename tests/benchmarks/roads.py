@@ -24,9 +24,9 @@ from tests.helpers.processes import serve_process
 from tests.helpers.valhalla import valhalla_service
 
 ROUNDS = 5
-SECONDS = {60: 0.5, 200: 3.0}  # for the matrices of so many stops
+SECONDS = {60: 0.5, 200: 3.0}  # for the matrices, by number of stops
 TIME_LIMIT = 1.0
-PLACES = 320  # of which some are far from a road, or have no way to others
+PLACES = 320  # some are far from a road, or have no way to others
 _CORNER, _SIDES = (24.935, 60.164), (0.02, 0.01)  # degrees: between the railway and the shore
 _OBJECTIVES = [{"name": "time", "from": "road_time"}, {"name": "way", "from": "road_distance"}]
 
@@ -43,7 +43,7 @@ def main(arguments: list[str]) -> str | None:
 
 
 def asked(rounds: int) -> dict[str, Any]:
-    """Return the seconds of so many requests of each size, each of stops of its own."""
+    """Return the seconds of some requests of each size, each with stops of its own."""
     with tempfile.TemporaryDirectory() as folder, valhalla_service(Path(folder)) as engine:
         settings = {"PARETOUR_WORKERS": "2", "PARETOUR_ROUTER_URL": engine.url}
         with (

@@ -1,6 +1,6 @@
 """`python -m tests.benchmarks soak`: ten minutes of everything at once, and what is left of it.
 
-Visitors plan 10 to 500 cities, send what is no request, hang up in the middle, and order fronts as
+Visitors plan 10 to 500 cities, send invalid requests, hang up in the middle, and order fronts as
 jobs, which they watch, wait for or cancel. Counts answers, faults of the service and jobs that
 never ended, and watches the memory of the server and its workers. Stores `results/soak.json`, and
 says what does not hold.

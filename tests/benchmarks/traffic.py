@@ -90,12 +90,12 @@ def as_fast_as_answered(
 
 
 def evenly(rate: float, seconds: float) -> Array:
-    """When so many requests a second are due, one as long after another as the next."""
+    """The times of a number of requests a second, evenly spaced."""
     return np.arange(int(rate * seconds)) / rate
 
 
 def at_random(rate: float, seconds: float, seed: int = 0) -> Array:
-    """When so many requests a second are due, of people who know nothing of each other.
+    """The times of a number of requests a second, from independent people.
 
     For two servers that take always the same time and are busy for 80 % of it, the 99th percentile
     is then 3.9 times the median (simulated).

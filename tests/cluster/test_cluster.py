@@ -221,7 +221,7 @@ def test_when_redis_is_restarted_all_goes_on(machines: Machines, client: httpx.C
         until_found(client, path)
         machines.redis.end()
         unavailable(client, path)
-        # Which is no fault of the worker's.
+        # That is not the worker's fault.
         assert takes_work(machines.redis.url)
         machines.redis.begin()
         # The first answers of a Redis that comes back may take too long, and not only the first.

@@ -22,7 +22,7 @@ OTHERS = 0.5  # seconds that other processes may hold a test up
 
 
 class Counted:
-    """A constructor that counts its calls, each of which takes so many seconds."""
+    """A constructor that counts its calls, and takes some seconds for each."""
 
     def __init__(self, seconds: float = 0.0) -> None:
         self.estimate = CallEstimate("coordinates")

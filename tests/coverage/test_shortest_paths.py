@@ -47,7 +47,7 @@ def steps(free: np.ndarray, layer: np.ndarray) -> list[tuple[int, int, float, fl
 
 
 def by_scipy(free: np.ndarray, layer: np.ndarray, weight: float) -> np.ndarray:
-    """Between all cells, the least sum of length and so many times the layer's cost."""
+    """Between all cells, the least sum of the length and a multiple of the layer's cost."""
     n = free.size
     found = steps(free, layer)
     if not found:

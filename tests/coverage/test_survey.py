@@ -58,7 +58,7 @@ def test_a_cost_layer_is_integrated_along_the_cheapest_of_the_shortest_paths() -
     lengths, costs = found.instance.matrices
     # Straight through the costly cell, as no other path is as short: twice 2 m at a mean of 3.5.
     assert (lengths[0, 1], costs[0, 1]) == (4, 14)
-    # A diagonal step first keeps clear of it, and is no longer than a diagonal step at last.
+    # A diagonal step first keeps clear of it, and is as short as a diagonal step at the end.
     assert lengths[0, 2] == pytest.approx(2 * (1 + ROOT2))
     assert costs[0, 2] == 0
     np.testing.assert_array_equal(costs, costs.T)

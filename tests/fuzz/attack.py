@@ -26,7 +26,7 @@ def parse_many(
 ) -> Counter[str]:
     """Parse bodies of a generator here, and return how often each outcome came, by its code.
 
-    An exception that is no refusal would be a 500, and is not caught.
+    An exception that is not a refusal would be a 500, and is not caught.
     """
     outcomes: Counter[str] = Counter()
     for number in range(count):

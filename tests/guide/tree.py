@@ -1,7 +1,7 @@
 """The tree of the code in `how-the-code-is-laid-out.md`: a line for each module and folder.
 
 The line of a module is the first sentence of its docstring; so is that of a package. Folders that
-are no packages, and those of the tests, have their lines in `FOLDERS`.
+are not packages, and those of the tests, have their lines in `FOLDERS`.
 """
 
 import ast

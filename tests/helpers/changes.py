@@ -199,7 +199,7 @@ def _costs(
 ) -> tuple[dict[str, Any], Array, Array]:
     """The members of the front's request that say its costs, those between all stops, planes.
 
-    The members have the locations of all stops, of which the request takes the first n.
+    The members have the locations of all stops; the request takes the first n.
     """
     locations = rng.uniform((24.9, 60.1), (25.1, 60.2), (size, 2))
     planes = rng.integers(0, 9, (size, 4)).astype(float)

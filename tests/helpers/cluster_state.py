@@ -34,7 +34,7 @@ class ClusterState:
         return None if fields is None else int(fields[b"worker"].split(b":")[1])
 
     def searching(self) -> dict[str, int]:
-        """Return the process that plans each front of which something has been found."""
+        """Return the process that plans each front that has a tour already."""
         found = [id_ for id_, fields in self._running().items() if b"progress" in fields]
         return {id_: pid for id_ in found if (pid := self.planning(id_))}
 

@@ -105,7 +105,7 @@ def is_ours(container: dict[str, Any]) -> bool:
 
 
 def our_pods() -> dict[str, dict[str, Any]]:
-    """Return the pods of which all containers run our image."""
+    """Return the pods whose containers all run our image."""
     return {
         name: pod
         for name, pod in all_pods().items()

@@ -35,7 +35,7 @@ SECONDS = 600.0
 class Served:
     """A client of a service, and the process that plans the front with an id, if one does.
 
-    `searching` tells them apart of which something has been found, and which process plans each.
+    `searching` tells which of them have a tour already, and which process plans each.
     """
 
     client: httpx.Client
@@ -80,7 +80,7 @@ class Embedded:
 
 @dataclass
 class Clustered:
-    """The engine of many machines, of which each is a process here, at a Redis database each."""
+    """The engine of many machines, each a process here, at a Redis database of its own."""
 
     server: Redis
     celery_workers: ExitStack
@@ -139,7 +139,7 @@ def _searching(workers: WorkerPool) -> Mapping[Hashable, int]:
 def celery_worker(
     url: str, make_runner: MakeRunner, seconds: float, workers: int
 ) -> Iterator[BaseProcess]:
-    """A worker of the cluster, with so many processes."""
+    """A worker of the cluster with a number of processes."""
     context = multiprocessing.get_context("forkserver")
     worker = context.Process(target=_work, args=(url, make_runner, seconds, workers))
     worker.start()

@@ -213,7 +213,7 @@ def without_ways(places: Array, forgotten: NDArray[np.bool_]) -> Misbehaviour:
 
 
 def sleeping(seconds: float) -> Misbehaviour:
-    """Return a misbehaviour that answers after so many seconds."""
+    """Return a misbehaviour that delays each answer."""
 
     def misbehave(*_: object) -> None:
         time.sleep(seconds)

@@ -42,7 +42,7 @@ def ended(client: httpx.Client, path: str) -> dict[str, Any]:
 
 
 def until_found(client: httpx.Client, path: str) -> dict[str, Any]:
-    """A front that is being planned, of which something has been found."""
+    """A front that is being planned and has a tour already."""
     deadline = time.monotonic() + SECONDS
     while not (found := client.get(path).json())["front"]:
         _wait(deadline, path, found)

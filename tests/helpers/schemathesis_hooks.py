@@ -15,7 +15,7 @@ _CHOICES = ("angle", "balance", "first_at_most", "second_at_most", "knee")
 
 @schemathesis.hook
 def filter_case(context: Any, case: Any) -> bool:  # noqa: ARG001
-    """Leave out forms: no schema says of which bytes a file of matrices or a map is."""
+    """Leave out forms: no schema describes the bytes of a file of matrices or of a map."""
     return case.media_type != "multipart/form-data"
 
 

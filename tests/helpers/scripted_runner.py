@@ -95,7 +95,7 @@ def document(terminated: str | None, gained: float | None = None) -> FrontDocume
 
 
 def source(body: bytes = b"") -> TaskSource:
-    """Return a task's source of which the body says what the runner does."""
+    """Return a task's source; its body says what the runner does."""
     return TaskSource("front", body)
 
 

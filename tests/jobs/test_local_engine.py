@@ -97,7 +97,7 @@ def new_record(id_: str = "0" * 32) -> Record:
 
 
 async def followed(steps: int) -> list[str]:
-    """The statuses that are told to who begins to follow so many steps of the loop into the end."""
+    """The statuses that a follower sees who begins some steps of the loop after the end began."""
     workers = NoProcesses()
     jobs = LocalEngine(workers, Immediate())
     record = new_record()

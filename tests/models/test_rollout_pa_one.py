@@ -9,7 +9,7 @@ from tests.helpers.small_actors import CPU, small_actor
 
 
 def test_likelier_tours_are_drawn_more_often() -> None:
-    """The gradient of the likelihood leads to tours of which more are drawn."""
+    """Following the gradient of the likelihood makes a tour be drawn more often."""
     actor = small_actor("pa-one")
     instances = uniform_cities(1, 6, Generator().manual_seed(4), CPU)
     preference = torch.tensor([[0.6, 0.8]])

@@ -52,7 +52,7 @@ def single_cities(costs: Costs) -> Fragments:
 
 
 def cheapest_candidates(costs: Costs, fragments: Fragments, count: int = CANDIDATES) -> Candidates:
-    """Return so many candidates of each end: the open ends to which an edge costs least."""
+    """Return `count` candidates of each end: the open ends with the cheapest edges to it."""
     ends, partners, open_ = fragments[:3]
     r, n = costs.means.shape[0], costs.means.shape[1]
     zeros = torch.zeros_like(costs.means[:, 0])

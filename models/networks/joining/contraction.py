@@ -1,7 +1,7 @@
-"""Contraction: the problem that is left when few ends are open, and what its solution joins.
+"""Contraction: the problem that is left when few ends are open, and the joining of its solution.
 
-Cities inside paths are no part of it. Its ends are numbered anew, and all pairs of them have a
-cost, so that looks at it take no longer than the open ends are many.
+It leaves out the cities inside paths. Its ends are numbered anew, and all pairs of them have a
+cost, so that the time of a round depends on the number of open ends only.
 """
 
 import torch

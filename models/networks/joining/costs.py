@@ -17,11 +17,11 @@ CANDIDATES = 8  # of an end of a path, at most
 
 
 class Costs(NamedTuple):
-    """The mean cost of each step and of the step back, and how much of it the way there is above.
+    """The mean cost of each step and the step back, and the lean: the cost there minus that mean.
 
-    There is no lean where both cost the same. A table of all steps has as many columns more as an
-    end may have candidates, of cities that are never reached; those of single steps may have any
-    shape.
+    There is no lean where both cost the same. A table of all steps ends with extra columns, of
+    cities that are never reached: as many as an end may have candidates. Arrays of single steps may
+    have any shape.
     """
 
     means: Float[Tensor, "r n m"]

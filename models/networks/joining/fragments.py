@@ -1,9 +1,9 @@
-"""Fragments: the paths of which PA-One makes a tour, and the operations that join them.
+"""Fragments: the paths that PA-One joins to a tour, and the operations that join them.
 
 A row is one tour. Its *ends* are the cities that still lack a neighbour: both ends of each path,
 and every city that is still alone, which is an end once and lacks two. Ends that have got all
 their neighbours are closed and, from time to time, cleared away. Paths have no direction; where
-costs differ by direction, each end knows by how much its path would rather be left there. All is
+costs differ by direction, each end has the cost that its path saves if it is left there. All is
 written so that the numbers of rows, ends and cities stay free when it is exported.
 """
 
@@ -24,9 +24,9 @@ class Fragments(NamedTuple):
     """The fragments of each row, given by their ends; here and below e counts ends, by position.
 
     An end's partner is the position of the other end of its path; a city alone is its own. The
-    links are the first neighbour of each city, then the second of each, then a place of no
-    meaning; minus one where there is none yet. The lean of an end is half of what its path costs
-    less on the way to this end than on the way from it; none where costs have no direction.
+    links are the first neighbour of each city, then the second of each, then a place without
+    meaning; minus one where a neighbour is missing. The lean of an end is half the cost that its
+    path saves if it is travelled towards this end; None where costs have no direction.
     """
 
     ends: Int[Tensor, "r e"]
@@ -105,8 +105,8 @@ def mutual_best(
     """Return the end to which to join each end, by position, or minus one.
 
     Every open end names its candidate with the highest logit, and two fragments are joined by an
-    edge whose logit is no lower than that of any other edge that either of them names or is named
-    for; of edges whose logits are the same to a millionth, by the one with the highest number. So
+    edge if no other edge that either of them names, or is named for, has a higher logit; of edges
+    whose logits are the same to a millionth, by the one with the highest number. So
     each fragment is joined to one other at most, no cycle closes, and in every row some are joined.
     The logit of an edge is the same for both its ends, and -NEVER where it is impossible.
     """

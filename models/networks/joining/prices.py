@@ -25,7 +25,7 @@ _LEAST = 1e-30  # entry of a kernel: a city so far from all others gets no highe
 
 
 def knots(like: Tensor, count: int = KNOTS) -> Float[Tensor, "g 2"]:
-    """Return so many weights, spread evenly, by ascending first weight."""
+    """Return `count` weights, spread evenly, by ascending first weight."""
     first = torch.arange(count, device=like.device).to(like) / (count - 1)
     return torch.stack((first, 1 - first), dim=1)
 
@@ -33,7 +33,7 @@ def knots(like: Tensor, count: int = KNOTS) -> Float[Tensor, "g 2"]:
 def places_among_knots(
     weights: Float[Tensor, "r 2"], count: int | Tensor = KNOTS
 ) -> Float[Tensor, " r"]:
-    """Return where the weights of each row lie, from 0 at the first of so many knots on."""
+    """Return the place of each row's weights among the knots: 0 is the first knot."""
     return weights[:, 0] * (count - 1)
 
 

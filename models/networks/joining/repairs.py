@@ -128,7 +128,7 @@ def _costs_of_joining(
 
 
 def laid_out(cuts: Cuts, fragments: Fragments) -> Int[Tensor, "r n"]:
-    """Return the tours of which each row has one fragment left."""
+    """Return the tours of rows that have one fragment left each."""
     tours, places = cuts.tours, cuts.places
     alone, first, last = _places(cuts, fragments).tensor_split(3, dim=1)
     turns = torch.where(last < first, -1, 1)

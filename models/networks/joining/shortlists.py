@@ -32,10 +32,10 @@ _AT_A_TIME = 1000  # cities
 
 
 class Sizes(NamedTuple):
-    """How many knots there are, how long each list is, and for how long lists are used.
+    """The number of knots, the length of each list, and when lists are used.
 
-    They are while more than so many ends are open in some row, and more than one in so many cities.
-    Of no more cities only the first look is at lists, which may then be short.
+    Lists are used while some row has more than `ends` open ends, and more than one for every
+    `share` cities. With fewer cities only the first round uses lists, which may then be short.
     """
 
     knots: int
@@ -52,8 +52,8 @@ class Sizes(NamedTuple):
 class Shortlists(NamedTuple):
     """The cities listed for each city in each interval, and the costs of the steps to them.
 
-    Costs are those at the knot where an interval begins, and what is added on the way to the next.
-    A place on a list that no city takes costs NEVER. There are no leans where steps back cost the
+    Costs are those at the knot where an interval begins, and their change up to the next knot.
+    An unused place on a list costs NEVER. There are no leans where steps back cost the
     same.
     """
 
@@ -88,9 +88,9 @@ def shortlists_of(
     length: int | Tensor,
     known: Prices | None = None,
 ) -> Shortlists:
-    """Return lists of some cities, for the intervals between so many knots.
+    """Return lists of some cities, for the intervals between the knots.
 
-    Known are the prices at the knots, if there are any. The length is a tensor while the graph is
+    `known` are the prices at the knots, if there are any. The length is a tensor while the graph is
     traced for its export.
     """
     in_each = _beginning_at(some, costs, length)
@@ -163,7 +163,7 @@ def lists_of_rows(lists: Shortlists, weights: Float[Tensor, "r 2"]) -> RowLists:
 
 
 def first_of(lists: RowLists, count: int = CANDIDATES) -> Candidates:
-    """Return so many candidates of each city, while all are alone."""
+    """Return `count` candidates of each city, while all cities are alone."""
     cities, means, leans = lists
     return _cheapest(Costs(means, leans).cheaper_way, cities, leans, count)
 
@@ -174,7 +174,7 @@ def listed_candidates(
     rows_in_use: Bool[Tensor, " r"],
     count: int = CANDIDATES,
 ) -> Candidates:
-    """Return so many candidates of each end: the open ends on its list to which edges cost least.
+    """Return `count` candidates of each end: the open ends on its list with the cheapest edges.
 
     In a row that is not in use no edge is possible.
     """

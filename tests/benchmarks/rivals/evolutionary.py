@@ -32,7 +32,7 @@ APART = 1.05  # a snapshot is taken when this many times as long has passed as a
 
 
 def nsga2(instance: Instance, population: int, evaluations: int, seed: int = 0) -> Snapshots:
-    """The front after ever more processor seconds, until so many tours were evaluated."""
+    """The fronts after more and more processor seconds, until enough tours were evaluated."""
     algorithm = NSGA2(
         pop_size=population,
         sampling=PermutationRandomSampling(),

@@ -10,7 +10,7 @@ FINEST = 2**16 - 1  # the largest cost that fast-tsp takes
 
 
 def solve(cost: Array, duration: float) -> NDArray[np.int64]:
-    """A tour under symmetric costs of shape (n, n), searched for so many seconds on one thread.
+    """A tour under symmetric costs of shape (n, n), searched for some seconds on one thread.
 
     Costs become whole numbers as fine as fast-tsp takes them, 1/65535 of the largest. Up to 20
     cities are solved exactly, whatever the seconds.

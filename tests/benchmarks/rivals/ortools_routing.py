@@ -10,7 +10,7 @@ from ortools.util import optional_boolean_pb2
 Array = NDArray[np.float64]
 
 FINENESS = 1_000_000  # the largest cost becomes this many whole units
-HINTED_WEIGHTS = 5  # for each of which a routing model is made, in a tenth of a second or two
+HINTED_WEIGHTS = 5  # making a routing model for each takes a tenth of a second or two
 _LEAST = 0.002  # seconds of a search
 
 
@@ -27,7 +27,7 @@ def solve(cost: Array, solution_limit: int | None) -> NDArray[np.int64]:
 
 
 def guided(cost: Array, seconds: float) -> NDArray[np.int64]:
-    """A tour under costs of shape (n, n), by guided local search for so many seconds.
+    """A tour under costs of shape (n, n), by guided local search for some seconds.
 
     The settings are the best of a short trial on 60 stops by road: five first solutions, with and
     without operators that are off by default. The two for single tours gain most.
