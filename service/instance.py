@@ -50,9 +50,9 @@ class Instance:
 
     Raises:
         InvalidInstance: A shape is wrong, there is no city, a coordinate is not finite, a cost is
-            no number or negative, costs are so large that the length of a tour could overflow, a
-            matrix has costs so far apart that no double holds both in one unit, an end is no city
-            or that of closed tours, or a route of several cities starts where it ends.
+            not a number or negative, costs are so large that the length of a tour could overflow,
+            a matrix has costs too far apart for doubles in one unit, an end is not a city or is
+            given for closed tours, or a route of several cities starts where it ends.
     """
 
     coordinates: Array | None = None

@@ -77,9 +77,9 @@ def _locked(folder: str) -> Iterator[None]:
 
 
 def _can_be_cached() -> bool:
-    """Return whether numba finds a place for its cache: beside this file, or the user's.
+    """Return whether numba finds a folder for its cache: beside this file, or the user's.
 
-    In a read-only container there is none, and each start compiles anew.
+    A read-only container has none, and each start compiles anew.
     """
     try:
         numba.njit(cache=True)(lambda: None)

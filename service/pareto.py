@@ -1,8 +1,8 @@
 """Dominance, hypervolume, best subsets, balance and knee of points of two minimised objectives.
 
-A point dominates another if it is no worse in both objectives and better in one. The hypervolume
-of points is the share of the box between the origin and a reference point that they dominate: a
-number from 0 to 1, without a unit.
+A point dominates another if it is at least as good in both objectives and better in one. The
+hypervolume of points is the share of the box between the origin and a reference point that they
+dominate: a number from 0 to 1, without a unit.
 """
 
 from collections.abc import Callable
@@ -68,8 +68,8 @@ def best_subset(
 ) -> Indices:
     """Return the ascending indices of the `size` points with the largest joint hypervolume.
 
-    Exact (Bringmann, Friedrich and Klitzke, 2014). If there are no more points than that, all are
-    returned. If fewer points than that contribute to the hypervolume, the rest are nondominated
+    Exact (Bringmann, Friedrich and Klitzke, 2014). If there are at most `size` points, all are
+    returned. If fewer than `size` contribute to the hypervolume, the rest are nondominated
     points, and after these others, evenly spread along the first length. O(m log m + m size).
 
     Args:
@@ -159,10 +159,10 @@ def _shares(points: Array, reference_point: Array) -> Array:
 
 
 def _best_of_front(shares: Array, size: int, stop: Callable[[], bool]) -> Indices:
-    """Return the indices of the best `size` of more than so many points of a front.
+    """Return the indices of the best `size` points of a front that has more.
 
     The points are scaled so that the reference point is (1, 1), and all lie below it. With x
-    ascending and y descending, the best j points of which i is the last have hypervolume
+    ascending and y descending, the best j points that end with i have hypervolume
     h(j, i) = max over l < i of h(j - 1, l) + (1 - x[i]) (y[l] - y[i]): for each l a line in
     1 - x[i]. Slopes and arguments both descend, so one pass along the upper envelope of the lines
     serves all i (Bringmann, Friedrich and Klitzke, 2014).

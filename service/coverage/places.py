@@ -146,7 +146,7 @@ def _ends(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
 
 
 def _ends_of_robots(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
-    """Yield the starts and ends of robots that are no places of the task."""
+    """Yield the starts and ends of robots that are not places of the task."""
     for part, robot in parts_of(coverage.robots):
         for name, place in (("start", robot.start), ("end", robot.end)):
             if place is not None and place >= places.to_visit:

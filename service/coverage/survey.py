@@ -194,7 +194,7 @@ def _check(stop: Callable[[], bool]) -> None:
 
 
 def _paths_too_long(most: int, cells: Sequence[int]) -> Refusal:
-    """Return the refusal of paths of so many cells a tour or plan, with how many would fit."""
+    """Return the refusal of paths, given the cells of each tour or plan; advise how many fit."""
     fitting = most // max(cells)
     advice = f"ask for a size of {fitting}" if fitting else "ask without paths"
     actual = sum(cells)

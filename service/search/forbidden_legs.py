@@ -1,7 +1,7 @@
 """Check conditions that every tour without a forbidden leg needs, and name what breaks them.
 
-That none is broken is no proof of a tour. An open route is a closed tour through one city more,
-which comes after the last city and before the first.
+If none is broken, there may still be no tour. An open route counts as a closed tour through one
+more city, which comes after the last city and before the first.
 """
 
 from collections.abc import Iterator
@@ -174,8 +174,8 @@ def _shared_neighbours(cycle: Mask, ends: RouteEnds) -> Iterator[Obstacle]:
 def _too_few_neighbours(legs: Mask) -> tuple[list[int], list[int]] | None:
     """Return cities (rows) that together have legs to fewer cities (columns) than they are.
 
-    Hall's theorem, by a matching of the rows with few legs, as only these can be such. None where
-    there are none, or too many rows to look among.
+    Hall's theorem, by a matching of the rows with few legs, as only these can be such. None if
+    there are no such cities, or too many rows to search.
     """
     counts = legs.sum(axis=1)
     order = np.argsort(counts, kind="stable")

@@ -82,10 +82,10 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
 ) -> SearchResult:
     """Return the front that a search finds; it dominates or equals each of the given tours.
 
-    No tour has a forbidden leg; where none without one was found, the front is empty.
-    Up to eleven cities, ten of an open route, `converged` says that the front is exact, by
-    enumeration. Beyond, it says that for 1,000 iterations per city no new tour was found: that does
-    not prove that there is none.
+    No tour has a forbidden leg; if every tour found has one, the front is empty.
+    Up to eleven cities, ten of an open route, `converged` means that the front is exact, by
+    enumeration. Beyond that, it means that 1,000 iterations per city found no new tour, which does
+    not prove that none exists.
 
     Args:
         instance: The instance.
@@ -93,13 +93,13 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
         deadline: Time to stop, by time.monotonic(); None sets no limit.
         reserve: Called with the number of points found so far: the seconds before the deadline at
             which to stop, because they are needed for what follows the search.
-        iterations: Number of local optima to visit, of which one by three-opt counts as several;
-            None sets no limit. Without a deadline, the same seed and the same iterations give the
+        iterations: Number of local optima to visit; one by three-opt counts as several. None sets
+            no limit. Without a deadline, the same seed and the same iterations give the
             same front.
         seed: Of all random choices.
         stop: Called every millisecond or two; True ends the search at once.
         report: Called about ten times a second with the progress, and with a function that copies
-            the best so many tours found so far, which may be called until the report returns.
+            the n best tours found so far, which is valid until the report returns.
         reference_point: Shape (2,), of the hypervolume, in the instance's units; by default
             the instance's. The search works where this hypervolume grows fastest.
         capacity: The most tours that the search keeps, at least 16; the result has more only where

@@ -127,7 +127,7 @@ def insert_smallest(chosen: Cities, chosen_keys: Array, index: int, key: float) 
 def find_nearest(trees: KdTrees, costs: Costs, k: int, city: int, found: Nearest) -> None:
     """Find the other cities nearest to a city under weight k; of equally near ones any."""
     w0, w1 = trees.weights[k, 0], trees.weights[k, 1]
-    inner = len(trees.begins) - 2  # nodes that are no leaves
+    inner = len(trees.begins) - 2  # nodes that are not leaves
     found.costs[:] = np.inf
     found.nodes[0], found.bounds[0], waiting = 0, 0.0, 1
     while waiting > 0:

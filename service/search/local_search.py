@@ -23,11 +23,11 @@ Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
 
 LONGEST_BLOCK = 50  # cities that a perturbation moves at once
-KICKS_PER_END = 8  # kicks of an open route, of which one is at an end of it
+KICKS_PER_END = 8  # one kick in eight of an open route is at an end of it
 UNLIMITED = 1 << 60
 LEAST_GAIN = 2.0**-46  # as a share of the weighted length, above what rounding adds to a gain
-LEAST_OF_LARGEST = 2.0**-48  # the same of the largest cost, which a tour may have on the way
-SPIKE = 16.0  # times a length: where it has been so long on the way, it is summed afresh
+LEAST_OF_LARGEST = 2.0**-48  # the same of the largest cost, which a tour may have in between
+SPIKE = 16.0  # times a length: if it has been that long in between, it is summed afresh
 
 
 @inlined

@@ -109,7 +109,7 @@ def best_insertion(
         working: The tour.
         scalarization: The weighted sum, and the candidates beside which to insert.
         segment: (city, last, size, direction): `size` cities from city to last, read in the
-            direction, of which city comes to lie beside one of its candidates.
+            direction. The first, city, is put beside one of its candidates.
         freed: The gain of taking the segment out.
         best: The best move found before.
     """
@@ -143,10 +143,10 @@ def best_insertion(
 def block_swap(
     working: QueuedTour, scalarization: Scalarization, city: int, least: float
 ) -> tuple[Move, Move]:
-    """Return two swaps of two blocks of which the first begins right after the city.
+    """Return two swaps of two blocks; the first block begins right after the city.
 
-    The first is the best. The second promises most: its gain is that before the step is added
-    which closes the tour, from the last city of the second block to the first city of the first.
+    The first swap is the best. The second promises most: its gain leaves out the step that closes
+    the tour, from the last city of the second block to the first city of the first.
     If none gains more than `least`, a move has a = 0.
     """
     n = len(working.tour)

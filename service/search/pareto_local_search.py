@@ -27,11 +27,11 @@ LEAST_SHARE = 1e-3  # of a weight: the other length still counts at the ends, to
 DECADE = 10.0  # between two of the weights that are added where costs are of very different sizes
 LEXICOGRAPHIC = 1e3  # times less than the least that decides: at the ends, only to break ties
 WIDEST_LOGIT = 7.0  # of a weight, where weights are evenly spaced by their logit
-LARGE = 500  # cities from which on they are; at 400 that is the worse in the first second
+LARGE = 500  # cities from which on weights are spaced so; at 400 that is worse in the first second
 MENDING = 100  # cities from which on earlier tours are mended by three-opt: too good for two-opt
 MANY = 1_200  # cities from which on a round is too long for a rest that is mostly as before
-VAST = 7_000  # cities from which on a round of descents alone comes first; at 5,000 it is no better
-TOURNAMENT_SIZE = 8  # points drawn, of which one is chosen
+VAST = 7_000  # cities from which on a round of descents alone is first; at 5,000 it gains nothing
+TOURNAMENT_SIZE = 8  # points drawn, to choose one
 STEPS = 10  # of the iterated local search at each point
 SLOPE_REACH = 5  # points to either side over which the slope of the front is taken
 
@@ -65,7 +65,7 @@ def make_weighted_candidates(instance: Instance, n: int, mending: bool) -> Weigh
 def _extremes(instance: Instance) -> tuple[Array, Array]:
     """Return shares to add before the least first weight and after the greatest, shape (k, 2) each.
 
-    There are none for an instance without outliers. With them, trade-offs lie further apart: an
+    Without outliers there are none. With them, trade-offs lie further apart: an
     outlier of one objective has to count as little as a common cost of the other, and where tours
     need only costs far below the scale, these have to count as much.
     """
@@ -84,7 +84,7 @@ def _extremes(instance: Instance) -> tuple[Array, Array]:
 
 
 def bisection_order(count: int) -> list[int]:
-    """Return 0 to count - 1: both ends first, then the middles of ever shorter intervals.
+    """Return 0 to count - 1: both ends first, then the middles of shorter and shorter intervals.
 
     Each weight then has neighbours on either side whose tours are good starts for it.
     """
@@ -173,7 +173,7 @@ def scalarization_at(state: SearchState, k: int) -> Scalarization:
 
 @compiled
 def fill_gaps(state: SearchState, rounds: int) -> None:
-    """Search from so many points of the front, one after another, each chosen anew."""
+    """Search from `rounds` points of the front, one after another, each chosen anew."""
     archive, working = state.archive, state.working
     for _ in range(rounds):
         k = choose_point(archive, state.random)

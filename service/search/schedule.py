@@ -56,7 +56,7 @@ LARGE_CONSTRUCTIONS = 5  # the same, of a large instance
 LARGE_DESCENTS = 25  # of a large instance: weights descended to before others from their neighbours
 BLOCK = 300  # iterations between two checks of the deadline, some milliseconds
 FULL_BLOCK = 1_000  # cities beyond which iterations take longer, and fewer are a block
-EXPLORE_EVERY = 10  # turns, of which one goes to what has lately gained less
+EXPLORE_EVERY = 10  # one turn in ten goes to the method that has lately gained less
 MAX_PROVED = 11  # cities, the invented one among them, up to which convergence is proved
 PATIENCE = 1_000  # iterations per city without a new tour, after which the search has converged
 
@@ -182,7 +182,7 @@ class Search:
         return order[::-1] if number % 2 else order
 
     def _reach_weights(self, descents: int) -> Iterator[int]:
-        """Find a tour under each weight: under so many by descent, then from their neighbours'."""
+        """Find a tour under each weight: under some by descent, then from neighbours' tours."""
         order = self.bisection
         constructions = LARGE_CONSTRUCTIONS if self.large else CONSTRUCTIONS
         for rank, k in enumerate(order[:descents]):
@@ -202,7 +202,7 @@ class Search:
             yield 0
 
     def _iterate(self, k: int, iterations: int) -> Iterator[int]:
-        """Run so many iterations of iterated local search under weight k."""
+        """Run a number of iterations of iterated local search under weight k."""
         scalarization = self.descents.scalarization(k)
         if self.large:
             yield from self.descents.descend_from_neighbours(k, assembling=True)

@@ -103,7 +103,7 @@ def dequeue(working: QueuedTour) -> int:
 
 @inlined
 def drop_queued(working: QueuedTour, size: int) -> None:
-    """Remove the cities that were queued last, until the queue holds so many."""
+    """Remove the cities that were queued last, until `size` are left in the queue."""
     while working.ring[1] > size:
         working.ring[1] -= 1
         place = wrap(working.ring[0] + working.ring[1], len(working.tour))

@@ -9,7 +9,7 @@ where the steps from a share of the stops cost three times as much. The rest is 
 the whole answer, received on loopback, not compressed, from a service in processes of its own: what
 it takes beside its planning is measured first, and taken off `time_limit`. OR-Tools has the same
 limits in a process without HTTP; it sets out from the front's tours, with added stops where they
-cost least, of which the time is not counted, and improves them under weighted sums.
+cost least (that time is not counted), and improves them under weighted sums.
 
 Hypervolume is that in the box of the front that 5 s from nothing reach, from its least lengths to
 its greatest, as a share of that front's own. `kept` is that of the tour nearest to the driven one's

@@ -31,8 +31,8 @@ _DONE = 10  # the tenth part of the driven tour's stops is done
 class Stops:
     """The stops that a benchmark draws: those of a front, and others that may be added.
 
-    Exactly one of coordinates, shape (m, 4), and matrices, shape (2, m, m), is given, of all stops,
-    the first n are the front's.
+    Exactly one of coordinates, shape (m, 4), and matrices, shape (2, m, m), is given. They are of
+    all stops; the first n are the front's.
     """
 
     n: int

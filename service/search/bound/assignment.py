@@ -1,6 +1,6 @@
 """Assignment lower bounds on the length of a tour, for costs that may differ by direction.
 
-A tour gives every city one successor, so it is no shorter than the least assignment of successors.
+A tour gives every city one successor, so it is at least as long as the cheapest assignment.
 By linear duality any prices v of the cities bound that from below: by the sum over j of v[j], plus
 the sum over i of min over j of c[i, j] - v[j]. So a bound holds before the assignment is complete.
 Cities are assigned along shortest augmenting paths (Jonker and Volgenant, 1987).

@@ -1,7 +1,7 @@
 """Held-Karp lower bounds on the length of a tour, for symmetric costs.
 
-A tour is a 1-tree: a spanning tree of all cities but one, plus two edges at that one. So it is no
-shorter than the least 1-tree, and that stays true under any penalties added to the costs of all
+A tour is a 1-tree: a spanning tree of all cities but one, plus two edges at that one. So it is at
+least as long as the least 1-tree. That stays true under any penalties added to the costs of all
 edges of a city, once twice their sum is deducted (Held and Karp, 1971). The penalties are improved
 by subgradient ascent with the step lengths of Volgenant and Jonker (1982). An open route becomes a
 tour through city 0, which is invented and at no cost (see closing.py), so the tree is one of all

@@ -1,9 +1,9 @@
-"""A tour that is cut at some steps, and what it becomes when the ends are linked anew.
+"""A tour that is cut at some steps, and the circuits that new links between the ends make.
 
 The ends of cut i are numbered 2 i, the city before it, and 2 i + 1, the city behind it. Segment i
 begins behind cut i and goes on to the next cut along the tour. Each end has a mate, to which a step
-is added. Gone along through segments and to mates, that makes one circuit, which is a tour again,
-or several, none of which is.
+is added. Following segments and mates in turn gives one circuit, which is a tour again, or several,
+which are not.
 """
 
 from typing import NamedTuple

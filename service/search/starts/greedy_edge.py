@@ -23,7 +23,7 @@ MOST_COMPARED = 10_000  # ends of other paths; there are fewer unless many citie
 class Paths(NamedTuple):
     """Paths through all cities, some of one city alone."""
 
-    beside: Cities  # (n, 2), the cities before and after each, as many as its degree
+    beside: Cities  # (n, 2), the cities before and after each; its degree says how many
     degree: Cities  # (n,)
     parent: Cities  # (n,), a forest with one tree for each path
 

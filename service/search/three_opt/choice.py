@@ -16,11 +16,11 @@ from service.search.working_tour import QueuedTour, WorkingTour
 
 Cities = NDArray[np.int32]
 
-# Cities from which on iterations are by it; at 200 clustered ones it is worse. Where costs differ
-# by direction it is better at any number.
+# Cities from which on iterations use three-opt; at 200 clustered ones it is worse. Where costs
+# differ by direction it is better at any number.
 THREE_OPT = 250
 EFFORT = 3  # of an iteration by three-opt, which takes three or four times as long as by two-opt
-OFFERED = 2_000  # cities, of which every local optimum is offered; of more, proportionally fewer
+OFFERED = 2_000  # cities up to which every local optimum is offered; beyond, proportionally fewer
 
 
 class LocalSearch(Protocol):
@@ -32,16 +32,16 @@ class LocalSearch(Protocol):
 
     @property
     def effort(self) -> int:
-        """As how many iterations of the schedule one of its own counts."""
+        """The number of the schedule's iterations that one of its own counts as."""
 
     def load(self, tour: Cities, first: float, second: float) -> None:
         """Replace the working tour by another of known lengths, with an empty queue."""
 
     def descend(self, scalarization: Scalarization, threshold: float, budget: int) -> int:
-        """Make moves that gain more, for so many cities of the queue; return what is left."""
+        """Make moves that gain more than a threshold; return the rest of the budget of cities."""
 
     def iterate(self, scalarization: Scalarization, steps: int) -> None:
-        """Perturb and descend so many times, returning to the tour before where it was better."""
+        """Perturb and descend `steps` times, each time returning to the better tour."""
 
 
 def choose_local_searches(state: SearchState, mending: bool) -> tuple[LocalSearch, LocalSearch]:

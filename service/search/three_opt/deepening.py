@@ -1,9 +1,9 @@
-"""Longer exchanges: two in sequence, of which the first alone gains nothing.
+"""Longer exchanges: two in sequence, where the first alone gains nothing.
 
-Where no exchange of up to three steps gains, the one that promises most is made, and from the far
-end of the step that closed it one more is looked for, which removes that step again: five steps in
-all. If both together do not gain either, the first is undone. To go on from there, as Lin and
-Kernighan (1973) do, costs more time than it gains.
+If no exchange of up to three steps gains, the most promising one is made. A second one is searched
+from the far end of the step that closed it, and removes that step again: five steps in all. If both
+together gain nothing, the first is undone. Continuing from there, as Lin and Kernighan (1973) do,
+costs more time than it gains.
 """
 
 from service.jit import compiled, inlined
@@ -13,7 +13,7 @@ from service.search.three_opt.exchanges import ALONE, NONE, Exchange, make_excha
 from service.search.three_opt.finding import find_in_direction, nothing_found
 from service.search.three_opt.undoable_tour import UndoableTour, take_back
 
-MOST_MOVED = 300  # cities, for the sake of a look further: to make and undo it takes that long
+MOST_MOVED = 300  # cities that the first exchange may move: making and undoing it takes that long
 
 
 @compiled
@@ -27,7 +27,7 @@ def deepen(
     """Make an exchange and the best one after it, if both together gain more than a threshold.
 
     Args:
-        working: The tour, of which the log has room for four changes.
+        working: The tour; its log has room for four changes.
         scalarization: The weighted sum, and the candidates.
         promised: What the first exchange gains before it is closed.
         promising: The first exchange.

@@ -1,6 +1,6 @@
-"""Local search by three-opt: descent, and iterated local search that undoes what was no gain.
+"""Local search by three-opt: descent, and iterated local search that undoes steps without a gain.
 
-Where costs differ by direction, it makes swaps of blocks and chains of these, and no others.
+Where costs differ by direction, it only makes swaps of blocks, and chains of these.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ from service.search.three_opt.undoable_tour import MOST_CHANGES, UndoableTour, s
 from service.search.working_tour import dequeue, enqueue, wrap
 
 MOST_CITIES = (MOST_CHANGES - 2) // 4  # after two swaps, as two exchanges are four changes
-KICKS_PER_BRIDGE = 4  # where costs differ by direction: kicks, of which one is a double bridge
+KICKS_PER_BRIDGE = 4  # where costs differ by direction, one kick in four is a double bridge
 
 
 @inlined

@@ -25,7 +25,7 @@ def improve_by_swaps(
     """Make the best swap at a city, or else a chain of swaps, if it gains more than a threshold.
 
     Args:
-        working: The tour, of which the log has room for MOST_SWAPS changes.
+        working: The tour; its log has room for MOST_SWAPS changes.
         scalarization: The weighted sum, and the candidates.
         city: The city after which the first block of the first swap begins.
         threshold: What all swaps together must gain.

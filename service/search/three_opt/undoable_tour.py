@@ -79,7 +79,7 @@ def undo_from(working: UndoableTour, first: int) -> None:
 def take_back(
     working: UndoableTour, changes: int, queued: int, first_length: float, second_length: float
 ) -> None:
-    """Return to a tour of known lengths, with so many changes in its log and cities queued."""
+    """Return to a tour of known lengths, given the numbers of its changes and queued cities."""
     undo_from(working, changes)
     drop_queued(working, queued)
     working.length[0], working.length[1] = first_length, second_length
