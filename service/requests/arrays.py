@@ -48,7 +48,7 @@ def stack_matrices(matrices: list[CostRows]) -> Array:
 def cost_matrix(rows: CostRows, name: str) -> Array:
     """Return rows of costs as an array, shape (n, n), infinite where they have null.
 
-    The diagonal becomes 0, whatever stands there.
+    The diagonal becomes 0; its values are ignored.
 
     Raises:
         Refusal: A row is not as long as there are rows, or an entry is not finite.
@@ -81,7 +81,7 @@ def rectangular_array(rows: AnyRows, name: str) -> Array:
     """Return rows of numbers as an array, shape (rows, columns), NaN where they have null.
 
     Raises:
-        Refusal: There is no number, or the rows differ in length.
+        Refusal: There are no numbers, or the rows differ in length.
     """
     if not rows or not rows[0]:
         raise invalid(name, "must have a row of numbers or more, got none")
@@ -95,12 +95,12 @@ def rectangular_array(rows: AnyRows, name: str) -> Array:
 def check_costs(matrix: Array, name: str, largest: float) -> None:
     """Raise a refusal unless all entries of a matrix, shape (n, n), off its diagonal are costs.
 
-    An infinite one says that there is no way.
+    An infinite entry means that there is no way.
 
     Raises:
         Refusal: An entry is not a number, negative or too large.
     """
-    # A comparison with NaN is false, so what is not a number is found as well.
+    # A comparison with NaN is false, so NaN is found as well.
     with np.errstate(invalid="ignore"):
         is_cost = (matrix >= 0) & ((matrix <= largest) | (matrix == np.inf))
     is_cost |= np.eye(len(matrix), dtype=np.bool_)

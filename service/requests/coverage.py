@@ -133,7 +133,7 @@ AnyCoverageRequest = TypeVar("AnyCoverageRequest", bound=CoverageRequest)
 
 
 def coverage_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str, Any]]:
-    """Return the JSON schema of a request, and of one beside a file of the map, by name."""
+    """Return the JSON schemas of a request, without and with a file of the map, by name."""
     whole = _coverage_schema(limits, actors)
     maps = ("grid", "occupancy_grid")
     _, *others = whole["allOf"]

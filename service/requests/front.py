@@ -1,4 +1,4 @@
-"""Requests of `POST /front`: their fields, and what these mean for a plan."""
+"""Requests of `POST /front`: their fields, and the plan that they ask for."""
 
 from dataclasses import replace
 from functools import cached_property
@@ -42,7 +42,7 @@ from service.requests.validation import invalid
 
 _COLUMNS = 2 * OBJECTIVES  # x and y in the plane of each objective
 _MOST_SYMMETRIES = 8  # that earlier versions showed the network
-FORMS = ("coordinates", "matrices", "stops")  # of a request, each by the member that tells it
+FORMS = ("coordinates", "matrices", "stops")  # of a request, each named by its member
 City = Annotated[list[Number], Field(min_length=_COLUMNS, max_length=_COLUMNS, fail_fast=True)]
 _MatrixRows = Annotated[
     list[CostRows], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
@@ -58,7 +58,7 @@ Matrices = Annotated[
 class FrontRequest(PlanRequest):
     """Cities or stops under two objectives, and the options of their front.
 
-    Whatever its form, a request is checked by `parse_front_request`, and only then complete.
+    A request is complete only after `parse_front_request` has checked it.
     """
 
     # An empty default means that the field was not given: no caller can give an empty array.
@@ -78,7 +78,7 @@ class FrontRequest(PlanRequest):
         list[ObjectiveItem],
         Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
     ] = Field(default_factory=list, description="both, each with the costs between the stops")
-    # Once a request is checked these hold indexes alone, as those of every PlanRequest do.
+    # In a checked request these hold only indexes, as in every PlanRequest.
     start: StopReference | None = Field(  # type: ignore[assignment]
         default=0, description=f"{START}; by index or id"
     )
@@ -137,7 +137,7 @@ class FrontRequest(PlanRequest):
         return Instance(coordinates=np.array(self.coordinates, dtype=np.float64), **ends)
 
     def _sources(self, stops: tuple[Stop, ...]) -> tuple[Source, ...]:
-        """Return the source of each objective, which is a matrix of the file where one came."""
+        """Return the source of each objective; with a file, its matrices are the sources."""
         if not self.matrices.size:
             items = enumerate(self.objectives)
             return tuple(item.source(f"objectives/{m}", stops) for m, item in items)

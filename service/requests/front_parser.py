@@ -22,7 +22,7 @@ def parse_front_request(
     npy: bytes | None = None,
     model: type[AnyFrontRequest] = FrontRequest,  # type: ignore[assignment]
 ) -> AnyFrontRequest:
-    """Return the request in a JSON body, with the matrices of a .npy file where one came with it.
+    """Return the request in a JSON body, with the matrices of a .npy file if one came with it.
 
     Raises:
         Refusal: The body is not JSON, misses the schema or is over a limit.
@@ -59,7 +59,7 @@ def _check_form(request: FrontRequest, with_file: bool) -> None:
 
 def _check_cities(request: FrontRequest, limits: Limits) -> None:
     form = "stops" if request.stops else request.kind
-    # By the larger limit first: only then are the costs of stops read, which tell their kind.
+    # The larger limit first: the kind of stops is known only after their costs are read.
     if request.n > limits.cities:
         raise too_many_cities(form, limits.cities, request.n)
     most = limits.most_cities("matrices")

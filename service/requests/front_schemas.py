@@ -1,7 +1,7 @@
 """The JSON schemas of requests to `POST /front`: one for each form, with a name of its own.
 
-A generator of clients makes a type of each. So a form has the members that it may have, and no
-rule about those that it may not.
+Generators of clients make a type of each. So the schema of a form lists the members that it may
+have, and has no rules about others.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -47,12 +47,12 @@ def front_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
 
 
 def one_of(names: Sequence[str]) -> Schema:
-    """Return the schema of what fits one of the components with these names."""
+    """Return the schema of a value that fits one of the components with these names."""
     return {"oneOf": [reference_to(name) for name in names]}
 
 
 def without_null(schema: Schema) -> Schema:
-    """Return a schema without defaults of null, from which generators conclude too much."""
+    """Return a schema without defaults of null, which generators misread."""
     fields = {
         name: {k: v for k, v in field.items() if k != "default" or v is not None}
         for name, field in schema["properties"].items()
@@ -67,7 +67,7 @@ def _limit_cities(fields: Schema, limits: Limits) -> None:
 
 
 def _by_index(schema: Schema) -> Schema:
-    """Return the schema of a request whose cities have indexes alone, and no ids."""
+    """Return the schema of a request whose cities have only indexes, not ids."""
     fields = schema["properties"]
     tours = fields["initial_tours"]
     place, _ = tours["items"]["items"]["oneOf"]
@@ -116,7 +116,7 @@ def objective_variants(
 def _variant(
     schema: Schema, name: str, description: str, choices: Sequence[str], chosen: Sequence[str]
 ) -> Schema:
-    """Return a schema with those of some optional members that are chosen, which it requires."""
+    """Return a schema that requires the chosen members of some choices, and drops the others."""
     fields = {
         name: {k: v for k, v in field.items() if name not in chosen or k != "default"}
         for name, field in schema["properties"].items()

@@ -71,8 +71,8 @@ class Limits:
 def check_structure(body: bytes, limits: Limits) -> None:
     """Raise a refusal where a body has more strings or arrays than any request under the limits.
 
-    A parser spends a hundred bytes and more on each. They are counted by their first characters,
-    before it sees any.
+    A parser spends a hundred bytes or more on each. They are counted by their first characters,
+    before parsing.
 
     Raises:
         Refusal: There are more.

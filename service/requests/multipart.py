@@ -1,7 +1,7 @@
 """Split a multipart/form-data body into its parts, in time that is linear in its length.
 
-The body is all there, so that boundaries are searched for at the speed of memory. Everything
-beside the contents is bounded: the boundary, the headers of a part and the number of parts.
+The whole body is in memory, so searching for boundaries is fast. Everything except the contents is
+bounded: the boundary, the headers of a part and the number of parts.
 """
 
 import re
@@ -25,7 +25,7 @@ def split_parts(content_type: str, body: bytes, expected: Collection[str]) -> di
     """Return the content of each part of a multipart/form-data body by the part's name.
 
     Raises:
-        Refusal: The body is malformed, or its parts are not those expected, once each.
+        Refusal: The body is malformed, or does not have each expected part once.
     """
     contents: dict[str, bytes] = {}
     for name, content, _ in _parts(_delimiter(content_type), body):
@@ -44,7 +44,7 @@ def split_files(content_type: str, body: bytes) -> list[tuple[str, bytes]]:
     Each is a part `file` with a filename.
 
     Raises:
-        Refusal: The body is malformed, of other parts, or of too many.
+        Refusal: The body is malformed, or has other parts or too many.
     """
     files: list[tuple[str, bytes]] = []
     for name, content, filename in _parts(_delimiter(content_type), body):

@@ -1,4 +1,4 @@
-"""Matrices in a .npy file: read its header by a small grammar, check it, then take the numbers.
+"""Read matrices from a .npy file: parse the header by a small grammar, check it, read the data.
 
 numpy's own reader hands the header to Python's parser, which is not made for untrusted text.
 """
@@ -40,8 +40,8 @@ def read_npy(content: bytes, most_cities: int) -> NDArray[np.float64]:
     """Return the matrices, shape (2, n, n), in a file as numpy.save writes it.
 
     Raises:
-        Refusal: The file is not .npy, cut short, not of two square matrices of numbers, or its
-            header declares too many cities.
+        Refusal: The file is not .npy or is cut short, does not hold two square matrices of
+            numbers, or its header declares too many cities.
     """
     text, offset = _header_text(content)
     header = _parse_header(text)

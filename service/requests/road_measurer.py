@@ -14,11 +14,11 @@ from service.requests.task import Task, TaskSource
 from service.roads.client import RoadClient
 from service.search.forbidden_legs import check_ways
 
-_POLL_SECONDS = 0.05  # between two questions whether to stop
+_POLL_SECONDS = 0.05  # between two checks whether to stop
 
 
 def needs_roads(task: Task) -> bool:
-    """Return whether costs by road are missing of a task."""
+    """Return whether a task lacks costs by road."""
     match task.subject:
         case UnmeasuredStops() as stops:
             return bool(stops.road_measures)
@@ -31,8 +31,8 @@ async def measured_by_road(task: Task, client: RoadClient) -> Task:
     """Return a task with its costs by road, and the time that it took to ask for them.
 
     Raises:
-        Refusal: The engine knows so few ways between these stops that no tour is without a leg that
-            it does not know, or it fails; see RoadClient.costs.
+        Refusal: Every tour has a leg for which the engine knows no way, or the engine fails; see
+            RoadClient.costs.
     """
     subject, labels = task.subject, task.labels
     assert isinstance(subject, UnmeasuredStops | UnmeasuredFleet)
@@ -59,7 +59,7 @@ class RoadMeasurer:
         self._parse = parse
 
     def needed(self, source: TaskSource) -> bool:
-        """Return whether costs by road are missing, or may be where the task is not parsed."""
+        """Return whether costs by road are missing, or may be missing if the task is not parsed."""
         if source.task is not None:
             return needs_roads(source.task)
         return b"road_" in source.body
@@ -68,7 +68,7 @@ class RoadMeasurer:
         """Return the source with a task that has its costs by road.
 
         Raises:
-            Refusal: There are none; see RoadClient.costs.
+            Refusal: The costs cannot be found; see RoadClient.costs.
         """
         task = source.task
         if task is None:
@@ -94,7 +94,7 @@ class BlockingMeasurer:
 
         Raises:
             Cancelled: It was told to stop before.
-            Refusal: There are none; see RoadClient.costs.
+            Refusal: The costs cannot be found; see RoadClient.costs.
         """
         return self._runner.run(self._until_stopped(task, stop))
 

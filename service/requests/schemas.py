@@ -15,7 +15,7 @@ LARGEST = 1e150
 SMALLEST = 1e-150
 _MOST_INTEGER = 2**31 - 1
 LONGEST_TEXT = 100  # characters of an id, a name or a unit
-# No controls, no ends of lines, nothing that turns the direction of the text around it, no BOM.
+# No control characters, line ends, marks of direction or byte order marks.
 PRINTABLE = r"^[^\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069\ufeff]+$"
 
 
@@ -45,7 +45,7 @@ AsInteger = BeforeValidator(_integer)
 PositiveInteger = Annotated[int, Field(ge=1, le=_MOST_INTEGER), AsInteger]
 NonNegativeInteger = Annotated[int, Field(ge=0, le=_MOST_INTEGER), AsInteger]
 Text = Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT, pattern=PRINTABLE)]
-# Of the numbers only the type is checked here, and the rest once they are an array: half a million
+# Only the type of the numbers is checked here, and the rest once they are an array: half a million
 # are too many to check one by one.
 ArrayRows = Annotated[list[Annotated[list[float], Field(fail_fast=True)]], Field(fail_fast=True)]
 # Of costs from each city to each; null where there is no way.
@@ -56,7 +56,7 @@ NO_WAY = "null where there is no way; the diagonal is disregarded"
 
 
 class PlanFields(BaseModel):
-    """The fields of every request for a front: how to plan it, and what of it to return."""
+    """The fields of every request for a front: how to plan it, and which parts of it to return."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
@@ -134,7 +134,7 @@ class PlanFields(BaseModel):
 
 
 class PlanRequest(PlanFields):
-    """A request for a front of a new instance: where its tours begin and end, and first ones."""
+    """A request for a front of a new instance: adds the ends of its tours, and initial tours."""
 
     closed: bool = Field(
         default=True,

@@ -1,4 +1,4 @@
-"""The fields of stops and objectives in requests, and the stops and sources that they become."""
+"""The fields of stops and objectives in requests, and their conversion to stops and sources."""
 
 from collections.abc import Mapping, Sequence
 from itertools import takewhile
@@ -86,7 +86,7 @@ class ObjectiveItem(BaseModel):
         """Return the source of the costs between these stops.
 
         Raises:
-            Refusal: It is not one source, or does not fit the stops.
+            Refusal: There is not exactly one source, or it does not fit the stops.
         """
         match self.sources:
             case ["matrix"]:
@@ -126,7 +126,7 @@ def read_objectives(items: Sequence[ObjectiveItem]) -> tuple[Objective, ...]:
     """Return the objectives of a request.
 
     Raises:
-        Refusal: Both have the same name, or one a unit that is not of its measure.
+        Refusal: Both have the same name, or one has a unit other than its measure's.
     """
     first, second = items
     if first.name == second.name:
@@ -136,12 +136,12 @@ def read_objectives(items: Sequence[ObjectiveItem]) -> tuple[Objective, ...]:
 
 
 def find_index(reference: int | str, ids: Mapping[str, int], part: str) -> int:
-    """Return the index of a stop that is named by its id, or by its index already.
+    """Return the index of a stop that is named by its id or its index.
 
     Args:
         reference: The id or the index, which is not checked.
         ids: The index of each stop by its id; empty where the cities have no ids.
-        part: Where in the request it is, as initial_tours/0/2.
+        part: Its place in the request, such as initial_tours/0/2.
 
     Raises:
         Refusal: No stop has this id.

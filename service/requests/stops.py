@@ -1,4 +1,4 @@
-"""Stops and objectives as a request names them, and the instance that is made of their costs."""
+"""Stops and objectives as a request names them, and the instance made from their costs."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

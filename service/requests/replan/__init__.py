@@ -1,1 +1,1 @@
-"""Requests of `POST /front/{id}/replan`: from what changed to the rest of the way."""
+"""Requests of `POST /front/{id}/replan`: turn the changes into a task for the rest of the way."""

@@ -1,4 +1,4 @@
-"""Costs between the stops of a front and new ones, with what has changed, as sources."""
+"""Costs between the stops of a front and new stops, with all changes, as sources."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -27,12 +27,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class AllStops:
-    """The stops of a front, those added, and maybe a place where the way goes on, in this order.
+    """The stops of a front, the added ones, and the present position if it is new, in this order.
 
     Args:
         stops: All of them, the first n those of the front.
-        n: How many are the front's.
-        new: The others as the request has them, by where in it they are, as add/0 or position.
+        n: The number of the front's stops.
+        new: The others as in the request, by their place in it, such as add/0 or position.
     """
 
     stops: tuple[Stop, ...]
@@ -133,7 +133,7 @@ def _extended(source: Source, m: int, name: str, stops: AllStops) -> Source:
 
 
 def _check_given(source: Source, part: str, item: NewStop, m: int, name: str) -> None:
-    """Raise a refusal unless a new stop has what an objective needs of it, and nothing else."""
+    """Raise a refusal unless a new stop has exactly the costs that an objective needs."""
     base = source.base if isinstance(source, Changed) else source
     given = {
         "costs": bool(item.costs) and item.costs[m] is not None,
@@ -165,7 +165,7 @@ def _extended_matrix(costs: Array, m: int, stops: AllStops) -> Array:
 
 
 def _row(costs: Sequence[float | None], part: str, own: int, size: int) -> Array:
-    """Return a row of costs, in which that of the stop to itself is 0."""
+    """Return a row of costs; that of the stop to itself is 0."""
     if len(costs) != size:
         raise invalid(part, f"must have {size} costs, one for each stop, got {len(costs)}")
     row = costs_array(costs)
@@ -179,7 +179,7 @@ def _with_entries(
     entries: Sequence[CostEntry],
     stops: AllStops,
 ) -> list[Source]:
-    """Return the sources with single costs changed; of several for one step the last counts."""
+    """Return the sources with single costs changed; of changes of one step the last counts."""
     changed: list[dict[tuple[int, int], float]] = [{} for _ in sources]
     names = [objective.name for objective in objectives]
     ids = stops.ids

@@ -1,4 +1,4 @@
-"""The front that is replanned: its stops, costs, ends and tours, from what was stored of it."""
+"""The front that is replanned: its stops, costs, ends and tours, read from the store."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -21,7 +21,7 @@ from service.search.open_routes import rotated
 Array = NDArray[np.float64]
 MOST_TOURS = 50  # of an earlier front to start the search from: the search has as many weights
 _NAMES = ("first", "second")  # of objectives that the front's request did not name
-# What is read of a tour: not its path, whose millions of cells take seconds and half a gigabyte.
+# The members read of a tour. Its path has up to millions of cells, which take seconds to read.
 _READ = re.compile(rb'"lengths":\s*\[([^]]*)],\s*"tour":\s*\[([^]]*)]')
 _MODELS: Mapping[str, type[FrontRequest]] = {"front": FrontRequest, "replan": RestRequest}
 
@@ -32,9 +32,9 @@ class StoredFront:
 
     Args:
         id: Its id.
-        source: What it was planned from.
-        tours: The JSON of its tours, with commas between, without brackets.
-        places: Of a front of a map, row and column of each place.
+        source: The source of its task.
+        tours: The JSON of its tours, separated by commas, without brackets.
+        places: Row and column of each place, for a front of a map.
     """
 
     id: str
@@ -48,7 +48,7 @@ class EarlierFront:
     """A front that is replanned.
 
     Args:
-        labels: The names of its stops and objectives; of a front without, their numbers.
+        labels: The names of its stops and objectives; without names, their numbers.
         sources: The source of the costs of each objective.
         ends: Whether its tours are closed, and the ends of open routes.
         start: The stop that closed tours are reported from.
@@ -56,7 +56,7 @@ class EarlierFront:
             it has more than MOST_TOURS.
         knee: The tour with the least sum of lengths, each in the front's own box, shape (n,).
         known: All tours of the front, shape (k, n).
-        balances: Of these, shape (k,).
+        balances: Their balances, shape (k,).
     """
 
     labels: Labels
@@ -79,7 +79,7 @@ class EarlierFront:
         return float(self.balances[same.argmax()]) if same.any() else None
 
     def from_start(self, tours: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return tours of the front's stops, shape (m, n), the closed ones from their start on."""
+        """Return tours of the front's stops, shape (m, n); closed ones begin at their start."""
         if not self.ends.closed:
             return tours
         return rotated(tours, (tours == self.start).argmax(axis=1))
@@ -111,7 +111,7 @@ def with_tours(
     n: int,
     ends_of: Callable[[NDArray[np.int64]], tuple[RouteEnds, int]],
 ) -> EarlierFront:
-    """Return an earlier front with its tours, of stops named by their numbers, without sources.
+    """Return an earlier front with its tours, without sources; its stops are named by numbers.
 
     Args:
         stored: The front as it is stored.
@@ -138,7 +138,7 @@ def with_tours(
 
 
 def refused_now(front: str, refusal: Refusal) -> Refusal:
-    """Return the refusal of a front whose request is refused under the limits of now."""
+    """Return the refusal of a front whose request is over the present limits."""
     return not_replannable(front, f"what it was planned from is refused now ({refusal.detail})")
 
 
@@ -153,7 +153,7 @@ def _read_tours(stored: StoredFront, n: int) -> tuple[NDArray[np.int64], Array]:
     if not read:
         raise not_replannable(stored.id, "it has no tour")
     lengths, tours = (b",".join(texts) for texts in zip(*read, strict=True))
-    # Numbers of one kind are read so in a fifth of the time that lists of them take.
+    # Reading numbers of one kind in this way takes a fifth of the time of reading lists.
     stops = np.fromstring(tours, np.int64, sep=",")
     if len(stops) != len(read) * n:
         raise not_replannable(stored.id, "its tours are not of its stops")

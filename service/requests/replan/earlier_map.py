@@ -1,4 +1,4 @@
-"""The front of a map that is replanned: its map, places, ends and tours, from what was stored."""
+"""The front of a map that is replanned: its map, places, ends and tours, read from the store."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -96,8 +96,8 @@ _Added = Annotated[
 class ReplanRequest(MapChanges):
     """What has changed since a front was planned, and the options of the front of the rest.
 
-    Stops are named by their ids, or by their indexes in the front. Those of a front without ids are
-    named by their indexes, and from then on by these as ids.
+    Stops are named by their ids, or by their indexes in the front. Stops of a front without ids
+    are named by their indexes, which are their ids from then on.
     """
 
     done: _References = Field(

@@ -43,7 +43,7 @@ class MapChanges(PlanFields):
 
     @property
     def map_changed(self) -> bool:
-        """Whether a path between two places may have become another."""
+        """Whether a path between two places may have changed."""
         return bool(self.grid.size or self.blocked or self.freed or self.cost_layer.size)
 
 
@@ -59,12 +59,12 @@ def describe_map_changes(fields: dict[str, Any], most_cells: int) -> None:
 
 
 def check_of_stops(request: MapChanges) -> None:
-    """Raise a refusal where a request about a front of stops has what only those of maps have."""
+    """Raise a refusal where a request about a front of stops has fields of maps."""
     _refuse(request, OF_MAPS, "a map, by POST /coverage")
 
 
 def check_of_map(request: MapChanges) -> None:
-    """Raise a refusal where a request about a front of a map has what only those of stops have."""
+    """Raise a refusal where a request about a front of a map has fields of stops."""
     _refuse(request, _OF_STOPS, "stops or cities, by POST /front")
 
 

@@ -1,4 +1,4 @@
-"""The places of a front of a map, with those that a request to replan it brings."""
+"""The places of a front of a map, with the new ones of a request to replan it."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ Cells = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class AllPlaces:
-    """The places of a front, those added, and maybe one where the way goes on, in this order.
+    """The places of a front, the added ones, and the present position if it is new, in this order.
 
     Args:
         cells: Row and column of each.
@@ -55,7 +55,7 @@ def _cells(cells: list[list[int]]) -> Cells:
 
 
 def _position_cell(coverage: Coverage, request: ReplanRequest) -> tuple[str, list[int] | None]:
-    """Return the cell where the way goes on, None if that is a place, and the field that says it.
+    """Return the field of the position, and its cell; None if the position is a place.
 
     Raises:
         Refusal: It is given twice, is not a cell of the grid, or is in an unknown frame.

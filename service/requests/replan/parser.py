@@ -1,4 +1,4 @@
-"""Parse requests to replan: from an earlier front and a body to the source of a task."""
+"""Parse requests to replan: make the source of a task from an earlier front and a body."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -23,7 +23,7 @@ class ReplanSource:
 
     @property
     def length(self) -> int:
-        """The bytes to parse; those of the tours, which are the service's own, are quick to."""
+        """The bytes to parse, without the tours, which the service wrote and parses quickly."""
         earlier = self.front.source
         upload = len(earlier.upload or b"")
         return len(self.body) + len(earlier.body) + upload + len(self.front.tours) // 8
@@ -32,7 +32,7 @@ class ReplanSource:
 def parse_replan(
     source: ReplanSource, limits: Limits, actors: Mapping[str, ActorInfo]
 ) -> TaskSource:
-    """Return the rest of the way as a source with its task; the source stands by itself.
+    """Return the rest of the way as a source with its task; the source is complete by itself.
 
     Raises:
         Refusal: The request is malformed or over a limit, no actor serves it, or the front cannot

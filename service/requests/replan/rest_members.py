@@ -1,4 +1,4 @@
-"""The members that the rest of a way has beside those of a new request: the earlier tours."""
+"""The members that the rest of a way has beyond those of a new request: the earlier tours."""
 
 from base64 import b64encode
 from typing import Annotated, Any
@@ -13,7 +13,7 @@ from service.requests.validation import invalid
 
 # Without AsInteger: these are the service's own, and a hundred thousand of them take a while.
 Index = Annotated[int, Field(ge=0, le=2**31 - 1)]
-_STOP = np.dtype("<i4")  # of a tour in base64: numbers in JSON take four times as long
+_STOP = np.dtype("<i4")  # of a tour in base64: parsing numbers in JSON takes four times as long
 
 
 class EncodedTours(BaseModel):
@@ -31,7 +31,7 @@ class EncodedTours(BaseModel):
         """Return the tours, shape (count, k).
 
         Raises:
-            Refusal: They are not all as long.
+            Refusal: They differ in length.
         """
         if len(self.stops) % (self.count * _STOP.itemsize):
             raise invalid("earlier_tours", "must be of one length")

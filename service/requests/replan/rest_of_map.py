@@ -1,4 +1,4 @@
-"""The rest of a way over a map: from an earlier front and what has changed to a source."""
+"""Make the source of a task for the rest of a way over a map, from an earlier front and changes."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -39,11 +39,11 @@ _FREE, _BLOCKED = 255, 0  # shades of a PGM file
 
 
 def rest_of_map(request: ReplanRequest, stored: StoredFront, limits: Limits) -> TaskSource:
-    """Return the rest of the way over a map as the source of a task, which stands by itself.
+    """Return the rest of the way over a map as the source of a task, complete by itself.
 
     Raises:
         Refusal: The request has what only a front of stops has, its map does not fit, a place is
-            not free or cannot be reached any more, or the way cannot be that of the front.
+            no longer free or reachable, or the rest of the way does not fit the front.
     """
     check_of_map(request)
     earlier = read_earlier_map(stored, limits)
@@ -154,7 +154,7 @@ def _about_request(
             yield part, demand
             continue
         stop = int(rest.stops[int(index)])
-        # The request knows no places of the rest.
+        # The request does not name places of the rest.
         demand = re.sub(r"from places/\d+", "from where the way goes on", demand)
         if stop == rest.start:
             yield position, demand
@@ -165,7 +165,7 @@ def _about_request(
 
 
 def _members(task: Coverage) -> dict[str, Any]:
-    """Return the members of a request that say a task, but for its map and ends."""
+    """Return the members of a request that describe a task, without its map and ends."""
     assert task.places is not None
     second = {
         "second_matrix": task.second_matrix,
@@ -184,7 +184,7 @@ def _members(task: Coverage) -> dict[str, Any]:
 
 
 def _picture(blocked: NDArray[np.bool_]) -> bytes:
-    """Return a map as a PGM file, in which it takes a byte a cell."""
+    """Return a map as a PGM file, with one byte for each cell."""
     rows, columns = blocked.shape
     shades = np.where(blocked, _BLOCKED, _FREE).astype(np.uint8)
     return b"P5 %d %d %d\n" % (columns, rows, _FREE) + shades.tobytes()

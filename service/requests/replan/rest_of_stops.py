@@ -1,4 +1,4 @@
-"""The rest of a way through stops: from an earlier front and what has changed to a task."""
+"""Make a task for the rest of a way through stops, from an earlier front and changes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -63,7 +63,7 @@ class RestOfStops:
     earlier: EarlierTours
 
     def task(self, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
-        """Return the task that `parse_task` makes of the source, in a tenth of the time.
+        """Return the task that `parse_task` would make of the source, in a tenth of the time.
 
         Raises:
             Refusal: No actor or routing engine serves it.
@@ -82,7 +82,7 @@ class RestOfStops:
         return replace(task, options=replace(task.options, start=self.begin or 0))
 
     def source(self) -> TaskSource:
-        """Return the rest as the source of a task, which stands by itself."""
+        """Return the rest as the source of a task, complete by itself."""
         file = _matrices_file(self.sources)
         members = {
             "stops": [vars(stop) for stop in self.labels.stops],
@@ -110,7 +110,7 @@ def rest_of_stops(request: ReplanRequest, stored: StoredFront, limits: Limits) -
     stops = all_stops(front, request)
     rest = rest_of_way(front, request, stops)
     if not request.objectives:
-        # Before matrices grow by the stops added.
+        # Before matrices grow by the added stops.
         _check_cities("add", rest, front.sources, limits)
     objectives, sources = all_costs(front, request, stops)
     _check_cities("objectives" if request.objectives else "costs", rest, sources, limits)
@@ -137,7 +137,7 @@ def rest_of_stops(request: ReplanRequest, stored: StoredFront, limits: Limits) -
 
 
 def _check_cities(part: str, rest: RestOfWay, sources: Sequence[Source], limits: Limits) -> None:
-    """Raise a refusal of a part of the request where the rest is of more stops than it may be."""
+    """Raise a refusal of a part of the request where the rest has too many stops."""
     kind = kind_of(sources)
     most = limits.most_cities(kind)
     if len(rest.stops) > most:
@@ -154,9 +154,8 @@ def _touched(
 ) -> NDArray[np.int64] | None:
     """Return the stops of the rest at which the earlier tours may have become worse, ascending.
 
-    Those are the ones with new neighbours, and those to or from which a single cost has changed.
-
-    None where that may be any, as the request brings whole new objectives.
+    These are the stops with new neighbours, and those to or from which a single cost has changed.
+    None if any stop may be affected, because the request has whole new objectives.
     """
     if request.objectives:
         return None

@@ -12,9 +12,9 @@ _OBJECTIVES = ("MatrixObjective", "PlaneObjective", "MeasuredObjective")
 
 
 def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str, Any]]:
-    """Return the schema of a request to replan, and of what is in it, by name.
+    """Return the schema of a request to replan and those of its parts, by name.
 
-    Its objectives are of the kinds that `front_schemas` has.
+    Its objectives have the kinds of `front_schemas`.
     """
     schema = limited_schema(ReplanRequest, limits, actors)
     parts = schema.pop("$defs")
@@ -31,7 +31,7 @@ def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str,
 
 
 def _without_null(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return a schema without defaults of null, from which generators conclude too much."""
+    """Return a schema without defaults of null, which generators misread."""
     fields = {
         name: {k: v for k, v in field.items() if k != "default" or v is not None}
         for name, field in schema["properties"].items()

@@ -23,10 +23,10 @@ class RestOfWay:
 
     Args:
         stops: Those that it has, ascending, shape (k,).
-        ends: Whether it leads back to where it goes on, and its ends if it does not.
+        ends: Whether it leads back to its beginning, and its ends if it does not.
         start: The stop at which it goes on; None where any may be the first.
         done: The stops visited, in order.
-        left: The stops of the front that it has, but the ends, as a set.
+        left: The front's stops that it has, without the ends, as a set.
     """
 
     stops: NDArray[np.int64]
@@ -49,7 +49,7 @@ class RestOfWay:
         return None if self.start is None else int(place[self.start])
 
     def end_members(self, place: NDArray[np.int64]) -> dict[str, Any]:
-        """Return the members of a request that say where the rest begins and ends."""
+        """Return the members of a request with the beginning and the end of the rest."""
         begin = self.begin_at(place)
         if self.ends.closed:
             return {"closed": True, "start": begin}
@@ -60,7 +60,7 @@ def rest_of_way(front: EarlierFront, request: ReplanRequest, stops: AllStops) ->
     """Return what is left of the way through a front's stops.
 
     A closed tour leads back to its start, and an open route to its end if that is fixed. A fixed
-    start counts as visited once the way goes on anywhere else.
+    start counts as visited as soon as the position is another.
 
     Raises:
         Refusal: A stop is not known, named twice, done and removed, or needed as an end and done
@@ -119,20 +119,20 @@ def left_of_tours(
 
 
 def indexes_in_rest(place: NDArray[np.int64], stops: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the indexes in the rest of those among stops that it has; `place` has those of all."""
+    """Return the indexes in the rest of those stops that it has; `place` has the index of each."""
     indexes = place[stops]
     return indexes[indexes >= 0]
 
 
 def _beside_gone(tours: Tours, is_left: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Return the stops left before or after which a tour has one that is not, ascending."""
+    """Return the remaining stops that are beside a gone one in some tour, ascending."""
     gone = ~is_left[tours]
     beside = np.roll(gone, 1, axis=1) | np.roll(gone, -1, axis=1)
     return np.unique(tours[beside & ~gone])
 
 
 def _ends(front: EarlierFront) -> tuple[int | None, int | None]:
-    """Return the stops at which a front's tours begin, and to which they lead, None where any."""
+    """Return the first and the last stop of a front's tours; None where it may be any."""
     if front.ends.closed:
         return front.start, front.start
     return front.ends.start, front.ends.end
@@ -153,7 +153,7 @@ def driven_tour(front: EarlierFront, request: ReplanRequest) -> NDArray[np.int64
     """Return the tour being driven, shape (n,): by default the front's knee.
 
     Raises:
-        Refusal: It has not all stops of the front once.
+        Refusal: It does not have each stop of the front once.
     """
     if not request.tour:
         return front.knee
@@ -167,7 +167,7 @@ def driven_tour(front: EarlierFront, request: ReplanRequest) -> NDArray[np.int64
 def _as_driven(
     front: EarlierFront, tour: NDArray[np.int64], done: Sequence[int]
 ) -> NDArray[np.int64]:
-    """Return a tour in the direction in which it is driven, as the stops that are done show."""
+    """Return a tour in the direction in which it is driven, which the stops that are done show."""
     around = tour[::-1]
     if front.ends.closed:
         around = np.roll(around, 1)
