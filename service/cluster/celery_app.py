@@ -26,7 +26,7 @@ def make_celery(redis_url: str, seconds: float) -> Celery:
     celery = Celery("paretour", broker=redis_url, set_as_current=False)
     celery.conf.broker_transport = TRANSPORT
     if redis_url.startswith("rediss:"):
-        # As kombu does where the transport is its own. What the address says goes before it.
+        # As kombu does for its own transport. Options in the address take precedence.
         celery.conf.broker_use_ssl = {"ssl_cert_reqs": ssl.CERT_REQUIRED}
     celery.conf.update(
         task_default_queue=QUEUE,

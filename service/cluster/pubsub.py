@@ -16,7 +16,7 @@ _SILENT = 5.0  # seconds without a message after which the connection is tested
 
 
 class Subscriptions:
-    """Sets the events of those who wait for a record, whenever it has changed or may have.
+    """Sets the events of waiting tasks whenever their record has changed, or may have changed.
 
     `on_finished` is called with the id of each record that is finished.
     """
@@ -28,7 +28,7 @@ class Subscriptions:
 
     @contextmanager
     def changes(self, id: str) -> Iterator[Event]:  # noqa: A002
-        """Give an event that is set at each change of a record."""
+        """Return an event that is set at each change of a record."""
         changed = Event()
         self._waiting[id].add(changed)
         try:

@@ -47,7 +47,7 @@ STOP_REASONS: Mapping[StopReason, bytes] = {Cancelled: b"Stopped", DeadlineExcee
 REASON_OF = {name: reason for reason, name in STOP_REASONS.items()}
 TAKEN_OVER = b"taken"
 
-# Redis does not answer, is full, or is a copy that takes no writes.
+# Redis does not answer, is full, or is a read-only replica.
 UNAVAILABLE = (
     exceptions.ConnectionError,
     exceptions.TimeoutError,
@@ -57,7 +57,7 @@ UNAVAILABLE = (
 # How errors begin where Redis cannot write to its disk, or to enough copies.
 REFUSES_WRITES = ("MISCONF", "NOREPLICAS")
 
-# How the script fails where a key holds what is not ours, and the name of that key in JSON.
+# The script's error where a key holds foreign data, with the name of that key in JSON.
 _DAMAGED = re.compile(r'damaged ("(?:[^"\\]|\\.)*")')
 
 Argument = str | bytes | float
@@ -77,8 +77,8 @@ class StoredRecord:
 def record_arguments(record: Record) -> list[Argument]:
     """Return a record as arguments of the script.
 
-    These are the number of arguments that follow for its hash, these, and those for the hash of
-    its source.
+    They are the number of arguments for its hash, these arguments, and those for the hash of its
+    source.
     """
     columns = {name: value for name, value in record_columns(record).items() if value is not None}
     source = {name: columns.pop(name) for name in SOURCE_COLUMNS if name in columns}
@@ -96,13 +96,13 @@ def progress_arguments(progress: Progress, front: FrontDocument) -> list[Argumen
 
 
 def damaged_key(error: exceptions.ResponseError) -> str | None:
-    """Return the key that holds what is not ours, where that is why the script has failed."""
+    """Return the key with foreign data, if that is why the script has failed."""
     found = _DAMAGED.search(str(error))
     return None if found is None else str(json.loads(found[1]))
 
 
 def log_repaired(key: str, error: exceptions.ResponseError) -> None:
-    """Log that a key was put aside, because no record or number of ours was in it."""
+    """Log that a key was put aside, because it held foreign data."""
     logging.getLogger("paretour").error(
         "key %s of Redis is damaged, put aside as paretour:damaged and made anew: %s",
         printable(key)[:200],
@@ -111,7 +111,7 @@ def log_repaired(key: str, error: exceptions.ResponseError) -> None:
 
 
 def stored_record(*hashes: Iterable[bytes]) -> StoredRecord:
-    """Return the record in a hash, or in one and that of its source, as HGETALL gives them.
+    """Return the record in a hash, and optionally that of its source, as HGETALL gives them.
 
     Raises:
         UnreadableRecord: They are damaged, or of another program.

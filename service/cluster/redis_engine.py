@@ -46,11 +46,11 @@ class RedisEngine:
         redis: The connections for notifications.
         store: The store of all replicas.
         send: Called with the id of each record to plan, in a thread.
-        queue: How many jobs may wait beside those that there are workers for.
+        queue: How many jobs may wait in addition to one for each worker.
         share: The share of all of these that one client may hold. It may always hold one more than
             there are workers.
         seconds: How long a client waits at most.
-        on_front: Called with every front that was planned, in one of all replicas.
+        on_front: Called with every front that was planned, by one of the replicas.
     """
 
     def __init__(  # noqa: PLR0913  all but the first three are keyword-only
@@ -105,7 +105,7 @@ class RedisEngine:
         await self._store.check_place(client, self._queue, self._share)
 
     async def check_warm(self) -> None:
-        """Raise nothing: jobs wait in the queue until a worker has the compiled search."""
+        """Do nothing: jobs wait in the queue until a worker has the compiled search."""
 
     async def check_ready(self) -> None:
         """Raise ShuttingDown, NoWorker, or StoreUnavailable if Redis does not answer or is full."""
@@ -151,7 +151,7 @@ class RedisEngine:
         return JobState(record)
 
     async def release(self, record: Record) -> None:
-        """Return at once: what a job is planned from is in Redis."""
+        """Return at once: the source of a job is in Redis."""
 
     async def watch(self, record: Record) -> AsyncIterator[JobState]:
         """Yield the state of a job now and after each change, until it is finished."""
@@ -183,7 +183,7 @@ class RedisEngine:
             return StoredRecord(record=deleted, requested_at=0, attempts=0, progress=None)
 
     async def _stop(self, record: Record, reason: StopReason) -> None:
-        """Ask the worker to end a job, and end it here if that does not in time."""
+        """Ask the worker to end a job; if it does not in time, end the job here."""
         await self._store.call("stop", record.id, STOP_REASONS[reason])
         if (await self._stored(record)).record.status == "running":
             with suppress(TimeoutError):
@@ -205,7 +205,7 @@ class RedisEngine:
             except StoreUnavailable:
                 pass
             except Exception:
-                # Else nothing would ever be sent again.
+                # Otherwise nothing would ever be sent again.
                 self._log.exception("jobs that lost their worker could not be sent again")
             await asyncio.sleep(_SWEEP)
 
@@ -237,7 +237,7 @@ async def _wait(changed: Event, seconds: float) -> None:
             await changed.wait()
 
 
-_SECONDS = 2.0  # that one reply of Redis may take
+_SECONDS = 2.0  # the longest that one reply of Redis may take
 
 
 def connect(  # noqa: PLR0913  a setting each

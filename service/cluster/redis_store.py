@@ -77,12 +77,12 @@ class RedisStore:
 
         Args:
             record: The record.
-            queue: How many records may be unfinished beside those that there are workers for.
-            share: Of all of these, the share of one client.
-            waits: Whether the client waits for the front, which takes a worker now.
+            queue: How many records may be unfinished in addition to one for each worker.
+            share: The share of all of these that one client may hold.
+            waits: Whether the client waits for the front, so that a worker must run now.
 
         Raises:
-            NoWorker: The client waits, and no worker is there.
+            NoWorker: The client waits, and no worker runs.
             QueueFull: No place is left.
             ShareFull: The client holds its share of the places.
             IdempotencyMismatch: The caller used the key for another body.
@@ -102,7 +102,7 @@ class RedisStore:
         return (await self.find("get", caller, id)).record
 
     async def source(self, record: Record) -> TaskSource | None:
-        """Return what a finished record was planned from; None where that is not kept."""
+        """Return the source of a finished record; None if it is not kept."""
         return stored_source(await self.call("source", record.id))
 
     async def latest(self, caller: str, client: str) -> Record:
@@ -147,7 +147,7 @@ class RedisStore:
         await self._script(args=["repair", self._clock(), key])
 
     async def check_ready(self) -> None:
-        """Raise StoreUnavailable if Redis takes no more data, NoWorker if no worker is there."""
+        """Raise StoreUnavailable if Redis accepts no more data, NoWorker if no worker runs."""
         if await self.call("write") == 0:
             raise NoWorker(NOBODY)
 
@@ -178,12 +178,12 @@ class RedisStore:
         caller: str = "",
         whole: bool = False,
     ) -> StoredRecord | None:
-        """Return the record in these hashes; None where it cannot be read, and is dropped.
+        """Return the record in these hashes; if it cannot be read, drop it and return None.
 
         Args:
             id: Its id, which may be missing in the hashes.
             hashes: As HGETALL gives them.
-            caller: Who has it, where that is known.
+            caller: Its caller, if known.
             whole: Whether an unfinished record must have its source.
         """
         try:
@@ -216,13 +216,13 @@ def _identity(record: Record) -> tuple[str, str, str, str]:
 
 
 def _check_reply(reply: Any) -> None:
-    """Raise the refusal that the reply to an admission is, if it is one.
+    """Raise a refusal if the reply to an admission is one.
 
     Raises:
-        IdempotencyMismatch: The key is of another body.
+        IdempotencyMismatch: The key was used with another body.
         QueueFull: No place is left.
         ShareFull: The client holds its share of the places.
-        NoWorker: The client would wait for a worker, and none is there.
+        NoWorker: The client would wait for a worker, and none runs.
     """
     match reply:
         case b"mismatch":

@@ -1,7 +1,7 @@
 """A worker of the cluster: Celery with a pool of processes, each planning one record at a time.
 
-In each process a `RecordWorker` plans. A thread beside it checks whether the record is wanted
-still. If planning does not stop at once, the thread stores the best front so far; if it does not
+In each process a `RecordWorker` plans. Another thread checks whether the record is still
+wanted. If planning does not stop at once, the thread stores the best front so far; if it does not
 stop for seconds, the thread kills the process, which Celery replaces.
 """
 
@@ -34,7 +34,7 @@ from service.jobs.workers.worker_pool import GRACE, STOP_SECONDS
 from service.search.improve import Progress
 
 _CHECK_EVERY = 0.05  # seconds between two checks whether a record is still wanted
-_TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin a call
+_TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: a call may be about to begin
 _HEARTBEAT_EVERY = 1.0  # seconds between two signs of life
 
 IsDraining = Callable[[], bool]
@@ -64,7 +64,7 @@ class RecordWorker:
         """Plan the front of the record whose turn it is, unless none waits.
 
         Args:
-            id: Of the message that this is the turn of.
+            id: The id in the message, which stands for a turn.
             known_lost: Whether the worker that had the message before is lost.
 
         Raises:
@@ -141,7 +141,7 @@ class _Supervisor:
         return as_ended(self._stored.record, front, reason, seconds)
 
     def end(self) -> None:
-        """Check no longer: planning is over."""
+        """Stop checking: planning is over."""
         self._over.set()
         self._thread.join()
 
@@ -161,7 +161,7 @@ class _Supervisor:
             os.kill(os.getpid(), signal.SIGKILL)
 
     def _is_over_within(self, seconds: float) -> bool:
-        """Terminate what the runner calls, again and again, and return whether planning is over."""
+        """Terminate the runner's calls again and again, and return whether planning is over."""
         deadline = time.monotonic() + seconds
         while time.monotonic() < deadline:
             self._terminate()
@@ -175,7 +175,7 @@ class _Supervisor:
         return Draining if self._is_draining() else self._store.stop_reason(self._stored.record.id)
 
     def _let_go(self) -> None:
-        """Store what is known of the record, which is given up though planning goes on."""
+        """Store the record as it is known, and give it up although planning goes on."""
         if self.reason is Draining:
             self._store.hand_back(self._stored.record.id)
         elif self.reason is not TakenOver:
@@ -233,11 +233,11 @@ class _ProcessPool:
         self._make_record_worker = make_record_worker
         self._drain_seconds = drain_seconds
         self._record_worker: RecordWorker | None = None
-        # Shared memory without a lock, which a process could die with.
+        # Shared memory without a lock: a process could die while it holds one.
         self._draining = RawValue(ctypes.c_bool, False)
 
     def init_process(self, **_: Any) -> None:
-        """Make the worker of a process after its fork, which no session or connection survives."""
+        """Make the worker of a process after its fork, which sessions and connections do not survive."""
         try:
             self._record_worker = self._make_record_worker(lambda: self._draining.value)
             self._record_worker.start()

@@ -33,7 +33,7 @@ from service.jobs.record import Record, StopReason
 from service.jobs.store import UnreadableRecord, log_dropped
 from service.search.improve import Progress
 
-_SECONDS = 2.0  # that one reply of Redis may take
+_SECONDS = 2.0  # the longest that one reply of Redis may take
 _PATIENCE = 60.0  # seconds for which a call is tried again while Redis is away
 _PAUSE = 0.1  # seconds between two tries
 
@@ -51,7 +51,7 @@ def connect_script(url: str) -> Script:
 
 
 class WorkerStore:
-    """The records as one worker process sees them. `worker` is its name, which must be unique."""
+    """The records, for one worker process. `worker` is its name, which must be unique."""
 
     def __init__(self, url: str, worker: str) -> None:
         self._worker = worker
@@ -64,14 +64,14 @@ class WorkerStore:
     def begin(self, id: str, known_lost: bool) -> StoredRecord | None:  # noqa: A002
         """Take the next record for this worker and return it.
 
-        A message is a turn, of the client whose turn is next. Where the worker that had the message
-        before is lost, the record is the one that it had.
+        A message stands for a turn, which goes to the next client. If the worker that had the
+        message before is lost, the record is the one that it had.
 
         Args:
-            id: Of the message.
+            id: The id in the message.
             known_lost: Whether the message was delivered before, to a worker that is lost.
 
-        Returns None where no record waits, or the next cannot be read, which drops it.
+        Returns None if no record waits, or if the next cannot be read and was dropped.
         """
         known = "lost" if known_lost else ""
         reply = self._call_until_answered("begin", id, self._worker, LEASE, known)
@@ -138,10 +138,10 @@ _CHECK_EVERY = 0.25  # seconds between two checks
 
 
 def takes_work(redis_url: str) -> bool:
-    """Return whether this machine has a worker, and no process of it stays idle while jobs wait.
+    """Return whether this machine has a worker, none of whose processes is idle while jobs wait.
 
-    It takes up to LEASE + 1 seconds to tell. Where Redis does not answer, the worker is not at
-    fault, and the answer is True.
+    The check takes up to LEASE + 1 seconds. If Redis does not answer, the worker is not at fault,
+    and the result is True.
     """
     script = connect_script(redis_url)
     deadline = monotonic() + _LOST_AFTER

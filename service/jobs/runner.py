@@ -32,7 +32,7 @@ from service.search.improve import Progress
 
 REPORT_TOURS = 100  # at most in a reported front
 REPORT_SECONDS = 0.25  # at least between two reports
-REPORT_SHARE = 0.05  # of the time may be spent on reports
+REPORT_SHARE = 0.05  # the share of the time that reports may take
 
 Report = Callable[[Progress, Callable[[int], FrontDocument]], None]
 
@@ -66,7 +66,7 @@ MakeRunner = Callable[[], Runner]
 class TaskRunner:
     """Plans fronts within limits, with the actors that are loaded.
 
-    With a measurer, it asks for the costs by road of tasks that come without.
+    With a measurer, it asks for missing costs by road.
     """
 
     actors: Mapping[str, NamedActor]
@@ -156,7 +156,7 @@ class TaskRunner:
     def _paths(
         self, surveyed: Survey, front: Front, stop: Callable[[], bool]
     ) -> list[CoveragePath] | None:
-        """Return the path of each tour; None where the task is stopped, which waits for none."""
+        """Return the path of each tour; None if the task is stopped."""
         try:
             return list(surveyed.paths(front.tours, self.limits.path_cells, stop))
         except Cancelled:
@@ -196,7 +196,7 @@ def _arrivals(task: Task, instance: Instance, front: Front) -> NDArray[np.float6
 
 
 class Reporter:
-    """Sends progress with the best front now and then, the more rarely the longer it takes."""
+    """Sends progress with the best front now and then; less often if sending takes long."""
 
     def __init__(self, send: Callable[[Progress, FrontDocument], None]) -> None:
         self._send = send
@@ -221,7 +221,7 @@ def load_runner(
 ) -> TaskRunner:
     """Return a runner with the actors of a directory, and of one of the user's.
 
-    With a routing engine, it asks that for the costs by road of tasks that come without.
+    With a routing engine, it asks that for missing costs by road.
     """
     measurer = None if roads is None else BlockingMeasurer(RoadClient(roads))
     return TaskRunner(load_actors(directory, threads, own_directory), limits, measurer)

@@ -1,4 +1,4 @@
-"""The schema of the store's SQLite file: its version, and the steps from each to the next.
+"""The schema of the store's SQLite file, and the steps from each version to the next.
 
 To change the schema, add a step to `STEPS` and change nothing in the earlier ones: files that they
 made are in use. The version of a file is its `PRAGMA user_version`.
@@ -15,7 +15,7 @@ from service.jobs.store import COLUMNS
 
 IN_MEMORY = ":memory:"
 UNFINISHED = "status IN ('queued', 'running')"
-_PRIVATE = stat.S_IRUSR | stat.S_IWUSR  # requests are nobody else's business
+_PRIVATE = stat.S_IRUSR | stat.S_IWUSR  # others must not read the requests
 _LENGTHS = " + ".join(f"ifnull(length(CAST({name} AS BLOB)), 0)" for name in COLUMNS)
 
 STEPS = (
@@ -58,7 +58,7 @@ def open_file(path: str) -> sqlite3.Connection:
     if path != IN_MEMORY:
         _create(Path(path))
     database = sqlite3.connect(path, check_same_thread=False, timeout=1)
-    # A damaged text must not keep the rest from being read.
+    # A damaged text must not prevent reading the rest.
     database.text_factory = partial(str, encoding="utf-8", errors="replace")
     try:
         database.execute("PRAGMA locking_mode = EXCLUSIVE")
@@ -75,7 +75,7 @@ def open_file(path: str) -> sqlite3.Connection:
 
 
 def migrate(database: sqlite3.Connection, steps: Sequence[str]) -> None:
-    """Take a database through the steps that it has not had, all of them or none."""
+    """Apply the missing steps to a database, all of them or none."""
     outstanding = "".join(steps[_version(database) :])
     try:
         database.executescript(
@@ -110,7 +110,7 @@ def _check(database: sqlite3.Connection, latest: int) -> None:
 def _create(path: Path) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     if not path.exists():
-        # SQLite gives the files beside it the same mode.
+        # SQLite gives its auxiliary files the same mode.
         os.close(os.open(path, os.O_RDWR | os.O_CREAT, _PRIVATE))
     elif not path.is_file():
         raise ValueError("it is not a regular file")

@@ -72,7 +72,7 @@ class SqliteStore:
         # All calls that touch the file are made in this thread, in their order.
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="store")
         # Short records that are not yet written, with the time when they were put. In memory there
-        # is nothing to lose by that, and to write many at once takes less time for each.
+        # nothing can be lost by that, and writing many at once takes less time for each.
         self._unwritten: deque[tuple[float, Record]] = deque()
         self._most_unwritten = _AT_ONCE if path == IN_MEMORY else 0
         self._puts = self._bytes_put = 0  # since records were last evicted
@@ -103,7 +103,7 @@ class SqliteStore:
         return await self._found("caller = ? AND id = ?", caller, id)
 
     async def source(self, record: Record) -> TaskSource | None:
-        """Return what a finished record was planned from; None where that is not kept."""
+        """Return the source of a finished record; None if it is not kept."""
         return await self._in_thread(self._source, record.id)
 
     async def latest(self, caller: str, client: str) -> Record:
@@ -137,10 +137,10 @@ class SqliteStore:
         )
 
     def _in_transaction(self, act: Callable[..., T], *arguments: object) -> T:
-        """Return what an action does with the file, all of it or nothing.
+        """Run an action on the file as one transaction, and return its result.
 
         Raises:
-            StoreUnavailable: The file cannot be read or written, mostly as the disk is full.
+            StoreUnavailable: The file cannot be read or written, mostly because the disk is full.
         """
         try:
             self._write_unwritten()  # in a transaction of its own: the action may fail
@@ -151,7 +151,7 @@ class SqliteStore:
             raise StoreUnavailable from error
 
     def _write_unwritten(self) -> None:
-        """Write the records that were put before; one that cannot be encoded is given up."""
+        """Write the records put before; skip one that cannot be encoded."""
         unwritten = list(self._unwritten)
         with self._database:
             for kept, record in unwritten:
@@ -264,7 +264,7 @@ class SqliteStore:
 
 
 def _is_short(record: Record) -> bool:
-    """Return whether a record is so short that some may be kept beside the file."""
+    """Return whether a record is short enough to be written later, with others."""
     source = record.source
     length = 0 if source is None else len(source.body) + len(source.upload or b"")
     return length + len(record.front.tours) <= SHORT

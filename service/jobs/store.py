@@ -22,12 +22,12 @@ class UnreadableRecord(Exception):
 
 
 class Store(Protocol):
-    """Keeps records. Unfinished ones are never dropped, but where they cannot be decoded.
+    """Keeps records. Unfinished ones are never dropped, unless they cannot be decoded.
 
-    Finished ones are returned without their source, which `source` alone reads.
+    Finished ones are returned without their source, which only `source` reads.
 
-    When finished ones are too many, or take too many bytes, the oldest of the client that has
-    most makes way: a client's last one only where nobody has two, or where no store could hold it.
+    When finished ones are too many, or take too many bytes, the oldest of the client with the most
+    is dropped; a client's last one only if nobody has two, or if it is too large for the store.
     A client is a caller, or an address where there are no keys.
     """
 
@@ -37,7 +37,7 @@ class Store(Protocol):
     async def admit(self, record: Record) -> Record:
         """Store a new record and return it, or return the one that has its idempotency key.
 
-        A failed record gives up its key, so that a repeat is a new try.
+        A failed record loses its key, so that a repeat is a new try.
 
         Raises:
             IdempotencyMismatch: The caller used the key for another body.
@@ -59,10 +59,10 @@ class Store(Protocol):
         """
 
     async def source(self, record: Record) -> TaskSource | None:
-        """Return what a finished record was planned from; None where that is not kept.
+        """Return the source of a finished record; None if it is not kept.
 
-        It is not of records of earlier releases, of failed ones, and where it would take more than
-        the share of a store that one source may.
+        Sources are not kept for records of earlier releases and for failed ones, nor if they are
+        larger than one source's share of the store.
         """
 
     async def latest(self, caller: str, client: str) -> Record:
@@ -93,7 +93,7 @@ COLUMNS = (
     *SOURCE_COLUMNS,
 )
 SHORT = 2**16  # bytes of tours that are not compressed, as there is little to gain
-_LEVEL = 1  # of compression: digits shrink to half of their size, quickly
+_LEVEL = 1  # of compression, the fastest: digits shrink to half of their size
 
 
 def record_columns(record: Record) -> dict[str, Any]:
@@ -141,7 +141,7 @@ def record_from(columns: Mapping[str, Any]) -> Record:
     """
     try:
         return _decode(columns)
-    # Whatever parsers of bytes that anything may have damaged raise.
+    # All that parsers may raise for damaged bytes.
     except Exception as error:
         raise UnreadableRecord(f"{type(error).__name__}: {error}"[:200]) from error
 

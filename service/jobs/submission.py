@@ -18,11 +18,11 @@ class Submission:
     """A task that waits for a worker, is being run, or has ended.
 
     Args:
-        number: Tells it from the pool's other submissions, also in messages.
+        number: Its number among the pool's submissions, also used in messages.
         source: What the task is parsed from.
         on_change: Called when a worker begins, and with each progress.
         patient: Whether its time limit counts from the start of planning, not from submission.
-        client: Whose turn it takes in the queue, and whose share of the places.
+        client: The client whose turn in the queue, and whose share of the places, it takes.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class Submission:
         self.timer: TimerHandle | None = None
         self._on_change = on_change
         self._future: Future[FrontDocument] = asyncio.get_running_loop().create_future()
-        # Beside the future, which a waiting task that is cancelled would cancel as well.
+        # In addition to the future, which is cancelled with the task that waits for it.
         self._has_ended = asyncio.Event()
         self._submitted = perf_counter()
 
@@ -55,7 +55,7 @@ class Submission:
 
     @property
     def is_brief(self) -> bool:
-        """Whether it may share a process's turn: it is short, and was in no process that died."""
+        """Whether it may share a process's turn: it is short, and no process died over it."""
         task = self.source.task
         return task is not None and task.is_brief and self.attempts == 0
 
@@ -71,7 +71,7 @@ class Submission:
         return self._future.result()
 
     def when_ended(self, callback: Callable[[], object]) -> None:
-        """Have a function called soon after it has ended."""
+        """Register a function to be called soon after the end."""
         self._future.add_done_callback(lambda _: callback())
 
     def begin(self) -> None:
@@ -102,7 +102,7 @@ class Submission:
             return
         self._cancel_timer()
         self._future.set_exception(error)
-        # Read once, so that asyncio does not warn where nobody waits any more.
+        # Read once, so that asyncio does not warn if nobody waits for it.
         self._future.exception()
         self._has_ended.set()
 

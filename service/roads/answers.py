@@ -13,9 +13,9 @@ from pydantic_core import ErrorDetails, to_json
 
 from service.roads.router import Array, Unintelligible
 
-BYTES_OF_ANSWER = 2**14  # of the longest answer, beside the bytes for each of its parts
-BYTES_OF_PAIR = 64  # two numbers of up to 24 characters, and what is between them
-BYTES_OF_PLACE = 2**13  # what is told of one place: the roads near it, their names
+BYTES_OF_ANSWER = 2**14  # of the longest answer, in addition to the bytes for each of its parts
+BYTES_OF_PAIR = 64  # two numbers of up to 24 characters, with separators
+BYTES_OF_PLACE = 2**13  # the answer about one place: the roads near it, their names
 BYTES_OF_ROUTE = 2**21  # the line of a route through some twenty places
 _LARGEST = 1e9  # seconds or metres: thirty years, and twenty times round the Earth
 
@@ -39,7 +39,7 @@ def read(model: type[_Model], content: bytes) -> _Model:
 
 
 def _sentence(error: ErrorDetails) -> str:
-    """Return what an answer must be and what came, as far as that cannot be a place or a name."""
+    """Return how an answer differs from the documentation; never quote a place or a name."""
     where = "/".join(map(str, error["loc"]))[:80] or "it"
     if error["type"] == "json_invalid":
         return f"it must be JSON: {error['ctx']['error']}"

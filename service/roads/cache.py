@@ -6,14 +6,14 @@ from collections.abc import Callable
 
 from service.roads.router import Array
 
-BYTES_OF_ENTRY = 512  # what an array, its key and its place take beside its numbers
+BYTES_OF_ENTRY = 512  # of an array, its key and its entry, in addition to its numbers
 
 
 class ArrayCache:
     """Arrays by their keys; when there is no room, the least recently used is dropped.
 
     Args:
-        most_bytes: What all arrays may take together.
+        most_bytes: The most bytes of all arrays together.
         most_seconds: How long each is kept.
         clock: The present time in seconds.
     """

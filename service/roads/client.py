@@ -41,7 +41,7 @@ class RoadCosts(NamedTuple):
 
 
 class RoadClient:
-    """A client of a routing engine, for one event loop, which remembers what it was told.
+    """A client of a routing engine, for one event loop, which remembers the answers.
 
     Args:
         settings: Which engine to ask, and what may be spent on it.
@@ -68,8 +68,8 @@ class RoadClient:
             OffRoad: Stops lie too far from every road.
             NoRoad: There is no way between some stops and any others.
             RouterUnavailable: The engine does not answer.
-            RouterUnusable: It answers something else than it should.
-            RouterTooSlow: It takes longer than the seconds.
+            RouterUnusable: Its answer is not as documented.
+            RouterTooSlow: It takes too many seconds.
         """
         places = np.round(locations, _DECIMALS)
         key = hashlib.sha256(places.tobytes()).digest()
@@ -93,7 +93,7 @@ class RoadClient:
             ids: As of `costs`.
             ways: One at least: indices of stops in the order of their visits, shape (m,) each, m at
                 least 2.
-            seconds: The time that is left, where that is less than the settings allow.
+            seconds: The remaining time, if it is less than the settings allow.
 
         Raises:
             StreetsTooLong: The ways have too many legs, or their lines too many positions.
@@ -105,7 +105,7 @@ class RoadClient:
     async def streets(
         self, locations: Array, ids: Sequence[str], legs: Iterable[Leg]
     ) -> dict[Leg, Line]:
-        """Return the line along the streets of each leg; else as of `lines`."""
+        """Return the line along the streets of each leg; otherwise like `lines`."""
         return await self._drawn(locations, ids, Counter(legs), math.inf)
 
     async def close(self) -> None:
@@ -121,7 +121,7 @@ class RoadClient:
     async def _drawn(
         self, locations: Array, ids: Sequence[str], counts: Mapping[Leg, int], seconds: float
     ) -> dict[Leg, Line]:
-        """Return the line of each leg, which occurs as often as it counts."""
+        """Return the line of each leg, given how often each occurs."""
         if len(counts) > self._settings.legs:
             raise StreetsTooLong("different legs", self._settings.legs, len(counts))
         places = np.round(locations, _DECIMALS)
@@ -131,7 +131,7 @@ class RoadClient:
     async def _streets(
         self, places: Array, ids: Sequence[str], counts: Mapping[Leg, int]
     ) -> dict[Leg, Line]:
-        """Return the line of each leg, as it is remembered or the engine answers now."""
+        """Return the line of each leg, from the cache or from the engine."""
         keys = {leg: _LEG + places[list(leg)].tobytes() for leg in counts}
         found = LegLines(counts, self._settings.positions)
         for leg, key in keys.items():
@@ -161,7 +161,7 @@ class RoadClient:
             failure: Refusal = RouterTooSlow(seconds)
         except (RouterUnavailable, RouterUnusable) as error:
             failure = error
-        # Neither sentence has anything of the stops.
+        # Neither sentence tells anything about the stops.
         _LOG.warning("%s", failure)
         raise failure from None
 

@@ -1,4 +1,4 @@
-"""The questions of one request to a routing engine, and what their answers come to."""
+"""The questions of one request to a routing engine, and the results of their answers."""
 
 from asyncio import TaskGroup, to_thread
 from collections.abc import Awaitable, Callable, Iterable, Iterator, Sequence
@@ -16,7 +16,7 @@ from service.roads.router import Array, Line, Location, NoWay, RouterInterface, 
 from service.roads.trails import Leg, trails
 from service.roads.transport import AT_ONCE, RouterTransport
 
-_PLACES_AT_ONCE = 100  # in one question about the nearest roads
+_PLACES_AT_ONCE = 100  # places in one question about the nearest roads
 _MOST_REFUSED = 32  # pairs that are found one by one, each by a dozen questions
 _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
@@ -99,7 +99,7 @@ class Questions:
         """Return the line of each leg of a trail; if the engine has none, ask for its halves."""
         answer = await self._transport.ask(self._router.ask_route(self._places_of(trail)))
         try:
-            # In a thread, because of ten thousands of small lines that it may be of.
+            # In a thread, because it may consist of tens of thousands of small lines.
             return await to_thread(
                 _understood, lambda: self._router.read_route(answer, len(trail) - 1)
             )
@@ -134,8 +134,8 @@ class Questions:
     async def _table(self, sources: _Indices, targets: _Indices) -> Array:
         """Return the costs of a block, shape (2, sources, targets).
 
-        An engine that refuses the whole block is asked for halves of it, until it is found between
-        which stops there is no way.
+        If the engine refuses the whole block, it is asked for halves of it, until the stops without
+        a way are found.
         """
         places = self._places_of(sources.tolist()), self._places_of(targets.tolist())
         answer = await self._transport.ask(self._router.ask_table(*places))
@@ -156,7 +156,7 @@ class Questions:
         return np.concatenate(halves, axis=2)
 
     def _refuse(self, origin: int, destination: int) -> None:
-        """Take note of a pair that the engine refuses; of too many, raise NoRoad."""
+        """Remember a pair that the engine refuses; if they are too many, raise NoRoad."""
         self._refused[origin, destination] = True
         if np.count_nonzero(self._refused) > _MOST_REFUSED:
             raise self._no_road(missing_ways(self._refused))
@@ -170,7 +170,7 @@ class Questions:
 
 
 async def _for_each(items: Iterable[_Item], do: Callable[[_Item], Awaitable[None]]) -> None:
-    """Do something with each item, a few at once. The first error ends all."""
+    """Call a function with each item, a few at once. The first error ends all calls."""
     left: Iterator[_Item] = iter(items)
 
     async def work() -> None:
@@ -191,7 +191,7 @@ def _parts(n: int, most: int) -> list[_Indices]:
 
 
 def _understood(read: Callable[[], _Result]) -> _Result:
-    """Return an answer that is read; where it is not understood, raise RouterUnusable."""
+    """Return an answer once read; raise RouterUnusable if it cannot be understood."""
     try:
         return read()
     except Unintelligible as error:

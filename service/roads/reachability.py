@@ -19,8 +19,8 @@ class MissingWay(NamedTuple):
 def missing_ways(missing: NDArray[np.bool_]) -> list[MissingWay]:
     """Return a missing way of each stop to leave out, at most MOST_FAULTS of them.
 
-    The stops are those with the most missing ways, each counted when the ones before it are left
-    out: nearly the fewest that can be.
+    The stops are those with the most missing ways, each counted without the stops already left out:
+    nearly the fewest possible.
 
     Args:
         missing: Whether there is no way from a stop (row) to another (column), shape (n, n).

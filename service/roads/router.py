@@ -16,12 +16,12 @@ DEFAULT_PROFILES: Mapping[RouterName, str] = {"valhalla": "auto", "osrm": "drivi
 
 @dataclass(frozen=True, kw_only=True)
 class RouterSettings:
-    """The routing engine of a service, and what may be spent on it.
+    """The routing engine of a service, and the limits of its use.
 
     Attributes:
         url: Its address, to which the paths of its services are added.
-        router: Whose interface it has.
-        profile: The means of transport, by the engine's own name.
+        router: The kind of its interface.
+        profile: The means of transport, in the engine's own words.
         snap: Metres that a stop may lie from a road.
         seconds: The time for all matrices of one request, or all streets of one.
         pairs: The most pairs of stops that the engine answers at once.
@@ -62,15 +62,15 @@ class Answer(NamedTuple):
 
 
 class Unintelligible(ValueError):
-    """An answer that is not of the engine's documented form, with what is wrong with it."""
+    """An answer that is not of the engine's documented form; the text says how."""
 
 
 class NoWay(Exception):
-    """The engine knows no way between some of the places asked about; it does not say which."""
+    """The engine knows no way between some of the places asked about, but does not say which."""
 
 
 class RouterInterface(Protocol):
-    """The interface of a routing engine: how to ask, and how to read what it answers.
+    """The interface of a routing engine: how to ask, and how to read the answers.
 
     Readers raise Unintelligible where an answer is not of the documented form.
     """
@@ -80,7 +80,7 @@ class RouterInterface(Protocol):
         """The most places that the engine finds a route through at once."""
 
     def ask_snapped(self, places: Sequence[Location]) -> Question:
-        """Return the question which roads are nearest to places."""
+        """Return the question for the roads nearest to places."""
 
     def read_snapped(self, answer: Answer, places: Sequence[Location]) -> Array:
         """Return how many metres each place, shape (n,), lies from its road; infinity: no road."""

@@ -1,4 +1,4 @@
-"""Lines of tours along the streets, joined of the lines of their legs."""
+"""Lines of tours along the streets, joined from the lines of their legs."""
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
@@ -60,9 +60,9 @@ class LegLines:
 
 
 def join_legs(ways: Sequence[Indices], lines: Mapping[Leg, Line]) -> list[Line]:
-    """Return the whole line of each way, shape (m,), of the lines of its legs, none empty.
+    """Return the whole line of each way, shape (m,), joined from the lines of its legs, none empty.
 
-    It has two places at least, and none twice in a row where it is longer.
+    A line has two or more places; a longer one has no place twice in a row.
     """
     return [_join(way, lines) for way in ways]
 

@@ -1,4 +1,4 @@
-"""Legs of tours, strung together so that few questions ask for the streets of all of them."""
+"""Join the legs of tours to trails, so that few questions ask for the streets of all legs."""
 
 from collections.abc import Iterable
 

@@ -1,7 +1,7 @@
 """Questions to a routing engine over HTTP: few at once, bounded answers, careful retries.
 
-Every byte of the engine is disbelieved: no redirect is followed, nothing is decompressed, and an
-answer is read no farther than it may be long. Addresses and bodies, which name places, are neither
+The engine is not trusted: no redirect is followed, nothing is decompressed, and no answer is read
+beyond its limit of bytes. Addresses and bodies, which name places, are neither
 logged nor quoted.
 """
 
@@ -53,11 +53,11 @@ class RouterTransport:
         )
 
     async def ask(self, question: Question) -> Answer:
-        """Return the engine's answer. Whoever calls bounds the time.
+        """Return the engine's answer. The caller bounds the time.
 
         Raises:
-            RouterUnavailable: Three attempts had no answer, or one that the engine is busy.
-            RouterUnusable: The answer is too long, or not one of a routing engine.
+            RouterUnavailable: Three attempts had no answer, or the answer that the engine is busy.
+            RouterUnusable: The answer is too long, or not from a routing engine.
         """
         for pause in _PAUSES:
             try:

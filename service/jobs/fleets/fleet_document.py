@@ -27,7 +27,7 @@ def encode_fleet(
 
     Args:
         front: The front.
-        actor: The name and digest of the network whose tours were cut into the first plans, if so.
+        actor: The name and digest of the network whose tours were cut into the first plans, if any.
         vehicles: The names of the types of vehicles.
         labels: The names of stops and objectives.
     """

@@ -34,8 +34,8 @@ def run_fleet(
         subject: The fleet.
         actor: The network whose tours are cut into the first plans.
         stop: Called often; planning ends soon after it returns True.
-        report: Called now and then with the progress, and with a function that writes the best so
-            many plans found so far.
+        report: Called now and then with the progress, and with a function that writes the n
+            best plans found so far.
 
     Raises:
         Refusal: No plan keeps every rule, or none was found.
@@ -61,8 +61,8 @@ def plan_front(
     stop: Callable[[], bool],
     report: ReportPlans,
 ) -> FleetFront:
-    """Return the front of plans of a fleet by the options of a task; else as `run_fleet`."""
-    # Here, so that a service or a worker starts without PyVRP.
+    """Return the front of plans of a fleet, with the options of a task, as `run_fleet` does."""
+    # Imported here, so that a service or a worker starts without PyVRP.
     from service.fleet.planner import FleetOptions, plan_fleet
 
     check_reference_point(task.options, partial(least_lengths, fleet), "plan")
@@ -76,7 +76,7 @@ def plan_front(
 
 
 def reporting(report: Report, encode: Callable[[FleetFront], FrontDocument]) -> ReportPlans:
-    """Return what reports fronts of plans, written so."""
+    """Return a function that reports fronts of plans, written by this function."""
 
     def report_encoded(progress: Progress, best: Callable[[int], FleetFront]) -> None:
         report(progress, lambda size: encode(best(size)))
@@ -85,7 +85,7 @@ def reporting(report: Report, encode: Callable[[FleetFront], FrontDocument]) -> 
 
 
 def identity_of(front: FleetFront, actor: NamedActor | None) -> dict[str, str] | None:
-    """Return the identity of the network whose tours were cut into plans of a front, if so."""
+    """Return the identity of the network whose tours were cut into plans of a front, if any."""
     return actor.info.identity if actor is not None and front.constructed else None
 
 

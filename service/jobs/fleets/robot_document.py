@@ -92,7 +92,7 @@ def empty_robot_plans(task: Task, subject: SharedCoverage) -> FrontDocument:
 
 
 def _kind_of_plans(subject: SharedCoverage) -> dict[str, Any]:
-    """Return the members of a document that tell plans from tours: objectives, and open routes."""
+    """Return the members of a document that only plans have: objectives, and open routes."""
     first, second = subject.over
     return {
         "closed": None if _returns(subject.coverage) else False,

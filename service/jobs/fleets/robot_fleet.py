@@ -1,4 +1,4 @@
-"""Robots that share the places of a map as a fleet: its stops, and what its plans mean on the map.
+"""Robots that share the places of a map as a fleet: its stops, and its plans as routes on the map.
 
 A robot that stands on a place has visited it, so the starts are depots. A place at which a robot
 ends has to be visited also where another robot comes by: such an end is a stop of its own, in the
@@ -33,7 +33,7 @@ class RobotFleet:
     robots: Sequence[Sequence[int]]
 
     def routes(self, plan: Plan) -> Iterator[tuple[int, Route]]:
-        """Yield each route of a plan with the robot that takes it: of like robots, the next."""
+        """Yield each route of a plan with its robot: the next of the robots that are alike."""
         free = [iter(robots) for robots in self.robots]
         return ((next(free[route.vehicle]), route) for route in plan.routes)
 
@@ -45,7 +45,7 @@ class RobotFleet:
 
 
 def robot_fleet(surveyed: Survey, over: tuple[Over, Over]) -> RobotFleet:
-    """Return the fleet of the robots of a survey, whose plans have lengths over their routes so."""
+    """Return the fleet of the robots of a survey; `over` gives the lengths of plans."""
     assert surveyed.instance.matrices is not None
     places, types = _stops_and_types(surveyed)
     vehicles = tuple(
@@ -64,7 +64,7 @@ def _stops_and_types(
     starts = {ends.start for ends in surveyed.robots}
     places = list(range(len(surveyed.places)))
     types: dict[tuple[int, int | None], list[int]] = {}
-    own_stops: dict[int, int] = {}  # of ends that are places to visit, too
+    own_stops: dict[int, int] = {}  # ends that are also places to visit
     for robot, (closed, start, end) in enumerate(surveyed.robots):
         assert start is not None
         if end is not None and end < surveyed.to_visit and end not in starts:

@@ -25,7 +25,7 @@ def run_robots(
     stop: Callable[[], bool],
     report: Report,
 ) -> FrontDocument:
-    """Return the front of plans of a task for several robots; arguments as of `run_fleet`.
+    """Return the front of plans of a task for several robots.
 
     Args:
         task: The task.
@@ -67,7 +67,7 @@ def _paths(
     most_cells: int,
     stop: Callable[[], bool],
 ) -> list[CoveragePath] | None:
-    """Return the path of each route; None where the task is stopped, which waits for none."""
+    """Return the path of each route; None if the task is stopped."""
     plans = [[fleet.way(route) for route in plan.routes] for plan in front.plans]
     try:
         return list(surveyed.paths_of_plans(plans, most_cells, stop))
