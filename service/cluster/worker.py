@@ -237,7 +237,7 @@ class _ProcessPool:
         self._draining = RawValue(ctypes.c_bool, False)
 
     def init_process(self, **_: Any) -> None:
-        """Make the worker of a process after its fork, which sessions and connections do not survive."""
+        """Make the worker of a process after its fork, which no session or connection survives."""
         try:
             self._record_worker = self._make_record_worker(lambda: self._draining.value)
             self._record_worker.start()
