@@ -74,7 +74,7 @@ PROBLEMS: Mapping[str, Problem] = {
     "too-many-cities": Problem(413, "{detail}"),
     "too-many-for-network": Problem(
         413,
-        "this {name} needs tours of a network, which builds tours of at most {limit} cities, got"
+        "{name} needs tours of a network, which builds tours of at most {limit} cities, got"
         " {actual}: give a time_limit above 0 and no preferences",
         _PLANNED,
     ),

@@ -44,7 +44,7 @@ def test_tours_are_bounded_by_the_stops_of_all() -> None:
 def test_of_more_cities_than_a_network_serves_its_tours_are_refused(members: Any) -> None:
     limits = replace(LIMITS, network_cities=N - 1)
     options = PlanRequest.model_validate(members).options()
-    with pytest.raises(Refusal, match="at most 11 cities, got 12: ask for a time_limit") as refused:
+    with pytest.raises(Refusal, match="at most 11 cities, got 12: give a time_limit") as refused:
         within_network(options, N, limits)
     assert (refused.value.status, refused.value.code) == (413, "too-many-for-network")
     assert (refused.value.limit, refused.value.actual) == (N - 1, N)
