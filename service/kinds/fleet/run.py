@@ -47,8 +47,8 @@ def plan_front(
     stop: Callable[[], bool],
     report: ReportPlans,
 ) -> FleetFront:
-    """Return the front of plans of a fleet, with the options of a task, as `run_fleet` does."""
-    # Imported here, so that a service or a worker starts without PyVRP.
+    """Return the front of plans of a fleet, with the options of a task."""
+    # Imported here so that a service or a worker starts without PyVRP.
     from service.fleet.planner import FleetOptions, plan_fleet
 
     check_reference_point(task.options, partial(least_lengths, fleet), "plan")
@@ -62,7 +62,7 @@ def plan_front(
 
 
 def reporting(report: Report, encode: Callable[[FleetFront], FrontDocument]) -> ReportPlans:
-    """Return a function that reports fronts of plans, written by this function."""
+    """Return a function that reports fronts of plans, as documents that `encode` makes."""
 
     def report_encoded(progress: Progress, best: Callable[[int], FleetFront]) -> None:
         report(progress, lambda size: encode(best(size)))
