@@ -1,4 +1,4 @@
-"""The names of both lengths and of all stops in what the command prints and draws."""
+"""The names of both lengths and of all stops, for printing and drawing."""
 
 from paretour import FleetFront, Front, RobotFront
 
@@ -10,7 +10,7 @@ AnyFront = Front | FleetFront | RobotFront
 
 
 def labels_of(front: AnyFront) -> tuple[str, ...]:
-    """Return the label of either length: the name of its objective with the unit, if it has any."""
+    """Return the labels of both lengths: the name of the objective, with its unit if it has one."""
     return LABELS if front.objectives is None else tuple(map(printable, _names(front)))
 
 
@@ -22,12 +22,12 @@ def _names(front: AnyFront) -> list[str]:
 
 
 def columns_of(front: Front) -> tuple[str, ...]:
-    """Return the headings of both lengths in a table for other programs."""
+    """Return the headings of both lengths in tables that other programs read."""
     return ("length_1", "length_2") if front.objectives is None else tuple(_names(front))
 
 
 def lengths_as_text(front: AnyFront, lengths: tuple[float, float]) -> str:
-    """Return both lengths of a tour as the end of a sentence, with names and units if any."""
+    """Return both lengths of a tour, with names and units if any, as the end of a sentence."""
     first, second = (f"{length:.6g}" for length in lengths)
     if front.objectives is None:
         return f"lengths {first} and {second}"
@@ -38,6 +38,6 @@ def lengths_as_text(front: AnyFront, lengths: tuple[float, float]) -> str:
 
 
 def ids_of(front: Front) -> Ids | None:
-    """Return the id of each stop, by its index; None where the answer does not name all."""
+    """Return the id of each stop, by its index; None if the answer does not name all stops."""
     ids = ids_in(front.document.get("stops"))
     return None if ids is None or len(ids) < front.tours.shape[1] else ids
