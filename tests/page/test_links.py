@@ -27,7 +27,7 @@ def test_a_link_opens_the_same_front_with_its_cities(planned: Page, browser: Bro
         expect(other.get_by_text("is drawn here while a search runs")).to_be_visible()
         other.goto(planned.url.partition("#")[0] + "#front=none")
         for told in ("#request-fault", "#waiting"):
-            expect(other.locator(told)).to_contain_text("has no front of this link any more")
+            expect(other.locator(told)).to_contain_text("no longer has the front of this link")
         assert other.get_by_label("Example").evaluate("choice => choice.selectedIndex") == 0
 
 
@@ -86,6 +86,6 @@ def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
     assert len(link) < 100
     with open_page(browser, link) as other:
         wait_until_planned(other)
-        expect(other.get_by_text("The link names a front alone")).to_be_visible()
+        expect(other.get_by_text("The link only names a front")).to_be_visible()
         expect(other.locator("#plane-1")).to_be_hidden()
         expect(other.get_by_label("A front of")).to_be_visible()

@@ -23,7 +23,7 @@ export class Growth {
   /** Shows rows of seconds and hypervolume. */
   show(growth) {
     this.#chart.setData([growth.map(([seconds]) => seconds), growth.map(([, grown]) => 100 * grown)]);
-    const drawn = growth.length > 1; // one row is no line
+    const drawn = growth.length > 1; // one row does not make a line
     this.#element.hidden = !drawn;
     this.#unknown.hidden = drawn;
     if (!drawn) return;

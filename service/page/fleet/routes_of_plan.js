@@ -6,7 +6,7 @@ const ROBOTS = { one: "Robot", many: "Robots", stops: "Places", listed: "Places 
 /** What a plan's routes are of, in words. Of places that robots visit none is left out. */
 export const wordsOf = ({ unassigned }) => (unassigned ? VEHICLES : ROBOTS);
 
-/** What each route is called: its robot, or its type of vehicle, with a number where several routes have one type. */
+/** The name of each route: its robot, or its type of vehicle, with a number if several routes have that type. */
 export function namesOf(routes) {
   const used = new Map();
   return routes.map((route) => {
@@ -31,7 +31,7 @@ export function visits(route, asked) {
   return stops.length - (ends ? ends.filter((end) => end != null).length : round ? 2 : 0);
 }
 
-/** Where a route was asked to start and end; undefined where that is not known. */
+/** Where the request wants a route to start and end; undefined if that is not known. */
 function endsOf({ vehicle, robot }, { vehicles = [], robots = [], closed }) {
   const type = vehicles.find(({ id }) => id === vehicle);
   if (type) return [type.start, type.end];

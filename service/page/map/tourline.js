@@ -1,4 +1,4 @@
-/** Draw a tour on a canvas of its own, so that choosing another tour redraws nothing else. */
+/** Draw a tour on its own canvas, so that choosing another tour redraws nothing else. */
 
 import { colour } from "../common/colours.js";
 import { drawArrows } from "./arrows.js";
@@ -24,7 +24,7 @@ export class TourLine extends CanvasLayer {
     this.#dash = dash;
   }
 
-  /** Draws a line through these, maybe along streets; none takes it away. */
+  /** Draws a line through these positions, maybe along streets; without positions, removes it. */
   show(latlngs, along = false) {
     this.lines = [latlngs];
     this.#along = along;

@@ -2,7 +2,7 @@
 
 /**
  * Marks an element while something is held over the page, and opens the files that are let go; of
- * folders, which a browser gives no content of, the name of the first is told.
+ * a browser gives no content of folders, so for these only the name of the first is passed on.
  */
 export function takeDropped(marked, openFiles, onFolder) {
   for (const kind of ["dragover", "drop"]) addEventListener(kind, (event) => event.preventDefault());

@@ -39,7 +39,7 @@ async function unpacked(text) {
     const bytes = Uint8Array.from(deflated, (character) => character.charCodeAt(0));
     return await through(bytes, new DecompressionStream("deflate-raw")).json();
   } catch {
-    return null; // a link that was cut short still names its front
+    return null; // a truncated link still names its front
   }
 }
 
