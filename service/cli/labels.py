@@ -10,7 +10,7 @@ AnyFront = Front | FleetFront | RobotFront
 
 
 def labels_of(front: AnyFront) -> tuple[str, ...]:
-    """Return the labels of both lengths: the name of the objective, with its unit if it has one."""
+    """Return the label of either length: the name of its objective with the unit, if it has any."""
     return LABELS if front.objectives is None else tuple(map(printable, _names(front)))
 
 
@@ -27,7 +27,7 @@ def columns_of(front: Front) -> tuple[str, ...]:
 
 
 def lengths_as_text(front: AnyFront, lengths: tuple[float, float]) -> str:
-    """Return both lengths of a tour, with names and units if any, as the end of a sentence."""
+    """Return both lengths of a tour as the end of a sentence, with names and units if any."""
     first, second = (f"{length:.6g}" for length in lengths)
     if front.objectives is None:
         return f"lengths {first} and {second}"

@@ -37,8 +37,8 @@ _TERMINATED: Mapping[str | None, str] = {
 class OutputFormat:
     """The format to print a front in, and the file to draw it into.
 
-    By default a terminal gets a chart and three tours, or all plans, and any other output gets a
-    table of all tours.
+    By default it is a chart with three tours on a terminal, and a table of all tours elsewhere.
+    Of plans the table stands under the chart as well.
     """
 
     as_json: bool = False
@@ -150,7 +150,7 @@ def print_chart(front: Front, console: Console) -> None:
 
 
 def front_summary(front: Front) -> str:
-    """Return a line about a front: its size, its hypervolume, and how its search ended."""
+    """Return a line about the size, the hypervolume and the end of a front's search."""
     found = f"{len(front.tours)} of {front.points} tours found"
     bound = front.hypervolume_bound
     most = "" if bound is None else f", and no front has more than {bound:.2%}"

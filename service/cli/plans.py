@@ -73,7 +73,7 @@ def plan_map(
     poses: Mapping[str, str | None] | None = None,
     robots: Sequence[str] = (),
 ) -> Plan:
-    """Return the plan for places on the map in a file; a second file may hold costs.
+    """Return the plan for places on the map in a file, maybe with costs in another.
 
     Args:
         file: The map, or a request.
@@ -103,7 +103,7 @@ def plan_map(
 
 
 def has_robots(plan: Plan) -> bool:
-    """Return whether a plan for a map is for several robots, so its front holds plans."""
+    """Return whether a plan for a map is for several robots, so that its front is of plans."""
     return bool(plan.request.get("robots"))
 
 

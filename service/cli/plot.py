@@ -22,7 +22,7 @@ def check_path(path: Path) -> None:
 
 
 def plot_front(front: Front, path: Path) -> None:
-    """Draw the lengths of every tour into a file, the first along x and the second along y."""
+    """Draw the lengths of every tour into a file, the first to the right and the second up."""
     figure = Figure(figsize=(6, 4.5), layout="constrained")
     axes = figure.add_subplot()
     first, second = front.lengths.T

@@ -20,7 +20,7 @@ ALWAYS: Span = (0.0, inf)
 
 
 def invalid(part: str, demand: str) -> Refusal:
-    """Return the refusal of a part of a fleet, such as vehicles/0/start, that breaks a demand."""
+    """Return the refusal of a part of a fleet, as vehicles/0/start, that misses a demand."""
     return Refusal("invalid-request", detail=f"{part} {demand}", pointer=f"/{part}")
 
 

@@ -48,7 +48,7 @@ def fleet(  # noqa: PLR0913  an option each
 
 
 def read_fleet(file: Path, vehicles: Path | None, options: dict[str, Any]) -> "Plan":
-    """Return the plan in a file, or in a file of stops and one of vehicles.
+    """Return the plan in a file, or in two of stops and vehicles.
 
     Options that are given replace its members.
 

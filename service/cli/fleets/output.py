@@ -13,7 +13,7 @@ FrontOfPlans = FleetFront | RobotFront
 
 
 def plans_as_rows(front: FrontOfPlans) -> list[tuple[object, ...]]:
-    """Return a row for each route: plan, lengths of the plan, vehicle or robot, stops."""
+    """Return a row for each route: its plan, the plan's lengths, who goes it, and its stops."""
     names = [each.name for each in front.objectives]
     who, where = ("robot", "places") if isinstance(front, RobotFront) else ("vehicle", "stops")
     rows: list[tuple[object, ...]] = [
@@ -32,7 +32,7 @@ def _plans(front: FrontOfPlans) -> Sequence[FleetPlan | RobotPlan]:
 
 
 def _members(route: FleetRoute | RobotRoute) -> tuple[str, str]:
-    """Return the vehicle or robot of a route, and its stops with spaces between."""
+    """Return who goes a route, and its stops with spaces between."""
     if isinstance(route, RobotRoute):
         return route.robot, " ".join(map(str, route.tour))
     return route.vehicle, csv_text([route.stops], delimiter=" ")

@@ -62,7 +62,7 @@ def plan_front(
 
 
 def reporting(report: Report, encode: Callable[[FleetFront], FrontDocument]) -> ReportPlans:
-    """Return a function that reports fronts of plans, as documents that `encode` makes."""
+    """Return a function that reports fronts of plans, written by this function."""
 
     def report_encoded(progress: Progress, best: Callable[[int], FleetFront]) -> None:
         report(progress, lambda size: encode(best(size)))

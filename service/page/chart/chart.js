@@ -61,7 +61,7 @@ export class FrontChart {
     return { index: this.#budget.index, said: this.#budget.said };
   }
 
-  /** Shows the network's front and the improved one, whose points can be clicked. */
+  /** Shows the network's front, the improved one, and lets the points of the latter be clicked. */
   show(alone, improved) {
     this.#front = improved.length ? improved : alone;
     this.#labels.show(this.#front, this.#objectives);

@@ -32,7 +32,7 @@ export class PlanView {
     this.show(plan);
   }
 
-  /** Shows a plan; hides everything if there is none, or for a tour. */
+  /** Shows a plan; hides everything where there is none, or a tour. */
   show(item) {
     const plan = isPlan(item) ? item : null;
     if (plan && plan === this.#plan) return;

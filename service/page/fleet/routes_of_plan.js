@@ -6,7 +6,7 @@ const ROBOTS = { one: "Robot", many: "Robots", stops: "Places", listed: "Places 
 /** What a plan's routes are of, in words. Of places that robots visit none is left out. */
 export const wordsOf = ({ unassigned }) => (unassigned ? VEHICLES : ROBOTS);
 
-/** The name of each route: its robot, or its type of vehicle, with a number if several routes have that type. */
+/** What each route is called: its robot, or its type of vehicle, with a number where several routes have one type. */
 export function namesOf(routes) {
   const used = new Map();
   return routes.map((route) => {

@@ -63,7 +63,7 @@ export class Fields {
     return { closed: false, ...(given.includes("start") ? {} : { start: null }) };
   }
 
-  /** Takes the settings from a request, and returns its other members. */
+  /** Takes the settings that a request names, and gives back its other members. */
   take(request, kind) {
     const rest = { ...request };
     this.#coverage.hidden = kind !== "grid";

@@ -14,10 +14,10 @@ const MOST_ROUNDED = 1500;
 export const kindOf = ({ vehicles, grid, matrices, coordinates, stops }) =>
   Array.isArray(vehicles) ? "fleet" : grid ? "grid" : matrices ? "matrices" : coordinates ? "coordinates" : stops ? "stops" : "unknown";
 
-/** Describes what was opened that cannot be typed. */
+/** In a few words, what was brought that cannot be typed. */
 export function described(asked) {
   const { grid, matrices, robots, places, stops, coordinates } = asked;
-  if (kindOf(asked) === "unknown") return "The link only names a front: the places of its stops are not known.";
+  if (kindOf(asked) === "unknown") return "The link names a front alone: where its stops lie is not known here.";
   if (kindOf(asked) === "fleet") return describedFleet(asked);
   if (stops || coordinates) return "";
   if (matrices) return `Two matrices of ${counted(matrices[0]?.length ?? 0, "stop", "stops")}.`;

@@ -15,7 +15,7 @@ const element = (id) => document.getElementById(id);
 
 const EDITED = ["stops", "coordinates"]; // kinds of instances whose stops can be moved and deleted on the map
 
-/** The maps to draw, as `mapsOf` returns them. */
+/** The maps that are drawn, as of `mapsOf`. */
 const placed = (instance, kind) =>
   ["stops", "fleet"].includes(kind) ? mapsOf(instance) : { drawn: kind === "coordinates" ? [0, 1] : [], rows: instance.coordinates ?? [] };
 
@@ -24,7 +24,7 @@ export class Maps {
   #ways = new Ways();
   #grid;
   #kind = "coordinates";
-  #drawn = [0, 1]; // the contents of the first map and of the second: see `mapsOf`
+  #drawn = [0, 1]; // what is drawn on the first map, and on the second: see `mapsOf`
   #tilesCredit = "";
   #streetsCredit = "";
   #onEarth = false;

@@ -40,7 +40,7 @@ export class Planning {
   /** Yields null each time that the service is not warm yet, and then the network's front. */
   async *#alone(request) {
     const { initial_tours, bound, ...body } = request.body;
-    // If the search follows, the network's tours come soonest without repairs. Plans have no repairs.
+    // Where the search follows, the network's tours come soonest without repairs, which plans have not.
     const soonest = body.time_limit === 0 || asksForPlans(body) ? {} : { repairs: 0 };
     try {
       yield* this.#patiently({ path: request.path, body: { ...body, time_limit: 0, ...soonest } });
