@@ -25,7 +25,7 @@ class SearchResult:
         points: The points.
         tours_at: Returns the tours, shape (k, n), of the points at indices, shape (k,). Copying a
             few is much faster than copying all, which may take a quarter of a GB.
-        terminated: How the search ended; None while it goes on.
+        terminated: How the search ended; None while it runs.
     """
 
     points: Array
@@ -98,11 +98,11 @@ class Front:
     Attributes:
         tours: One tour a row, shape (m, n).
         points: Their lengths, shape (m, 2).
-        found: The number of nondominated tours found, of which m were kept.
+        found: The number of nondominated tours found; m of these were kept.
         constructed: The number of tours that the network built.
         scale: The scale of the instance, shape (2,).
         reference_point: The reference point of the hypervolumes, shape (2,).
-        terminated: How the search ended; None while it goes on.
+        terminated: How the search ended; None while it runs.
         timings: Milliseconds by phase.
         bound: A hypervolume that no front of the instance exceeds, if it was asked for.
         gained: By how much the search increased the hypervolume of its initial tours.

@@ -161,7 +161,7 @@ Unknown = Annotated[
 RobotRadius = Annotated[float | None, Option(help="In metres.", show_default="0")]
 Spacing = Annotated[
     float | None,
-    Option(help="The width in metres of the squares in each of which a place is visited."),
+    Option(help="The distance of places in metres: one is visited in each square of this width."),
 ]
 CostLayer = Annotated[Path | None, Option(help="The second objective: CSV, a cost for each pixel.")]
 Paths = Annotated[

@@ -41,12 +41,12 @@ class FleetFront:
         fleet: The fleet.
         plans: The m plans.
         points: Their lengths, shape (m, 2).
-        found: The number of nondominated plans found, of which m were kept.
+        found: The number of nondominated plans found; m of these were kept.
         constructed: The number of plans that were cut from the tours of a network.
         scale: The unit of each objective, shape (2,).
         reference_point: The reference point of the hypervolume, shape (2,).
         hypervolume: The hypervolume of the plans kept.
-        terminated: How the search ended; None while it goes on.
+        terminated: How the search ended; None while it runs.
         timings: Milliseconds by phase.
     """
 

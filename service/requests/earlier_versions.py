@@ -81,7 +81,7 @@ _Step = tuple[Index, Index, Cost | None]
 class RestObjective(ObjectiveItem):
     """An objective with the costs of some steps changed, each as origin, destination and cost.
 
-    A cost is null where there is no way any more.
+    A cost is null if there is no longer a way.
     """
 
     changed: Annotated[list[_Step], Field(fail_fast=True)] = Field(default_factory=list)

@@ -142,7 +142,7 @@ def _tuples(value: Any) -> Any:
 
 
 def _arrays(content: bytes, begin: int) -> Iterator[NDArray[Any]]:
-    """Yield the arrays of a task, the first of which begins at this byte."""
+    """Yield the arrays of a task; the first one begins at this byte."""
     stream = BytesIO(content)
     stream.seek(begin)
     while stream.tell() < len(content):

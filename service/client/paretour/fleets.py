@@ -52,7 +52,7 @@ class FleetFront:
         status: The status of its job.
         plans: The m plans.
         lengths: Their lengths, shape (m, 2).
-        points: The number of nondominated plans found, of which these are returned.
+        points: The number of nondominated plans found; the front is a subset of these.
         hypervolume: The share of the box at the reference point that the plans dominate.
         reference_point: The reference point of the hypervolume, shape (2,); None while it is not
             known.

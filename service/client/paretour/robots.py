@@ -63,7 +63,7 @@ class RobotFront:
         plans: The m plans.
         lengths: Their lengths, shape (m, 2).
         places: The row and column of each place, shape (n, 2).
-        points: The number of nondominated plans found, of which these are returned.
+        points: The number of nondominated plans found; the front is a subset of these.
         hypervolume: The share of the box at the reference point that the plans dominate.
         objectives: Both objectives, as the service names them.
         terminated: Why the search ended; None while it runs.

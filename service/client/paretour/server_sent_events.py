@@ -15,7 +15,7 @@ _LINE_END = re.compile("\r\n|\r|\n")
 
 @dataclass(frozen=True)
 class ServerSentEvent:
-    """An event: its type, and its data, the lines of which are separated by line feeds."""
+    """An event: its type and its data. Lines of data are separated by line feeds."""
 
     type: str
     data: str

@@ -140,7 +140,7 @@ class Front:
         lengths: The lengths of each tour, shape (m, 2).
         angles: The direction of the lengths of each tour, in degrees, shape (m,).
         balances: 0 at the least first length of the tours, 1 at the least second, shape (m,).
-        points: The number of nondominated tours found, of which these are returned.
+        points: The number of nondominated tours found; the front is a subset of these.
         hypervolume: The share of the box at the reference point that the points found dominate.
         hypervolume_bound: The most that any front can have, if a bound was asked for.
         reference_point: The reference point of the hypervolume, shape (2,); None while it is not

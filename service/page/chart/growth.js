@@ -11,7 +11,7 @@ export class Growth {
   #unknown;
   #chart;
 
-  /** @param {HTMLElement} unknown stands in the chart's place where there is no growth to show */
+  /** @param {HTMLElement} unknown is shown in place of the chart if there is no growth */
   constructor(element, unknown) {
     this.#element = element;
     this.#unknown = unknown;

@@ -10,9 +10,9 @@ export class Placing {
 
   /**
    * @param {(row: number[]) => void} onCity called with each city that has all its places
-   * @param {(plane: number, place: number[] | null) => void} onWaiting called with a city that has one place
-   *   of two, and with null that there is none
-   * @param {{ once?: boolean }} options whether one city is all that is clicked
+   * @param {(plane: number, place: number[] | null) => void} onWaiting called with the place of a city
+   *   that has one of two places, and with null when there is no such city
+   * @param {{ once?: boolean }} options whether only one city is placed
    */
   constructor(button, help, onCity, onWaiting, { once = false } = {}) {
     this.#button = button;

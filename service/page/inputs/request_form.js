@@ -29,9 +29,9 @@ export class RequestForm {
   #objectives = UNNAMED; // as they are shown
 
   /**
-   * @param {Service} service that reads what is typed
+   * @param {Service} service reads what is typed
    * @param {(instance: object, fit: boolean) => void} onEdited called with other stops or costs
-   * @param {() => Promise<boolean>} settled has what was typed read, and tells why it cannot be
+   * @param {() => Promise<boolean>} settled reads what was typed, or shows why that is not possible
    */
   constructor(form, service, onEdited, settled) {
     this.#onEdited = onEdited;

@@ -12,8 +12,8 @@ export class CanvasLayer extends L.Layer {
   #ratio = 1; // the ratio of the screen's pixels to the map's
 
   /**
-   * @param {string} name of the canvas's class
-   * @param {string} pane of the map, in which it lies
+   * @param {string} name the canvas's class
+   * @param {string} pane the pane of the map to draw in
    */
   constructor(name, pane = "tours") {
     super();

@@ -14,9 +14,9 @@ export class Handling {
   #dragged = false; // whether the click to come is the end of a drag
 
   /**
-   * @param {L.Map} map whose stops these are
+   * @param {L.Map} map the map of the stops
    * @param {object} plane with `near(point, reach)`, the city at a point in pixels or null;
-   *   `pointOf(city)`; and `drag(city, point)` and `drop(city, point)`, told where one is put
+   *   `pointOf(city)`; and `drag(city, point)` and `drop(city, point)`, called with the place where a stop is put
    * @param {ChosenStop} chosen the stop that is chosen
    */
   constructor(map, plane, chosen) {

@@ -35,7 +35,7 @@ export class Maps {
 
   /**
    * @param {(plane: number, place: number[], only: boolean) => void} onClick called with the place where a plane was
-   *   clicked, in longitude and latitude where it is the only one
+   *   clicked, in longitude and latitude if it is the only one
    * @param {(plane: number, city: number, place: number[]) => void} onMove called with the place where a stop was put
    * @param {(city: number) => void} onDelete called with the stop to delete
    */

@@ -89,7 +89,7 @@ export class Plane {
     this.#showSurroundings();
   }
 
-  /** Draws places by name, and streets where there are no tiles, from now on; the next stops are shown with all of an `extent`. */
+  /** Draws named places, and streets without tiles, from now on; the next stops are shown with a whole `extent`. */
   surround(surroundings) {
     this.#surroundings = surroundings;
     this.#showSurroundings();

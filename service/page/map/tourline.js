@@ -4,8 +4,8 @@ import { colour } from "../common/colours.js";
 import { drawArrows } from "./arrows.js";
 import { CanvasLayer } from "./canvas_layer.js";
 
-// To fill wide lines is most of a frame where there is no graphics processor, and of hundreds of
-// cities narrow ones are clearer anyway.
+// Without a graphics processor, filling wide lines takes most of a frame; and for hundreds of cities narrow lines are
+// clearer anyway.
 const MANY = 150;
 const [WIDE, NARROW] = [2, 1]; // pixels
 
@@ -15,7 +15,7 @@ export class TourLine extends CanvasLayer {
   #along = false;
 
   /**
-   * @param {string} name of its colour, and of its class
+   * @param {string} name the name of its colour and of its class
    * @param {number[]} dash as a canvas takes it; lines without one have arrowheads
    */
   constructor(name, dash = []) {

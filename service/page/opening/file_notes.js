@@ -6,7 +6,7 @@ export class FileNotes {
 
   /**
    * @param {HTMLElement} status a live region, which is read out when it is filled
-   * @param {HTMLButtonElement} button that dismisses the notes
+   * @param {HTMLButtonElement} button dismisses the notes
    * @param {() => void} onDismissed called once that was pressed and is gone, and the focus with it
    */
   constructor(status, button, onDismissed) {

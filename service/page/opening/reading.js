@@ -7,7 +7,7 @@ import { Problem } from "../planning/service.js";
 import { withoutRoads } from "./roads.js";
 
 /**
- * What the form opens, the names of its objectives, and the file's name with what was taken for granted;
+ * The request that the form opens, the names of its objectives, and the file's name with the notes on it.
  * `roads` says whether the service has a routing engine.
  */
 export async function read(service, files, roads, signal) {

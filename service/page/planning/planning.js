@@ -103,7 +103,7 @@ export class Planning {
     yield { stage: answer.status, alone, answer: grown(alone, answer), growth };
   }
 
-  /** Ends the plan with the best front so far, or with none where there is no job yet. */
+  /** Ends the plan with the best front so far, or without a front if there is no job yet. */
   async stop() {
     if (this.#id) await this.#end(`front/${this.#id}`);
     else this.#left.abort();

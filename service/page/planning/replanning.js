@@ -3,8 +3,8 @@
 import { Problem } from "./service.js";
 
 /**
- * The stops of a front that may be replanned: all that there ever were, in the order in which they are
- * drawn. `keys` are what the service calls them, `names` what the page does.
+ * The stops of a front that can be replanned: all stops so far, also those visited, in the order in which
+ * they are drawn. `keys` are their names in the service, and `names` those on the page.
  */
 export class Way {
   constructor(instance, ids, cities) {

@@ -17,10 +17,10 @@ export class ExportButtons {
   #service;
 
   /**
-   * @param {Service} service that has the front
+   * @param {Service} service the service that has the front
    * @param {() => Promise<{ request: object, asked: object, example: string | null, objectives: object[],
-   *   picture: object, balance: number, driven: boolean } | null>} screen what is on the screen; the
-   *   example that it is; whether its lines can follow the streets; null where that cannot be read
+   *   picture: object, balance: number, driven: boolean } | null>} screen what is on the screen, the
+   *   file of its example, and whether its lines can follow the streets; null if the form cannot be read
    */
   constructor(service, screen) {
     this.#service = service;

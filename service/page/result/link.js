@@ -3,8 +3,8 @@
 const MOST = 16000; // characters, beyond which chats, mail and some servers cut addresses off
 
 /**
- * The link's fragment, with what was asked for deflated, and in base64 as addresses may hold it, or
- * with the file of the example that it is; `whole` says whether that was short enough to be in it.
+ * The link's fragment, with the file of the example, or with the request, deflated and in base64 for
+ * addresses. `whole` says whether the request was short enough to be in it.
  */
 export async function fragment(id, balance, asked, example = null) {
   const front = `#front=${encodeURIComponent(id)}${balance === undefined ? "" : `&balance=${Number(balance.toFixed(6))}`}`;

@@ -10,8 +10,8 @@ export class RoutedWay {
   #wanted = null; // the ways that are being requested
 
   /**
-   * @param {Service} service which has a routing engine
-   * @param {Ways} ways in which ways are kept
+   * @param {Service} service a service with a routing engine
+   * @param {Ways} ways stores the ways
    * @param {() => void} onFound called when new ways are known
    */
   constructor(service, ways, onFound) {
