@@ -22,8 +22,8 @@ FOLDERS = {
     "service/page": "The web page: plain JavaScript modules, which `main.js` puts together.",
     "service/page/chart": "The chart of the front and its labels; the slider; the growth of the"
     " hypervolume.",
-    "service/page/common": "Colours, the format of numbers, and the names of objectives and of what"
-    " a front holds.",
+    "service/page/common": "The kinds of plans, colours, the format of numbers, and the names of"
+    " objectives.",
     "service/page/fleet": "Fleets and robots: their request in the form, and the selected plan by"
     " vehicle.",
     "service/page/inputs": "The form: its fields, the table of stops, and stops clicked on a map.",
