@@ -4,10 +4,12 @@ import asyncio
 from collections.abc import Sequence
 
 import pytest
+from hypothesis import example, given
 
 from service.jobs.fair_queue import FairQueue
 from service.jobs.submission import Submission
 from tests.helpers.scripted_runner import task
+from tests.helpers.turns import EVENTS, clients_by_policy
 
 
 def turns(before: str, then: str, taken: int = 1, served: Sequence[str] = ()) -> str:
@@ -53,6 +55,24 @@ def test_the_next_is_of_the_client_whose_turn_is_longest_ago(
 
 def test_a_client_that_is_served_waits_behind_those_that_are_not() -> None:
     assert turns("ab", "aabb", 2, served="a") == "abbbaa"
+
+
+@given(events=EVENTS)
+@example("aaa.b.-.c..")
+def test_turns_follow_the_policy(events: str) -> None:
+    async def take() -> str:
+        queue, running, turns = FairQueue(), list[str](), ""
+        for number, event in enumerate(events):
+            if event == "-":
+                del running[:1]
+            elif event != ".":
+                queue.append(Submission(number, task(), lambda: None, True, event))
+            elif len(queue):
+                running.append(queue.take(running).client)
+                turns += running[-1]
+        return turns
+
+    assert asyncio.run(take()) == clients_by_policy(events)
 
 
 def test_turns_of_many_clients_take_little_memory() -> None:
