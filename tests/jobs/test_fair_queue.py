@@ -25,10 +25,10 @@ def turns(before: str, then: str, taken: int = 1, served: Sequence[str] = ()) ->
     async def take() -> str:
         queue = FairQueue()
         for number, client in enumerate(before):
-            queue.append(Submission(number, task(), lambda: None, True, client))
+            queue.append(Submission(number, task(), lambda: None, client))
         order = [queue.take().client for _ in range(taken)]
         for number, client in enumerate(then, len(before)):
-            queue.append(Submission(number, task(), lambda: None, True, client))
+            queue.append(Submission(number, task(), lambda: None, client))
         while len(queue):
             following = queue.next(served)
             assert queue.take(served) is following
@@ -66,7 +66,7 @@ def test_turns_follow_the_policy(events: str) -> None:
             if event == "-":
                 del running[:1]
             elif event != ".":
-                queue.append(Submission(number, task(), lambda: None, True, event))
+                queue.append(Submission(number, task(), lambda: None, event))
             elif len(queue):
                 running.append(queue.take(running).client)
                 turns += running[-1]
@@ -79,7 +79,7 @@ def test_turns_of_many_clients_take_little_memory() -> None:
     async def take() -> int:
         queue = FairQueue()
         for number in range(3000):
-            submission = Submission(number, task(), lambda: None, True, str(number))
+            submission = Submission(number, task(), lambda: None, str(number))
             queue.append(submission)
             queue.take()
         return len(queue._turns)
