@@ -23,9 +23,9 @@ class SearchResult:
 
     Args:
         points: The points.
-        tours_at: Returns the tours, shape (k, n), of the points at indices, shape (k,). To copy
-            those of a few takes far less than all, which can be a quarter of a GB.
-        terminated: How the search ended; None while it goes on.
+        tours_at: Returns the tours, shape (k, n), of the points at indices, shape (k,). Copying a
+            few is much faster than copying all, which may take a quarter of a GB.
+        terminated: How the search ended; None while it runs.
     """
 
     points: Array
@@ -40,7 +40,7 @@ class SearchResult:
 
 @dataclass(frozen=True)
 class Progress:
-    """The state of a search that goes on: seconds, hypervolume and nondominated points so far."""
+    """The state of a running search: seconds, hypervolume and nondominated points so far."""
 
     seconds: float
     hypervolume: float
@@ -63,25 +63,28 @@ class PlanOptions:
     """The options of plan(...).
 
     Args:
-        angles: Of the preferences for which tours are constructed, in degrees, shape (k,).
-        fewer: Whether within a time limit fewer preferences will do: at most k, evenly spread, as
-            many as fit into the network's share of it.
+        angles: The angles of the preferences for which tours are constructed, in degrees, shape
+            (k,).
+        fewer: Whether a time limit may reduce the number of preferences: to as many, evenly spread,
+            as fit into the network's share of it, but at most k.
         size: The greatest number of tours of the front.
         start: The city from which every closed tour is reported.
-        reference_point: Of the hypervolume, shape (2,), in the instance's units; by default
-            the instance's.
+        reference_point: The reference point of the hypervolume, shape (2,), in the instance's
+            units; by default that of the instance.
         time_limit: Seconds for construction, search and selection together, not for the bound;
             at 0 there is no search.
-        initial_tours: Shape (m, n): tours that the front shall dominate or equal as well.
+        initial_tours: Tours, shape (m, n), each of which the front must dominate or equal.
         bound: Whether to compute an upper bound on the hypervolume of any front.
-        seed: Of the search's random choices.
-        touched: Where the initial tours are of an earlier front: the cities at which they may have
-            become worse. The search sets out from these tours alone then, and looks there first.
-        repairs: How often the constructor repairs each of its tours, at most; with a time limit
-            only as often as is estimated to fit.
-        fewer_repairs: Whether as many repairs will do as are worth their time at this size.
-        choose_again: Called with what was found and the indices of the best subset of the size:
-            returns those of the tours to report. None reports the best subset.
+        seed: The seed of the search's random choices.
+        touched: Only with initial tours of an earlier front: the cities at which they may have
+            become worse. The search then starts from these tours alone, and tries these cities
+            first.
+        repairs: The most repairs of each constructed tour; with a time limit, only as many as are
+            estimated to fit.
+        fewer_repairs: Whether the planner may make fewer repairs: as many as are worth their time
+            at this size.
+        choose_again: Called with the result of the search and the indices of its best subset.
+            Returns the indices of the tours to report. None reports the best subset.
     """
 
     angles: Array
@@ -106,16 +109,17 @@ class Front:
     Attributes:
         tours: One tour a row, shape (m, n).
         points: Their lengths, shape (m, 2).
-        found: The number of nondominated tours found, of which m were kept.
+        found: The number of nondominated tours found; m of these were kept.
         constructed: The number of tours that the network built.
-        scale: Of the instance, shape (2,).
-        reference_point: Of the hypervolumes, shape (2,).
-        terminated: How the search ended; None while it goes on.
+        scale: The scale of the instance, shape (2,).
+        reference_point: The reference point of the hypervolumes, shape (2,).
+        terminated: How the search ended; None while it runs.
         timings: Milliseconds by phase.
-        bound: A hypervolume that no front of the instance exceeds, where it was asked for.
-        gained: The hypervolume that the search added to that of the tours it was given.
+        bound: A hypervolume that no front of the instance exceeds, if it was asked for.
+        gained: By how much the search increased the hypervolume of its initial tours.
         closed: Whether the tours return to where they began.
-        kept: The share of a driven tour's legs that each tour keeps, shape (m,), when replanned.
+        kept: In a replanned front, the share of the driven tour's legs that each tour keeps, shape
+            (m,).
     """
 
     tours: NDArray[np.integer]

@@ -1,1 +1,1 @@
-"""The command `paretour`."""
+"""The command `paretour`: a module for each command, its options, and how it prints and plots."""

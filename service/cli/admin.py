@@ -31,7 +31,7 @@ def run_alive() -> None:
     """Exit with 0 if the worker on this machine takes tasks, with EXIT_STALLED if it does not."""
     with exit_on_error():
         if not load_with(takes_work, load_settings()):
-            raise exit_with("no worker of this machine takes what waits", EXIT_STALLED)
+            raise exit_with("no worker on this machine takes waiting tasks", EXIT_STALLED)
 
 
 def run_key(caller: str) -> None:

@@ -51,7 +51,7 @@ def backend_for(url: str | None, api_key: str | None) -> Backend:
 
 @dataclass(frozen=True)
 class RemoteBackend:
-    """A service at a URL, which is told what to plan as a job."""
+    """A service at a URL, which plans as a job."""
 
     url: str
     api_key: str | None
@@ -88,8 +88,8 @@ class RemoteBackend:
 class LocalBackend:
     """This process.
 
-    The service's own modules are imported where they are needed: they take a second and load the
-    compiler, which a command does not wait for that is refused or has a URL.
+    The service's own modules are imported where they are needed. They take a second and load the
+    compiler, and a command with an error or with a URL need not wait for that.
     """
 
     def front(self, plan: Plan, console: Console) -> Front:

@@ -1,7 +1,7 @@
 """The commands of `paretour`, with their arguments and options.
 
-Each command imports the modules that it needs when it runs, so that --help, and the refusal of an
-option, come at once.
+Each command imports the modules that it needs when it runs, so that --help and errors in options
+are fast.
 """
 
 from functools import partial
@@ -44,9 +44,9 @@ from service.cli.replan import replan
 app = Typer(
     name="paretour",
     help="Tours under two objectives: the whole front of trade-offs.",
-    epilog="Results go to stdout, all else to stderr. Exit codes: 0 a front, also where Ctrl-C"
+    epilog="Results go to stdout, all else to stderr. Exit codes: 0 a front, even if Ctrl-C"
     " ended its search; 1 a fault of paretour; 2 a wrong command, file or request; 3 a service that"
-    " cannot be reached, lets nobody in, or fails; 130 Ctrl-C before there was a front.",
+    " cannot be reached, refuses the key, or fails; 130 Ctrl-C before there was a front.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
@@ -65,7 +65,7 @@ def options(
         Option("--version", help="Print the version.", callback=_print_version, is_eager=True),
     ] = False,
 ) -> None:
-    """Take the options that stand before a command."""
+    """Read the options before the command."""
 
 
 @app.command()
@@ -196,10 +196,13 @@ def work(
     workers: Workers = None,
     alive: Annotated[
         bool,
-        Option("--alive", help="Only say, by exit code 0 or 1, if what works here takes work."),
+        Option(
+            "--alive",
+            help="Only check this machine: exit with 0 if a worker takes tasks, else with 1.",
+        ),
     ] = False,
 ) -> None:
-    """Plan what services with the same PARETOUR_REDIS_URL ask for; needs the extra cluster."""
+    """Plan tasks of services with the same PARETOUR_REDIS_URL; needs the extra cluster."""
     from service.cli.admin import run_alive, run_work
 
     if alive:
@@ -210,7 +213,7 @@ def work(
 
 @app.command()
 def key(
-    caller: Annotated[str, Argument(help="Who will show the key.")],
+    caller: Annotated[str, Argument(help="The name of the caller who will use the key.")],
 ) -> None:
     """Make an API key for a caller, and the entry for PARETOUR_API_KEYS that lets it in."""
     from service.cli.admin import run_key

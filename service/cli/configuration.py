@@ -1,4 +1,4 @@
-"""Load the settings, and what they name, with a UsageError where that fails."""
+"""Load the settings and the files that they name; raise UsageError if that fails."""
 
 import os
 import re
@@ -14,11 +14,11 @@ T = TypeVar("T")
 _PASSWORD = re.compile(
     r"(//)[^/]*@|((?:password|[?&][^=&\s']*)=)[^&\s']+", re.IGNORECASE
 )  # of a URL
-_SECRET = "api_keys"  # the setting of which nothing is shown
+_SECRET = "api_keys"  # the setting whose value is never shown
 
 
 def load_settings(**options: Any) -> Settings:
-    """Return the settings, with those options in place that are not None.
+    """Return the settings; an option that is not None replaces its setting.
 
     Raises:
         UsageError: A setting has a wrong value, or a variable is not a setting.
@@ -32,7 +32,7 @@ def load_settings(**options: Any) -> Settings:
 
 
 def load_with(load: Callable[[Settings], T], settings: Settings) -> T:
-    """Return what a function loads or builds by the settings.
+    """Return the result of a function that loads or builds something from the settings.
 
     Raises:
         UsageError: A file that the settings name is missing or wrong, or they lack one.
@@ -44,7 +44,7 @@ def load_with(load: Callable[[Settings], T], settings: Settings) -> T:
 
 
 def _sentence(error: ValidationError, options: Mapping[str, Any]) -> str:
-    """Return what is wrong, with options and variables named as the operator wrote them."""
+    """Return what is wrong, naming options and variables as the operator wrote them."""
     return "; ".join(
         f"{_written(fault['loc'], options)}: {fault['msg'].removeprefix('Value error, ')}"
         + ("" if fault["loc"][0] == _SECRET else f", got {_masked(repr(fault['input']))}")
@@ -53,7 +53,7 @@ def _sentence(error: ValidationError, options: Mapping[str, Any]) -> str:
 
 
 def _masked(text: str) -> str:
-    """Return a text with *** in place of the passwords of URLs, and of what follows their =."""
+    """Return a text with *** in place of passwords in URLs and of values in their queries."""
     return _PASSWORD.sub(lambda found: "//***@" if found[1] else f"{found[2]}***", text)
 
 

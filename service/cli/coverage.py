@@ -66,7 +66,7 @@ def coverage(  # noqa: PLR0913  an option each
         "robot_radius": robot_radius,
         "spacing": spacing,
         "unknown": unknown,
-        # A picture of tours is one of their paths.
+        # The picture shows the paths of tours.
         "paths": True if plot is not None else paths,
         "time_limit": time_limit,
         "size": size,

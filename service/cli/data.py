@@ -1,4 +1,4 @@
-"""Print data on stdout: as it is for another program, and harmless on a terminal."""
+"""Print data on stdout: unchanged for another program, and harmless on a terminal."""
 
 import csv
 import io
@@ -11,14 +11,14 @@ from service.errors.printable import printable, printable_lines
 
 def print_data(text: str) -> None:
     """Print a text and the end of its line."""
-    # Not by typer.echo: it takes out what looks like an escape sequence from what goes to a file.
+    # Not with typer.echo, which removes everything like an escape sequence when stdout is a file.
     shown = printable_lines(text) if sys.stdout.isatty() else text
     sys.stdout.write(shown + "\n")
     sys.stdout.flush()
 
 
 def print_csv(rows: Iterable[Iterable[object]], delimiter: str = ",") -> None:
-    """Print rows as CSV, on a terminal each in one line, whatever its fields hold."""
+    """Print rows as CSV; on a terminal each row is one line, even if a field has line breaks."""
     if sys.stdout.isatty():
         rows = [
             [printable(each) if isinstance(each, str) else each for each in row] for row in rows
@@ -29,8 +29,8 @@ def print_csv(rows: Iterable[Iterable[object]], delimiter: str = ",") -> None:
 def csv_text(rows: Iterable[Iterable[object]], delimiter: str = ",") -> str:
     """Return rows as CSV, without the end of the last line.
 
-    A field is quoted where it has a quotation mark, a delimiter or the end of a line in it: Python
-    3.11 does not quote a carriage return, which other programs read as the end of a line.
+    A field is quoted if it has a quotation mark, a delimiter or a line break in it. Python 3.11
+    alone would not quote a carriage return, which other programs read as a line break.
     """
     text = io.StringIO()
     for row in rows:

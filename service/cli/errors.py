@@ -1,4 +1,4 @@
-"""The errors that a caller can cause, and the exit codes that the command ends with."""
+"""The errors that a caller can cause, and the exit codes of the command."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,10 +10,10 @@ from paretour import Refused, UnexpectedAnswer
 from service.errors.printable import printable
 from service.files.reading import UnreadableFile
 
-EXIT_STALLED = 1  # of `paretour work --alive`
+EXIT_STALLED = 1  # if `paretour work --alive` finds no working worker
 EXIT_USAGE = 2
 EXIT_UNAVAILABLE = 3
-_NOT_THE_REQUEST = (401, 403, 408, 429)  # refusals that another request would meet too
+_NOT_THE_REQUEST = (401, 403, 408, 429)  # errors that any other request would get, too
 
 
 class UsageError(Exception):
@@ -22,7 +22,7 @@ class UsageError(Exception):
 
 @contextmanager
 def exit_on_error() -> Iterator[None]:
-    """End the command with a sentence and an exit code where the block raises an expected error.
+    """End the command with a sentence and an exit code if the block raises an expected error.
 
     Raises:
         typer.Exit: In place of the error.
@@ -32,14 +32,14 @@ def exit_on_error() -> Iterator[None]:
     except (UsageError, UnreadableFile) as error:
         raise exit_with(str(error), EXIT_USAGE) from None
     except OSError as error:
-        if error.filename is None:  # of no file
+        if error.filename is None:  # not about a file
             raise
         raise exit_with(f"{error.filename}: {error.strerror}", EXIT_USAGE) from None
     except Refused as error:
         faulty = 400 <= error.status < 500 and error.status not in _NOT_THE_REQUEST
         raise exit_with(str(error), EXIT_USAGE if faulty else EXIT_UNAVAILABLE) from None
     except UnexpectedAnswer as error:
-        raise exit_with(f"the service answers oddly: {error}", EXIT_UNAVAILABLE) from None
+        raise exit_with(f"the service's answer is wrong: {error}", EXIT_UNAVAILABLE) from None
     except httpx.TransportError as error:
         raise exit_with(f"the service does not answer: {error}", EXIT_UNAVAILABLE) from None
 

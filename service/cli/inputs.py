@@ -1,4 +1,4 @@
-"""Read the files that a command is given, and say what was taken for granted."""
+"""Read the files given to a command, and print what was assumed about them."""
 
 import os
 import stat
@@ -21,16 +21,16 @@ from service.files.stop_tables import numbers_of
 Array = NDArray[np.float64]
 Ids = tuple[str, ...]
 STANDARD_INPUT = Path("-")
-_MOST_BYTES = 2**28  # of a file
-_MATRIX_CITIES = 3000  # whose costs are written out here; the service may allow fewer
+_MOST_BYTES = 2**28  # in a file
+_MATRIX_CITIES = 3000  # the most cities with a matrix here; the service may allow fewer
 
 
 def read_request(
     files: Sequence[Path], kind: Kind = "front", *, unrounded: bool = False
 ) -> tuple[Request, Ids | None]:
-    """Return the request of a kind in one file, or in two, with one objective each; and its ids.
+    """Return the request in one file, or in two with an objective each; and the ids of its stops.
 
-    Notes on what was taken for granted go to stderr. A file named - is standard input.
+    Notes on what was assumed go to stderr. A file named - is standard input.
 
     Raises:
         UnreadableFile: A file cannot be read; the message names it.
@@ -45,11 +45,11 @@ def read_request(
 def check_inputs(*files: Path | None) -> None:
     """Raise UnreadableFile if two files are standard input, which can be read once."""
     if files.count(STANDARD_INPUT) > 1:
-        raise UnreadableFile("standard input can be one of both files, not both")
+        raise UnreadableFile("only one of the two files can be standard input")
 
 
 def ids_in(stops: object) -> Ids | None:
-    """Return the id of each stop of a request or an answer; None where one has none."""
+    """Return the id of each stop of a request or an answer; None if a stop has no id."""
     if not isinstance(stops, list):
         return None
     ids = [stop.get("id") if isinstance(stop, dict) else None for stop in stops]
@@ -57,7 +57,7 @@ def ids_in(stops: object) -> Ids | None:
 
 
 def _request_in(files: Sequence[NamedFile], kind: Kind, unrounded: bool = False) -> Request:
-    """Return the request of a kind in files, and print what was taken for granted."""
+    """Return the request in files, and print what was assumed about them."""
     reading = read_files(files, _bounds(), wanted=kind, unrounded=unrounded)
     for note in reading.notes:
         echo(f"{note.file}: {note.text}", err=True)
@@ -72,11 +72,11 @@ def _request_in(files: Sequence[NamedFile], kind: Kind, unrounded: bool = False)
 
 
 def read_map(path: Path) -> tuple[Request, bytes | None]:
-    """Return the request in a JSON file, or what goes beside a picture, and the picture.
+    """Return the request in a JSON file, or the members and the picture of a map.
 
-    A picture is a PNG or PGM file, or that of a map.yaml of ROS, which says how to read it. JSON
-    may be a message nav_msgs/OccupancyGrid as well. Standard input, a file named -, is a picture or
-    JSON.
+    A picture is a PNG or PGM file, or is named by a map.yaml of ROS, which says how to read it.
+    JSON may also be a message nav_msgs/OccupancyGrid. Standard input, a file named -, is a picture
+    or JSON.
 
     Raises:
         UnreadableFile: The file is none of these; the message names it.
@@ -99,7 +99,7 @@ def read_object(path: Path) -> Request:
     """Return the members of a request in a JSON file, or in standard input for a file named -.
 
     Raises:
-        UnreadableFile: The file is no JSON object; the message names it.
+        UnreadableFile: The file is not a JSON object; the message names it.
         OSError: There is no such file.
     """
     return object_in(Source(_content(path), _bounds()))
@@ -109,7 +109,7 @@ def read_layer(path: Path) -> Array:
     """Return the costs on a map in a CSV file, a row for each row of its cells.
 
     Raises:
-        UnreadableFile: The file is no table of numbers; the message names it.
+        UnreadableFile: The file is not a table of numbers; the message names it.
         OSError: There is no such file.
     """
     return np.array(numbers_of(*read_table(_content(path), _bounds())))
@@ -126,7 +126,7 @@ def _content(path: Path) -> NamedFile:
         return NamedFile("standard input", _bounded(sys.stdin.buffer, "standard input"))
     with open(path, "rb", opener=_without_waiting) as file:
         piped = stat.S_ISFIFO(os.fstat(file.fileno()).st_mode)
-        begin = file.raw.read(1) if piped else b""  # None where a program has written nothing yet
+        begin = file.raw.read(1) if piped else b""  # None if no program has written yet
         if piped and begin == b"":
             raise UnreadableFile(f"{path}: must be a file, or a pipe that a program writes into")
         os.set_blocking(file.fileno(), True)
@@ -134,7 +134,7 @@ def _content(path: Path) -> NamedFile:
 
 
 def _without_waiting(path: str, flags: int) -> int:
-    """Open a file; a pipe at once, whether or not a program writes into it."""
+    """Open a file; do not wait for a program to open the other end of a pipe."""
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
@@ -146,9 +146,9 @@ def _bounded(file: BinaryIO, name: str) -> bytes:
 
 
 def _as_arrays(matrices: object) -> object:
-    """Return matrices as an array, which is sent as a file, where it can hold all their costs."""
+    """Return matrices as an array, which is sent as a file, if it can hold all their costs."""
     try:
         array = np.array(matrices, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        return matrices  # with null in it, or whatever the service refuses
+        return matrices  # they have null in them, or values that the service refuses
     return array if array.ndim == 3 and np.isfinite(array).all() else matrices

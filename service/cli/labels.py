@@ -1,4 +1,4 @@
-"""The names of both lengths and of all stops in what the command prints and draws."""
+"""The names of both lengths and of all stops, for printing and drawing."""
 
 from paretour import FleetFront, Front, RobotFront
 
@@ -22,7 +22,7 @@ def _names(front: AnyFront) -> list[str]:
 
 
 def columns_of(front: Front) -> tuple[str, ...]:
-    """Return the headings of both lengths in a table for other programs."""
+    """Return the headings of both lengths in tables that other programs read."""
     return ("length_1", "length_2") if front.objectives is None else tuple(_names(front))
 
 
@@ -38,6 +38,6 @@ def lengths_as_text(front: AnyFront, lengths: tuple[float, float]) -> str:
 
 
 def ids_of(front: Front) -> Ids | None:
-    """Return the id of each stop, by its index; None where the answer does not name all."""
+    """Return the id of each stop, by its index; None if the answer does not name all stops."""
     ids = ids_in(front.document.get("stops"))
     return None if ids is None or len(ids) < front.tours.shape[1] else ids

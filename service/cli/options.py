@@ -1,57 +1,61 @@
-"""Arguments and options of the commands. A default shown is the service's own."""
+"""Arguments and options of the commands. The defaults shown are those of the service."""
 
 from pathlib import Path
 from typing import Annotated
 
 from typer import Argument, Option
 
-ANY = "any"  # the value of --start where any city will do: null in a request
+ANY = "any"  # --start at any city; in a request this is null
 
 
 File = Annotated[
     Path,
     Argument(
         help="JSON: a request, or its coordinates. GeoJSON: stops, as points. CSV or XLSX: stops"
-        " with columns lon and lat, or four numbers for each city, x and y in the plane of either"
-        " objective. Or, with a second file, the first objective. - is standard input."
+        " with columns lon and lat, or four numbers for each city: x and y in the plane of each"
+        " objective. With a second file: the first objective. - is standard input."
     ),
 ]
 SecondFile = Annotated[
     Path | None,
     Argument(
-        help="The second objective. Either file is a table, x and y for each city or a matrix of"
-        " costs, or TSPLIB's."
+        help="The second objective. Each file is a table (x and y for each city, or a matrix of"
+        " costs) or a file of TSPLIB."
     ),
 ]
 FleetFile = Annotated[
     Path,
     Argument(
         metavar="FILE",
-        help="JSON: a request, as for POST /fleet, or VROOM's. CSV or XLSX: stops with demands or"
-        " windows. CVRPLIB, Solomon's, Li and Lim's. - is standard input.",
+        help="JSON: a request for POST /fleet, or a problem of VROOM. CSV or XLSX: stops with"
+        " demands or windows. CVRPLIB, Solomon, Li and Lim. - is standard input.",
     ),
 ]
 VehiclesFile = Annotated[
     Path | None,
     Argument(
         metavar="VEHICLES",
-        help="CSV or XLSX: vehicles, with their capacities, shifts and places, where FILE is a"
+        help="CSV or XLSX: vehicles, with their capacities, shifts and places, if FILE is a"
         " table of stops.",
     ),
 ]
 TimeLimit = Annotated[
-    float | None, Option(help="Seconds of search; 0 takes the network's tours.", show_default="1.0")
+    float | None,
+    Option(help="Seconds of search; 0 takes the tours of the network.", show_default="1.0"),
 ]
 Angles = Annotated[
-    str | None, Option(help="Angles in degrees for the network to look along, as 10,45,80.")
+    str | None,
+    Option(help="Angles in degrees for which the network builds tours, such as 10,45,80."),
 ]
-Size = Annotated[int | None, Option(help="The most tours to give.", show_default="100")]
-Start = Annotated[int | None, Option(help="The city to report tours from.", show_default="0")]
+Size = Annotated[int | None, Option(help="The most tours to return.", show_default="100")]
+Start = Annotated[
+    int | None, Option(help="The city at which reported tours begin.", show_default="0")
+]
 StartOrId = Annotated[
     str | None,
     Option(
         "--start",
-        help="The city to report tours from, by index or id; with --open the start, or `any`.",
+        help="The city at which reported tours begin, by index or id; with --open also `any`.",
         show_default="0",
     ),
 ]
@@ -68,43 +72,47 @@ Repairs = Annotated[
     int | None,
     Option(
         help="How often the network repairs each of its tours.",
-        show_default="with --time-limit 0 by the number of cities, else 0",
+        show_default="depends on the number of cities with --time-limit 0, else 0",
     ),
 ]
-Seed = Annotated[int | None, Option(help="Of all that is random.", show_default="0")]
+Seed = Annotated[int | None, Option(help="The seed of all random choices.", show_default="0")]
 ActorName = Annotated[str | None, Option("--actor", help="The network, one of `paretour actors`.")]
 Unrounded = Annotated[
     bool,
     Option(
         "--unrounded",
-        help="Plan in the planes of two EUC_2D files, not with distances rounded as TSPLIB says.",
+        help="Plan in the planes of two EUC_2D files, without rounding distances as TSPLIB does.",
     ),
 ]
 AsJson = Annotated[bool, Option("--json", help="Print the answer as the service gives it.")]
 AsTable = Annotated[
-    bool, Option("--table", help="Print all tours on a terminal too, not a chart and three tours.")
+    bool,
+    Option("--table", help="On a terminal, print all tours instead of a chart and three tours."),
 ]
 AsCsv = Annotated[bool, Option("--csv", help="Print a line for each tour.")]
 Angle = Annotated[
     float | None,
-    Option(min=0, max=90, help="The tour nearest to this: near 0 the second length is small."),
+    Option(
+        min=0, max=90, help="The tour nearest to this angle: near 0 the second length is small."
+    ),
 ]
 Balance = Annotated[
     float | None,
     Option(
         min=0,
         max=1,
-        help="The tour nearest to this: 0 at the least first length, 1 at the least second.",
+        help="The tour nearest to this balance: 0 at the least first length, 1 at the second.",
     ),
 ]
 FirstAtMost = Annotated[
-    float | None, Option(help="The least second length of which the first is within this.")
+    float | None, Option(help="The least second length, with at most this first length.")
 ]
 SecondAtMost = Annotated[
-    float | None, Option(help="The least first length of which the second is within this.")
+    float | None, Option(help="The least first length, with at most this second length.")
 ]
 Knee = Annotated[
-    bool, Option("--knee", help="The least sum of both lengths, each in the front's own box.")
+    bool,
+    Option("--knee", help="The least sum of both lengths, each scaled to 0 to 1 over the front."),
 ]
 Plot = Annotated[Path | None, Option(help="Draw the front into this file.")]
 PlotMap = Annotated[
@@ -113,10 +121,10 @@ PlotMap = Annotated[
 ]
 Url = Annotated[
     str | None,
-    Option(help="A running service that shall plan, not this process; as localhost:8000."),
+    Option(help="The URL of a service that plans in place of this process: localhost:8000."),
 ]
 ApiKey = Annotated[
-    str | None, Option(help="For a service that asks for one.", envvar="PARETOUR_API_KEY")
+    str | None, Option(help="The key for a service that requires one.", envvar="PARETOUR_API_KEY")
 ]
 
 MapFile = Annotated[
@@ -128,52 +136,61 @@ MapFile = Annotated[
     ),
 ]
 CellSize = Annotated[
-    float | None, Option(help="Metres that a pixel is wide, where the map does not say it.")
+    float | None, Option(help="The width of a pixel in metres, if the map does not say it.")
 ]
 StartPose = Annotated[
-    str | None, Option(help="Where the robot is, as -2.0,-0.5: x and y in the frame of the map.")
+    str | None,
+    Option(help="Where the robot is: x and y in the frame of the map, such as -2.0,-0.5."),
 ]
 Robots = Annotated[
     list[str] | None,
     Option(
         "--robot",
         metavar="X,Y[,YAW]",
-        help="Where one of several robots starts, in the frame of the map; once for each of them."
+        help="Where one of several robots starts, in the frame of the map; once for each robot."
         " They share the places: total distance against longest route.",
     ),
 ]
-EndPose = Annotated[str | None, Option(help="Where the robot shall end, likewise; with --open.")]
+EndPose = Annotated[
+    str | None, Option(help="Where the robot must end, in the same form; with --open.")
+]
 Unknown = Annotated[
     str | None,
     Option(help="free: the robot may go through unknown cells.", show_default="blocked"),
 ]
 RobotRadius = Annotated[float | None, Option(help="In metres.", show_default="0")]
 Spacing = Annotated[
-    float | None, Option(help="A place is visited in each square of so many metres.")
+    float | None,
+    Option(help="The distance of places in metres: one is visited in each square of this width."),
 ]
 CostLayer = Annotated[Path | None, Option(help="The second objective: CSV, a cost for each pixel.")]
 Paths = Annotated[
     bool | None,
-    Option("--paths", help="Have the path of each tour, in cells and metres, with --json."),
+    Option("--paths", help="With --json, add the path of each tour, in cells and metres."),
 ]
 FrontId = Annotated[str, Argument(metavar="FRONT", help="The id of a front of the service.")]
 Changes = Annotated[
     Path | None,
     Argument(
-        help="JSON: what has changed, as `add`, `costs` or any other member of a request to replan."
+        help="JSON: what has changed: `add`, `costs` or any other member of a request to replan."
         " - is standard input."
     ),
 ]
-Done = Annotated[str | None, Option(help="The stops visited, in order, as depot,order-17.")]
+Done = Annotated[str | None, Option(help="The stops visited, in order, such as depot,order-17.")]
 Position = Annotated[
-    str | None, Option(help="The stop where the way goes on.", show_default="the last done")
+    str | None,
+    Option(help="The stop from which the rest is planned.", show_default="the last stop done"),
 ]
-Remove = Annotated[str | None, Option(help="Stops not to visit any more, with commas between.")]
+Remove = Annotated[
+    str | None, Option(help="Stops that need no visit any more, with commas between.")
+]
 MinKept = Annotated[
     float | None,
-    Option(min=0, max=1, help="Only tours that keep this share of the driven one's legs."),
+    Option(min=0, max=1, help="Only return tours that keep this share of the driven tour's legs."),
 ]
 ServiceUrl = Annotated[
-    str, Option("--url", help="The service that has the front; as localhost:8000.")
+    str, Option("--url", help="The URL of the service that has the front, such as localhost:8000.")
 ]
-Workers = Annotated[int | None, Option(help="Plans made at a time.", show_default=False)]
+Workers = Annotated[
+    int | None, Option(help="How many tasks are planned at a time.", show_default=False)
+]

@@ -86,7 +86,7 @@ def run_tour(
 
 @contextmanager
 def _usage_errors() -> Iterator[None]:
-    """Raise UsageError in place of ValueError."""
+    """Turn a ValueError of the block into a UsageError."""
     try:
         yield
     except ValueError as error:
@@ -111,7 +111,7 @@ def front_as_json(front: Front) -> str:
 def front_as_rows(front: Front, ids: Ids | None = None) -> list[tuple[object, ...]]:
     """Return a row for each tour, with spaces between its cities, or between their ids.
 
-    An id with a space or a quotation mark in it is quoted, as in CSV.
+    As in CSV, an id is quoted if it has a space or a quotation mark in it.
     """
     found = zip(front.angles, front.lengths, front.tours, strict=True)
     rows = [
@@ -187,7 +187,7 @@ def tour_as_json(tour: Tour) -> str:
 
 
 def stops_of(tour: NDArray[np.int64], ids: Ids | None = None) -> list[int] | list[str]:
-    """Return the cities of a tour, shape (n,), by their ids if they have any."""
+    """Return the cities of a tour, shape (n,), as ids if they have any."""
     return tour.tolist() if ids is None else [ids[city] for city in tour]
 
 
@@ -213,7 +213,7 @@ def actors_as_table(actors: Iterable[Actor]) -> Table:
 
 
 def three_tours(lengths: NDArray[np.float64], names: Sequence[str] = LABELS) -> dict[str, int]:
-    """Return, of points with shape (m, 2), both ends and the knee: the least sum in their box."""
+    """Return the indexes and titles of three points: both ends and the knee. Points: (m, 2)."""
     first, second = names
     low, high = lengths.min(axis=0), lengths.max(axis=0)
     box = np.where(high > low, high - low, 1.0)

@@ -20,7 +20,7 @@ from service.cli.options import ANY
 
 _SECOND_OBJECTIVES = ("second_matrix", "cost_layer", "second_coordinates")
 
-Options = Mapping[str, Any]  # members of a request; None leaves a member to the file
+Options = Mapping[str, Any]  # members of a request; a member that is None is left to the file
 
 
 def plan_cities(
@@ -31,10 +31,10 @@ def plan_cities(
     angles: str | None = None,
     options: Options,
 ) -> tuple[Plan, Ids | None]:
-    """Return the plan for cities in a file, or in one for each objective; and the cities' ids.
+    """Return the plan for the cities in a file, or in one for each objective; and the cities' ids.
 
     Raises:
-        UnreadableFile: A file is not of its format.
+        UnreadableFile: A file cannot be read.
         OSError: There is no such file.
         UsageError: `angles` are not numbers with commas between.
     """
@@ -57,7 +57,7 @@ def plan_rest(
         options: Further members.
 
     Raises:
-        UnreadableFile: The file is no JSON object.
+        UnreadableFile: The file is not a JSON object.
         OSError: There is no such file.
     """
     request = {} if changes is None else read_object(changes)
@@ -80,13 +80,13 @@ def plan_map(
         cost_layer: A file of costs.
         options: Members of the request.
         poses: Members that are poses, as numbers with commas between.
-        robots: The poses where several robots start that share the places, likewise.
+        robots: The poses where several robots start, in the same form. They share the places.
 
     Raises:
-        UnreadableFile: A file is not of its format.
+        UnreadableFile: A file cannot be read.
         OSError: There is no such file.
-        UsageError: Something that a plan needs is missing, and the message names all of it; or a
-            pose is not numbers with commas between.
+        UsageError: Something that a plan needs is missing (the message names everything that is),
+            or a pose is not numbers with commas between.
     """
     parsed = {
         name: _parse_numbers(pose, f"--{name.replace('_', '-')}")
@@ -122,7 +122,7 @@ def _check_complete(request: Mapping[str, Any]) -> None:
         "--spacing (or places in a request)": ("spacing", "places"),
         "--cost-layer (or second_matrix or second_coordinates in a request)": _SECOND_OBJECTIVES,
     }
-    if request.get("robots"):  # whose plans are compared by the longest route
+    if request.get("robots"):  # their second objective is the longest route
         needs.popitem()
     missing = [need for need, members in needs.items() if not request.keys() & set(members)]
     if missing:
@@ -130,7 +130,7 @@ def _check_complete(request: Mapping[str, Any]) -> None:
 
 
 def _parse_end(text: str | None, ids: Sequence[str]) -> int | str | None:
-    """Return the index of a city that is given as such, or by an id of the file; else the text."""
+    """Return the index of a city, given as an index or as an id in the file; else the text."""
     if text is None or text in ids:
         return None if text is None else ids.index(text)
     return int(text) if text.isdecimal() else text

@@ -11,11 +11,11 @@ from service.cli.labels import labels_of
 
 
 def check_path(path: Path) -> None:
-    """Raise UsageError if a file's suffix is no format to draw in, or it has no directory."""
+    """Raise UsageError if a file's suffix is not that of a picture, or its directory is missing."""
     formats = sorted(FigureCanvasBase.get_supported_filetypes())
     if path.suffix.removeprefix(".") not in formats:
         raise UsageError(f"--plot must end in one of {', '.join(formats)}, got {path}")
-    if path.exists() and not path.is_file():  # a pipe would hold up whoever writes into it
+    if path.exists() and not path.is_file():  # writing into a pipe could wait forever
         raise UsageError(f"--plot must be a file, got {path}")
     if not path.parent.is_dir():
         raise UsageError(f"--plot must be in a directory that is there, got {path}")

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 _WALL, _PATH, _PLACE, _START = "#3d3d3d", "#1f4e9c", "#c1272d", "#1a9850"
 _MARGIN = 4  # cells drawn around the free ones
-_NO_LIMIT = 2**62  # on a request that was planned already
+_NO_LIMIT = 2**62  # the request was planned already, within the limits
 _LIMITS = Limits(
     body_bytes=_NO_LIMIT,
     cities=_NO_LIMIT,
@@ -36,7 +36,7 @@ def plot_map(front: Front, plan: Plan, path: Path, choices: Mapping[str, int]) -
 
     Args:
         front: A front with paths.
-        plan: The request that it is the answer to.
+        plan: The request whose answer the front is.
         path: The file to draw into.
         choices: The indexes of the tours to draw, by their titles.
     """
@@ -53,33 +53,33 @@ def plot_map(front: Front, plan: Plan, path: Path, choices: Mapping[str, int]) -
 
 
 def panels(maps: int) -> tuple[Figure, Sequence[Axes], Axes]:
-    """Return a figure with panels for so many maps, and one for the front on their right."""
+    """Return a figure with a panel for each map, and one for the front on their right."""
     figure = Figure(figsize=(5 * maps + 5, 5), layout="constrained")
     *for_maps, chart = figure.subplots(1, maps + 1)
     return figure, for_maps, chart
 
 
 def map_of(plan: Plan) -> tuple[NDArray[np.bool_], MapFrame]:
-    """Return which cells of the map of a plan are blocked, and the frame that they lie in."""
+    """Return the blocked cells of the map of a plan, and the frame of the map."""
     picture = None if plan.file is None else plan.file.content
     coverage: Coverage = parse_coverage_request(plan.json, _LIMITS, picture).coverage()
     return coverage.blocked, coverage.frame or _own_frame(coverage)
 
 
 def _own_frame(coverage: Coverage) -> MapFrame:
-    """Return a frame with its origin at the lower left corner, for a map in none."""
+    """Return a frame with its origin at the lower left corner, for a map without a frame."""
     return MapFrame(origin=(0, 0, 0), cell_size=coverage.cell_size, rows=len(coverage.blocked))
 
 
 def draw_map(panel: Axes, blocked: NDArray[np.bool_], frame: MapFrame) -> None:
-    """Draw the cells of a map that are blocked, and leave out its rim, in which none is free."""
+    """Draw the blocked cells of a map, and leave out its rim without free cells."""
     height, width = (side * frame.cell_size for side in blocked.shape)
     x, y, yaw = frame.origin
     to_frame = Affine2D().rotate(yaw).translate(x, y)
     image = panel.imshow(blocked, cmap=ListedColormap(["white", _WALL]), vmin=0, vmax=1)
     image.set_extent((0, width, 0, height))
     image.set_transform(to_frame + panel.transData)
-    # Robots save large maps, of which they know a small part.
+    # Robots save large maps, but know only a small part of them.
     free = frame.points(np.argwhere(~blocked))
     margin = _MARGIN * frame.cell_size
     (left, bottom), (right, top) = free.min(axis=0) - margin, free.max(axis=0) + margin
@@ -96,7 +96,7 @@ def _draw_tour(panel: Axes, front: Front, index: int, frame: MapFrame) -> None:
 
 
 def draw_front(chart: Axes, lengths: Array, labels: Sequence[str]) -> None:
-    """Draw the lengths of all items of a front, shape (m, 2), with a label for either length."""
+    """Draw the lengths of all tours or plans, shape (m, 2), with the labels of both lengths."""
     first, second = lengths.T
     chart.step(first, second, where="post", color="0.8", linewidth=1)
     chart.scatter(first, second, s=14)

@@ -1,4 +1,4 @@
-"""Progress on stderr while a front is planned, and Ctrl-C as the end of its search."""
+"""Show progress on stderr while a front is planned, and end its search at Ctrl-C."""
 
 import signal
 from collections.abc import Callable, Iterator
@@ -16,7 +16,7 @@ _POLL_SECONDS = 0.02
 
 
 class SearchProgress(Protocol):
-    """The progress of a search, be it here or of the service."""
+    """The progress of a search, in this process or in the service."""
 
     @property
     def seconds(self) -> float:
@@ -58,12 +58,12 @@ def progress_bar(console: Console, seconds: float) -> Iterator[Callable[[SearchP
 def until_done(
     run: Callable[[], T], interrupted: Callable[[], bool], terminate: Callable[[], None]
 ) -> T:
-    """Return what a function returns that runs in a thread, beside which Ctrl-C is heard.
+    """Run a function in a thread, and return its result; this thread waits for Ctrl-C meanwhile.
 
     Args:
         run: The function.
         interrupted: As `interrupt_flag` yields it.
-        terminate: Called again and again from then on: it ends the call of a network under way.
+        terminate: Called repeatedly after Ctrl-C: it ends a running call of the network.
     """
     future: Future[T] = Future()
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 WIDTH = 64  # columns that points are drawn in
-HEIGHT = 12  # lines that points are drawn in, of 15
+HEIGHT = 12  # lines of points; the chart has 15 lines
 LABELS = ("first length", "second length")
 
 
@@ -15,8 +15,8 @@ def draw_front(
 ) -> str:
     """Return a chart of points, shape (m, 2), with the first length to the right.
 
-    It has 15 lines at most, none of which is longer than 79 characters: labels of both lengths are
-    cut. Points so near to each other that they share a character are one.
+    It has at most 15 lines of at most 79 characters: the labels of both lengths are cut. Points
+    that fall on the same character are drawn as one.
     """
     columns, rows = (_places(lengths[:, m], size) for m, size in ((0, WIDTH), (1, HEIGHT)))
     canvas = np.full((HEIGHT, WIDTH), " ")

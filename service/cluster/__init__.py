@@ -1,4 +1,4 @@
-"""The engine on many machines: records in Redis, which all replicas and workers share.
+"""The engine and the store of many machines: records in Redis, workers under Celery.
 
 A replica stores a record and sends its id through Celery. A worker fetches the record, reports its
 progress and stores its result. Messages may be lost or come twice: only Redis counts.

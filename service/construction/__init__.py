@@ -1,1 +1,1 @@
-"""First tours, which a network builds within its share of the time limit."""
+"""Build first tours with a network, within its share of the time limit."""

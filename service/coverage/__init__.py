@@ -1,1 +1,1 @@
-"""Coverage planning: from places on an occupancy grid to an instance, and from tours to paths."""
+"""Maps: from a grid and places on it to an instance, and from tours to paths."""

@@ -1,4 +1,4 @@
-"""Every refusal and exception of the service, and the one table of their codes."""
+"""All error codes with their sentences, in one table, and the exceptions of the service."""
 
 from service.errors.exceptions import (
     MOST_FAULTS,

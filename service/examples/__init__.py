@@ -1,4 +1,4 @@
-"""Example requests, which can be posted as they are, and the streets of those in Helsinki.
+"""Example requests, which can be posted as they are, and what the page draws around them.
 
 `index.json` names the path and the two objectives of each, and what the page draws around its
 stops. `python -m service.examples` wrote the others, and writes the same again; those of Helsinki

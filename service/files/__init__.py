@@ -1,1 +1,1 @@
-"""The one reader of files that people have, as members of a request and notes on it."""
+"""Read files that people have (CSV, XLSX, GeoJSON, TSPLIB, VROOM, ROS) as requests."""

@@ -10,7 +10,7 @@ from service.files.tsplib import TsplibFile, costs, plain
 
 Rows = list[tuple[int, list[float]]]
 _WITH_TIMES = 7  # numbers of a customer: id, x, y, demand, ready, due, service
-_WITH_PAIRS = 9  # and the ids of its pick-up and delivery
+_WITH_PAIRS = 9  # the same, and the ids of its pick-up and delivery
 _DEMAND = "DEMAND_SECTION"
 
 
@@ -23,7 +23,7 @@ def read_cvrp(file: TsplibFile) -> Reading:
     """Return the request of a file of CVRPLIB: total against longest route.
 
     Raises:
-        UnreadableFile: A keyword or a section is missing, or not as DIMENSION says.
+        UnreadableFile: A keyword or a section is missing, or does not fit DIMENSION.
     """
     source, n = file.source, file.dimension
     demands = file.numbers(_DEMAND, n, 2)[:, 1].tolist()
@@ -80,10 +80,10 @@ def is_customers(text: str) -> bool:
 
 
 def read_customers(source: Source, text: str) -> Reading:
-    """Return the request of customers in a plane, whose distances are time as well.
+    """Return the request of customers in a plane. Distances are times as well.
 
     Raises:
-        UnreadableFile: A row has other numbers than it must have.
+        UnreadableFile: A row does not have the numbers that it must have.
     """
     rows = [
         (at, [number_in(word) or 0.0 for word in line.split()])
@@ -118,7 +118,7 @@ def read_customers(source: Source, text: str) -> Reading:
 def _customer(source: Source, row: list[float]) -> dict[str, Any]:
     name = f"{row[0]:g}"
     stop: dict[str, Any] = {"id": name, "window": row[4:6], "service": row[6]}
-    if row[3] >= 0:  # the delivery of a pair has what its pick-up takes on
+    if row[3] >= 0:  # a delivery has the negative demand of its pick-up
         stop["demand"] = [_whole(source, row[3], f"the demand of {name}")]
     return stop
 

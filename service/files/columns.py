@@ -4,7 +4,7 @@ import re
 import unicodedata
 from collections.abc import Mapping, Sequence
 
-# By field, the names that people give it, without accents, units and signs; the first names first.
+# By field, the names that people give it, the best names first; without accents, units and signs.
 _NAMES = {
     "id": "id orderid stopid stringid orderno ordernumber ordernr order jobid nodeid customerid"
     " customerno custno deliveryid shipmentid bestellnummer auftragsnummer kundennummer auftrag"
@@ -41,7 +41,7 @@ _TOLD_BY = {
     "longest_distance": "maxdistance maxdistancekm maxkm range rangekm",
     "fixed": "fixed fixedcost fixedcosts costfixed fixkosten",
     "per_km": "costperkm costkm kmcost perkm priceperkm kmkosten",
-}  # what only vehicles have
+}  # fields that only vehicles have
 _NAMES_OF_VEHICLES = {
     "start": "start startid startstop startplace startlocation startdepot",
     "end": "end endid endstop endplace endlocation enddepot destination",
@@ -67,36 +67,36 @@ _BEFORE = re.compile(r"^(stop|geo|gps|location|customer|address|position|pos|poi
 _AFTER = re.compile(r"(deg|degree|degrees|wgs84|dd|decimal)$")
 _UNIT = re.compile(r"[\[(](.*?)[\])]")
 _SECONDS = {"s": 1, "sec": 1, "min": 60, "mins": 60, "minutes": 60, "h": 3600, "hours": 3600}
-_SEVERAL = ("demand", "capacity")  # fields of which a table may have more than one
+_SEVERAL = ("demand", "capacity")  # fields that a table may have several times
 FLEET = ("demand", "window_from", "window_to", "window", "service", "skills", "prize")
 
 
 def fields_of(heading: Sequence[str]) -> list[str | None]:
-    """Return what each column of a heading may be taken for; of the fields but demand one each.
+    """Return the field of stops that each column may be, or None.
 
-    Of two columns for one field, that has it whose name comes first among its names. Of names for
-    stops that are left, none is taken.
+    Only demand may come several times. Of two columns for any other field, the one whose name
+    comes first in `_NAMES` gets it, and the other one gets None.
     """
     return _taken(heading, _NAMES)
 
 
 def fields_of_vehicles(heading: Sequence[str]) -> list[str | None]:
-    """Return what each column of a heading of vehicles may be taken for; of all but capacity one.
+    """Return the field of vehicles that each column may be; only capacity may come several times.
 
-    Columns `start` and `end` may be those of a shift: their fields tell.
+    Columns `start` and `end` may be times of a shift instead: their contents decide.
     """
     return _taken(heading, _NAMES_OF_VEHICLES)
 
 
 def is_about_vehicles(heading: Sequence[str]) -> bool:
-    """Return whether a heading has what only vehicles have, and not what only stops have."""
+    """Return whether a heading has columns of vehicles alone, and none of stops alone."""
     stops, told = fields_of(heading), set(_taken(heading, _TOLD_BY))
     located = {"latitude", "x", "place"} & set(stops)
     return bool(told - ({"id", None} if located else {None})) and "demand" not in stops
 
 
 def amount_of(name: str) -> str:
-    """Return which amount a column of demands or capacities is about, as `weight`; maybe none."""
+    """Return the amount that a column of demands or capacities is about, as `weight`, or ""."""
     plain = plain_name(name)
     forms = ("{}", "max{}", "capacity{}", "{}capacity")
     return next((each for each in _AMOUNTS for form in forms if form.format(each) == plain), "")
@@ -113,7 +113,7 @@ def _taken(heading: Sequence[str], names: Mapping[str, str]) -> list[str | None]
 
 
 def seconds_of(name: str) -> int | None:
-    """Return how many seconds the unit in a heading has, as in `service [min]`; else None."""
+    """Return the seconds of the unit in a heading, as in `service [min]`; None without a unit."""
     unit = _UNIT.search(name)
     plain = unit[1].strip().casefold() if unit else re.split(r"[\s_]", name.casefold())[-1]
     return _SECONDS.get(plain)
@@ -129,7 +129,7 @@ def _rank(plain: str, names: Mapping[str, str]) -> tuple[str | None, int]:
 
 
 def plain_name(name: str) -> str:
-    """Return a heading in small letters and digits alone, without the unit in it."""
+    """Return a heading without its unit, reduced to small letters and digits."""
     decomposed = unicodedata.normalize("NFKD", _UNIT.sub("", name).casefold()[:200])
     words = re.sub(r"[^a-z0-9]+", " ", re.sub(r"[\u0300-\u036f]", "", decomposed)).split()
     kept = words[:-1] if len(words) > 1 and words[-1] in _SECONDS else words

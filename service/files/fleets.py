@@ -1,4 +1,4 @@
-"""Requests for fleets: objectives for their stops, and one vehicle where a file names none."""
+"""Requests for fleets: their objectives, and one vehicle if a file names none."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,18 +10,18 @@ from service.files.reading import Request, Source, quoted
 
 Stop = dict[str, Any]
 Vehicle = dict[str, Any]
-_SPEED = 30 / 3.6  # metres a second, of a van in a city
+_SPEED = 30 / 3.6  # metres per second: a van in a city
 _OF_VISITS = ("demand", "service", "window", "prize")
 
 
 def planar(costs: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return both objectives of costs that are time as well: the total, and the longest route."""
+    """Return both objectives of costs that are also times: the total, and the longest route."""
     total, longest = ("total length", "sum"), ("longest route", "max")
     return [{"name": name, **costs, "over": over} for name, over in (total, longest)]
 
 
 def measured(source: Source, stops: Sequence[Stop], timed: bool) -> list[dict[str, Any]]:
-    """Return both objectives of stops on the earth, the second in seconds where it must be time."""
+    """Return both objectives of stops on the earth; if `timed`, the second is time in seconds."""
     distance = {"name": "distance", "from": "great_circle", "over": "sum"}
     if source.bounds.roads:
         time: dict[str, Any] = {"name": "time", "from": "road_time", "over": "max"}
@@ -32,28 +32,30 @@ def measured(source: Source, stops: Sequence[Stop], timed: bool) -> list[dict[st
         metres = great_circle(np.array([stop["location"] for stop in stops]))
         seconds = np.rint(metres / _SPEED).astype(int).tolist()
         time = {"name": "time", "unit": "s", "matrix": seconds, "over": "max"}
-        text = "Driving times are those of the straight way at 30 km/h, as there is no routing"
-        source.note("objectives", f"{text} engine.")
+        text = (
+            "There is no routing engine, so driving times are those of straight lines at 30 km/h."
+        )
+        source.note("objectives", text)
     return [distance, time]
 
 
 def timed(stops: Sequence[Stop]) -> bool:
-    """Return whether stops ask for a clock."""
+    """Return whether stops have times."""
     return any(stop.keys() & {"service", "window"} for stop in stops)
 
 
 def note_left_out(source: Source, what: str) -> None:
-    """Note what a file asks for, and this service has not."""
-    source.note("left-out", f"{what} was not used: fleets have no such thing here.")
+    """Note something in a file that this service does not support."""
+    source.note("left-out", f"{what} was not used: it is not supported for fleets.")
 
 
 def at_depots(
     stops: Sequence[Stop], vehicles: Sequence[Vehicle]
 ) -> tuple[list[Stop], list[Vehicle]]:
-    """Return stops, and vehicles with the places and the shifts that they do not name.
+    """Return stops and vehicles; fill in places and shifts that vehicles do not name.
 
-    A vehicle without either place drives from and to the first stop, unless that has a demand. The
-    window of the stop where it starts is its shift. Such a stop is not visited.
+    A vehicle without a start and an end drives from and to the first stop, unless that stop has a
+    demand. Its shift is the window of the stop where it starts. Starts and ends are not visited.
     """
     first, by_id = stops[0], {stop["id"]: stop for stop in stops}
     home = {} if any(first.get("demand", ())) else dict.fromkeys(("start", "end"), first["id"])
@@ -81,7 +83,7 @@ def all_demand(stops: Sequence[Stop]) -> list[int]:
 def fleet_request(
     stops: list[Stop], vehicles: list[Vehicle], objectives: list[dict[str, Any]]
 ) -> Request:
-    """Return the request of a fleet, with a clock where stops or vehicles ask for one."""
+    """Return the request of a fleet, with a clock if stops or vehicles have times."""
     request: Request = {"stops": stops, "vehicles": vehicles, "objectives": objectives}
     if timed(stops) or any("shift" in each for each in vehicles):
         request["clock"] = objectives[1]["name"]
@@ -89,16 +91,17 @@ def fleet_request(
 
 
 def with_one_vehicle(source: Source, stops: list[Stop], objectives: list[Any]) -> Request:
-    """Return the request for one vehicle from the first stop, that holds all demand."""
+    """Return the request for one vehicle that starts at the first stop and holds all demand."""
     first, demands = stops[0], all_demand(stops)
     stops, [vehicle] = at_depots(stops, [{"id": "vehicle"}])
     if demands:
         vehicle["capacity"] = demands
     where = (
-        f"from and to the first stop, {quoted(first['id'])},"
+        f"from and to the first stop, {quoted(first['id'])}"
         if "start" in vehicle
         else "from any stop to any"
     )
-    holds = f" It holds all demand, {vehicle['capacity']}." if demands else ""
-    source.note("vehicle", f"The file names no vehicles: one drives {where} was added.{holds}")
+    holds = f", and holds all demand, {vehicle['capacity']}" if demands else ""
+    added = "The file names no vehicles, so one was added."
+    source.note("vehicle", f"{added} It drives {where}{holds}.")
     return fleet_request(stops, [vehicle], objectives)

@@ -19,20 +19,20 @@ _PAIRS = {"latitude": ("lat", "latitude"), "longitude": ("lon", "lng", "long", "
 
 
 def looks_like_json(text: str) -> bool:
-    """Return whether a text begins as an object or an array does."""
+    """Return whether a text begins like a JSON object or array."""
     return text.lstrip()[:1] in ("{", "[")
 
 
 def read_json(source: Source, text: str, wanted: Kind | None) -> Reading:
-    """Return the request that a text of JSON is, or becomes.
+    """Return the request in a text of JSON, or the request that is made from it.
 
     Args:
         source: The file.
-        text: What it holds.
-        wanted: The kind of an object that does not tell its own; None refuses it.
+        text: Its content.
+        wanted: The kind of a request that does not show its own kind; None refuses such a request.
 
     Raises:
-        UnreadableFile: It is no JSON, or nothing that the reader knows.
+        UnreadableFile: It is not JSON, or not of a known format.
     """
     value = _parsed(source, text)
     if isinstance(value, list):
@@ -56,10 +56,10 @@ def read_json(source: Source, text: str, wanted: Kind | None) -> Reading:
 
 
 def read_object(source: Source) -> dict[str, Any]:
-    """Return the object that a file of JSON is.
+    """Return the JSON object in a file.
 
     Raises:
-        UnreadableFile: It is none.
+        UnreadableFile: The file does not hold a JSON object.
     """
     value = _parsed(source, text_of(source))
     if not isinstance(value, dict):
@@ -69,7 +69,8 @@ def read_object(source: Source) -> dict[str, Any]:
 
 def _parsed(source: Source, text: str) -> Any:
     try:
-        # Some write Infinity for no way, which JSON does not know; null says the same in a request.
+        # Some programs write Infinity where there is no way. It is not JSON; requests use null for
+        # it.
         return json.loads(text, parse_constant=lambda _: None)
     except (ValueError, RecursionError) as error:
         raise source.refusal(f"must be JSON: {str(error)[:200]}") from None
@@ -84,7 +85,7 @@ def _kind_of(request: dict[str, Any]) -> Kind | None:
 
 
 def _check_lists(source: Source, request: dict[str, Any]) -> None:
-    """Raise UnreadableFile where what is drawn of a request is no list, of objects or of rows."""
+    """Raise UnreadableFile if a member that the page draws is not a list of objects or of rows."""
     for names, kind, what in ((_OBJECTS, dict, "objects"), (_ROWS, list, "rows")):
         for name in names & request.keys():
             items = request[name]
@@ -111,7 +112,7 @@ def _read_list(source: Source, value: list[Any]) -> Reading:
 
 
 def _records(records: list[dict[str, Any]]) -> Iterator[list[str]]:
-    """Yield the names of all members of records as a heading, and the members of each."""
+    """Yield a heading, the names of all members of records; then the members of each record."""
     flat = [dict(_members(record)) for record in records]
     names = list(dict.fromkeys(name for record in flat for name in record))
     yield names
@@ -120,7 +121,7 @@ def _records(records: list[dict[str, Any]]) -> Iterator[list[str]]:
 
 
 def _members(record: dict[str, Any], depth: int = 0) -> Iterator[tuple[str, str]]:
-    """Yield the members of a record as text, with those of objects in it, and pairs of a place."""
+    """Yield the members of a record as text, also those of inner objects and coordinates."""
     for name, value in record.items():
         if isinstance(value, dict) and depth < 2:
             yield from _members(value, depth + 1)
@@ -150,7 +151,7 @@ def _text(value: Any) -> str:
 
 
 def _read_geojson(source: Source, value: dict[str, Any]) -> Reading:
-    """Return the request whose stops are points; what GeoJSON does not know is the request's."""
+    """Return the request whose stops are the points; other members are those of the request."""
     _check_crs(source, value)
     features = [value] if value["type"] == "Feature" else value.get("features")
     if not isinstance(features, list):
@@ -174,7 +175,7 @@ def _read_geojson(source: Source, value: dict[str, Any]) -> Reading:
 
 
 def _check_crs(source: Source, value: dict[str, Any]) -> None:
-    """Raise UnreadableFile where places are in another system than degrees of WGS84."""
+    """Raise UnreadableFile if places are not in degrees of WGS84."""
     match value.get("crs"):
         case None | {"properties": {"name": None}}:
             return

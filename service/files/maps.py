@@ -1,4 +1,4 @@
-"""Maps of robots as requests: a picture alone, or with its map.yaml of ROS."""
+"""Read maps of robots as requests: a picture alone, or with its map.yaml of ROS."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,16 +10,16 @@ from service.files.reading import FileTooLarge, Reading, Request, Source, Unread
 from service.requests.maps.fields import MapRequest
 from service.requests.validation import parse_json
 
-_CELL = 0.05  # metres, as the maps of robots mostly have it
+_CELL = 0.05  # metres: the usual cell size of robots' maps
 _OF_MESSAGE = ("occupancy_grid", "obstacle_from", "unknown")
 _OTHER_PICTURES = {b"\xff\xd8\xff": "JPEG", b"GIF8": "GIF", b"RIFF": "WebP", b"BM": "BMP"}
 
 
 def read_map(sources: Sequence[Source]) -> Reading:
-    """Return the request of a picture, or of one and its map.yaml, as a grid.
+    """Return the request for the grid in a picture, or in a picture with its map.yaml.
 
     Raises:
-        UnreadableFile: There is no picture or more than one, or one of both cannot be read.
+        UnreadableFile: There is not exactly one picture, or a file cannot be read.
     """
     pictures = [source for source in sources if not source.file.is_yaml]
     said = [source for source in sources if source.file.is_yaml]
@@ -41,10 +41,10 @@ def read_map(sources: Sequence[Source]) -> Reading:
 
 
 def with_grid(name: str, request: Request, cells: int) -> Request:
-    """Return a request whose map is a grid, in place of a message of ROS.
+    """Return the request with a grid in place of a message of ROS.
 
     Raises:
-        UnreadableFile: The message is none, or holds too much; the file's name stands before it.
+        UnreadableFile: The message is wrong or too large; the error names the file.
     """
     if "occupancy_grid" not in request:
         return request
@@ -54,7 +54,7 @@ def with_grid(name: str, request: Request, cells: int) -> Request:
 
 
 def _grid(name: str, how: dict[str, Any], picture: bytes | None, cells: int) -> Request:
-    """Return grid, cell size and origin of a map."""
+    """Return the grid, cell size and origin of a map."""
     try:
         read = parse_json(MapRequest, to_json(how)).with_map(picture, cells)
     except Refusal as refusal:
@@ -67,11 +67,11 @@ def _grid(name: str, how: dict[str, Any], picture: bytes | None, cells: int) -> 
 
 
 def _interpretation(source: Source) -> dict[str, Any]:
-    """Return what a map.yaml says of its picture, which is the one that came with it."""
+    """Return what a map.yaml says about the picture that came with it."""
     from paretour.ros_maps import parse_ros_map
 
     try:
-        members, _ = parse_ros_map(source.file.data)  # whatever file it names: none is read
+        members, _ = parse_ros_map(source.file.data)  # the file that it names is not read
     except ValueError as error:
         came = " ".join(str(error).split())[:200]
         raise source.refusal(f"must be a map.yaml of ROS: {came}") from None

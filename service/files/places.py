@@ -1,4 +1,4 @@
-"""Places on the earth: the distances between them, and those that look mistaken."""
+"""Distances between places on the earth, and places that look mistaken."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 from service.files.reading import Source, quoted
 
 Array = NDArray[np.float64]
-_RADIUS = 6371008.8  # metres, the earth's mean one, as the service takes it
-_FAR = 1_000_000.0  # metres, that no van drives from stop to stop
+_RADIUS = 6371008.8  # metres: the mean radius of the earth, as elsewhere in the service
+_FAR = 1_000_000.0  # metres: no van drives so far
 _NEAR = 300_000.0
 _MOST_NAMED = 3
 
 
 def great_circle(places: Array, other: Array | None = None) -> Array:
-    """Return the metres from each place (longitude, latitude) to each one, or to each other one."""
+    """Return the metres from each place (longitude, latitude) to all of them, or of `other`."""
     from_, to = np.radians(places)[:, np.newaxis], np.radians(places if other is None else other)
     half = np.sin((from_ - to) / 2) ** 2
     level = np.cos(from_[..., 1]) * np.cos(to[..., 1])
@@ -24,13 +24,13 @@ def great_circle(places: Array, other: Array | None = None) -> Array:
 
 
 def weighted(places: Array, weights: Array) -> list[list[float]]:
-    """Return the metres from each place to each, times the mean of the weights of both."""
+    """Return the metres between all places, times the mean of the weights of both ends."""
     costs = great_circle(places) * (weights[:, np.newaxis] + weights) / 2
     return [[float(f"{cost:.7g}") for cost in row] for row in costs.tolist()]
 
 
 def check_range(source: Source, place: Sequence[float], where: str) -> None:
-    """Raise UnreadableFile where a longitude or a latitude is none."""
+    """Raise UnreadableFile if a longitude or a latitude is out of range."""
     for name, value, most in (("longitude", place[0], 180), ("latitude", place[1], 90)):
         if not -most <= value <= most:
             hint = ""
@@ -73,7 +73,7 @@ def note_places(source: Source, stops: Sequence[dict[str, Any]]) -> None:
 
 
 def _named(ids: Sequence[str], which: NDArray[np.bool_]) -> str:
-    """Return the stops that a mask picks, with a verb."""
+    """Return the subject and verb of a sentence about the stops that a mask selects."""
     picked = [ids[at] for at in np.flatnonzero(which).tolist()]
     shown = ", ".join(quoted(each) for each in picked[:_MOST_NAMED])
     more = f" and {len(picked) - _MOST_NAMED} more" if len(picked) > _MOST_NAMED else ""

@@ -1,4 +1,4 @@
-"""Read what people bring, one file or two: told by content, then by ending."""
+"""Read one file or two: recognise their format by their content, then by the ending of the name."""
 
 from collections.abc import Sequence
 
@@ -37,31 +37,31 @@ def read_files(
     wanted: Kind | None = "front",
     unrounded: bool = False,
 ) -> Reading:
-    """Return the request that one file is, or two are: an objective each, or stops and vehicles.
+    """Return the request in a file, or in two files of an objective each, or of stops and vehicles.
 
     Args:
-        files: In the order of their objectives; or stops, then vehicles.
-        bounds: What they may hold.
-        wanted: The kind of a request that does not tell its own; None refuses it.
-        unrounded: Whether EUC_2D of TSPLIB means planes, not distances rounded as it says.
+        files: The files in the order of their objectives; or stops, then vehicles.
+        bounds: The most that they may hold.
+        wanted: The kind of a request that does not show its own kind; None refuses such a request.
+        unrounded: Whether EUC_2D of TSPLIB means planes, not rounded distances.
 
     Raises:
-        UnreadableFile: A file is nothing that the reader knows; the message names it.
+        UnreadableFile: A file is not of a known format, or is wrong; the message names it.
     """
     sources = [Source(file, bounds) for file in files]
     if any(file.is_picture or file.is_yaml for file in files):
-        from service.files.maps import read_map  # which takes a while to load
+        from service.files.maps import read_map  # here because it is slow to load
 
         return read_map(sources)
     if len(sources) == 1:
         return _read(sources[0], wanted)
     if len(sources) != 2:
-        raise UnreadableFile(f"one file is wanted, or two, got {len(files)}")
+        raise UnreadableFile(f"there must be one file or two, got {len(files)}")
     return _read_two(sources, wanted, unrounded)
 
 
 def _read_two(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -> Reading:
-    """Return the request of an objective in each of two files, or of stops and vehicles."""
+    """Return the request in two files of an objective each, or of stops and vehicles."""
     contents = [(source, _content(source)) for source in sources]
     tables = [(source, each) for source, each in contents if isinstance(each, Table)]
     if wanted == "fleet" and len(tables) != 2:
@@ -114,7 +114,7 @@ def read_table(file: NamedFile, bounds: Bounds) -> tuple[Source, Table]:
 
 
 def _content(source: Source) -> Table | TsplibFile:
-    """Return what one file of two holds."""
+    """Return the content of one of two files."""
     if is_spreadsheet(source.file.data):
         return table_of(source, rows_of(source))
     text = _text(source)
@@ -141,17 +141,17 @@ def _joined(first: Part, second: Part) -> Request:
     """Return the request of two files about the same stops.
 
     Raises:
-        UnreadableFile: They are about others, or both say where stops lie.
+        UnreadableFile: Their stops differ, or both say where stops lie.
     """
     if first.count != second.count:
         came = f"{first.count} of {first.name} and {second.count} of {second.name}"
-        raise UnreadableFile(f"both files must have as many stops, got {came}")
+        raise UnreadableFile(f"both files must have the same number of stops, got {came}")
     if first.ids and second.ids and first.ids != second.ids:
         raise UnreadableFile("both files must have the same ids, in the same order")
     ids = first.ids or second.ids
     located = first.stops or second.stops
     if first.stops and second.stops:
-        raise UnreadableFile("only one of both files may have longitudes and latitudes")
+        raise UnreadableFile("only one of the two files may have longitudes and latitudes")
     if not ids and first.costs.keys() == second.costs.keys():
         if "matrix" in first.costs:
             return {"matrices": [first.costs["matrix"], second.costs["matrix"]]}

@@ -1,4 +1,4 @@
-"""Files and readings: named bytes under bounds; a request, notes and columns; refusals."""
+"""A file that is read, its bounds and its errors; and the reading: a request, notes and columns."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -23,12 +23,12 @@ class FileTooLarge(UnreadableFile):
 
 @dataclass(frozen=True, kw_only=True)
 class Bounds:
-    """What a file may hold, and what its request may ask for.
+    """The bounds on the content of a file and of its request.
 
     Args:
-        cities: Cities in planes, or stops.
-        matrix_cities: Cities between which costs are written out.
-        cells: Fields of a table, or cells of a map.
+        cities: The most cities in planes, or stops.
+        matrix_cities: The most cities with a matrix of costs.
+        cells: The most fields of a table, or cells of a map.
         roads: Whether times by road can be asked for.
     """
 
@@ -40,19 +40,19 @@ class Bounds:
 
 @dataclass(frozen=True)
 class NamedFile:
-    """A file by its name, without a folder, and what it holds."""
+    """A file: its name, without folders, and its content."""
 
     name: str
     data: bytes
 
     @property
     def is_picture(self) -> bool:
-        """Whether it is PNG or PGM, by its first bytes, or another picture by its ending."""
+        """Whether it is PNG or PGM by its first bytes, or another picture by its name."""
         return self.data.startswith(_PICTURES) or self._ends_with(_PICTURE_NAMES)
 
     @property
     def is_yaml(self) -> bool:
-        """Whether it is YAML, by its ending."""
+        """Whether it is YAML, by its name."""
         return self._ends_with((".yaml", ".yml"))
 
     def _ends_with(self, endings: tuple[str, ...]) -> bool:
@@ -61,7 +61,7 @@ class NamedFile:
 
 @dataclass(frozen=True)
 class Note:
-    """One thing that was taken for granted, with a code for programs."""
+    """One thing that was assumed, as a sentence, with a code for programs."""
 
     file: str
     text: str
@@ -70,7 +70,7 @@ class Note:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table, and what it was taken for: a field of stops, or `ignored`."""
+    """A column of a table, and the field that it was taken for, or `ignored`."""
 
     name: str
     taken_for: str
@@ -78,18 +78,18 @@ class Column:
 
 @dataclass(frozen=True)
 class Reading:
-    """A request, of which operation it is, and what was taken for granted."""
+    """A request, its kind, and notes on what was assumed."""
 
     kind: Kind
     request: Request
     name: str
     notes: tuple[Note, ...] = ()
     columns: tuple[Column, ...] = ()
-    planes: list[list[float]] | None = None  # rows of x, y, x, y, whose rounded distances are asked
+    planes: list[list[float]] | None = None  # rows of x, y, x, y, if distances are to be rounded
 
     @property
     def document(self) -> Mapping[str, Any]:
-        """The reading as members of JSON, with arrays in the request."""
+        """The reading as members of JSON. The request may hold arrays."""
         columns = {"columns": [asdict(each) for each in self.columns]} if self.columns else {}
         notes = [asdict(note) for note in self.notes]
         members = {"kind": self.kind, "request": self.request, "notes": notes}
@@ -99,7 +99,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Source:
-    """A file that is being read, and the notes and columns that come of it."""
+    """A file that is being read, and the notes and columns found so far."""
 
     file: NamedFile
     bounds: Bounds
@@ -108,11 +108,11 @@ class Source:
 
     @property
     def name(self) -> str:
-        """The file's name without characters that no terminal shows."""
+        """The file's name, harmless on a terminal."""
         return printable(self.file.name)
 
     def note(self, code: str, text: str) -> None:
-        """Note what is taken for granted."""
+        """Add a note on something that is assumed."""
         self.notes.append(Note(self.name, printable(text), code))
 
     def refusal(self, reason: str) -> UnreadableFile:
@@ -120,7 +120,7 @@ class Source:
         return UnreadableFile(f"{self.name}: {printable(reason)}")
 
     def check_count(self, noun: str, limit: int, actual: int) -> None:
-        """Raise FileTooLarge where there are more than the limit."""
+        """Raise FileTooLarge if the number is over the limit."""
         if actual > limit:
             raise FileTooLarge(f"{self.name}: must have at most {limit} {noun}, got {actual}")
 

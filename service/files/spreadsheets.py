@@ -7,12 +7,12 @@ from typing import Any
 
 from service.files.reading import FileTooLarge, Source
 
-_MOST_BYTES = 2**27  # of all parts, once they are unpacked
+_MOST_BYTES = 2**27  # in all parts together, unpacked
 _MOST_PARTS = 2000
 
 
 def is_spreadsheet(data: bytes) -> bool:
-    """Return whether bytes are those of a zip file, as XLSX is."""
+    """Return whether bytes are a zip file, which XLSX is."""
     return data.startswith(b"PK\x03\x04")
 
 
@@ -20,7 +20,7 @@ def rows_of(source: Source) -> list[list[str]]:
     """Return the fields of each row, as text.
 
     Raises:
-        UnreadableFile: It is no XLSX, has no row, or is too large unpacked.
+        UnreadableFile: It is not XLSX, has no row, or is too large unpacked.
     """
     _check_size(source)
     import openpyxl
@@ -33,14 +33,14 @@ def rows_of(source: Source) -> list[list[str]]:
         return _first_with_rows(source, sheets)
     except FileTooLarge:
         raise
-    except Exception as error:  # whatever a part that is not as it should be leads to
+    except Exception as error:  # a damaged part may raise any exception
         if isinstance(error, MemoryError):
             raise
         raise source.refusal(f"must be XLSX: {type(error).__name__}") from None
 
 
 def _check_size(source: Source) -> None:
-    """Raise a refusal where a zip file unpacks to too much; no part grows beyond what it says."""
+    """Raise a refusal if a zip file is too large unpacked; no part can be larger than it says."""
     try:
         parts = zipfile.ZipFile(io.BytesIO(source.file.data)).infolist()
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
@@ -54,7 +54,7 @@ def _check_size(source: Source) -> None:
 def _first_with_rows(source: Source, sheets: list[Any]) -> list[list[str]]:
     """Return the rows of the first sheet that has any, and note that there are others."""
     for sheet in sheets:
-        sheet.reset_dimensions()  # else a wrong one makes rows short, and a huge one long
+        sheet.reset_dimensions()  # wrong dimensions would cut rows, and huge ones lengthen them
         rows: list[list[str]] = []
         count = 0
         for row in sheet.iter_rows(values_only=True):
@@ -64,14 +64,14 @@ def _first_with_rows(source: Source, sheets: list[Any]) -> list[list[str]]:
         if any(any(row) for row in rows):
             if len(sheets) > 1:
                 source.note("sheet", f"Only the sheet {sheet.title!r} of {len(sheets)} was read.")
-            width = max(map(len, rows))  # a row ends with its last field that holds something
+            width = max(map(len, rows))  # each row ends at its last field with content
             source.check_count("fields", source.bounds.cells, width * len(rows))
             return [row + [""] * (width - len(row)) for row in rows]
     return []
 
 
 def _text(value: Any) -> str:
-    """Return the value of a cell as a field of CSV would have it."""
+    """Return the value of a cell as the text of a field in CSV."""
     if value is None:
         return ""
     if isinstance(value, time | datetime):

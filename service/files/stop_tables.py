@@ -21,21 +21,21 @@ _NO_WAY = {"", "-", "inf", "+inf", "infinity", "nan", "na", "n/a", "null", "none
 
 @dataclass(frozen=True)
 class Part:
-    """What one file says of the stops of two: ids, and costs, a plane, or places on the earth."""
+    """The stops in one of two files: their ids, and costs, a plane, or places on the earth."""
 
     name: str
     count: int
     ids: list[str] | None = None
-    costs: dict[str, Any] = field(default_factory=dict)  # a member of an objective
-    stops: list[Stop] | None = None  # that have locations
-    plane: list[list[float]] | None = None  # whose distances, rounded, are the costs
+    costs: dict[str, Any] = field(default_factory=dict)  # members of an objective
+    stops: list[Stop] | None = None  # stops with locations
+    plane: list[list[float]] | None = None  # points whose rounded distances are the costs
 
 
 def reading_of(source: Source, table: Table) -> Reading:
-    """Return the request of a table that holds both objectives, or stops where they lie.
+    """Return the request of a table of two planes, of stops with locations, or of a fleet.
 
     Raises:
-        UnreadableFile: A field is not what its column asks for, or columns are missing.
+        UnreadableFile: A field does not fit its column, or columns are missing.
     """
     columns = columns_of(source, table)
     if any(each in FLEET for each in columns.fields):
@@ -50,7 +50,7 @@ def _is_located(columns: Columns) -> bool:
 
 
 def _degrees(columns: Columns) -> bool:
-    """Return whether columns x and y alone are degrees, as QGIS writes them, and take them so."""
+    """Return whether x and y are degrees, as QGIS writes them; if so, rename their fields."""
     x, y = columns.find("x"), columns.find("y")
     if x is None or y is None or any("x" in each or "y" in each for each in _others(columns)):
         return False
@@ -67,7 +67,7 @@ def _degrees(columns: Columns) -> bool:
 
 
 def _others(columns: Columns) -> list[str]:
-    """Return the names of columns of numbers that are taken for nothing, in small letters."""
+    """Return the names of the unused columns of numbers, in small letters."""
     pairs = enumerate(zip(columns.names, columns.fields, strict=True))
     return [
         name.casefold() for at, (name, each) in pairs if each is None and columns.are_numbers(at)
@@ -75,7 +75,7 @@ def _others(columns: Columns) -> list[str]:
 
 
 def _two_planes(columns: Columns) -> Reading:
-    """Return the request of four columns of numbers, x and y in either plane."""
+    """Return the request of four columns of numbers: x and y in the first plane and the second."""
     source, table = columns.source, columns.table
     free = [at for at, each in enumerate(columns.fields) if each != "id"]
     if table.heading and len(free) > 4:
@@ -126,7 +126,7 @@ def _fleet(columns: Columns) -> Reading:
 
 
 def visits_of(columns: Columns) -> tuple[list[Stop], list[list[float]] | None]:
-    """Return the stops of a fleet, and where they lie in the plane if it is not on the earth.
+    """Return the stops of a fleet; and their points in the plane, if they are not on the earth.
 
     Raises:
         UnreadableFile: There are no places.
@@ -175,7 +175,7 @@ def _stops(columns: Columns, places: list[list[float]] | None) -> list[Stop]:
 
 
 def _second(columns: Columns, stops: list[Stop]) -> dict[str, Any]:
-    """Return the second objective: the plane of x and y, a cost of each metre, or time by road."""
+    """Return the second objective: the plane of x and y, a cost per metre, or time by road."""
     x, y, cost = (columns.find(name) for name in ("x", "y", "cost"))
     if x is not None and y is not None:
         return {"name": "second length", "coordinates": columns.numbers([x, y])}
@@ -197,10 +197,10 @@ def _second(columns: Columns, stops: list[Stop]) -> dict[str, Any]:
 
 
 def part_of(source: Source, table: Table) -> Part:
-    """Return what one table of two says: stops, a plane, or costs from each row to each column.
+    """Return the content of one of two tables: stops, a plane, or costs from rows to columns.
 
     Raises:
-        UnreadableFile: It is none of these.
+        UnreadableFile: The table is none of these.
     """
     columns = columns_of(source, table)
     name, count = source.name, len(table.rows)
@@ -224,7 +224,7 @@ def part_of(source: Source, table: Table) -> Part:
 
 
 def _costs(columns: Columns, free: list[int]) -> list[list[float | None]]:
-    """Return costs, None where a field says that there is no way."""
+    """Return costs; None if a field says that there is no way."""
     costs: list[list[float | None]] = []
     for row, (_, texts) in enumerate(columns.table.rows):
         fields = [texts[at] for at in free]
@@ -243,7 +243,7 @@ def _costs(columns: Columns, free: list[int]) -> list[list[float | None]]:
 
 
 def numbers_of(source: Source, table: Table) -> list[list[float]]:
-    """Return the numbers of a table that holds nothing else, as costs of cells do."""
+    """Return the numbers of a table that holds only numbers, such as the costs of cells."""
     columns = Columns(
         source, table, [f"{at}" for at in range(1, table.width + 1)], [None] * table.width
     )

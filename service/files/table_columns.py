@@ -1,4 +1,4 @@
-"""The columns of a table, by what they are taken for, and the fields in them."""
+"""The columns of a table: the field of a stop or vehicle that each is taken for, and its cells."""
 
 import re
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ _POINT = re.compile(
     rf"(?:SRID=4326;)?\s*POINT\s*Z?M?\s*\(\s*{_DEGREES}\s+{_DEGREES}(?:\s+{_DEGREES}){{0,2}}\s*\)",
     re.ASCII | re.IGNORECASE,
 )
-# As maps on the web show a place: latitude first.
+# As web maps show a place: latitude first.
 _PAIR = re.compile(rf"\(?\s*{_DEGREES}°?\s*,\s*{_DEGREES}°?\s*\)?", re.ASCII | re.IGNORECASE)
 _INDEX = ("", "index", "unnamed: 0")
 
 
 @dataclass
 class Columns:
-    """The columns of a table by what they are taken for."""
+    """The columns of a table, with the field that each is taken for."""
 
     source: Source
     table: Table
@@ -27,7 +27,7 @@ class Columns:
     fields: list[str | None]
 
     def find(self, field: str) -> int | None:
-        """Return the column that is taken for a field, if one is."""
+        """Return the column that is taken for a field, or None."""
         return self.fields.index(field) if field in self.fields else None
 
     def text(self, row: int, column: int) -> str:
@@ -35,14 +35,14 @@ class Columns:
         return self.table.rows[row][1][column]
 
     def where(self, row: int, column: int) -> str:
-        """Return where a field is, for sentences."""
+        """Return the position of a field, for sentences."""
         return f"row {self.table.rows[row][0]}, column {quoted(self.names[column])}"
 
     def number(self, row: int, column: int) -> float:
         """Return the number in a field.
 
         Raises:
-            UnreadableFile: It is none.
+            UnreadableFile: The field is not a number.
         """
         text = self.text(row, column)
         number = number_in(text)
@@ -64,7 +64,7 @@ class Columns:
         return all(number_in(row[column]) is not None for _, row in self.table.rows)
 
     def tell(self) -> None:
-        """Note what each column is taken for, where there is a heading."""
+        """If there is a heading, note what each column is taken for."""
         if self.table.heading is None:
             return
         told = [
@@ -83,7 +83,7 @@ class Columns:
 
 
 def columns_of(source: Source, table: Table) -> Columns:
-    """Return what the columns of a table are taken for by its heading, or by what they hold."""
+    """Return the columns of a table, recognised by its heading or by their contents."""
     names = table.heading or [f"{number}" for number in range(1, table.width + 1)]
     fields: list[str | None] = fields_of(names) if table.heading else [None] * table.width
     columns = Columns(source, table, names, fields)
@@ -92,7 +92,7 @@ def columns_of(source: Source, table: Table) -> Columns:
             fields[at] = _place_column(columns, at)
     if "id" not in fields and fields[0] is None and table.width > 1:
         first = table.rows[0][1][0]
-        # Without a heading, as where a square has names of its rows, the first row tells.
+        # Without a heading, or if a square of costs has named rows, the first row decides.
         named = table.heading is None or len(table.rows) == table.width - 1
         if (named and number_in(first) is None) or _is_index(table):
             fields[0] = "id"
@@ -100,7 +100,7 @@ def columns_of(source: Source, table: Table) -> Columns:
 
 
 def _place_column(columns: Columns, at: int) -> str | None:
-    """Return `place` for a column of points of WKT, or by its heading of pairs; else None."""
+    """Return `place` for a column of points in WKT, or of pairs under such a heading; else None."""
     texts = [row[at] for _, row in columns.table.rows]
     if all(map(_POINT.fullmatch, texts)):
         return "place"
@@ -131,7 +131,7 @@ def ids_of(columns: Columns) -> list[str]:
     """Return the id of each row.
 
     Raises:
-        UnreadableFile: One is missing, or comes twice.
+        UnreadableFile: An id is missing, or comes twice.
     """
     at = columns.fields.index("id")
     seen: dict[str, int] = {}
@@ -141,7 +141,7 @@ def ids_of(columns: Columns) -> list[str]:
         if not name:
             raise columns.source.refusal(f"{where} must be an id, got none")
         if name in seen:
-            demand = f"{where} must be an id of its own"
-            raise columns.source.refusal(f"{demand}, got {quoted(name)} as row {seen[name]} has it")
+            demand = f"{where} must be an id that no other row has"
+            raise columns.source.refusal(f"{demand}, got {quoted(name)} as in row {seen[name]}")
         seen[name] = number
     return list(seen)

@@ -9,11 +9,11 @@ from itertools import islice
 
 from service.files.reading import Source, quoted
 
-Row = tuple[int, list[str]]  # its number, as a spreadsheet counts, and its fields
+Row = tuple[int, list[str]]  # the number of a row, as a spreadsheet counts, and its fields
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas"}
-_SAMPLE = 2**16  # characters that a separator is told by
+_SAMPLE = 2**16  # characters by which the separator is recognised
 _SAMPLE_ROWS = 50
-_LARGEST = 1e150  # as in requests
+_LARGEST = 1e150  # the same limit as in requests
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
 _PLAIN = re.compile(r"[-+0-9.eE ]+", re.ASCII)
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(e[-+]?\d{1,3})?", re.ASCII | re.IGNORECASE)
@@ -22,19 +22,19 @@ _MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\xa0": "", "\u202f": ""})
 
 @dataclass(frozen=True)
 class Table:
-    """The rows below a heading, all of as many fields, and the heading if there is one."""
+    """The rows of a table, all with the same number of fields, and the heading if there is one."""
 
     heading: list[str] | None
     rows: list[Row]
 
     @property
     def width(self) -> int:
-        """How many fields each row has."""
+        """The number of fields in each row."""
         return len(self.rows[0][1])
 
 
 def number_in(field: str) -> float | None:
-    """Return the number that a field is, with a point or a comma as its decimal sign."""
+    """Return the number in a field, with a decimal point or comma; None if it is not a number."""
     text = field.translate(_MINUS)
     if _DECIMAL_COMMA.fullmatch(text):
         text = text.replace(",", ".")
@@ -45,7 +45,7 @@ def number_in(field: str) -> float | None:
 
 
 def plain_numbers(fields: Sequence[str]) -> list[float] | None:
-    """Return the numbers of fields with decimal points alone, faster; None where any is not so."""
+    """Return the numbers of fields with decimal points, fast; None if any field is different."""
     if not _PLAIN.fullmatch(" ".join(fields)):
         return None
     try:
@@ -56,10 +56,10 @@ def plain_numbers(fields: Sequence[str]) -> list[float] | None:
 
 
 def table_of_csv(source: Source, text: str) -> Table:
-    """Return the table in a text of CSV.
+    """Return the table in CSV.
 
     Raises:
-        UnreadableFile: It is none, or has too many fields.
+        UnreadableFile: It is not CSV, or has too many fields.
     """
     first, _, rest = text.partition("\n")
     told = re.fullmatch(r"\s*\"?sep=(.)\"?\s*", first)
@@ -76,12 +76,12 @@ def table_of_csv(source: Source, text: str) -> Table:
 
 
 def table_of(source: Source, fields: Iterable[Sequence[str]], first: int = 1) -> Table:
-    """Return the table of rows of fields, the first of which has this number.
+    """Return the table with these rows of fields; `first` is the number of the first row.
 
-    Rows without any text are left out, which is noted.
+    Rows without any text are left out, with a note.
 
     Raises:
-        UnreadableFile: It has no rows, rows of other lengths, or too many fields.
+        UnreadableFile: It has no rows, rows of different lengths, or too many fields.
     """
     rows: list[Row] = []
     count, empty = 0, 0
@@ -108,7 +108,7 @@ def _counted(count: int, noun: str) -> str:
 
 
 def _separator(text: str) -> str | None:
-    """Return what separates all rows of a sample alike; None where white space does."""
+    """Return the separator that splits all rows of a sample alike; None if it is white space."""
     lines = text[:_SAMPLE].splitlines()
     sample = "\n".join(lines[:_SAMPLE_ROWS] if len(text) <= _SAMPLE else lines[:-1][:_SAMPLE_ROWS])
     widths: dict[str, list[int]] = {}
@@ -137,7 +137,7 @@ def _take_heading(source: Source, rows: list[Row]) -> list[str] | None:
     """Take the heading off rows that have one, and return it."""
     fields = rows[0][1]
     if _counts_up(fields):
-        # A square of numbers is one of costs, whatever its first row.
+        # A square of numbers is a matrix of costs, even if its first row counts.
         if len(rows) == len(fields) != 4 or len(fields) < 2:
             return None
         source.note("heading", "The first row counts the columns, so it is taken for a heading.")
@@ -147,13 +147,13 @@ def _take_heading(source: Source, rows: list[Row]) -> list[str] | None:
 
 
 def _counts_up(fields: Sequence[str]) -> bool:
-    """Return whether fields are a heading as pandas writes it where columns have no names."""
+    """Return whether fields are a heading that pandas writes if columns have no names: 0, 1, 2."""
     numbers = fields[1:] if fields[0] == "" else fields
     return list(numbers) == [str(number) for number in range(len(numbers))]
 
 
 def _is_heading(fields: Sequence[str], rows: Sequence[Row]) -> bool:
-    """Return whether a row names columns: by words alone, after `id`, or as the rows are named."""
+    """Return whether a row is a heading: words only, after `id`, or the same names as the rows."""
     if any(field.lower().startswith("point") for field in fields[1:]):
         return any(not field.lower().startswith("point") and "(" in field for field in fields)
     numbers = [number_in(field) is not None for field in fields]
@@ -164,13 +164,13 @@ def _is_heading(fields: Sequence[str], rows: Sequence[Row]) -> bool:
 
 
 def _squared(source: Source, heading: list[str] | None, rows: list[Row]) -> list[Row]:
-    """Return rows of as many fields as the heading, or the first row; others are refused.
+    """Return rows with as many fields as the heading, or the first row; refuse other rows.
 
-    Beside a heading a row may leave its last fields out, and any may have empty ones more.
+    Any row may have more fields that are empty. Under a heading, rows may lack their last fields.
     """
     width = len(rows[0][1] if heading is None else heading)
     if heading is not None and all(len(row) == width + 1 for _, row in rows):
-        heading.insert(0, "")  # as R writes tables with names of rows
+        heading.insert(0, "")  # R writes named rows like this
         width += 1
     squared = []
     for number, row in rows:

@@ -1,4 +1,4 @@
-"""Decode the bytes of a text file: UTF-8, UTF-16, or what else they look like."""
+"""Decode the bytes of a text file: UTF-8, UTF-16, or an older encoding that is guessed."""
 
 import codecs
 
@@ -11,17 +11,17 @@ _BOMS = (
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
-# What spreadsheets of the last decades wrote.
+# The encodings that spreadsheets of the last decades wrote.
 _LATIN = ("cp1252", "cp1250", "cp1254")
 _LEGACY = [*_LATIN, "cp1251", "cp1253", "cp932", "gb18030", "big5", "cp949"]
-_SAMPLE = 2**14  # bytes that an encoding is told by
+_SAMPLE = 2**14  # bytes by which an encoding is guessed
 
 
 def text_of(source: Source) -> str:
-    """Return the text of a file, with a note where it is not UTF-8.
+    """Return the text of a file, with a note if it is not UTF-8.
 
     Raises:
-        UnreadableFile: The bytes are no text.
+        UnreadableFile: The bytes are not text.
     """
     data = source.file.data
     encoding = next((name for bom, name in _BOMS if data.startswith(bom)), None) or _told(data)
@@ -38,7 +38,7 @@ def text_of(source: Source) -> str:
 
 
 def _told(data: bytes) -> str:
-    """Return the encoding of bytes that no mark begins."""
+    """Return the encoding of bytes without a byte order mark."""
     even, odd = data[:_SAMPLE:2].count(0), data[1:_SAMPLE:2].count(0)
     if even + odd > min(len(data), _SAMPLE) // 4:  # every other byte of Latin text in UTF-16
         return "utf-16-le" if odd > even else "utf-16-be"
@@ -50,10 +50,10 @@ def _told(data: bytes) -> str:
 
 
 def _legacy(data: bytes, first: int) -> str:
-    """Return the encoding of bytes whose first one beyond ASCII is here."""
+    """Guess an encoding older than UTF-8; `first` is the first byte beyond ASCII."""
     from charset_normalizer import from_bytes
 
     begin = max(0, first - _SAMPLE // 2)
     best = from_bytes(data[begin : begin + _SAMPLE], cp_isolation=_LEGACY).best()
-    # Pages of Latin letters differ in a few signs, by which short texts tell none from another.
+    # Latin encodings differ in a few characters only, too few to tell them apart in short texts.
     return "cp1252" if best is None or best.encoding in _LATIN else best.encoding

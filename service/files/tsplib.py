@@ -1,4 +1,4 @@
-"""Files of TSPLIB (Reinelt, 1991) and CVRPLIB: their keywords and sections, however spelled."""
+"""Files of TSPLIB (Reinelt, 1991) and CVRPLIB: read their keywords and sections in any spelling."""
 
 import re
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ _LAYOUTS = {
     "LOWER_DIAG_ROW": "lower diagonal",
     "UPPER_DIAG_COL": "lower diagonal",
 }
-_LARGEST = 1e150  # whose square is a number
+_LARGEST = 1e150  # its square is still a float
 _TELLING = ("EDGE_WEIGHT_TYPE", "NODE_COORD_SECTION", "EDGE_WEIGHT_SECTION", "EDGE_DATA_FORMAT")
 _NOT_PLANNED = {"SOP": "an order of cities", "HCP": "no costs", "TOUR": "a tour, and no costs"}
 
@@ -50,7 +50,7 @@ class TsplibFile:
         """The number of cities.
 
         Raises:
-            UnreadableFile: It is not said, or more than the bounds allow.
+            UnreadableFile: It is missing, or over the bounds.
         """
         value = self.word("DIMENSION")
         if not re.fullmatch("[1-9][0-9]{0,8}", value):
@@ -67,7 +67,7 @@ class TsplibFile:
         return self.parsed(section, words).reshape(rows, columns)
 
     def parsed(self, section: str, words: list[str]) -> Array:
-        """Return the numbers that words are."""
+        """Return words as numbers."""
         try:
             numbers = np.array(words, dtype=np.float64)
         except ValueError as error:
@@ -78,12 +78,12 @@ class TsplibFile:
 
 
 def is_tsplib(text: str) -> bool:
-    """Return whether a text has the keywords of TSPLIB at the beginning of a line."""
+    """Return whether a line of a text begins with a keyword of TSPLIB."""
     return any(re.search(rf"^[ \t]*{word}\b", text, re.MULTILINE) for word in _TELLING)
 
 
 def split_tsplib(source: Source, text: str) -> TsplibFile:
-    """Return the keywords and sections of a text: a section ends where the next keyword stands."""
+    """Return the keywords and sections of a text. A section ends at the next keyword."""
     file = TsplibFile(source)
     _fill(file, text)
     kind = file.word("TYPE").upper()
@@ -96,7 +96,7 @@ def split_tsplib(source: Source, text: str) -> TsplibFile:
 
 def _fill(file: TsplibFile, text: str) -> None:
     """Read the lines of a text into the keywords and sections of a file."""
-    words: list[str] | None = None  # of the section that a line is in
+    words: list[str] | None = None  # the words of the current section
     for line in text.splitlines():
         keyword = _KEYWORD.fullmatch(line.strip())
         if keyword is None or keyword[1].casefold() in ("inf", "infinity", "nan"):
@@ -123,7 +123,7 @@ def costs(file: TsplibFile) -> Array:
     """Return the costs from each city to each, shape (n, n), as TSPLIB defines them.
 
     Raises:
-        UnreadableFile: They are of no supported kind, or too many.
+        UnreadableFile: Their kind is not supported, or there are too many.
     """
     limit = file.source.bounds.matrix_cities
     file.source.check_count("cities whose costs are written out", limit, file.dimension)
@@ -164,7 +164,7 @@ def _explicit(file: TsplibFile) -> Array:
 
 
 def plain(costs: Array) -> list[list[Any]]:
-    """Return costs as rows of JSON: whole numbers without a fraction, None for no way."""
+    """Return costs as rows for JSON: whole numbers as integers, None where there is no way."""
     if np.isfinite(costs).all():
         whole = (costs == np.rint(costs)).all() and (np.abs(costs) < 2**53).all()
         rows: list[list[Any]] = (costs.astype(np.int64) if whole else costs).tolist()

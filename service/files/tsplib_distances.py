@@ -18,8 +18,8 @@ DIMENSIONS = {
     "MAN_3D": 3,
     "MAX_3D": 3,
 }
-_PI = 3.141592  # as it defines
-_EARTH = 6378.388  # kilometres, likewise
+_PI = 3.141592  # as TSPLIB defines it
+_EARTH = 6378.388  # kilometres, as TSPLIB defines it
 
 
 def distances(kind: str, places: Array) -> Array:
@@ -56,7 +56,7 @@ _PLANAR: dict[str, Callable[[Array], Array]] = {
 
 def _geo(places: Array) -> Array:
     """Return distances in whole kilometres on the earth, of latitudes and longitudes as DDD.MM."""
-    degrees = np.trunc(places)  # not rounded, whatever the definition says: as all known optima are
+    degrees = np.trunc(places)  # TSPLIB says rounded, but the known optima are for this
     latitude, longitude = (_PI * (degrees + 5 * (places - degrees) / 3) / 180).T
     q1 = np.cos(longitude[:, np.newaxis] - longitude)
     q2 = np.cos(latitude[:, np.newaxis] - latitude)

@@ -13,7 +13,7 @@ from service.files.reading import Bounds, FileTooLarge, NamedFile, UnreadableFil
 from service.files.spreadsheets import is_spreadsheet
 from service.requests.limits import Limits, check_structure
 
-_CELL_BYTES = 8  # of a field of a table at most, where all of a body are fields
+_CELL_BYTES = 8  # bytes per field, if a body were full of fields
 
 
 def bounds_of(limits: Limits) -> Bounds:
@@ -32,15 +32,15 @@ def read_upload(
     """Return the document of a reading as JSON.
 
     Raises:
-        Refusal: A file cannot be read, or holds or becomes too much.
+        Refusal: A file cannot be read, or it or its request is too large.
     """
-    del actors  # whoever plans it
+    del actors  # not needed here, only for planning
     for file in files:
-        if not is_spreadsheet(file.data):  # whose bytes are compressed
+        if not is_spreadsheet(file.data):  # the bytes of a spreadsheet are compressed
             check_structure(file.data, limits)
     try:
         reading = read_files(files, bounds_of(limits), wanted=None)
-        if reading.kind == "coverage":  # whoever shows a map draws a grid
+        if reading.kind == "coverage":  # a client that shows the map needs a grid
             request = with_grid(reading.name, reading.request, limits.cells)
             reading = replace(reading, request=request)
     except FileTooLarge as error:

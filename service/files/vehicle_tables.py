@@ -1,4 +1,4 @@
-"""A table of vehicles beside one of stops: the request for the fleet that both are."""
+"""Read a table of stops and a table of vehicles as the request for a fleet."""
 
 import re
 
@@ -21,13 +21,13 @@ from service.files.table_columns import Columns, columns_of, ids_of
 from service.files.tables import Table
 from service.files.visits import add_visits, is_time, seconds_in, span_in
 
-_ENDS = {"depot": ("start", "end"), "start": ("start",), "end": ("end",)}  # that each place is
+_ENDS = {"depot": ("start", "end"), "start": ("start",), "end": ("end",)}  # members by column
 _KILOMETRE = 1000.0
 _IN_KILOMETRES = re.compile(r"km\b", re.IGNORECASE)
 
 
 def has_vehicles(table: Table) -> bool:
-    """Return whether a table is one of vehicles, by its heading."""
+    """Return whether a table is about vehicles, by its heading."""
     return table.heading is not None and is_about_vehicles(table.heading)
 
 
@@ -35,7 +35,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     """Return the request for the stops of one table and the vehicles of the other.
 
     Raises:
-        UnreadableFile: A field is not what its column asks for, or columns are missing.
+        UnreadableFile: A field does not fit its column, or columns are missing.
     """
     source, other = of_stops[0], of_vehicles[0]
     visits = columns_of(*of_stops)
@@ -56,7 +56,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
 
 
 def _columns_of_vehicles(source: Source, table: Table, stops: list[Stop]) -> Columns:
-    """Return what the columns are taken for; start and end by their fields: times, or stops."""
+    """Return the columns of vehicles. The contents of start and end decide: times, or stops."""
     of_stops = {"latitude", "x", "place", "demand"} & set(fields_of(table.heading or []))
     if table.heading is None or (of_stops and not is_about_vehicles(table.heading)):
         raise source.refusal("must have columns of vehicles, as capacity, shift start, shift end")
@@ -72,7 +72,7 @@ def _columns_of_vehicles(source: Source, table: Table, stops: list[Stop]) -> Col
 
 
 class _Vehicles:
-    """Reads the rows of a table of vehicles; a place that is no stop yet becomes one."""
+    """Reads the rows of a table of vehicles; a place that is not a stop yet becomes one."""
 
     def __init__(self, columns: Columns, stops: list[Stop], *, located: bool) -> None:
         self._columns = columns
@@ -83,7 +83,7 @@ class _Vehicles:
         self._places: dict[tuple[float, ...], str] = {}
 
     def read(self) -> list[Vehicle]:
-        """Return the vehicles, with ids, counts, places and shifts."""
+        """Return the vehicles with their ids, counts, places and shifts."""
         columns = self._columns
         rows = range(len(columns.table.rows))
         if "id" in columns.fields:
@@ -109,7 +109,7 @@ class _Vehicles:
         return vehicle
 
     def _place(self, row: int, place: str, vehicle: str) -> str | None:
-        """Return the id of the stop where a vehicle starts or ends, given as such or as a place."""
+        """Return the id of the stop where a vehicle starts or ends, given as an id or a place."""
         columns = self._columns
         at = columns.find(place)
         if at is not None and (text := " ".join(columns.text(row, at).split())):
@@ -137,7 +137,7 @@ class _Vehicles:
 def _add_capacities(
     columns: Columns, vehicles: list[Vehicle], visits: Columns, stops: list[Stop], units: int
 ) -> None:
-    """Add capacities, in the units and the order of the demands; else they hold all demand."""
+    """Add capacities, in the units and order of the demands; by default those of all demand."""
     demands = [at for at, each in enumerate(visits.fields) if each == "demand"]
     found = [at for at, each in enumerate(columns.fields) if each == "capacity"]
     if not demands:
@@ -163,7 +163,7 @@ def _add_capacities(
 
 
 def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
-    """Add the longest route: its time where there is a clock, else its length."""
+    """Add the limit on routes: on their time if there is a clock, else on their length."""
     used, left_out = "longest_time", "longest_distance"
     if not clock:
         used, left_out = left_out, used
@@ -183,12 +183,12 @@ def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
 
 
 def _add_fixed(columns: Columns, vehicles: list[Vehicle], *, located: bool) -> None:
-    """Add what a vehicle costs if it is used, as the length that costs as much."""
+    """Add the cost of using a vehicle, converted to a length that costs the same."""
     rates = _rates(columns)
     if (at := columns.find("fixed")) is not None:
-        metre, means = 1.0, "what the distance grows by if a vehicle is used"
+        metre, means = 1.0, "added to the distance for each vehicle used"
         if len(rates) == 1 and located:
-            metre, means = rates.pop() / _KILOMETRE, "as many metres as cost as much"
+            metre, means = rates.pop() / _KILOMETRE, "converted to the metres that cost the same"
         columns.source.note("fixed", f"{quoted(columns.names[at])} is {means}.")
         for row, vehicle in enumerate(vehicles):
             if columns.text(row, at):
@@ -196,7 +196,7 @@ def _add_fixed(columns: Columns, vehicles: list[Vehicle], *, located: bool) -> N
 
 
 def _rates(columns: Columns) -> set[float]:
-    """Return the costs of a kilometre, and note where they differ, as no plan can tell them."""
+    """Return the costs per kilometre; note if they differ by vehicle, which is not supported."""
     at = columns.find("per_km")
     if at is None:
         return set()

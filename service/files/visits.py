@@ -16,16 +16,16 @@ _TIME = re.compile(
     re.ASCII,
 )
 _BETWEEN = re.compile(r"\s*(?:[-/\u2013\u2014]|\bto\b|\bbis\b)\s*", re.IGNORECASE)
-_MOST = 1e6  # of demands
+_MOST = 1e6  # the largest demand
 _ROUNDING = 1e-6
-_MOST_DECIMALS = 3  # of demands, which become whole numbers
+_MOST_DECIMALS = 3  # of a demand, which becomes a whole number
 
 
 def add_visits(columns: Columns, stops: list[Stop]) -> int:
-    """Add what a vehicle's visit needs to stops: demand, window, service and prize.
+    """Add the members of visits to stops: demand, window, service and prize.
 
     Returns:
-        How many units of the demands here are one in the table.
+        By how much the demands of the table were multiplied.
     """
     demands = [at for at, each in enumerate(columns.fields) if each == "demand"]
     if (at := columns.find("skills")) is not None:
@@ -47,12 +47,12 @@ def is_time(text: str) -> bool:
 
 
 def _filled(columns: Columns, at: int) -> list[int]:
-    """Return the rows where a column has text."""
+    """Return the rows in which a column has text."""
     return [row for row in range(len(columns.table.rows)) if columns.text(row, at)]
 
 
 def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> int:
-    """Add demands as whole numbers, of fractions in smaller units; return how many are one."""
+    """Add demands as whole numbers; multiply fractions by a power of ten, and return that."""
     rows = np.array(
         [
             [columns.number(row, at) if columns.text(row, at) else 0.0 for at in demands]
@@ -70,7 +70,8 @@ def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> int
     decimals = next(at for at, each in enumerate(whole) if each.all())
     if decimals:
         columns.source.note(
-            "demand", f"Demands are whole numbers, so they are in 1/{10**decimals} here."
+            "demand",
+            f"Demands must be whole numbers, so they are given in units of 1/{10**decimals}.",
         )
     for stop, amounts in zip(stops, np.rint(finer[decimals]).astype(int).tolist(), strict=True):
         stop["demand"] = amounts
@@ -78,7 +79,7 @@ def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> int
 
 
 def span_in(columns: Columns, row: int, field: str) -> list[float] | None:
-    """Return a window or a shift, in seconds; None where its fields are empty."""
+    """Return a window or a shift in seconds; None if its fields are empty."""
     both = columns.find(field)
     if both is not None:
         text = columns.text(row, both)

@@ -18,12 +18,12 @@ _LEFT_OUT = {
 
 @dataclass
 class _Problem:
-    """The stops of a problem as they are found, with their places and indexes of matrices."""
+    """Collects the stops of a problem, with their places and their indexes in matrices."""
 
     source: Source
     stops: list[Stop] = field(default_factory=list)
     indexes: list[Any] = field(default_factory=list)
-    depots: dict[str, str] = field(default_factory=dict)  # ids of stops by their places
+    depots: dict[str, str] = field(default_factory=dict)  # the ids of stops, by their places
 
     def add(self, name: str, place: Any, index: Any, where: str, **members: Any) -> str:
         """Add a stop, and return its id."""
@@ -57,10 +57,10 @@ def is_vroom(value: dict[str, Any]) -> bool:
 
 
 def read_vroom(source: Source, value: dict[str, Any]) -> Reading:
-    """Return the request of a fleet that a problem is.
+    """Return a problem as the request for a fleet.
 
     Raises:
-        UnreadableFile: A member is not of its kind, or has several windows.
+        UnreadableFile: A member has a wrong type, or several windows.
     """
     problem = _Problem(source)
     vehicles = [_vehicle(problem, each, where) for each, where in _items(source, value, "vehicles")]
@@ -95,7 +95,7 @@ def read_vroom(source: Source, value: dict[str, Any]) -> Reading:
 def _items(
     source: Source, value: dict[str, Any], name: str
 ) -> Iterator[tuple[dict[str, Any], str]]:
-    """Yield the objects of a member, and where each is."""
+    """Yield the objects in a member, and the position of each for sentences."""
     items = value.get(name) or []
     if not isinstance(items, list) or not all(isinstance(each, dict) for each in items):
         raise source.refusal(f"{name} must be a list of objects")
@@ -129,7 +129,7 @@ def _add_task(problem: _Problem, task: dict[str, Any], where: str, name: str, lo
 
 
 def _window(source: Source, windows: Any, where: str) -> list[float] | None:
-    """Return the one window of a list, None where there is none."""
+    """Return the only window of a list, or None if it is empty."""
     if not windows or windows == [None]:
         return None
     if not isinstance(windows, list) or len(windows) > 1:
@@ -148,7 +148,7 @@ def _are_numbers(value: Any, count: int) -> bool:
 
 
 def _objectives(problem: _Problem, value: dict[str, Any], clock: bool) -> list[dict[str, Any]]:
-    """Return both objectives: of the matrices of the first profile, or of the stops' places."""
+    """Return both objectives: from the matrices of the first profile, or from the stops' places."""
     source = problem.source
     matrices = value.get("matrices")
     if not isinstance(matrices, dict) or not matrices:

@@ -1,1 +1,1 @@
-"""Fleets: plans for several vehicles, and the front of them under two objectives."""
+"""Plan fleets: fronts of plans for several vehicles, found with PyVRP."""

@@ -1,4 +1,4 @@
-"""The archive of a fleet's search: the nondominated solutions of PyVRP among all that it visits."""
+"""The archive of a fleet's search: all nondominated solutions that PyVRP has visited."""
 
 from bisect import bisect_left, bisect_right
 from math import inf
@@ -9,14 +9,14 @@ from service.fleet.evaluation import plan_lengths, violations
 from service.fleet.translation import Translation
 
 Point = tuple[float, float]
-_ROUNDING = 1e-14  # relative, of a sum of doubles: plans of the same lengths differ by as much
-_ROUNDED = 4  # units of each visit: two legs, a service and a window
+_ROUNDING = 1e-14  # relative error of a sum of doubles: equal plans differ by as much
+_ROUNDED = 4  # units by which each visit is rounded: two legs, a service and a window
 
 
 class SolutionArchive:
-    """Solutions that keep every rule, by ascending first length, and strictly descending second.
+    """Solutions that keep every rule, by ascending first and strictly descending second length.
 
-    A solution may be longer than the limit under which it was found: that is no rule.
+    A solution may be longer than the limit under which it was found: the limit is not a rule.
     """
 
     def __init__(self, translation: Translation) -> None:
@@ -33,10 +33,10 @@ class SolutionArchive:
         self._slack = [_ROUNDED * visits / translation.scale(objective) for objective in (0, 1)]
         self._firsts: list[float] = []
         self._seconds: list[float] = []
-        self.guides: list[Point] = []  # lengths as PyVRP has them: rounded up, and squeezed
-        self._compared: set[Point] = set()  # such lengths of solutions whose true ones are known
+        self.guides: list[Point] = []  # PyVRP's lengths: rounded up, and squeezed
+        self._compared: set[Point] = set()  # guides of solutions whose true lengths are known
         self.solutions: list[pyvrp.Solution] = []
-        self.version = 0  # the number of solutions that were added
+        self.version = 0  # the number of solutions added so far
 
     def __len__(self) -> int:
         return len(self.solutions)
@@ -47,31 +47,31 @@ class SolutionArchive:
         return list(zip(self._firsts, self._seconds, strict=True))
 
     def best_within(self, objective: int, length: float) -> int | None:
-        """Return the solution that is best in the other objective, of those not longer in one.
+        """Return the index of the best solution in the other objective, within a length in one.
 
-        By their lengths as PyVRP has them.
+        Lengths are those of PyVRP. None if no solution is within it.
         """
         within = [index for index, guide in enumerate(self.guides) if guide[objective] <= length]
         return min(within, key=lambda index: self.guides[index][1 - objective], default=None)
 
     def offer(self, solution: pyvrp.Solution, weights: tuple[int, int]) -> None:
-        """Add a solution unless it breaks a rule, or another is as good.
+        """Add a solution, unless it breaks a rule or another one is at least as good.
 
         Args:
             solution: The solution.
-            weights: Of the goal under which it was found, by which its prizes are multiplied.
+            weights: The weights of the goal under which it was found. They multiply its prizes.
         """
         if not self._keeps_rules(solution):
             return
         guide = self._point(solution, weights)
-        # What PyVRP has is not more than the true lengths, up to rounding.
+        # PyVRP's lengths are at most the true lengths, up to rounding.
         if self._is_dominated((guide[0] - self._slack[0], guide[1] - self._slack[1])):
             return
         if guide in self._compared and not self._translation.squeezed.changed:
             return
         self._compared.add(guide)
         fleet, plan = self._translation.fleet, self._translation.plan(solution)
-        if not weights[0 if self._roles.distance == 0 else 1]:  # nor have its prizes any weight
+        if not weights[0 if self._roles.distance == 0 else 1]:  # then prizes have no weight either
             guide = guide[0] + self._translation.extras(plan), guide[1]
         first, second = plan_lengths(fleet, plan)
         if self._is_dominated((first, second)):
@@ -89,7 +89,7 @@ class SolutionArchive:
         self.version += 1
 
     def _is_dominated(self, point: Point) -> bool:
-        """Return whether a solution is as good as a point in both lengths, up to rounding."""
+        """Return whether a solution is at least as good as a point in both lengths."""
         place = bisect_right(self._firsts, point[0] * (1 + _ROUNDING))
         return place > 0 and self._seconds[place - 1] <= point[1] * (1 + _ROUNDING)
 
@@ -102,7 +102,7 @@ class SolutionArchive:
         )
 
     def _point(self, solution: pyvrp.Solution, weights: tuple[int, int]) -> Point:
-        """Return both lengths of a solution."""
+        """Return both lengths of a solution as PyVRP has them."""
         first, second = (self._length(solution, objective) for objective in (0, 1))
         weight = weights[0 if self._roles.distance == 0 else 1]
         scale = self._translation.scale(0)

@@ -1,7 +1,7 @@
 """The exact front of a fleet of few stops and vehicles, by dynamic programming over its routes.
 
-Every order of every subset of the stops is a route. Vehicle after vehicle takes one or none, and
-of the partial plans that visit the same stops those that are dominated are dropped.
+Every order of every subset of the stops is a route. One vehicle after another takes a route or
+none. Among the partial plans that visit the same stops, dominated ones are dropped.
 """
 
 from collections import defaultdict
@@ -16,13 +16,13 @@ from service.fleet.fleet import Fleet, Rules
 from service.fleet.plans import Plan, Route
 from service.pareto import nondominated
 
-MOST_STOPS = 6  # to visit
+MOST_STOPS = 6  # stops to visit
 _MOST_VEHICLES = 6
 Stops = frozenset[int]
 
 
 class _Partial(NamedTuple):
-    """The routes of some vehicles, and their lengths together."""
+    """The routes of some vehicles, and the sums of their lengths."""
 
     first: float
     second: float
@@ -40,13 +40,13 @@ def is_enumerable(rules: Rules) -> bool:
 
 
 class _Ended(Exception):
-    """There is no time left."""
+    """The time is over."""
 
 
 def exact_plans(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> list[Plan] | None:
-    """Return a plan for each point of the exact front, and others that are dominated.
+    """Return a plan for each point of the exact front, and some dominated plans.
 
-    None where `ended`, which is called every few milliseconds, returned True before all were tried.
+    Return None if `ended`, which is called every few milliseconds, returns True before the end.
     """
     rules = fleet.rules
     partials: Partials = {frozenset(): [_Partial(0.0, 0.0, ())]}
@@ -62,7 +62,7 @@ def exact_plans(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> list
 
 
 def _routes(fleet: Fleet, vehicle: int, ended: Callable[[], bool]) -> Partials:
-    """Return the routes of a vehicle that break no rule, by the stops that they visit."""
+    """Return the routes of a vehicle that break no rule, grouped by the stops that they visit."""
     rules = fleet.rules
     fixed = rules.vehicles[vehicle].fixed
     found: dict[Stops, list[_Partial]] = defaultdict(list)
@@ -78,7 +78,7 @@ def _routes(fleet: Fleet, vehicle: int, ended: Callable[[], bool]) -> Partials:
 
 
 def _ships_in_order(rules: Rules, stops: tuple[int, ...]) -> bool:
-    """Return whether what is picked up on a route is delivered later on it, and the reverse."""
+    """Return whether a route has both stops of each of its shipments, in the right order."""
     places = {stop: place for place, stop in enumerate(stops)}
     missing = len(stops)
     return all(

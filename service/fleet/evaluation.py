@@ -1,6 +1,6 @@
 """The lengths of plans, the times of their routes, and the rules that they break.
 
-Nothing here knows of the engine that finds plans: it is what every plan is checked by.
+Every plan is checked with this code, which shares nothing with the engine that finds plans.
 """
 
 from collections import Counter
@@ -15,21 +15,21 @@ from service.fleet.fleet import Array, Fleet, Rules
 from service.fleet.plans import Plan, Route, path_of
 from service.instance import OBJECTIVES
 
-_TOLERANCE = 1e-9  # of the length of a route: sums of floats differ by their order
-_ROUNDING = 2.0**-52  # relative, of each time of a route
+_TOLERANCE = 1e-9  # of the length of a route: sums of floats depend on their order
+_ROUNDING = 2.0**-52  # relative, for each time of a route
 
 
 @dataclass(frozen=True)
 class Schedule:
-    """When a vehicle reaches each stop of its route, and when it is done.
+    """The times of a route: when the vehicle reaches each stop, and when it is done.
 
-    It leaves as late as it can without being done later.
+    The vehicle leaves as late as possible without finishing later.
 
     Attributes:
-        arrivals: A time for each stop of `path_of`; at the first the departure. It may wait there
-            until the window opens.
-        end: When the route is done.
-        late: By how much it misses windows and the end of its shift, at most.
+        arrivals: The arrival at each stop of `path_of`; at the first stop, the departure. The
+            vehicle may wait at a stop until its window opens.
+        end: The end of the route.
+        late: The largest delay at a window or at the end of the shift.
     """
 
     arrivals: tuple[float, ...]
@@ -43,7 +43,7 @@ class Schedule:
 
 
 def schedule(fleet: Fleet, route: Route) -> Schedule:
-    """Return the times of a route of a fleet that has a clock, or of one in its objective.
+    """Return the times of a route of a fleet with a clock.
 
     Raises:
         ValueError: The fleet has no clock.
@@ -52,7 +52,8 @@ def schedule(fleet: Fleet, route: Route) -> Schedule:
         raise ValueError("a fleet without a clock has no times")
     shift = fleet.rules.vehicles[route.vehicle].shift
     early = _drive(fleet, route, shift[0], shift[1])
-    # Savelsbergh (1992): to leave later by the waiting, or what windows allow, delays no end.
+    # Savelsbergh (1992): leaving later by the waiting time, or by what windows allow, does not
+    # delay the end of the route.
     delay = 0.0 if early.late else min(early.waiting, early.slack)
     timely = _drive(fleet, route, shift[0] + delay, shift[1]) if delay else early
     return Schedule(timely.arrivals, timely.end, early.late)
@@ -63,12 +64,12 @@ class _Drive:
     arrivals: tuple[float, ...]
     end: float
     waiting: float
-    slack: float  # by how much it may leave later, where it is nowhere late
+    slack: float  # by how much it may leave later, if it is never late
     late: float
 
 
 def _drive(fleet: Fleet, route: Route, departure: float, last: float) -> _Drive:
-    """Return the times of a route that begins at a time."""
+    """Return the times of a route that begins at this departure."""
     path = path_of(fleet.rules, route)
     time, waiting, slack, late = departure, 0.0, inf, 0.0
     arrivals = []
@@ -93,13 +94,13 @@ def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
 
 
 def route_lengths(fleet: Fleet, route: Route) -> tuple[float, float]:
-    """Return the lengths of a route: in the clock's objective its duration, else its costs."""
+    """Return the lengths of a route: its duration in the clock's objective, else its costs."""
     first, second = (_length(fleet, route, objective) for objective in range(OBJECTIVES))
     return first, second
 
 
 def plan_lengths(fleet: Fleet, plan: Plan) -> tuple[float, float]:
-    """Return the lengths of a plan, with prizes lost and vehicles used in the first."""
+    """Return the lengths of a plan. The first one includes lost prizes and fixed costs."""
     routes = np.array([route_lengths(fleet, route) for route in plan.routes]).reshape(
         -1, OBJECTIVES
     )
@@ -151,7 +152,7 @@ def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:
     visits = Counter(plan.visited())
     for stop, times in visits.items():
         if stop not in rules.clients:
-            yield f"stop {stop} is no stop to visit"
+            yield f"stop {stop} is not a stop to visit"
         elif times > 1:
             yield f"stop {stop} is visited {times} times"
     required = (stop for stop in rules.clients if not _may_be_left_out(rules, stop))
@@ -208,9 +209,9 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
 
 
 def _loads(rules: Rules, route: Route, dimension: int) -> Iterator[int]:
-    """Return what a vehicle holds in one dimension, at its start and after each visit.
+    """Return the load of a vehicle in one dimension, at its start and after each visit.
 
-    At the start that is all it brings to stops that are in no shipment.
+    At the start it holds the demands of all stops that are not in shipments.
     """
     delivered = {each.delivery: each.pickup for each in rules.shipments}
 

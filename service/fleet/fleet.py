@@ -21,14 +21,14 @@ ALWAYS: Span = (0.0, inf)
 
 @dataclass(frozen=True, kw_only=True)
 class Visit:
-    """What a stop asks of the vehicle that visits it.
+    """The demands of a stop on the vehicle that visits it.
 
     Args:
-        demand: What is brought there, in each dimension of the vehicles' capacity; or of a pick-up,
-            what is taken on.
+        demand: The load brought there, or at a pick-up the load taken on, in each dimension of the
+            vehicles' capacity.
         service: How long the visit takes.
         window: When the visit may begin.
-        prize: What is lost where the stop is left out; None where it must be visited.
+        prize: The cost of leaving the stop out; None if it must be visited.
     """
 
     demand: tuple[int, ...] = ()
@@ -47,17 +47,17 @@ class Shipment:
 
 @dataclass(frozen=True, kw_only=True)
 class VehicleType:
-    """So many vehicles that are alike.
+    """A number of equal vehicles.
 
     Args:
-        start: The stop at which they start; None where each starts at its first visit.
-        end: The stop at which they end; None where each ends at its last visit.
+        start: The stop at which they start; None if each starts at its first visit.
+        end: The stop at which they end; None if each ends at its last visit.
         count: How many there are.
-        capacity: The most that one holds, in each dimension.
-        shift: When one may leave, and must be back.
-        longest: The longest route: its time where the fleet has a clock, else its length in the
-            objective that is a maximum.
-        fixed: What it costs to use one.
+        capacity: The most that a vehicle can hold, in each dimension.
+        shift: The earliest departure and the latest end of a route.
+        longest: The limit on a route: on its time if the fleet has a clock, else on its length in
+            the objective that is a maximum.
+        fixed: The cost of using one vehicle.
     """
 
     start: int | None = None
@@ -74,14 +74,14 @@ class Rules:
     """All of a fleet but the costs between its stops.
 
     Args:
-        visits: What each of the n stops asks for. Starts and ends of vehicles ask for nothing.
+        visits: The demands of each of the n stops. Starts and ends of vehicles have none.
         vehicles: The types of vehicles.
         shipments: The pairs of stops that one vehicle must visit in order.
-        over: Whether a plan's length in each objective is the sum over its routes, or the longest.
-        clock: The objective that is time, in whose unit service, windows and shifts are.
+        over: How each objective measures a plan: by the sum over its routes, or by the longest.
+        clock: The objective that is time. Service, windows and shifts are in its unit.
 
     Raises:
-        Refusal: They contradict each other, or ask for something that is not supported.
+        Refusal: The rules contradict each other, or are not supported.
     """
 
     visits: tuple[Visit, ...]
@@ -126,7 +126,7 @@ class Rules:
 
     @property
     def maximum(self) -> int | None:
-        """The objective that is the longest route, where one is."""
+        """The objective that is the longest route, if there is one."""
         return self.over.index("max") if "max" in self.over else None
 
     @property
@@ -145,8 +145,8 @@ class Rules:
 class Fleet:
     """Rules, and under each of two objectives the costs between the stops, shape (2, n, n).
 
-    The costs are copied, with a diagonal of 0, and made read-only. An infinite cost is a forbidden
-    leg, and infinite in both objectives.
+    The costs are copied, with a diagonal of 0, and made read-only. A leg that has an infinite cost
+    in one objective is forbidden, and gets infinite costs in both.
     """
 
     rules: Rules
@@ -170,9 +170,9 @@ class Fleet:
 
     @cached_property
     def needed_legs(self) -> Array:
-        """The least cost, shape (2,), so that legs up to it lead to all stops and back from them.
+        """The least cost, shape (2,), such that legs up to it lead to all stops and back.
 
-        Stops to which no way leads do not count.
+        Unreachable stops do not count.
         """
         starts = _places([vehicle.start for vehicle in self.rules.vehicles], self.rules)
         ends = _places([vehicle.end for vehicle in self.rules.vehicles], self.rules)
@@ -180,9 +180,9 @@ class Fleet:
 
     @cached_property
     def largest_legs(self) -> Array:
-        """The largest cost of a leg that plans are made of, in each objective, shape (2,).
+        """The largest cost of a leg in ordinary plans, in each objective, shape (2,).
 
-        Outliers do not count, but for those without which a stop cannot be left or reached.
+        Outliers count only if a stop cannot be reached or left without them.
         """
         largest, needed = largest_costs(self.costs), self.needed_legs
         ordinary = ordinary_costs(self.costs, largest)
@@ -191,9 +191,9 @@ class Fleet:
 
 
 def _places(ends: Sequence[int | None], rules: Rules) -> list[int]:
-    """Return the stops at which routes start, or end: any stop for an open one.
+    """Return the stops at which routes start or end; one stop if a single route may start anywhere.
 
-    Several vehicles with open routes may begin anywhere, so they need no leg but the least.
+    Several vehicles with open routes may begin at every stop, so no stop is needed as a start.
     """
     if None not in ends:
         return sorted({end for end in ends if end is not None})
@@ -203,9 +203,9 @@ def _places(ends: Sequence[int | None], rules: Rules) -> list[int]:
 
 
 def _least_bound(costs: Array, starts: Sequence[int]) -> float:
-    """Return the least cost so that legs up to it lead from some starts to all stops. O(n^2).
+    """Return the least cost such that legs up to it lead from the starts to all stops. O(n^2).
 
-    Without starts, so that one leads to each stop.
+    Without starts, one such leg must lead to each stop.
     """
     if not starts:
         steps = np.where(np.eye(len(costs), dtype=np.bool_), inf, costs).min(axis=0)
@@ -227,7 +227,7 @@ def _check_objectives(rules: Rules) -> None:
 
 
 def _unsummed(part: str) -> Refusal:
-    demand = "is added to the first objective, which must be over sum then, and is over max"
+    demand = "is added to the first objective, so that must be over sum, got max"
     return invalid(part, demand)
 
 
@@ -285,13 +285,13 @@ def _check_shipments(rules: Rules) -> None:
                 raise invalid(f"{part}/{name}", "must not be a start or end of vehicles")
         delivery = rules.visits[shipment.delivery]
         if any(delivery.demand) or delivery.prize is not None:
-            demand = "must leave its demand and prize to the pick-up, whose they are for both"
+            demand = "must have no demand and no prize: those of the pick-up hold for both"
             raise invalid(f"{part}/delivery", demand)
     _check_shipped_once(rules)
 
 
 def _check_shipped_once(rules: Rules) -> None:
-    """Raise a refusal where a stop is in two shipments, or twice in one."""
+    """Raise a refusal if a stop is in two shipments, or twice in one."""
     names = [
         (stop, f"shipments/{index}/{name}")
         for index, each in enumerate(rules.shipments)

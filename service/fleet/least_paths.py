@@ -13,9 +13,9 @@ def least_paths(costs: Array, starts: Sequence[int], combine: np.ufunc = np.add)
     """Return the least cost of a path from one of some starts to each stop, shape (n,). O(n^2).
 
     Args:
-        costs: Of legs, shape (n, n); infinite where there is no way.
+        costs: The costs of legs, shape (n, n); infinite where there is no way.
         starts: The stops where paths may start.
-        combine: What makes the cost of a path of those of its legs: a sum, or np.maximum.
+        combine: How the costs of legs make the cost of a path: np.add, or np.maximum.
     """
     least = np.full(len(costs), inf)
     least[list(starts)] = 0.0

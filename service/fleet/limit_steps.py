@@ -10,17 +10,17 @@ from service.fleet.scales import UNBOUNDED
 from service.fleet.solver import Step
 from service.fleet.translation import Goal, Translation
 
-_ROUNDED = 3  # units by which the route to one stop and back is rounded up: two legs and a service
-_UNKNOWN = 0.1  # of the greatest sum: by how much more sums may be where none is known, at least
+_ROUNDED = 3  # units by which a route to one stop is rounded up: two legs and a service
+_UNKNOWN = 0.1  # share of the greatest sum that an unknown sum exceeds it by, at least
 
 
 class LimitSteps:
-    """Searches under limits, each from the best solution within its limit that there is by then.
+    """Searches under limits. Each starts from the best solution known within its limit.
 
     Args:
-        translation: Of the fleet, one of whose objectives is a maximum.
-        archive: Where the solutions of all searches are; it must not be empty.
-        iterations: Of each search.
+        translation: The translation of a fleet with an objective that is a maximum.
+        archive: The solutions of all searches; it must not be empty.
+        iterations: The iterations of each search.
     """
 
     def __init__(self, translation: Translation, archive: SolutionArchive, iterations: int) -> None:
@@ -44,10 +44,10 @@ class LimitSteps:
             yield self._step(limit)
 
     def wide_limits(self, most: int, share: Callable[[], float]) -> Iterator[Step]:
-        """Yield searches at so many limits: the least that there can be, and then others.
+        """Yield `most` searches: first at the least possible limit, then at others.
 
-        Each is at a share of the interval between two others, or the ends, in which the front may
-        gain the most hypervolume.
+        Each further limit is at a share of an interval between two neighbours: the interval in
+        which the front may gain the most hypervolume.
         """
         least, greatest = self._least_limit(), self._limit(max(self._lengths(self._maximum)))
         intervals = [(least, max(least, greatest))]
@@ -60,12 +60,12 @@ class LimitSteps:
             intervals += [(low, limit), (limit, high)]
 
     def _area(self, interval: tuple[int, int]) -> float:
-        """Return the hypervolume that solutions within an interval can gain, at most."""
+        """Return the most hypervolume that solutions within an interval can gain."""
         low, high = interval
         return (high - low) * (self._sum_within(low) - self._sum_within(high))
 
     def _sum_within(self, limit: int) -> float:
-        """Return the least sum within a limit; a high one where no solution is."""
+        """Return the least sum within a limit; a high estimate if there is no solution."""
         archive, summed = self._archive, 1 - self._maximum
         index = archive.best_within(self._maximum, self._length(limit))
         if index is not None:
@@ -81,7 +81,7 @@ class LimitSteps:
         goal = Goal(weights=self._translation.sum_weights, limit=max(0, limit))
         archive = self._archive
         index = archive.best_within(self._maximum, self._length(limit))
-        if index is None:  # the one of the least maximum
+        if index is None:  # start from the solution of the least maximum
             index = 0 if self._maximum == 0 else len(archive) - 1
         return Step(goal, archive.solutions[index], self._iterations)
 
@@ -89,11 +89,11 @@ class LimitSteps:
         return round(length * self._translation.limit_scale)
 
     def _length(self, limit: int) -> float:
-        """Return what all lengths are less than that are within a limit once they are rounded."""
+        """Return the bound on lengths that are within a limit after rounding."""
         return (limit + 0.5) / self._translation.limit_scale
 
     def _least_limit(self) -> int:
-        """Return about the least limit that lets each stop be visited at all."""
+        """Return an estimate of the least limit under which every stop can be visited."""
         fleet = self._translation.fleet
         rules, costs = fleet.rules, self._translation.squeezed.legs[self._maximum]
         alone = np.full(rules.n, np.inf)

@@ -1,4 +1,4 @@
-"""Conditions that every feasible plan needs: the first that fails names what to change."""
+"""Check conditions that every feasible plan needs; the first that fails names what to change."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -17,15 +17,16 @@ NAMES = CityNames("stop")
 
 
 def check_necessary(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> None:
-    """Raise a refusal where some stop fits no vehicle, or all of them do not fit all vehicles.
+    """Raise a refusal if a stop fits no vehicle, or all stops together do not fit all vehicles.
 
     Args:
         fleet: The fleet.
-        ended: Called often; once it returns True the conditions that take long are left out.
+        ended: Called often; once it returns True, slow conditions are left out.
 
     Raises:
         NoTour: A necessary condition fails for some stops.
-        Refusal: One fails for all together. That none does is no proof of a plan.
+        Refusal: A condition fails for all stops together. If none fails, a plan may still not
+            exist.
     """
     rules = fleet.rules
     _refuse(_demands(rules))
@@ -37,16 +38,16 @@ def check_necessary(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> 
 
 
 def _refuse(obstacles: Iterator[Obstacle]) -> None:
-    """Raise NoTour where there are obstacles."""
+    """Raise NoTour if there are obstacles."""
     if found := list(obstacles):
         raise NoTour(found, NAMES)
 
 
 def least_lengths(fleet: Fleet) -> Array:
-    """Return lengths, shape (2,), that no plan goes below, by what is cheap. O(n^2).
+    """Return lower bounds on the lengths of plans, shape (2,), that are cheap to compute. O(n^2).
 
-    Where all vehicles have a start, a leg leads to each stop that must be visited; where all have
-    an end, one leads away from it.
+    If all vehicles have a start, a leg must lead to each required stop; if all have an end, a leg
+    must lead away from it.
     """
     rules = fleet.rules
     required = _required(rules)
@@ -65,7 +66,7 @@ def least_lengths(fleet: Fleet) -> Array:
 
 
 def _required(rules: Rules) -> list[int]:
-    """Return the stops that must be visited, a shipment by its pick-up alone."""
+    """Return the required stops; a shipment counts as its pick-up alone."""
     deliveries = {each.delivery for each in rules.shipments}
     return [
         stop
@@ -86,7 +87,7 @@ def _holds(vehicle: VehicleType, demand: tuple[int, ...]) -> bool:
 
 
 def _totals(rules: Rules) -> Iterator[str]:
-    """Name the dimension in which what must be brought is more than all vehicles hold."""
+    """Name a dimension in which all vehicles hold less than the required demand."""
     brought = [stop for stop in _required(rules) if stop not in rules.shipped]
     for dimension in range(rules.dimensions):
         demands = (rules.visits[stop].demand or (0,) * rules.dimensions for stop in brought)
@@ -100,9 +101,9 @@ def _totals(rules: Rules) -> Iterator[str]:
 
 
 def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
-    """Yield the stops that no vehicle can serve even if it serves nothing else.
+    """Yield the stops that no vehicle can serve, even on a route of their own.
 
-    Where a detour over another stop may be shorter, that is no necessary condition.
+    If a detour over another stop may be shorter, this condition is not necessary.
     """
     rules = fleet.rules
     if not rules.has_bounds:
@@ -121,7 +122,7 @@ def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
 
 
 def _without_ways(fleet: Fleet) -> Iterator[Obstacle]:
-    """Yield the stops that must be visited and that no vehicle has a way to, and on to its end."""
+    """Yield the required stops to which no vehicle has a way, and from there a way to its end."""
     if not fleet.forbids:
         return
     rules, costs = fleet.rules, fleet.costs[0]
@@ -141,7 +142,7 @@ def _without_ways(fleet: Fleet) -> Iterator[Obstacle]:
 
 
 def _connected(costs: Array, end: int | None) -> NDArray[np.bool_]:
-    """Return to which stops ways lead from one, shape (n,); from anywhere to all."""
+    """Return which stops can be reached from one stop, shape (n,); from anywhere, all can."""
     if end is None:
         return np.ones(len(costs), np.bool_)
     connected: NDArray[np.bool_] = np.isfinite(least_paths(costs, [end]))
@@ -161,7 +162,7 @@ def _shipped_too_late(rules: Rules) -> Iterator[Obstacle]:
 
 
 def _different(rules: Rules) -> list[int]:
-    """Return a type of vehicles of each kind that can serve different stops."""
+    """Return types of vehicles, one for each set of types that can serve the same stops."""
     kinds = {replace(each, count=1, fixed=0.0): i for i, each in enumerate(rules.vehicles)}
     return list(kinds.values())
 
@@ -172,10 +173,10 @@ def _serves(fleet: Fleet, vehicle: int, stops: tuple[int, ...]) -> bool:
 
 
 def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:
-    """Return whether no detour over a stop is shorter, in the objective that is limited.
+    """Return whether no detour over a stop is shorter, in the limited objective.
 
-    Where legs are forbidden, it may be that only a detour leads to a stop. False, too, where it
-    ended before all detours were tried.
+    False if legs are forbidden, since then a detour may be the only way to a stop, and if it ended
+    before all detours were tried.
     """
     rules = fleet.rules
     objective = rules.maximum if rules.clock is None else rules.clock

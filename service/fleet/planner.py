@@ -29,10 +29,10 @@ from service.search.best_subset import best_subset, selection_seconds
 
 _REPORT_EVERY = 0.1  # seconds
 _NO_LIMIT = 2**62
-_FORGOTTEN = 0.9  # of the longest pause between two checks of the time, with each check
-_ENUMERATING = 0.5  # of the time limit, after which the search takes over from enumeration
-_FINDING_FAULTS = 0.1  # of the time limit, for necessary conditions
-_BRIEF = 0.25  # seconds for it without a time limit
+_FORGOTTEN = 0.9  # decay of the longest pause between two checks of the time, per check
+_ENUMERATING = 0.5  # share of the time limit, after which the search replaces enumeration
+_FINDING_FAULTS = 0.1  # share of the time limit for necessary conditions
+_BRIEF = 0.25  # seconds for them without a time limit
 _CHECKING = 1e-5  # seconds for each stop of each plan, twice what a 2.5 GHz Xeon takes
 
 
@@ -41,13 +41,13 @@ class FleetOptions:
     """The options of plan_fleet(...).
 
     Args:
-        time_limit: Seconds for everything, at most. At 0 there is no search: the plans are those
-            that the tours of the network are cut into.
+        time_limit: The most seconds for everything. At 0 there is no search: plans are made by
+            cutting the tours of the network into routes.
         size: The greatest number of plans of the front.
-        seed: Of all random choices.
-        reference_point: Of the hypervolume, shape (2,); by default lengths that no plan should
-            reach.
-        iterations: Of PyVRP, at most. With an infinite time limit the same seed and the same
+        seed: The seed of all random choices.
+        reference_point: The reference point of the hypervolume, shape (2,); by default lengths that
+            no sensible plan reaches.
+        iterations: The most iterations of PyVRP. With an infinite time limit, the same seed and
             iterations give the same front.
     """
 
@@ -69,17 +69,17 @@ def plan_fleet(
 
     Args:
         fleet: The fleet.
-        options: What front is wanted, and how much may be spent on it.
+        options: The options of the front and the search.
         constructor: The network whose tours are cut into the first plans; it must read matrices.
-            Without one, the search begins at plans of its own.
-        stop: Called after each iteration of PyVRP, a few milliseconds; True ends the planning with
-            what was found so far.
-        report: Called about ten times a second with the progress, and with a function that gives
-            the best front so far of at most so many plans.
+            Without a network, the search constructs its first plans itself.
+        stop: Called after each iteration of PyVRP, that is every few milliseconds; True ends
+            planning with the best front so far.
+        report: Called about ten times a second with the progress, and with a function that returns
+            the best front so far of at most n plans.
 
     Raises:
-        Refusal: There is no plan, and why where that is known; or none was found in time.
-        Cancelled: It was told to stop before it had a plan.
+        Refusal: There is no plan (with the reason if it is known), or none was found in time.
+        Cancelled: `stop` returned True before a plan was found.
     """
     began = time.monotonic()
     checked = began + (_FINDING_FAULTS * options.time_limit or _BRIEF)
@@ -108,7 +108,7 @@ def plan_fleet(
 def _constructed(
     fleet: Fleet, constructor: Constructor | None, stop: Callable[[], bool]
 ) -> list[Plan]:
-    """Return the plans that the tours of a network are cut into."""
+    """Return the plans made by cutting the tours of a network into routes."""
     if constructor is None:
         raise Refusal("no-actor", kind="fleets with time_limit 0")
     cutter = Cutter(fleet, network_sequences(fleet, constructor), stop)
@@ -122,11 +122,11 @@ def _constructed(
 
 
 class _Search:
-    """The search for a front: PyVRP, sweeping, into an archive.
+    """The search for a front: a sweep of searches by PyVRP, all into one archive.
 
-    In whole numbers rounded up a plan that just keeps every rule may seem to break one. So where
-    nothing is found in half of the time, there is another search whose bounds are `loose` by as
-    much, and each of its solutions is checked.
+    Costs are rounded up to whole numbers, so a plan that just keeps every rule may seem to break
+    one. If nothing is found in half of the time, a second search has bounds that are `loose` by the
+    rounding, and each of its solutions is checked.
     """
 
     def __init__(
@@ -153,13 +153,13 @@ class _Search:
         self._constructed = 0
         self._iterations = 0
         self._checked = self._began
-        self._pause = 0.0  # seconds between two checks of the time, the longest of late
+        self._pause = 0.0  # the longest recent seconds between two checks of the time
         self._cancelled = False
 
     def begin_at(self, constructor: Constructor) -> None:
-        """Put the plans into the archive that the tours of a network are cut into, if any.
+        """Put plans into the archive that are cut from the tours of a network.
 
-        The network gets its share of the time limit, and cutting as much again.
+        The network gets its share of the time limit, and cutting gets the same.
         """
         share = SHARE * self._options.time_limit
         within = None if share == inf else share
@@ -171,7 +171,7 @@ class _Search:
             cutter = Cutter(
                 self._fleet, sequences, lambda: self._stop() or time.monotonic() > until
             )
-        except Refusal:  # too large to be cut: the search begins at plans of its own
+        except Refusal:  # too large to be cut: the search constructs its first plans itself
             return
         data = self._translation.data(FREE)
         for plan in first_plans(self._fleet, cutter):
@@ -184,7 +184,7 @@ class _Search:
         return len(self._archive) > 0
 
     def run(self) -> Termination:
-        """Search until nothing is left to do, or the time is over, or it is told to stop."""
+        """Search until nothing is left to do, the time is over, or `stop` returns True."""
         options, archive = self._options, self._archive
         solver = Solver(self._translation, options.seed, archive.offer, self._ended, self._deadline)
         random = np.random.default_rng(options.seed)
@@ -196,11 +196,11 @@ class _Search:
         return "converged"
 
     def front(self, size: int, terminated: Termination | None) -> FleetFront:
-        """Return the best front found so far of at most so many plans.
+        """Return the best front found so far, of at most `size` plans.
 
         Raises:
-            Refusal: There is none.
-            Cancelled: There is none, as it was told to stop.
+            Refusal: No plan was found.
+            Cancelled: No plan was found before `stop` returned True.
         """
         archive = self._archive
         chosen = best_subset(np.array(archive.points).reshape(-1, 2), size, self._reference_point)
@@ -216,7 +216,7 @@ class _Search:
         return replace(front, found=most, constructed=self._constructed)
 
     def _left(self) -> float:
-        """Return how many iterations are left, estimated from the time that those before took."""
+        """Return the number of iterations left, estimated from the time of earlier ones."""
         most = self._options.iterations - self._iterations
         spent = time.monotonic() - self._began
         if self._options.time_limit == inf or not self._iterations:
@@ -243,9 +243,9 @@ class _Search:
         return left <= self._reserve()
 
     def _reserve(self) -> float:
-        """Return the seconds that another iteration, and then checking and selecting plans, take.
+        """Return the seconds for one more iteration, and for checking and selecting plans after it.
 
-        The iteration is taken to be as long as the longest of late.
+        The iteration is assumed to be as long as the longest recent one.
         """
         found = len(self._archive)
         checked = min(found, self._options.size) * self._fleet.rules.n
@@ -285,11 +285,12 @@ def scale_of(fleet: Fleet) -> Array:
 
 
 def reference_point_of(fleet: Fleet, options: FleetOptions) -> Array:
-    """Return the reference point asked for; by default lengths above those of sensible plans.
+    """Return the requested reference point; by default lengths above those of sensible plans.
 
-    These are the number of stops times the scale, with all prizes and fixed costs in the first
-    objective, and in the clock's the time from the first shift or window to the end of the last,
-    for each vehicle where times are summed: so long it may be on its way and wait.
+    The default is the number of stops times the scale, plus what else can add to a length. In the
+    first objective these are all prizes and fixed costs. In the clock's objective they are all
+    services, and the time from the first shift or window to the end of the last, in which a vehicle
+    may wait: once, or for each vehicle if times are summed.
     """
     if options.reference_point is not None:
         return options.reference_point
@@ -306,7 +307,7 @@ def reference_point_of(fleet: Fleet, options: FleetOptions) -> Array:
 
 
 def _span(rules: Rules) -> float:
-    """Return the time from the first shift or window to the end of the last; 0 without any."""
+    """Return the time from the first shift or window to the end of the last; 0 if none is given."""
     spans = [*(visit.window for visit in rules.visits), *(each.shift for each in rules.vehicles)]
     bounded = [span for span in spans if span != ALWAYS]
     times = [time for span in bounded for time in span if time < inf]

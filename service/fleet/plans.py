@@ -17,7 +17,7 @@ class Route:
 
 @dataclass(frozen=True)
 class Plan:
-    """The routes of all vehicles that leave."""
+    """The routes of all vehicles that are used."""
 
     routes: tuple[Route, ...]
 
@@ -27,7 +27,7 @@ class Plan:
 
 
 def path_of(rules: Rules, route: Route) -> tuple[int, ...]:
-    """Return the stops of a route with its start and end, where these are stops."""
+    """Return the stops of a route, with its start and end if these are stops."""
     vehicle = rules.vehicles[route.vehicle]
     ends = [() if end is None else (end,) for end in (vehicle.start, vehicle.end)]
     return (*ends[0], *route.stops, *ends[1])
@@ -38,15 +38,15 @@ class FleetFront:
     """Nondominated plans and their points, by ascending first length.
 
     Attributes:
-        fleet: What was planned for.
+        fleet: The fleet.
         plans: The m plans.
         points: Their lengths, shape (m, 2).
-        found: The number of nondominated plans found, of which m were kept.
-        constructed: The number of plans that the tours of a network were cut into.
+        found: The number of nondominated plans found; m of these were kept.
+        constructed: The number of plans that were cut from the tours of a network.
         scale: The unit of each objective, shape (2,).
-        reference_point: Of the hypervolume, shape (2,).
-        hypervolume: Of the plans kept.
-        terminated: How the search ended; None while it goes on.
+        reference_point: The reference point of the hypervolume, shape (2,).
+        hypervolume: The hypervolume of the plans kept.
+        terminated: How the search ended; None while it runs.
         timings: Milliseconds by phase.
     """
 

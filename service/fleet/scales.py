@@ -1,4 +1,4 @@
-"""The whole numbers that PyVRP computes with: how finely costs and times are scaled to them."""
+"""Scale costs and times to the whole numbers with which PyVRP computes."""
 
 import math
 from dataclasses import dataclass, replace
@@ -10,19 +10,19 @@ from service.errors import Refusal
 from service.fleet.fleet import Array, Fleet, Rules, VehicleType, Visit
 from service.fleet.squeezing import Squeezed
 
-_LARGEST = 2.0**61  # that a penalty for all routes together may be: PyVRP's integers have 64 bits
+_LARGEST = 2.0**61  # the largest penalty of all routes together: PyVRP's integers have 64 bits
 UNBOUNDED = 2**44  # more than every route
-_COARSEST = 1000  # units of the longest leg, at least
-_FINEST = 1e6  # as many at most where nothing is limited: these are no better
-_FINE = 1e4  # as many as no squeezed leg may leave fewer
-_ROUNDING = 1e-12  # relative, of what a float has too much or too little
-STEEPEST = 1000  # weight of one of two sums, with 1 of the other
-_HARDEST = 10  # costs of the longest leg, for one unit over a limit or a capacity
-_TINY = 2.0**-900  # of the longest leg: the power of ten that scales a much shorter one is infinite
+_COARSEST = 1000  # the least units of the longest leg
+_FINEST = 1e6  # the most units of it without limits: more would not help
+_FINE = 1e4  # the least units of it that squeezed legs must leave
+_ROUNDING = 1e-12  # relative error of a float
+STEEPEST = 1000  # weight of one of two sums if the other has weight 1
+_HARDEST = 10  # the penalty for one unit over a limit or capacity, in longest legs
+_TINY = 2.0**-900  # of a longest leg: a power of ten that scales a shorter one would be infinite
 
 
 def round_up(scaled: Array | float) -> Array:
-    """Return scaled numbers rounded up, but for what is whole up to errors of rounding."""
+    """Return scaled numbers rounded up, unless they are whole up to rounding errors."""
     return np.ceil(np.multiply(scaled, 1 - _ROUNDING))
 
 
@@ -33,16 +33,16 @@ def round_down(scaled: float) -> float:
 
 @dataclass(frozen=True)
 class Horizon:
-    """The times between which all routes can be: no vehicle need leave before, or be back later."""
+    """The times between which all routes fit: no vehicle needs to leave before or return after."""
 
     begin: float = 0.0
     end: float = 0.0
 
     @classmethod
     def of(cls, rules: Rules, leg: float) -> "Horizon":
-        """Return the horizon of a fleet, whose routes have legs up to a length.
+        """Return the horizon of a fleet whose legs are at most this long.
 
-        Without a clock that is no time at all.
+        Without a clock it is empty.
         """
         if rules.clock is None:
             return cls()
@@ -58,7 +58,7 @@ class Horizon:
 
 @dataclass(frozen=True, eq=False)
 class Units:
-    """A fleet in units in which no objective has tiny costs alone.
+    """A fleet in units in which no objective has only tiny costs.
 
     Args:
         fleet: The fleet in these units.
@@ -70,10 +70,10 @@ class Units:
 
     @classmethod
     def of(cls, fleet: Fleet) -> "Units":
-        """Return the units of a fleet, which are its own where costs are not tiny.
+        """Return the units of a fleet. They are its own units if costs are not tiny.
 
         Raises:
-            Refusal: In such units a prize or a time would overflow.
+            Refusal: In these units a prize or a time would overflow.
         """
         largest = fleet.largest_legs
         tiny = (largest > 0) & (largest < _TINY)
@@ -123,26 +123,26 @@ def _scaled_vehicle(vehicle: VehicleType, extra: int, time: int) -> VehicleType:
 def _scaled(value: float, shift: int) -> float:
     scaled = _scaled_bound(value, shift)
     if scaled == inf:
-        reason = f"costs, prizes and times must not be so far apart as tiny costs and {value:g}"
+        reason = f"costs, prizes and times are too far apart: costs are tiny, and one is {value:g}"
         raise Refusal("invalid-instance", reason=reason)
     return scaled
 
 
 def _scaled_bound(value: float, shift: int) -> float:
-    """Return an upper bound multiplied by a power of two: none where no double is so large."""
+    """Return an upper bound multiplied by a power of two; infinite if the result is too large."""
     with np.errstate(over="ignore"):
         return float(np.ldexp(value, shift))
 
 
 def most_legs(rules: Rules) -> float:
-    """Return what a squeezed leg may cost, in ordinary ones, so that these have enough units."""
+    """Return how many ordinary legs a squeezed leg may cost, so that these have enough units."""
     room = _LARGEST / (8 * rules.n * _heaviest(rules) * _FINE**2)
     return room / _HARDEST if rules.maximum is None else math.sqrt(room / 2)
 
 
 @dataclass(frozen=True)
 class Penalties:
-    """The most that PyVRP may take for a unit over a capacity, and for one over a limit."""
+    """PyVRP's greatest penalties for one unit over a capacity, and for one over a limit."""
 
     load: float
     limit: float
@@ -151,8 +151,8 @@ class Penalties:
 def scales_of(fleet: Fleet, squeezed: Squeezed, horizon: Horizon) -> tuple[list[float], Penalties]:
     """Return the powers of ten by which costs are multiplied, and the largest penalties.
 
-    A unit over a capacity must cost more than any leg that is not forbidden, and so must one over a
-    limit where limits are swept. All that could be over must not overflow.
+    A unit over a capacity must cost more than any allowed leg; so must a unit over a limit if
+    limits are swept. The penalty of the largest possible excess must not overflow.
 
     Raises:
         Refusal: Times and costs are too far apart.
@@ -167,7 +167,7 @@ def scales_of(fleet: Fleet, squeezed: Squeezed, horizon: Horizon) -> tuple[list[
     if fleet.rules.has_bounds or fleet.rules.maximum is not None:
         finest = math.sqrt(_LARGEST / (hardest * heaviest)) / math.sqrt(most)
     if finest < _COARSEST:
-        reason = "times must not be farther apart than {:.1e} costs of a leg, and are {:.1e}"
+        reason = "times must be at most {:.1e} costs of a leg apart, got {:.1e}"
         allowed = _LARGEST / (hardest * heaviest * _COARSEST**2)
         raise Refusal("invalid-instance", reason=reason.format(allowed, most))
     digits = [math.floor(math.log10(finest) - math.log10(leg)) for leg in largest]
@@ -178,15 +178,15 @@ def scales_of(fleet: Fleet, squeezed: Squeezed, horizon: Horizon) -> tuple[list[
 
 
 def _heaviest(rules: Rules) -> int:
-    """Return the largest weight of a goal: penalties are multiplied by weights, as costs are."""
+    """Return the largest weight of a goal. Weights multiply penalties as they multiply costs."""
     return STEEPEST if rules.maximum is None else 1
 
 
 def _largest_total(fleet: Fleet, squeezed: Squeezed, objective: int, horizon: Horizon) -> float:
-    """Return a bound on the lengths of all routes of a plan, and on what they could be late.
+    """Return a bound on the total length of all routes of a plan, with their possible lateness.
 
-    A leg leads to each visit, and the last of a route away from one. At each visit a route can be
-    late by no more than the horizon.
+    One leg leads to each visit, and the last leg of a route leads away from one. At each visit a
+    route can be late by at most the horizon.
     """
     legs = squeezed.legs[objective]
     total = float(legs.max(axis=0).sum() + legs.max(axis=1).sum())
@@ -196,7 +196,7 @@ def _largest_total(fleet: Fleet, squeezed: Squeezed, objective: int, horizon: Ho
 
 
 def _largest_load(rules: Rules) -> int:
-    """Return the most that all vehicles could hold too much, in any dimension; 1 at least."""
+    """Return the largest possible load over all capacities, in any dimension; at least 1."""
     demands = (visit.demand for visit in rules.visits if visit.demand)
     return max(1, *(sum(dimension) for dimension in zip(*demands, strict=True)), 1)
 

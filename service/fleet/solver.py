@@ -18,8 +18,8 @@ from pyvrp.PenaltyManager import PenaltyManager, PenaltyParams
 from service.fleet.scales import Penalties
 from service.fleet.translation import Goal, Translation, Weights
 
-_FEW = 100  # stops, of which a search of the whole neighbourhood takes some 50 ms at most
-_EXHAUSTIVE = 5e-6  # seconds for each pair of stops, more than a 2.5 GHz Xeon takes
+_FEW = 100  # stops: a search of their whole neighbourhood takes at most about 50 ms
+_EXHAUSTIVE = 5e-6  # seconds per pair of stops, more than a 2.5 GHz Xeon needs
 Neighbours = dict[pyvrp.Activity, list[pyvrp.Activity]]
 Offer = Callable[[pyvrp.Solution, Weights], None]
 
@@ -29,8 +29,8 @@ class Step:
     """A search to run.
 
     Args:
-        goal: Its goal.
-        start: The solution to start from, found under any goal; None begins at a random one.
+        goal: The goal of the search.
+        start: The solution to start from, found under any goal; None starts from a random one.
         iterations: The most iterations.
     """
 
@@ -40,15 +40,15 @@ class Step:
 
 
 class Solver:
-    """Searches towards goals, one after another.
+    """Runs searches towards goals, one after another.
 
     Args:
-        translation: Of the fleet.
-        seed: Of all random choices.
+        translation: The translation of the fleet.
+        seed: The seed of all random choices.
         offer: Called with each solution that a search visits, feasible or not, and the weights of
             its goal.
         stop: Called after each iteration; True ends the search.
-        deadline: Time by time.monotonic() after which nothing slow is begun.
+        deadline: The time by time.monotonic() after which nothing slow is started.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class Solver:
         small = len(self._translation.fleet.rules.clients) <= _FEW
         settings = IteratedLocalSearchParams(callbacks=watcher, exhaustive_on_best=small)
         with warnings.catch_warnings(action="ignore", category=PenaltyBoundWarning):
-            # A goal that no plan reaches is no news here.
+            # It is expected that no plan reaches some goals.
             search = IteratedLocalSearch(data, manager, local_search, initial, settings)
             search.run(watcher, collect_stats=False)
         return watcher.iterations
@@ -109,10 +109,10 @@ class Solver:
 
 
 class _Penalties(PenaltyManager):
-    """PyVRP's penalties, with another greatest one for what is over a limit.
+    """PyVRP's penalties, with a greatest penalty of its own for exceeding a limit.
 
     Args:
-        data: What is searched.
+        data: The data to search.
         most: The greatest penalties.
         weight: The largest weight of the goal, which multiplies them as it does costs.
     """
@@ -163,12 +163,12 @@ class _Watcher(IteratedLocalSearchCallbacks):
         self._offer(best, self._weights)
 
     def __call__(self, best_cost: float) -> bool:  # noqa: ARG002
-        """Return whether the search is to end."""
+        """Return whether to end the search."""
         return self.iterations >= self._most or self._stop()
 
 
 def _moved(data: pyvrp.ProblemData, solution: pyvrp.Solution) -> pyvrp.Solution:
-    """Return a solution of other data of the same fleet as one of these data."""
+    """Return a solution of other data of the same fleet as a solution of these data."""
     routes = [
         pyvrp.Route(data, [each for each in route.schedule() if not each.is_depot()], vehicle)
         for route in solution.routes()

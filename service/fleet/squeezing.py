@@ -1,8 +1,8 @@
 """Squeeze huge costs, prizes and fixed costs of a fleet, so that PyVRP's whole numbers hold them.
 
-A huge number says what to avoid or what to do before all else. It does so at any size above what
-an ordinary plan costs, so only the gaps between such numbers shrink; their order stays. The search
-follows squeezed lengths, and plans are compared by their true ones.
+A huge number means: avoid this, or do this before everything else. Any number above the cost of an
+ordinary plan has this effect. So the gaps between such numbers may shrink, but their order stays.
+The search follows squeezed lengths; plans are compared by their true lengths.
 """
 
 import math
@@ -15,22 +15,22 @@ import numpy as np
 from service.fleet.fleet import Array, Fleet, Rules
 from service.instance import OUTLYING
 
-_LEAST_LEGS = 10  # that an ordinary plan costs, at least
-_HIGHEST = 1e4  # squeezed leg, in ordinary ones: more would leave these too few units
-_MOST_STEPS = 1000  # different huge numbers whose differences are looked at
-_FORBIDDEN = 4.0  # times the highest squeezed leg
+_LEAST_LEGS = 10  # the least legs that an ordinary plan costs
+_HIGHEST = 1e4  # a squeezed leg, in ordinary legs: more would leave these too few units
+_MOST_STEPS = 1000  # the most huge numbers whose differences are kept
+_FORBIDDEN = 4.0  # cost of a forbidden leg, in highest squeezed legs
 
 
 @dataclass(frozen=True, eq=False)
 class Squeezed:
-    """The numbers of a fleet in the order of the true ones, and none of them huge.
+    """The numbers of a fleet, none of them huge, in the same order as the true numbers.
 
     Args:
-        legs: The costs, shape (2, n, n); finite where a leg is forbidden, and higher than others.
-        largest: The largest leg that plans are made of, in each objective, shape (2,).
-        highest: The largest leg that is not forbidden, in each objective, shape (2,); in the first
-            the largest prize or fixed cost if that is more.
-        prizes: Of each stop, shape (n,); 0 where it has none.
+        legs: The costs, shape (2, n, n). Forbidden legs have finite costs, higher than all others.
+        largest: The largest leg of ordinary plans, in each objective, shape (2,).
+        highest: The largest allowed leg, in each objective, shape (2,); in the first objective, the
+            largest prize or fixed cost if that is more.
+        prizes: The prize of each stop, shape (n,); 0 if it has none.
         fixed: The costs of using a vehicle of each type, shape (v,).
         changed: Whether any number was squeezed.
     """
@@ -48,7 +48,7 @@ class Squeezed:
 
         Args:
             fleet: The fleet.
-            most_legs: What a squeezed leg may cost, in ordinary ones.
+            most_legs: The most ordinary legs that a squeezed leg may cost.
         """
         rules = fleet.rules
         prizes = np.array([visit.prize or 0.0 for visit in rules.visits])
@@ -86,11 +86,11 @@ class _Scale:
 
     @classmethod
     def of(cls, numbers: Array, ordinary: float, top: float, ratio: float) -> "_Scale":
-        """Return the scale of numbers, for what an ordinary plan costs.
+        """Return the scale of numbers, given the cost of an ordinary plan.
 
-        The least huge number becomes as much, and the greatest the top at most. The ratio is what
-        two neighbouring ones have, at most: a plan with one of the higher then costs more than one
-        with any number of the lower.
+        The least huge number becomes the cost of an ordinary plan, and the greatest one at most
+        `top`. Neighbours keep their ratio, but at most `ratio`. With that a plan with one of the
+        higher number costs more than a plan with several of the lower.
         """
         huge = np.unique(numbers[numbers > ordinary])
         squeezed = _stepwise(huge[:_MOST_STEPS], ordinary, ratio)
@@ -101,7 +101,7 @@ class _Scale:
         return cls(huge, ordinary * np.exp(steps * min(1.0, math.log(top / ordinary) / steps[-1])))
 
     def __call__(self, numbers: Array) -> Array:
-        """Return squeezed numbers; infinite ones stay so."""
+        """Return squeezed numbers; infinite ones stay infinite."""
         if not len(self.huge):
             return np.asarray(numbers)
         places = np.searchsorted(self.huge, numbers).clip(max=len(self.huge) - 1)
@@ -111,9 +111,10 @@ class _Scale:
 
 
 def _ordinary(costs: Array) -> float:
-    """Return the largest cost of up to a hundred times what the next stop typically costs.
+    """Return the largest cost that is at most a hundred times the typical cost to the nearest stop.
 
-    Not of a typical leg: of two clusters half of all legs may be bridges.
+    A typical leg is not the measure: with two clusters, half of all legs lead from one to the
+    other.
     """
     nearest = np.where(costs > 0, costs, inf).min(axis=1)
     nearest = nearest[np.isfinite(nearest)]
@@ -124,7 +125,7 @@ def _ordinary(costs: Array) -> float:
 
 
 def _stepwise(huge: Array, ordinary: float, ratio: float) -> Array:
-    """Return squeezed numbers whose small differences are true, and others those of plans."""
+    """Return squeezed numbers: small differences are kept, and large ones become those of plans."""
     squeezed = [ordinary] * min(1, len(huge))
     for lower, number in pairwise(huge.tolist()):
         last = squeezed[-1]
@@ -134,7 +135,7 @@ def _stepwise(huge: Array, ordinary: float, ratio: float) -> Array:
 
 
 def waiting_of(rules: Rules) -> float:
-    """Return the time from the first bound of a window or shift to the last begin of one."""
+    """Return the time from the first bound of any window or shift to the last begin."""
     spans = [*(visit.window for visit in rules.visits), *(each.shift for each in rules.vehicles)]
     bounds = [time for span in spans for time in span if 0 < time < inf]
     return max(0.0, max(begin for begin, _ in spans) - min(bounds, default=0.0))

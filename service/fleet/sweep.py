@@ -1,4 +1,4 @@
-"""The order of the searches for a front, each chosen by what is known when its turn comes."""
+"""The order of the searches for a front. Each search depends on the results of those before."""
 
 from collections.abc import Callable, Iterator
 from itertools import count
@@ -12,24 +12,24 @@ from service.fleet.solver import Step
 from service.fleet.translation import Goal, Translation
 from service.fleet.weight_steps import weight_steps
 
-FEW_STOPS = 12  # of so few the sweep looks for every point
+FEW_STOPS = 12  # up to this number of stops, the sweep looks for every point
 _FIRST_ITERATIONS = 100
-_FREE_SHARE = 0.25  # of all iterations: the least sum without a limit, from which all others start
+_FREE_SHARE = 0.25  # share of all iterations for the least sum without a limit, the first search
 _MOST_DOUBLINGS = 10
-_ROUGH_LIMITS, _ROUGH_ITERATIONS = 7, 50  # of the first round
-_LIMITS = 24  # of each further round
-_LEAST_ITERATIONS, _MOST_ITERATIONS = 50, 3000  # of a limit in one round
-_IDLE_ROUNDS = 3  # without a new solution, after which the sweep of few stops has converged
+_ROUGH_LIMITS, _ROUGH_ITERATIONS = 7, 50  # in the first round
+_LIMITS = 24  # in each further round
+_LEAST_ITERATIONS, _MOST_ITERATIONS = 50, 3000  # for a limit in one round
+_IDLE_ROUNDS = 3  # rounds without a new solution, after which a sweep of few stops has converged
 
 
 class Sweep:
-    """The searches for a front, each to be run into the archive before the next is asked for.
+    """The searches for a front. Each must be run into the archive before the next is requested.
 
     Args:
-        translation: Of the fleet.
-        archive: Where the solutions of all searches are; it may hold some already.
+        translation: The translation of the fleet.
+        archive: The solutions of all searches; it may hold some already.
         random: Chooses limits.
-        left: Estimates how many iterations there is time for.
+        left: Estimates the number of iterations for which there is time.
     """
 
     def __init__(
@@ -49,7 +49,8 @@ class Sweep:
     def steps(self) -> Iterator[Step]:
         """Yield the searches.
 
-        They end where few stops are left without anything to find: that is likely, and no proof.
+        For few stops they end once nothing new is found. Then the front is likely, but not surely,
+        exact.
         """
         yield from self._first_steps()
         idle = 0
@@ -61,9 +62,9 @@ class Sweep:
                 return
 
     def _first_steps(self) -> Iterator[Step]:
-        """Yield searches for the least sum alone, until there is a solution, and one from it.
+        """Yield searches for the least sum alone until there is a solution, and one from there.
 
-        The first tells how long iterations take.
+        The first search shows how long iterations take.
         """
         free = Goal(weights=self._translation.sum_weights if self._limited else (1, 1))
         iterations = _FIRST_ITERATIONS
@@ -75,13 +76,13 @@ class Sweep:
             yield Step(free, self._least_sum(), int(_FREE_SHARE * self._left()))
 
     def _least_sum(self) -> pyvrp.Solution | None:
-        """Return the solution of the least sum, or of the first of two; None where none is."""
+        """Return the solution of the least sum, or of the least first of two sums, or None."""
         if not len(self._archive):
             return None
         return self._archive.solutions[-1 if self._translation.roles.limited == 0 else 0]
 
     def _round(self, number: int) -> Iterator[Step]:
-        """Yield the searches of a round; those of few stops, or of two sums, take ever longer."""
+        """Yield the searches of a round; for few stops or two sums they get longer every round."""
         iterations = _FIRST_ITERATIONS * 2 ** min(number, _MOST_DOUBLINGS)
         if not self._limited:
             return weight_steps(self._translation, self._archive, iterations)

@@ -1,10 +1,9 @@
 """A fleet in PyVRP's terms: whole numbers, one matrix of distances and one of durations.
 
 One objective becomes PyVRP's duration and the other its distance. Two objectives and a clock never
-need a third matrix: what is time is the duration, and of a sum against a maximum the maximum is
-bounded by a limit on each route. Costs are scaled by powers of ten, so that decimals of a few
-digits stay exact; what is rounded nevertheless is rounded against the plan, so that a plan of PyVRP
-breaks no rule.
+need a third matrix: the duration is the objective that is time, and a maximum is bounded by a limit
+on each route. Costs are scaled by powers of ten, so that decimals of a few digits stay exact. Other
+numbers are rounded against the plan, so that a plan of PyVRP breaks no rule.
 """
 
 from collections.abc import Sequence
@@ -34,18 +33,18 @@ Weights = tuple[int, int]
 
 @dataclass(frozen=True, kw_only=True)
 class Goal:
-    """What PyVRP is to minimise: weights of distance and duration, with a limit on each route."""
+    """The goal of a search: minimise weighted distance and duration, with a limit on each route."""
 
     weights: Weights
     limit: int = UNBOUNDED
 
 
-FREE = Goal(weights=(1, 1))  # of solutions that were found under none
+FREE = Goal(weights=(1, 1))  # the goal of solutions that were not found by a search
 
 
 @dataclass(frozen=True)
 class _Roles:
-    """The objective that is PyVRP's distance, that which is its duration, and which is limited."""
+    """The objectives that are PyVRP's distance and its duration, and the limited objective."""
 
     distance: int
     duration: int | None
@@ -69,8 +68,8 @@ class Translation:
 
     Args:
         fleet: The fleet.
-        loose: Whether times and lengths may exceed their bounds by what rounding adds. Solutions
-            then need not keep every rule.
+        loose: Whether times and lengths may exceed their bounds by as much as rounding adds. Then
+            solutions may break rules.
     """
 
     def __init__(self, fleet: Fleet, loose: bool = False) -> None:
@@ -79,7 +78,7 @@ class Translation:
         self._slack = 2 * (fleet.rules.n + 1) if loose else 0
         self.roles = _Roles.of(fleet)
         rules = fleet.rules
-        # A location for each stop, and one more that is anywhere: open routes start or end there.
+        # A location for each stop, and one more for "anywhere": open routes start or end there.
         self.anywhere = rules.n
         self._depots = [*sorted(rules.depots), self.anywhere]
         self._singles = [stop for stop in rules.clients if stop not in rules.shipped]
@@ -90,7 +89,7 @@ class Translation:
         duration = self.roles.duration
         self.distance_scale = scales[self.roles.distance]
         self.duration_scale = 1.0 if duration is None else scales[duration]
-        self._unlimited: tuple[Weights, pyvrp.ProblemData] | None = None  # of the latest weights
+        self._unlimited: tuple[Weights, pyvrp.ProblemData] | None = None  # the latest
 
     @cached_property
     def _matrices(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -110,12 +109,12 @@ class Translation:
         return [pyvrp.Location(0, 0) for _ in range(self.anywhere + 1)]
 
     def scale(self, objective: int) -> float:
-        """Return what a length in this objective is multiplied by."""
+        """Return the factor of lengths in this objective."""
         return self.duration_scale if objective == self.roles.duration else self.distance_scale
 
     @property
     def limit_scale(self) -> float:
-        """What a length in the limited objective is multiplied by."""
+        """The factor of lengths in the limited objective."""
         return self.duration_scale if self._limits_duration else self.distance_scale
 
     @property
@@ -124,7 +123,7 @@ class Translation:
 
     @property
     def sum_weights(self) -> Weights:
-        """The weights of distance and duration under which the objective that is a sum counts."""
+        """The weights of distance and duration with which the sum is minimised."""
         return (0, 1) if self.roles.limited == self.roles.distance and self._two else (1, 0)
 
     @property
@@ -167,7 +166,7 @@ class Translation:
         return float(lost.sum() + used.sum())
 
     def solution(self, data: pyvrp.ProblemData, plan: Plan) -> pyvrp.Solution:
-        """Return the solution of a plan in data that were made here."""
+        """Return a plan as a solution of data that `data` returned."""
         routes = [
             pyvrp.Route(data, [self._activities[stop] for stop in route.stops], route.vehicle)
             for route in plan.routes
@@ -185,7 +184,7 @@ class Translation:
 
     @cached_property
     def is_rounded(self) -> bool:
-        """Whether a solution that keeps PyVRP's rules may break one of the fleet's."""
+        """Whether a solution that keeps PyVRP's rules may break a rule of the fleet."""
         rules = self.fleet.rules
         pairs = ((rules.visits[s.pickup], rules.visits[s.delivery]) for s in rules.shipments)
         too_late = any(later.window[1] < earlier.window[0] for earlier, later in pairs)
@@ -281,7 +280,7 @@ class Translation:
         return early, max(early, self._late(visit.window[1])), service
 
     def _times_after(self, stop: int, earlier: int) -> tuple[int, int, int]:
-        """Return the same of a delivery: PyVRP refuses one that ends before its pick-up opens."""
+        """Return the same for a delivery; in PyVRP it may not end before its pick-up opens."""
         early, late, service = self._times(stop)
         return early, max(late, self._times(earlier)[0]), service
 

@@ -1,7 +1,6 @@
 """The steps towards two sums: weights, the normals of the hull's edges (Aneja and Nair, 1979).
 
-They reach supported points alone. Points are in PyVRP's units, in which costs of any size have
-products that a double can hold.
+They reach supported points only. Points are in PyVRP's units: products of costs then fit a double.
 """
 
 from collections.abc import Iterator
@@ -18,9 +17,10 @@ from service.fleet.translation import Goal, Translation
 def weight_steps(
     translation: Translation, archive: SolutionArchive, iterations: int
 ) -> Iterator[Step]:
-    """Yield searches under the weights of both ends of the front, and of all edges of its hull.
+    """Yield searches with the weights of both ends of the front, and of all edges of its hull.
 
-    No weight outweighs huge numbers of the other objective, so that one has none then, before.
+    No weight can outweigh huge numbers of the other objective. So with huge numbers, each end is
+    first searched with weight 0 for the other objective.
     """
     alone = [(1, 0), (0, 1)] if translation.squeezed.changed else []
     for weights in [*alone, (STEEPEST, 1), (1, STEEPEST)]:
@@ -43,7 +43,7 @@ def _weighted(
     translation: Translation,
     iterations: int,
 ) -> Step:
-    """Return a search under weights of both objectives, from the solution that is best there."""
+    """Return a search with these weights, from the solution that is best under them."""
     points = np.array(_in_units(archive.guides, translation))
     start = archive.solutions[int((points @ np.array(weights)).argmin())]
     first, second = (_whole(each / max(weights)) for each in weights)
@@ -52,7 +52,7 @@ def _weighted(
 
 
 def _whole(weight: float) -> int:
-    """Return a weight, of which the larger is 1, as a whole number: 0 only where it is none."""
+    """Return a weight as a whole number, where the larger of both is 1; 0 only if it is 0."""
     return max(1, round(STEEPEST * weight)) if weight else 0
 
 
@@ -63,7 +63,7 @@ def _in_units(points: list[Point], translation: Translation) -> list[Point]:
 
 
 def _triangle(edge: tuple[Point, Point]) -> float:
-    """Return the area of the box between two neighbours."""
+    """Return the area of the box between two neighbours on the hull."""
     (x1, y1), (x2, y2) = edge
     return (x2 - x1) * (y1 - y2)
 

@@ -1,1 +1,1 @@
-"""Planning tasks in worker processes, and keeping their fronts."""
+"""Jobs: their records, the store, the queue, and the engine of a single machine."""

@@ -1,9 +1,9 @@
 """A front as JSON: the one form in which it is sent between processes, stored and answered.
 
 To add a member to the answer, add a field to `FrontDocument` and fill it in where documents are
-written: `empty_document`, `tour_document`, and `fleet_document` and `robot_document` in `fleets`.
-Stores, engines and routes pass all members on by themselves. A field that is not in the documents
-stored by earlier releases needs a default.
+written: `empty_document` in `table`, `tour_document`, and `document` in `fleet` and in `robots`.
+Stores, engines and routes pass on all members without knowing them. A field that earlier releases
+did not store needs a default.
 """
 
 from collections.abc import Mapping
@@ -25,7 +25,7 @@ _HEAD = 100  # the first bytes of a tour, which contain its first members
 
 @dataclass(frozen=True)
 class Timings:
-    """Milliseconds of each phase of planning; once it has ended, also those since the request.
+    """Milliseconds of each phase of planning, and once it has ended the total since the request.
 
     Their JSON form is one object: the time in the queue, the phases, the total.
     """
@@ -56,7 +56,7 @@ class FrontDocument:
 
     Attributes:
         reference_point: One number for each objective; None while the places are not known.
-        scale: The same.
+        scale: One number for each objective; None while the places are not known.
         actor: Name and digest of the network; None where it built no tours.
         places: Row and column of each place of a coverage task.
         closed: False where tours are open routes; None where they are closed.
@@ -93,8 +93,8 @@ class FrontDocument:
     def from_members(cls, members: Mapping[str, Any], **encoded: Any) -> Self:
         """Return the document of parsed members, with the other fields as given.
 
-        Members that this release does not know are dropped. Tours of releases without balances get
-        theirs.
+        Members that this release does not know are dropped. Tours that were stored without balances
+        get them.
         """
         known = {name: members[name] for name in _MEMBERS if name in members}
         known.setdefault("kind", _kind_of_earlier_version(members))
@@ -135,9 +135,9 @@ class FrontDocument:
 
     @property
     def orders(self) -> NDArray[np.int64]:
-        """The stops of each tour in order, shape (m, n); of plans, which have routes, none."""
+        """The stops of each tour in order, shape (m, n); not for plans, which have routes."""
         texts = [_between(self.tours, b'"tour":[', b"]", begin) for begin in self._begins]
-        # Numbers of one kind are read so in a fifth of the time that lists of them take.
+        # This takes a fifth of the time of parsing lists in JSON.
         stops = np.fromstring(b",".join(texts), np.int64, sep=",")
         return stops.reshape(len(texts), -1) if texts else np.empty((0, 0), np.int64)
 
@@ -162,7 +162,7 @@ class FrontDocument:
         """Return the front with its timings at the end.
 
         Args:
-            seconds: From the request to the end.
+            seconds: The seconds from the request to the end.
             late: Whether planning was ended because it took too long.
         """
         terminated = self.terminated
@@ -179,7 +179,7 @@ _OPTIONAL = {field.name for field in _MEMBER_FIELDS if field.default is None}
 
 
 def _kind_of_earlier_version(members: Mapping[str, Any]) -> KindName:
-    """Return the kind of a front that version 0.1 stored, which did not say it."""
+    """Return the kind of a front that version 0.1 stored, without its kind."""
     on_map = members.get("places") is not None
     if any("over" in objective for objective in members.get("objectives") or ()):
         return "robots" if on_map else "fleet"
@@ -187,6 +187,6 @@ def _kind_of_earlier_version(members: Mapping[str, Any]) -> KindName:
 
 
 def _between(text: bytes, before: bytes, after: bytes, begin: int) -> bytes:
-    """Return what is between two parts of a text, the first of each from a byte on."""
+    """Return the text between two parts: the first ones at or after a byte."""
     at = text.index(before, begin) + len(before)
     return text[at : text.index(after, at)]

@@ -1,4 +1,4 @@
-"""Put JSON together from parts: tours, objects with one more member, and long paths."""
+"""Build JSON from parts: tours, objects with one more member, and long paths."""
 
 from array import array
 from collections.abc import Iterable
@@ -15,9 +15,9 @@ PATH_PART = 2**14  # cells of a path that are written at once
 
 
 def encode_tours(rows: list[dict[str, Any]]) -> tuple[bytes, bytes]:
-    """Encode all tours at once, given their members; return the JSON and where each tour ends.
+    """Encode all tours at once; return their JSON, and the byte where each tour ends.
 
-    That is faster than one by one. The members must be numbers, so that a brace ends a tour.
+    This is faster than one by one. All members must be numbers, so that each brace ends a tour.
     """
     encoded = to_json(rows)[1:-1]
     ends = np.flatnonzero(np.frombuffer(encoded, np.uint8) == ord("}")) + 1
@@ -32,7 +32,7 @@ def joined(tours: Iterable[bytes]) -> tuple[bytes, bytes]:
 
 
 def split(tours: bytes, ends: bytes) -> list[bytes]:
-    """Split joined JSON into that of each tour, given where each ends in it."""
+    """Split joined JSON at these ends into the JSON of each tour."""
     lasts = np.frombuffer(ends, np.int64).tolist()
     begins = [0, *(last + 1 for last in lasts)]
     return [tours[begin:last] for begin, last in zip(begins, lasts, strict=False)]

@@ -1,4 +1,4 @@
-"""The interface of a kind of plan, which each has a value of: what differs between the kinds."""
+"""The interface of a kind of plan: everything in which the kinds differ."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -22,12 +22,12 @@ class NamedActor(Constructor, Protocol):
         """The information in its file."""
 
     def load(self) -> None:
-        """Do what only the first call would have to, unless it is done."""
+        """Prepare for calls, so that the first one is as fast as the others."""
 
 
 @dataclass(frozen=True)
 class Tools:
-    """What a worker plans with: the actors by name, and the limits of its service."""
+    """The tools of a worker: the actors by name, and the limits of its service."""
 
     actors: Mapping[str, NamedActor]
     limits: Limits
@@ -39,18 +39,18 @@ class Run(Protocol):
     def __call__(
         self, task: Task, tools: Tools, stop: Callable[[], bool], report: Report
     ) -> FrontDocument:
-        """Return the front of a task, whose costs by road are measured.
+        """Return the front of a task whose costs by road have been measured.
 
         Args:
             task: The task.
             tools: The actors and limits.
             stop: Called often; planning ends soon after it returns True.
-            report: Called now and then with the progress, and with a function that writes the best
-                n tours or plans found so far.
+            report: Called regularly with the progress, and with a function that returns the best n
+                tours or plans found so far.
 
         Raises:
-            Refusal: It has no tour or plan, or none was found; or what it asks for is too much.
-            Cancelled: It was told to stop before it had one.
+            Refusal: No tour or plan exists or was found, or the task asks for too much.
+            Cancelled: `stop` returned True before a tour or plan was found.
         """
 
 
@@ -59,12 +59,12 @@ class Kind:
     """A kind of plan.
 
     Args:
-        name: As answers have it.
+        name: The member `kind` of its answers.
         of_plans: Whether its fronts are of plans for several vehicles or robots, not of tours.
-        label: Of its fronts, in the metrics.
+        label: The label of its fronts in the metrics.
         outline: Returns the number of cities of a task, and the members of its answer that are
             known before anything is planned.
-        run: Plans the front of a task. It imports what plans when it is called.
+        run: Plans the front of a task. It imports the modules that plan when it is called.
     """
 
     name: KindName

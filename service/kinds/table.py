@@ -1,4 +1,4 @@
-"""The table of kinds of plans: a new kind gets a folder beside it, and a row in it."""
+"""The table of kinds of plans. A new kind gets a row here, and a folder beside this module."""
 
 from collections.abc import Mapping
 
@@ -14,7 +14,7 @@ KINDS: Mapping[KindName, Kind] = {kind.name: kind for kind in (FRONT, COVERAGE, 
 
 
 def empty_document(task: Task) -> FrontDocument:
-    """Return the document of a task of which nothing has been found yet."""
+    """Return the document of a task before anything has been found."""
     reference_point, scale = task.options.reference_point, None
     if (instance := task.known_instance) is not None:
         scale = instance.scale.tolist()

@@ -25,11 +25,11 @@ def encode_front(
     labels: Labels | None = None,
     arrivals: NDArray[np.float64] | None = None,
 ) -> FrontDocument:
-    """Write a front as JSON: its tours with the ids of labels, and with arrivals and paths if any.
+    """Return a front as JSON, with the ids of stops, the arrivals and the paths that are given.
 
-    Of a map it has the places and what is uncovered, as they were surveyed.
+    With a survey it has the places on the map, and the cells that are uncovered.
 
-    The actor is left out where it built no tours. Arrivals have shape (m, stops, 2).
+    The actor is left out if it built no tours. Arrivals have shape (m, stops, 2).
     """
     tours, ends = encode_tours(_rows(front, arrivals))
     if labels is not None:
@@ -61,7 +61,7 @@ def encode_front(
 
 
 def on_map(surveyed: Survey | None) -> dict[str, Any]:
-    """Return the members of a document that say where places lie on a map, and what is not."""
+    """Return the members about a map: where its places lie, and which cells are uncovered."""
     if surveyed is None:
         return {}
     return {"places": surveyed.places.tolist(), "uncovered": asdict(surveyed.uncovered)}
@@ -85,14 +85,14 @@ def _rows(front: Front, arrivals: NDArray[np.float64] | None) -> list[dict[str, 
 
 
 def _optional(name: str, values: NDArray[np.float64] | None, front: Front) -> list[dict[str, Any]]:
-    """Return a member of each tour of a front, or none where there are no values."""
+    """Return a member for each tour of a front; without values, no members."""
     if values is None:
         return [{}] * len(front.tours)
     return [{name: value} for value in values.tolist()]
 
 
 def _with_stops(encoded: list[bytes], tours: NDArray[np.integer], labels: Labels) -> list[bytes]:
-    """Return the JSON of each tour with the ids of its stops, each of which is encoded once."""
+    """Return the JSON of each tour with the ids of its stops; each id is encoded only once."""
     ids = np.array([to_json(stop.id) for stop in labels.stops], object)
     return [
         with_member(tour, b"stops", b"[%b]" % b",".join(stops))

@@ -1,4 +1,4 @@
-"""Plan the tours of an instance for a task: those of stops, and those of the places of a map."""
+"""Plan the tours of an instance for a task: through stops, or through the places of a map."""
 
 from collections.abc import Callable
 
@@ -25,7 +25,7 @@ def plan_tours(
     report: Report,
     surveyed: Survey | None = None,
 ) -> Front:
-    """Return the front of a task, planned or replanned; the last argument is that of a map."""
+    """Plan or replan the front of a task; `surveyed` is the map, if it has one."""
     actor = tools.actors[task.actor]
 
     def encoded(front: Front) -> FrontDocument:
@@ -41,5 +41,5 @@ def plan_tours(
 
 
 def arrivals_of(task: Task, instance: Instance, front: Front) -> NDArray[np.float64] | None:
-    """Return both lengths of each tour up to each of its stops, where the task asks for them."""
+    """Return both lengths of each tour up to each of its stops, if the task asks for them."""
     return cumulated_lengths(instance, front.tours) if task.arrivals else None

@@ -1,4 +1,4 @@
-/** The page, put together: a request on the left, its front on the right. */
+/** Put the page together: a request on the left, its front on the right. */
 
 import { Examples } from "./opening/examples.js";
 import { ExportButtons } from "./result/export_buttons.js";
@@ -20,16 +20,16 @@ import { takeDropped } from "./opening/dropping.js";
 import { Problem, Service } from "./planning/service.js";
 
 const element = (id) => document.getElementById(id);
-// Charts and maps are most of the page's bytes: what is seen first does not wait for them.
+// Charts and maps are most of the page's bytes: the first view does not wait for them.
 const { Result } = await import("./result/result.js");
 const form = element("request");
 const service = new Service(() => element("key").value.trim());
-const narrow = matchMedia("(max-width: 860px)"); // the form stands above what it gives, not beside
+const narrow = matchMedia("(max-width: 860px)"); // the form is above its result, not beside it
 const result = new Result({
   onClick: (...place) => [placing, replanForm].forEach((each) => each.clicked(...place)),
   onMove(...moved) {
     input.moveCity(...moved);
-    if (input.priced) say("Moved. Costs that were given as a matrix stay as they are.");
+    if (input.priced) say("Moved. Costs given as a matrix did not change.");
   },
   onDelete: (city) => input.deleteCity(city),
 });
@@ -41,23 +41,23 @@ const surroundings = new Surroundings(service, result);
 const exporting = new ExportButtons(service, screen);
 const replanForm = new ReplanForm(replan, result.wait);
 
-let way = null; // on which the front that is shown may be replanned
-let objectives = UNNAMED; // as the front that is shown calls them
-let planning = null; // what is under way
-let reading = null; // what ends the reading of files, of an example or of typed text that is under way
+let way = null; // the way on which the front shown can be replanned
+let objectives = UNNAMED; // the names in the front shown
+let planning = null; // the planning that is running
+let reading = null; // ends the reading of files, of an example or of typed text that is running
 let answer = null; // the best front so far
 let shown = false; // whether anything was opened or typed
-let awaited = null; // the file of an example that is to be shown, unless files are opened in its place
-let refusal = null; // of such files, while that example is fetched all the same
+let awaited = null; // the file of an example that will be shown, unless files are opened instead
+let refusal = null; // the refusal of such files, while that example is fetched nevertheless
 
-/** Takes what is asked for into the form, and shows its stops under their objectives. */
+/** Opens a request in the form, and shows its stops under their objectives. */
 function open(wanted, names) {
   giveUp();
   element("order").open = !["coordinates", "grid"].includes(kindOf(wanted));
   input.open(wanted, names);
 }
 
-/** Whatever was planned is not of these stops. */
+/** Drops the front: it is not of these stops. */
 function edited(instance, fit) {
   shown = true;
   awaited = null;
@@ -77,7 +77,7 @@ function answered(found) {
   if (!found) replanForm.show(null);
 }
 
-/** What is on the screen; null where what was typed cannot be read. The rest of a way was not asked for as the form says. */
+/** What is on the screen; null if what was typed cannot be read. A replanned front has no request in the form. */
 async function screen() {
   if (input.unread && !(await settled())) return null;
   const asked = way?.replanned ? null : input.asked;
@@ -90,7 +90,7 @@ async function screen() {
   };
 }
 
-/** Where form and result stand above each other, the result comes first from when one is planned. */
+/** Where form and result are one above the other, moves the result to the top once one is planned. */
 function arrange() {
   const [main, shown] = [form.parentElement, element("result")];
   const above = main.firstElementChild === shown;
@@ -98,7 +98,7 @@ function arrange() {
   if (wanted !== above) main[wanted ? "prepend" : "append"](shown); // moved, it loses the focus
 }
 
-/** Shows what comes of a plan; `states` asks a planning for it, and until then `waiting` is said. */
+/** Shows the states of a planning, which `states` asks it for; until the first one, says `waiting`. */
 async function run(states, waiting = "The network is building its front.") {
   if (input.unread && !(await settled())) return;
   leave();
@@ -120,7 +120,7 @@ async function run(states, waiting = "The network is building its front.") {
 }
 
 function ended() {
-  // It was stopped before it had a job that would say so.
+  // It was stopped before it had a job to report that.
   if (planning.left) say(answer ? sentence({ stage: "cancelled", answer }) : "Stopped.");
   planning = null;
   offer();
@@ -146,14 +146,14 @@ function plan() {
   return run((mine) => mine.plan(input.request));
 }
 
-/** Plans what is left of the selected tour. */
+/** Plans the rest of the selected tour. */
 async function replan() {
   clearFaults();
   try {
     const body = way.body(replanForm.changes, result.selected.tour);
     const longer = way.with(replanForm.places);
     const { id } = answer;
-    await run((mine) => replanned(mine.replan(id, body), longer), "What is left is being planned.");
+    await run((mine) => replanned(mine.replan(id, body), longer), "The rest of the tour is being planned.");
   } catch (error) {
     if (!(error instanceof Problem)) throw error;
     showFault("replan", error.message);
@@ -176,14 +176,14 @@ function leave() {
   offer();
 }
 
-/** Whatever is being read is not wanted any more. */
+/** Ends the reading that is running. */
 function giveUp() {
   reading?.abort();
   reading = null;
   offer();
 }
 
-/** Offers to plan while nothing is read or planned, and to stop while something is. */
+/** Enables Plan while nothing is read or planned, and Stop while something is. */
 function offer() {
   const busy = Boolean(planning || reading);
   element("plan").disabled = busy;
@@ -207,8 +207,8 @@ async function stop() {
 }
 
 /**
- * Reads in the place of whatever is read or planned; `task` takes an AbortController. False where it was
- * given up. A refusal of files goes on being told while the example is fetched that is shown instead.
+ * Runs a reading, and ends any other reading or planning; `task` takes an AbortController. Returns false if
+ * the reading was ended. A refusal of files stays visible while the example is fetched that replaces them.
  */
 async function whileReading(words, task, told = null) {
   leave();
@@ -232,9 +232,9 @@ async function whileReading(words, task, told = null) {
   }
 }
 
-/** Has what was typed read; false where it cannot be, which is told, or where that was given up. */
+/** Reads what was typed. Returns false if it cannot be read, which is shown, or if reading was ended. */
 async function settled() {
-  if (reading) return false; // and takes the place of what was typed
+  if (reading) return false; // what is being read replaces what was typed
   try {
     return await whileReading("What was typed is being read.", (mine) => input.settle(mine));
   } catch (error) {
@@ -255,7 +255,7 @@ function openChosen() {
   element("file").value = "";
 }
 
-/** Opens the request that files are, or says why they are none; until then nothing can be planned. */
+/** Opens files as a request, or says why that is not possible; until then nothing can be planned. */
 async function openFiles(files) {
   if (!files.length) return;
   const words = files.length > 1 ? "The files are being read." : "The file is being read.";
@@ -276,12 +276,12 @@ async function brings(files, signal) {
   try {
     return await read(service, files, (await equipment)?.roads ?? true, signal);
   } catch (error) {
-    await started; // and with it is known which example is shown instead
+    await started; // and the list says which example is shown instead
     throw error;
   }
 }
 
-/** What was shown stays, and can be planned; an example that was awaited is shown. */
+/** Keeps what was shown, which can be planned; shows an example that was awaited. */
 async function unread(error) {
   tellUnread(error);
   if (!awaited) return;
@@ -299,7 +299,7 @@ function tellFolder(name) {
   tellUnread(new Problem({ code: "folder", detail: `${name} is a folder: drop its files` }));
 }
 
-/** Text as of a file is opened, wherever it is pasted; rows of numbers go into their box. */
+/** Opens text of a file, wherever it is pasted; rows of numbers go into their box. */
 function pasted(event) {
   const file = pastedFile(event.clipboardData.getData("text"));
   if (!file) return;
@@ -307,7 +307,7 @@ function pasted(event) {
   openFiles([file]);
 }
 
-/** Opens an example by its file; false where there is none, or another was opened meanwhile. */
+/** Opens an example by its file. Returns false if it does not exist, or something else was opened meanwhile. */
 async function openExample(file, refused) {
   if (!examples.choose(file)) return false;
   const { chosen } = examples;
@@ -341,7 +341,7 @@ function forgetExample() {
   surroundings.forget();
 }
 
-/** Opens the front that the address names; false where it names none. */
+/** Opens the front that the address names. Returns false if it names none. */
 async function openLinked() {
   const link = await linked(location.hash);
   if (!link) return false;
@@ -353,7 +353,7 @@ async function openLinked() {
   return true;
 }
 
-/** Opens what a link was asked for; false where something else was opened meanwhile. */
+/** Opens the request in a link. Returns false if something else was opened meanwhile. */
 async function openAsked({ example, asked }) {
   forgetExample();
   if (examples.choose(example)) return openExample(example);
@@ -384,11 +384,11 @@ addEventListener("hashchange", openLinked);
 
 const equipment = service.get("page/map.json").catch(() => null);
 const started = start();
-offer(); // from now on: before, the browser itself would send the form
+offer(); // only now: before, the browser itself would send the form
 openChosen(); // while the page was being loaded
 equipment.then((map) => map && result.equip(map, service));
 
-/** Opens what the address names, or else the first example, unless something was opened or typed meanwhile. */
+/** Opens what the address names, or else the first example, unless the user opened or typed something meanwhile. */
 async function start() {
   examples.offer(await service.get("examples/index.json"));
   if ((await openLinked()) || shown) return;

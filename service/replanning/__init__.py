@@ -1,1 +1,1 @@
-"""Replanning: the rest of a front's tours, when things have changed on the way."""
+"""Replan: search on from the tours of an earlier front, and keep legs of the driven one."""

@@ -1,6 +1,6 @@
-"""Parse the bytes of a request into a checked Task.
+"""Parse the body of a request into a checked Task, and write and read a Task as bytes.
 
-`task` is the way in. `front` and `coverage` are the two kinds of request, each a pydantic model
-with its JSON schema and its parser. They share `schemas` (fields), `limits`, `arrays` (matrices
-and maps) and `validation` (sentences of refusals).
+`parser` turns a body into a `task`, and `task_codec` turns a task into bytes and back. `front`,
+`coverage`, `fleets` and `replan` have the fields of a request each, as pydantic models; they share
+`schemas` (fields), `limits`, `arrays` and `validation` (the sentences of errors).
 """

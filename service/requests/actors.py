@@ -1,4 +1,4 @@
-"""The actor of a request: the one that it names, or the default for its kind of instance."""
+"""Choose the actor of a request: the one that it names, or the default for its kind of instance."""
 
 from collections.abc import Mapping
 
@@ -12,10 +12,11 @@ DEFAULT_ACTORS: Mapping[Kind, str] = {"coordinates": "pa-one", "matrices": "pa-o
 def choose_actor(actors: Mapping[str, ActorInfo], kind: Kind, name: str | None) -> str:
     """Return the name of the actor for instances of a kind: the one requested, or the default.
 
-    Where the default is not loaded, the first by name that serves the kind takes its place.
+    If the default is not loaded, the first by name that serves the kind is taken.
 
     Raises:
-        Refusal: The requested actor is not loaded or does not serve the kind, or none does.
+        Refusal: The requested actor is not loaded or does not serve the kind, or no actor serves
+            it.
     """
     able = sorted(each for each, info in actors.items() if info.serves(kind))
     if name is not None:
@@ -27,7 +28,7 @@ def choose_actor(actors: Mapping[str, ActorInfo], kind: Kind, name: str | None) 
 
 
 def actor_for_plans(actors: Mapping[str, ActorInfo]) -> str:
-    """Return the name of the actor whose tours are cut into first plans; empty without one."""
+    """Return the name of the actor whose tours are cut into first plans; "" if none is loaded."""
     able = any(info.serves("matrices") for info in actors.values())
     return choose_actor(actors, "matrices", None) if able else ""
 

@@ -1,6 +1,6 @@
-"""The rest of a way as versions up to 0.1 stored it: to be deleted with the next release.
+"""Read the replanning tasks that versions up to 0.1 stored. Delete this in the next release.
 
-They stored it as a request, for a front or coverage, with the tours of the earlier front.
+They stored a request to plan a front or to cover a map, with the tours of the earlier front.
 """
 
 from collections.abc import Mapping
@@ -26,7 +26,7 @@ from service.requests.task import Task, TaskSource
 
 
 def parse_rest(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
-    """Return the task of the rest of a way; errors as of `parse_task`."""
+    """Return the task of such a request; errors are those of `parse_task`."""
     if source.kind == "replan":
         stops = parse_front_as(RestRequest, source.body, limits, source.upload)
         return front_task(
@@ -36,13 +36,13 @@ def parse_rest(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInf
     return coverage_task(places, places.coverage(), actors, places.earlier)
 
 
-# Without AsInteger: these are the service's own, and a hundred thousand of them take a while.
+# Without AsInteger: the service wrote these numbers itself, and there may be 100,000 of them.
 Index = Annotated[int, Field(ge=0, le=2**31 - 1)]
-_STOP = np.dtype("<i4")  # of a tour in base64: numbers in JSON take four times as long
+_STOP = np.dtype("<i4")  # of a tour, in base64, which is read four times as fast as JSON
 
 
 class EncodedTours(BaseModel):
-    """Tours of equally many stops."""
+    """Tours that all have the same number of stops."""
 
     count: int = Field(ge=1)
     stops: Base64Bytes = Field(description="of one tour after another, four bytes each")
@@ -81,13 +81,13 @@ _Step = tuple[Index, Index, Cost | None]
 class RestObjective(ObjectiveItem):
     """An objective with the costs of some steps changed, each as origin, destination and cost.
 
-    A cost is null where there is no way any more.
+    A cost is null if there is no longer a way.
     """
 
     changed: Annotated[list[_Step], Field(fail_fast=True)] = Field(default_factory=list)
 
     def source(self, part: str, stops: tuple[Stop, ...]) -> Source:  # type: ignore[override]
-        """Return the source of the costs between these stops, with those that have changed."""
+        """Return the source of the costs between these stops, with the changed costs."""
         base = super().source(part, stops)
         if not self.changed:
             return base

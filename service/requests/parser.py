@@ -1,4 +1,4 @@
-"""Parse requests into tasks: parse_task(...), and the parts of it that replanning shares."""
+"""Parse the body of a request into a Task. Replanning shares parts of this."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -30,7 +30,7 @@ from service.search.forbidden_legs import check_legs
 
 
 def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
-    """Return the task of a request as it came.
+    """Return the task that a request asks for.
 
     Raises:
         Refusal: The body is malformed or over a limit, or no actor serves it.
@@ -57,11 +57,11 @@ def front_task(
     labels: Labels | None = None,
     earlier: EarlierTours | None = None,
 ) -> Task:
-    """Return the task of a checked request; the arguments are those of Task.
+    """Return the task of a checked request about stops; keyword arguments are those of Task.
 
     Raises:
-        Refusal: No actor serves it, it asks for what the actor cannot do, or it is plain that no
-            tour is without a forbidden leg.
+        Refusal: No actor serves it, the actor cannot do what it asks for, or clearly every tour has
+            a forbidden leg.
         InvalidInstance: The costs cannot be planned.
     """
     name = choose_actor(actors, stops.kind, request.requested_actor)
@@ -80,7 +80,7 @@ def front_task(
 
 
 def check_instance(task: Task, instance: Instance) -> None:
-    """Raise a refusal where it is plain that the instance of a task has no tour, or none to count.
+    """Raise a refusal if the instance of a task clearly has no tour that could be reported.
 
     Raises:
         NoTour: Forbidden legs leave no tour.
@@ -91,10 +91,10 @@ def check_instance(task: Task, instance: Instance) -> None:
 
 
 def options_of(request: PlanFields, actor: ActorInfo) -> PlanOptions:
-    """Return the options of a request, without repairs by an actor that makes none.
+    """Return the options of a request, with 0 repairs if the actor cannot repair.
 
     Raises:
-        Refusal: It asks for repairs by such an actor.
+        Refusal: The request asks for repairs, which the actor cannot make.
     """
     options = request.options()
     if actor.repairs or options.repairs == 0:
@@ -122,10 +122,10 @@ def coverage_task(
     actors: Mapping[str, ActorInfo],
     earlier: EarlierTours | None = None,
 ) -> Task:
-    """Return the task of a checked request about one robot on a map; the arguments are Task's.
+    """Return the task of a checked request about one robot on a map.
 
     Raises:
-        Refusal: No actor serves it, or it asks for what the actor cannot do.
+        Refusal: No actor serves it, or the actor cannot do what it asks for.
     """
     name = choose_actor(actors, "matrices", request.requested_actor)
     return Task(

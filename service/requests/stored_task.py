@@ -1,4 +1,4 @@
-"""Stored tasks: read what this version has stored, and what earlier versions have."""
+"""Write and read stored tasks, and read those that earlier versions stored."""
 
 from collections.abc import Mapping
 
@@ -11,12 +11,12 @@ from service.requests.task_codec import decode_task, encode_task
 
 
 def stored(task: Task) -> TaskSource:
-    """Return a task as it is stored."""
+    """Return a task in the form in which it is stored."""
     return TaskSource("task", encode_task(task))
 
 
 def read_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
-    """Return a stored task; of earlier versions, parsed from the request that they stored.
+    """Return a stored task; earlier versions stored the request, which is parsed again.
 
     Raises:
         Refusal: The request of an earlier version is refused now.

@@ -1,8 +1,8 @@
 """Tasks as bytes: the one form in which they are stored, queued and sent to other machines.
 
-The bytes are a line with the version, the length of a header, the header, and arrays one after
-another as .npy. The header is JSON: the members of the task, in which each array is its number,
-and each value of one of `_TYPES` has the name of its type.
+The bytes are a line with the version, the length of the header, the header, and the arrays one
+after another as .npy. The header is JSON: the members of the task. It has the number of an array in
+place of the array, and the name of its type beside each value of one of `_TYPES`.
 """
 
 import struct
@@ -45,11 +45,11 @@ _TYPES: Mapping[str, type[Any]] = {
         *(Coverage, SharedCoverage, UnmeasuredFleet, Rules),
     )
 }
-# Of these there may be thousands. Their members are numbers, texts, and tuples of numbers.
+# A task may hold thousands of these. Their members are numbers, texts, and tuples of numbers.
 _FLAT_TYPES: Mapping[str, type[Any]] = {
     each.__name__: each for each in (Stop, Objective, Visit, Shipment, VehicleType, Robot)
 }
-_NUMBERS = "biuf"  # the kinds of arrays: of truth values, integers and floats
+_NUMBERS = "biuf"  # kinds of NumPy's types: booleans, integers and floats
 
 Arrays = list[NDArray[Any]]
 
@@ -66,7 +66,7 @@ def encode_task(task: Task) -> bytes:
 
 
 def decode_task(content: bytes) -> Task:
-    """Return the task that `encode_task` has written.
+    """Return the task that `encode_task` wrote.
 
     Raises:
         ValueError: The bytes are damaged, or of another version.
@@ -78,7 +78,7 @@ def decode_task(content: bytes) -> Task:
         (length,) = _LENGTH.unpack_from(content, len(_FIRST_LINE))
         arrays = list(_arrays(content, begin + length))
         task = _decoded(from_json(content[begin : begin + length]), arrays)
-    # Whatever parsers of bytes that anything may have damaged raise.
+    # Damaged bytes may make these parsers raise any exception.
     except Exception as error:
         raise ValueError(f"the task is damaged: {error!r}") from error
     if not isinstance(task, Task):
@@ -87,7 +87,7 @@ def decode_task(content: bytes) -> Task:
 
 
 def _encoded(value: Any, arrays: Arrays) -> Any:
-    """Return a value ready for JSON; its arrays are appended to these."""
+    """Return a value ready for JSON, and append its arrays to these."""
     if isinstance(value, np.ndarray):
         if value.dtype.kind not in _NUMBERS:
             raise TypeError(f"an array must be of numbers, got {value.dtype}")
@@ -116,7 +116,7 @@ def _encoded_sequence(values: Sequence[Any], arrays: Arrays) -> Any:
 
 
 def _decoded(value: Any, arrays: Sequence[NDArray[Any]]) -> Any:
-    """Return the value of JSON that `_encoded` returned; sequences are tuples."""
+    """Return the value that `_encoded` made ready for JSON; its sequences become tuples."""
     if isinstance(value, list):
         return tuple(_decoded(each, arrays) for each in value)
     if not isinstance(value, dict):
@@ -142,7 +142,7 @@ def _tuples(value: Any) -> Any:
 
 
 def _arrays(content: bytes, begin: int) -> Iterator[NDArray[Any]]:
-    """Yield the arrays of a task from a byte on."""
+    """Yield the arrays of a task; the first one begins at this byte."""
     stream = BytesIO(content)
     stream.seek(begin)
     while stream.tell() < len(content):

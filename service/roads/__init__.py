@@ -1,1 +1,1 @@
-"""Distances on the earth between stops: great circles, and the matrices of a routing engine."""
+"""Costs and lines by road, from Valhalla or OSRM, and great-circle distances."""

@@ -1,4 +1,4 @@
-"""A compiled local search that improves the whole front of an instance.
+"""The compiled local search, which improves the whole front of an instance.
 
 `improve` is the entrance. `schedule` decides what is searched next, `local_search` and
 `pareto_local_search` search, `moves` change a `working_tour`, `candidates` and `costs` say where

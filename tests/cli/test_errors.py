@@ -24,7 +24,7 @@ EXITS = [
     (refused(401), 3, "paretour: a sentence (a-code)\n"),
     (refused(429), 3, "paretour: a sentence (a-code)\n"),
     (refused(503), 3, "paretour: a sentence (a-code)\n"),
-    (UnexpectedAnswer("a sentence"), 3, "paretour: the service answers oddly: a sentence\n"),
+    (UnexpectedAnswer("a sentence"), 3, "paretour: the service's answer is wrong: a sentence\n"),
     (httpx.ConnectError("refused"), 3, "paretour: the service does not answer: refused\n"),
 ]
 

@@ -97,7 +97,11 @@ WRONG = [
     ("a.csv", '1,"2', "must be CSV: unexpected end of data"),
     ("a.csv", "1,5;2;3;4\n1.234,5;2;3;4\n", "row 2, column '1' must be a number, got '1.234,5'"),
     ("a.csv", "id,1,2,3\n1,2,3,4\n", "or columns named lon and lat, got 3"),
-    ("a.csv", "a,1,2,3,4\nb,1,2,3,4\na,5,6,7,8\n", "row 3, column '1' must be an id of its own"),
+    (
+        "a.csv",
+        "a,1,2,3,4\nb,1,2,3,4\na,5,6,7,8\n",
+        "row 3, column '1' must be an id that no other row has",
+    ),
     ("a.csv", "id,1,1,1,1\n ,1,2,3,4\n", "row 2, column 'id' must be an id, got none"),
     ("a.json", "3", "must be a request, an object, or its coordinates, a list"),
     ("a.tsp", EUCLIDEAN, "one objective: name another"),
@@ -124,7 +128,7 @@ def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
 
 WRONG_PAIRS = [
     ("a.tsp", "", "b.tsp", EXPLICIT, "a.tsp: must have a row for each stop"),
-    ("a.csv", "1,2\n3,4\n5,6\n", "b.csv", "1,2\n3,4\n", "as many stops, got 3 of"),
+    ("a.csv", "1,2\n3,4\n5,6\n", "b.csv", "1,2\n3,4\n", "the same number of stops, got 3 of"),
     ("a.csv", "1,2,3\n", "b.csv", "1,2\n", "must have 2 columns, x and y, or as many as rows"),
 ]
 
@@ -197,7 +201,7 @@ def test_one_of_two_files_may_be_standard_input(
     monkeypatch.setattr(sys, "stdin", Piped(b"0,0\n1,1\n2,2\n"))
     expected = [[1, 2, 0, 0], [3, 4, 1, 1], [5, 6, 2, 2]]
     assert read_request([file, Path("-")])[0] == {"coordinates": expected}
-    with pytest.raises(UnreadableFile, match="one of both files"):
+    with pytest.raises(UnreadableFile, match="only one of the two files can be standard input"):
         read_request([Path("-"), Path("-")])
 
 
@@ -226,7 +230,7 @@ def test_every_command_has_a_service_plan_what_is_piped_into_it(
 def test_a_map_and_its_costs_are_not_both_standard_input() -> None:
     ended = CliRunner().invoke(app, ["coverage", "-", "--cost-layer", "-"], input=b"P5 1 1 255 a")
     assert ended.exit_code == 2
-    assert "one of both files, not both" in ended.stderr
+    assert "only one of the two files can be standard input" in ended.stderr
 
 
 def test_standard_input_is_named_where_it_cannot_be_read(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -205,7 +205,7 @@ REFUSED = {
     "metres.csv": "degrees (WGS84, EPSG:4326)",
     "lat-is-text.csv": "row 3, column 'lat' must be a number, got 'north'",
     "lat-is-empty.csv": "row 3, column 'lat' must be a number, got ''",
-    "same-id-twice.csv": "row 3, column 'id' must be an id of its own, got 'a' as row 2 has it",
+    "same-id-twice.csv": "row 3, column 'id' must be an id that no other row has, got 'a'",
     "open-quote.csv": "must be CSV",
     "ragged.csv": "row 2 must have 4 fields, as the first row, got 3",
     "thousands.csv": "row 2, column 'x1' must be a number, got '1.234,5'",

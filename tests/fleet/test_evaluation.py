@@ -78,7 +78,7 @@ FULL = VehicleType(start=0, end=0, count=1, capacity=(3,))
 BROKEN = [
     ({}, [(1, 2, 3)], "stop 4 is not visited"),
     ({}, [(1, 2), (2, 3, 4)], "stop 2 is visited 2 times"),
-    ({}, [(0, 1, 2, 3, 4)], "stop 0 is no stop to visit"),
+    ({}, [(0, 1, 2, 3, 4)], "stop 0 is not a stop to visit"),
     ({}, [(1, 2, 3, 4), ()], "a route visits no stop"),
     ({"vehicles": (FULL,)}, [(1, 2), (3, 4)], "2 vehicles of type 0 leave"),
     (

@@ -6,6 +6,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -27,7 +28,7 @@ from tests.guide.pages import (
 )
 from tests.guide.sessions import RUN, run_page, write_inputs
 from tests.guide.tree import PAGE as TREE_PAGE
-from tests.guide.tree import modules, named, tree
+from tests.guide.tree import named, tree
 from tests.helpers.serving import app_of
 
 # Commands that a test of their own runs or checks: deployment, the image, set-up and linters.
@@ -214,12 +215,32 @@ def test_the_readme_is_short_and_its_figures_are_those_of_the_results() -> None:
     assert [figure for figure in figures if figure not in results + guide] == []
 
 
-def test_the_tree_names_every_module_and_no_other() -> None:
-    assert named(made_part(TREE_PAGE, "tree")) == modules()
+def test_the_tree_names_every_folder_with_modules() -> None:
+    paths = subprocess.run(
+        ["git", "ls-files", "service", "models", "export"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.splitlines()
+    folders = {str(Path(path).parent) for path in paths if path.endswith((".py", ".js", ".lua"))}
+    shown = named(made_part(TREE_PAGE, "tree"))
+    hidden = {folder for folder in folders - shown if "/vendor" not in folder}
+    assert hidden == set()
+    assert [folder for folder in shown if not (ROOT / folder).is_dir()] == []
 
 
-def test_the_tree_says_what_the_modules_say_of_themselves() -> None:
+def test_the_tree_says_what_the_packages_say_of_themselves() -> None:
     assert made_part(TREE_PAGE, "tree") == tree(), "run python -m tests.guide"
+
+
+def test_the_picture_of_the_layers_is_that_of_the_import_contracts() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    contracts = project["tool"]["importlinter"]["contracts"]
+    [factory, inside] = [each["layers"] for each in contracts if each["type"] == "layers"]
+    [picture, *_] = [each.text for each in blocks(TREE_PAGE)]
+    drawn = re.findall(r"^ .{11}(\w+(?: \| \w+)*) {2,}\S", picture, re.MULTILINE)
+    assert [*drawn, "service"] == [*factory[:-1], *inside, factory[-1]]
 
 
 @pytest.mark.parametrize("name", ["weights", "times", "road-times"])

@@ -103,7 +103,7 @@ def test_the_search_plans_what_the_network_cannot(browser: Browser, released: st
         assert [route["stops"] for route in plan["routes"]] == [["depot", "shop", "home", "depot"]]
         assert plan["unassigned"] == ["far"]
         expect(page.locator("#fleet-left-out-title")).to_have_text(
-            "1 stop is left out, as those with a prize may be. The prizes are added to distance:"
+            "1 stop is left out: stops with a prize may be. Their prizes are added to distance:"
         )
         expect(page.locator("#fleet-left-out li")).to_have_text(["far: prize 10 km"])
         expect(page.locator("#fleet-stops")).to_contain_text(

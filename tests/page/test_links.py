@@ -27,7 +27,7 @@ def test_a_link_opens_the_same_front_with_its_cities(planned: Page, browser: Bro
         expect(other.get_by_text("is drawn here while a search runs")).to_be_visible()
         other.goto(planned.url.partition("#")[0] + "#front=none")
         for told in ("#request-fault", "#waiting"):
-            expect(other.locator(told)).to_contain_text("has no front of this link any more")
+            expect(other.locator(told)).to_contain_text("no longer has the front of this link")
         assert other.get_by_label("Example").evaluate("choice => choice.selectedIndex") == 0
 
 

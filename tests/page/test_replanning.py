@@ -13,7 +13,7 @@ def test_the_rest_of_a_tour_is_planned_from_the_vehicle_with_other_stops(page: P
     assert back == before[0]
     page.get_by_text("Replan on the way").click()
     page.get_by_label("Visited up to").fill(before[2])
-    page.get_by_label("Drop, names").fill(before[10])
+    page.get_by_label("Stops to drop").fill(before[10])
     page.get_by_label("Name of a new stop").fill("school")
     click_on_both_maps(page, "Click where the new stop is", (150, 120))
     click_on_both_maps(page, "Click where the vehicle is", (170, 150))
@@ -26,11 +26,11 @@ def test_the_rest_of_a_tour_is_planned_from_the_vehicle_with_other_stops(page: P
     assert after[0] == "vehicle"
     assert after[-1] == before[0]
     assert sorted([*after[1:-1], *before[1:3], before[10]]) == sorted([*before[1:], "school"])
-    page.get_by_label("Drop, names").fill(before[10])
+    page.get_by_label("Stops to drop").fill(before[10])
     page.get_by_role("button", name="Replan").click()
     expect(page.locator("#replan-fault")).to_contain_text("no stop")
     assert order(page) == after
-    page.get_by_label("Drop, names").fill("school")
+    page.get_by_label("Stops to drop").fill("school")
     page.get_by_role("button", name="Replan").click()
     expect(page.locator("#order p")).not_to_contain_text("school")
     assert sorted(order(page)) == sorted(set(after) - {"school"})

@@ -95,7 +95,7 @@ def test_keys_choose_move_and_delete_a_stop(opened: Page) -> None:
     assert after[1] < before[1]
     assert place_of_stop(opened, 2) == pytest.approx((x + 20, y + 1), abs=1)
     # Its risk on the way was written into a matrix when the file was read.
-    expect(opened.locator("#status")).to_contain_text("as a matrix stay")
+    expect(opened.locator("#status")).to_contain_text("Costs given as a matrix did not change")
     opened.keyboard.press("Delete")
     expect(opened.locator("#count")).to_have_text("2 stops")
     assert [stop["id"] for stop in curl_body(opened)["stops"]] == ["depot", "school"]

@@ -1,1 +1,1 @@
-"""Fronts of plans in the command: planned for fleets, printed, and drawn."""
+"""The commands for fleets and robots: plan, print and plot fronts of plans."""

@@ -50,11 +50,11 @@ def fleet(  # noqa: PLR0913  an option each
 def read_fleet(file: Path, vehicles: Path | None, options: dict[str, Any]) -> "Plan":
     """Return the plan in a file, or in two of stops and vehicles.
 
-    Options that were given stand in place of its members.
+    Options that are given replace its members.
 
     Raises:
         UnreadableFile: It cannot be read.
-        UsageError: It is of another command.
+        UsageError: It is a request for another command.
         OSError: There is no such file.
     """
     from paretour import FleetRequest, fleet_plan

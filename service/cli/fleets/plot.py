@@ -12,11 +12,11 @@ from service.cli.labels import labels_of, lengths_as_text
 from service.cli.plot_map import draw_front, draw_map, map_of, panels
 from service.coverage.frame import MapFrame
 
-# Of Okabe and Ito (2008), whom colour-blind people can tell apart; as on the page.
+# The colours of Okabe and Ito (2008), which colour-blind people can tell apart; as on the page.
 _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#1b2430", "#f0e442")
 _DASHES = ("-", (0, (6, 3)), (0, (2, 3)))
 _CASING: list[AbstractPathEffect] = [Stroke(linewidth=3, foreground="#1b2430"), Normal()]
-_MOST_NAMED = 8  # robots, beside whose map a list of names has room
+_MOST_NAMED = 8  # robots: a longer list of names has no room beside the map
 
 
 def plot_robots(front: RobotFront, plan: Plan, path: Path, choices: Mapping[str, int]) -> None:
@@ -24,7 +24,7 @@ def plot_robots(front: RobotFront, plan: Plan, path: Path, choices: Mapping[str,
 
     Args:
         front: A front whose routes have paths.
-        plan: The request that it is the answer to.
+        plan: The request whose answer the front is.
         path: The file to draw into.
         choices: The indexes of the plans to draw, by their titles.
     """

@@ -7,7 +7,7 @@
         tour = front.choose(balance=0.3).tour
 
 AsyncClient is the same for asynchronous programs. Both send the requests of `calls` and read the
-events of `events`; neither needs anything of the service but its address.
+events of `events`. They only need the address of a service.
 """
 
 from paretour.asynchronous import AsyncClient, AsyncJob

@@ -1,4 +1,4 @@
-"""The client for asynchronous programs, and its jobs: sync.py with `await`."""
+"""The client for asynchronous programs, and its jobs: the same as sync.py, with `await`."""
 
 import asyncio
 from collections.abc import AsyncIterator
@@ -30,9 +30,9 @@ class AsyncClient:
     Arguments are those of Client; `transport` is an asynchronous one.
 
     Raises:
-        Refused: By any call, where the service answers with a refusal.
-        UnexpectedAnswer: By any call, where an answer is not as the service gives it.
-        httpx.TransportError: By any call, where there is no answer.
+        Refused: Any call may raise it: the service answered with an error.
+        UnexpectedAnswer: Any call may raise it: the answer is not one of this service.
+        httpx.TransportError: Any call may raise it: there was no answer.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class AsyncClient:
         self._calls = Calls(timeout=timeout, patience=patience)
 
     async def front(self, **request: Unpack[FrontRequest]) -> Front:
-        """Plan a front and wait for it: until its time limit, or until nothing more is found."""
+        """Plan a front and wait for it, until its time limit or until nothing more is found."""
         return await self.plan(front_plan(request))
 
     async def coverage(self, png: bytes | None = None, **request: Unpack[CoverageRequest]) -> Front:
@@ -64,7 +64,7 @@ class AsyncClient:
         return await self.plan(coverage_plan(request, png))
 
     async def replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> Front:
-        """Plan the rest of a front's way, from what has changed, and wait for it.
+        """Plan the rest of a tour that is being driven, given what has changed, and wait for it.
 
         Args:
             front: The front, or its id.
@@ -75,7 +75,7 @@ class AsyncClient:
     async def submit_replan(
         self, front: Front | str, **request: Unpack[ReplanRequest]
     ) -> "AsyncJob[Front]":
-        """Submit a job that plans the rest of a front's way; arguments as of `replan`."""
+        """Submit a job that plans the rest of a tour; arguments as of `replan`."""
         return await self.post(replan_plan(front, request))
 
     async def fleet(self, **request: Unpack[FleetRequest]) -> FleetFront:
@@ -150,9 +150,9 @@ class AsyncClient:
 
         Args:
             front: The front's id.
-            geometry: Whether its lines are straight, or follow the streets where the service has a
-                routing engine.
-            plan: Of a fleet's front, the one plan to draw, by its place from 0; None draws all.
+            geometry: Whether its lines are straight, or follow the streets, which needs a routing
+                engine in the service.
+            plan: For a fleet, the index of the one plan to draw, from 0; None draws all.
         """
         return await self._connection.run(self._calls.geojson(front, geometry, plan))
 
@@ -256,7 +256,7 @@ class _Connection:
 
 
 async def _chunks(response: httpx.Response) -> AsyncIterator[bytes]:
-    """Yield the body as it comes, or the content of one that was consumed already."""
+    """Yield the body as it comes, or the content of a body that was already read."""
     if response.is_stream_consumed:
         yield response.content
     else:

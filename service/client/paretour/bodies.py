@@ -7,19 +7,19 @@ from collections.abc import Iterator
 import httpx
 from paretour.expect import UnexpectedAnswer, unexpected
 
-MOST_BYTES = 2**27  # of an answer, decompressed: as many as the service has for all its answers
+MOST_BYTES = 2**27  # of an answer, decompressed: what the service has for all its answers together
 ACCEPTED = {"Accept-Encoding": "gzip"}
 _PIECE = 2**16  # bytes that are decompressed at a time
-_LEAST_PACE = 1000  # bytes a second, beyond the timeout; slower answers are broken off
+_LEAST_PACE = 1000  # bytes per second after the timeout; slower answers are aborted
 _GZIP = 16 + zlib.MAX_WBITS
 
 
 class Decoder:
-    """Decompress the chunks of a response, in pieces of bounded length."""
+    """Decompresses the chunks of a response, in pieces of bounded length."""
 
     def __init__(self, response: httpx.Response) -> None:
         self._gzip = None
-        # One that was consumed is a test's: httpx has decoded its content when it was made.
+        # A response that was already read comes from a test, and httpx has decoded its content.
         encoding = "" if response.is_stream_consumed else response.headers.get("Content-Encoding")
         if (encoding or "identity").lower() == "gzip":
             self._gzip = zlib.decompressobj(_GZIP)
@@ -27,7 +27,7 @@ class Decoder:
             raise unexpected("Content-Encoding", "gzip or identity", encoding)
 
     def decoded(self, chunk: bytes) -> Iterator[bytes]:
-        """Yield what a chunk holds."""
+        """Yield the decompressed content of a chunk."""
         if self._gzip is None:
             yield chunk
             return
@@ -40,7 +40,7 @@ class Decoder:
 
     @property
     def ended(self) -> bool:
-        """Whether what came so far is whole."""
+        """Whether the body is complete."""
         return self._gzip is None or self._gzip.eof
 
 
@@ -50,7 +50,7 @@ class Body:
     Args:
         response: The response, whose body has not been read.
         most_bytes: The most bytes that it may have, decompressed.
-        seconds: How long it may take to arrive, beyond what its length explains.
+        seconds: The time that it may take to arrive, beyond that for its length.
     """
 
     def __init__(self, response: httpx.Response, most_bytes: int, seconds: float) -> None:
@@ -64,7 +64,7 @@ class Body:
         """Add a chunk as it came.
 
         Raises:
-            UnexpectedAnswer: The body is too long, or not of its encoding.
+            UnexpectedAnswer: The body is too long, or its encoding is wrong.
             httpx.ReadTimeout: It takes too long.
         """
         for piece in self._decoder.decoded(chunk):
@@ -76,7 +76,7 @@ class Body:
             raise httpx.ReadTimeout("the answer takes too long to arrive")
 
     def response(self) -> httpx.Response:
-        """Return the response with its content, once all chunks were fed."""
+        """Return the response with its content, after all chunks."""
         if not self._decoder.ended:
             raise UnexpectedAnswer("answer must be compressed by gzip, got a part of it")
         headers = [

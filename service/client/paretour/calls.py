@@ -1,4 +1,4 @@
-"""The calls of the service's HTTP interface, without the sending of requests.
+"""The calls of the service's HTTP interface. The clients send their requests.
 
 A call is a generator: it yields a request, is sent the response, and returns the call's result.
 Both clients run the same calls, one waiting for responses and one awaiting them.
@@ -29,7 +29,7 @@ Geometry = Literal["straight", "roads"]
 class HttpRequest:
     """A request to send after `delay` seconds, and to wait `timeout` seconds for its response.
 
-    `content` holds what httpx takes beside that: parameters, headers and body.
+    `content` holds the parameters, headers and body for httpx.
     """
 
     method: str
@@ -53,8 +53,8 @@ class Calls:
 
     Args:
         timeout: Seconds to wait for a response, beyond those that the search may take.
-        patience: Seconds, in all, to wait and retry a call where the service asks for it (429,
-            503) before Refused is raised.
+        patience: Seconds, in all, to wait and retry a call when the service asks for it (429, 503)
+            before Refused is raised.
     """
 
     timeout: float
@@ -84,11 +84,11 @@ class Calls:
         return _answer(response).read("id", text)
 
     def stored(self, front_id: str, parse: Parse[AnyFront]) -> Call[AnyFront]:
-        """Return a front as it is now, parsed so."""
+        """Return a front as it is now, parsed by `parse`."""
         return parse(_answer((yield from self._get(front_path(front_id)))).document)
 
     def result(self, front_id: str, parse: Parse[AnyFront]) -> Call[AnyFront]:
-        """Return the front of a job that has ended, parsed so.
+        """Return the front of a job that has ended, parsed by `parse`.
 
         Raises:
             Refused: The job failed.
@@ -99,9 +99,9 @@ class Calls:
         return parse(answer.document)
 
     def cancel(self, front_id: str, parse: Parse[AnyFront]) -> Call[AnyFront]:
-        """Cancel a job; return its front, as the job ended, parsed so."""
+        """Cancel a job; return its front at the end, parsed by `parse`."""
         front = yield from self.stored(front_id, parse)
-        if front.status in FINAL_STATUSES:  # to delete it would forget it
+        if front.status in FINAL_STATUSES:  # deleting a finished front would remove it
             return front
         response = yield from self._send(self._delete(front_id))
         if response.status_code == httpx.codes.NO_CONTENT:  # it ended meanwhile
@@ -131,11 +131,11 @@ class Calls:
         return _answer((yield from self._get("/actors"))).read("actors", each(parse_actor))
 
     def events(self, front_id: str) -> JobEvents:
-        """Return the events of a job, none of them read yet."""
+        """Return the events of a job, before the first one is read."""
         return JobEvents(front_id, self.timeout, self.patience)
 
     def _send(self, request: HttpRequest) -> Call[httpx.Response]:
-        """Return the response to a request, sent again while the service asks for it.
+        """Send a request, again while the service asks for that, and return the response.
 
         Raises:
             Refused: The last response is an error.
@@ -172,7 +172,7 @@ class Calls:
 
 
 def client_headers(api_key: str | None) -> dict[str, str]:
-    """Return the headers of every request: the encoding that is read, and the API key if any."""
+    """Return the headers of every request: the accepted encoding, and the API key if any."""
     return ACCEPTED if api_key is None else {**ACCEPTED, "Authorization": f"Bearer {api_key}"}
 
 
@@ -180,7 +180,7 @@ def _answer(response: httpx.Response) -> Members:
     """Return the members of the JSON object that a response holds.
 
     Raises:
-        UnexpectedAnswer: It holds none.
+        UnexpectedAnswer: It does not hold a JSON object.
     """
     content_type = response.headers.get("content-type", "").partition(";")[0].strip().lower()
     if content_type and not content_type.endswith("json"):

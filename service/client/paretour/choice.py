@@ -10,11 +10,12 @@ _BUDGETS = ("first_at_most", "second_at_most")
 
 
 class Choice(TypedDict, total=False):
-    """The ways to choose a tour besides its angle; None and False count as not given.
+    """Ways to choose a tour other than by angle; None and False count as not given.
 
     `balance` is 0 at the least first length of the front and 1 at the least second.
-    `first_at_most` and `second_at_most` are budgets of one length, of which the least other length
-    is wanted. `knee` is the least sum of both lengths, each in the front's own box.
+    `first_at_most` and `second_at_most` are budgets of one length: the tour with the least other
+    length within the budget is chosen. `knee` is the tour with the least sum of both lengths, each
+    scaled to 0 to 1 over the front.
     """
 
     balance: float | None
@@ -24,16 +25,17 @@ class Choice(TypedDict, total=False):
 
 
 def choose(lengths: Array, angles: Array, angle: float | None, choice: Choice) -> int:
-    """Return the index of the tour chosen; of equally good ones the first.
+    """Return the index of the chosen tour, the first of equally good ones.
 
     Args:
         lengths: The lengths of a front's tours, shape (m, 2).
         angles: Their directions in degrees, shape (m,).
-        angle: The angle wanted, where the choice is by angle.
-        choice: The choice otherwise.
+        angle: The angle, if the choice is by angle.
+        choice: Any other choice.
 
     Raises:
-        ValueError: Not exactly one way is given, no tour is within the budget, or there is none.
+        ValueError: Not exactly one way is given, no tour is within the budget, or the front is
+            empty.
     """
     [(name, wanted)] = the_way(angle, choice).items()
     if not len(lengths):
@@ -57,7 +59,7 @@ def the_way(angle: float | None, choice: Choice) -> dict[str, Any]:
     """Return the one way that is given.
 
     Raises:
-        ValueError: There is not exactly one.
+        ValueError: Not exactly one is given.
     """
     ways: dict[str, Any] = {"angle": angle, **choice}
     given = {

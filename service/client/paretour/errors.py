@@ -10,23 +10,23 @@ import httpx
 from paretour.expect import UnexpectedAnswer, count, each, members, number, parse_json, text
 
 RETRY_STATUSES = (429, 503)
-_LEAST_SECONDS = 0.1  # between two tries, even where Retry-After is 0
+_LEAST_SECONDS = 0.1  # between two tries, even if Retry-After is 0
 _MOST_SECONDS = 86400.0
 _DEFAULT_SECONDS = 1.0
 
 
 class Refused(Exception):
-    """A problem document (RFC 9457) that the service answered with.
+    """The service answered with an error: a problem document (RFC 9457).
 
     Attributes:
         status: The HTTP status.
-        code: What went wrong, in a word that stays the same over releases. A response that is no
-            problem document, from a proxy in between, has the code `unknown`.
-        detail: What went wrong, in a sentence.
-        request_id: What the service's log calls the request.
-        errors: The fields at fault, each with its `detail` and a JSON `pointer` or `parameter`.
-        limit: The most that is allowed, where a limit was exceeded.
-        actual: What came instead.
+        code: The kind of error, in a word that stays the same in all releases. A response of a
+            proxy that is not a problem document has the code `unknown`.
+        detail: The error in a sentence.
+        request_id: The id of the request in the service's log.
+        errors: The wrong fields, each with its `detail` and a JSON `pointer` or `parameter`.
+        limit: The most that is allowed, if a limit was exceeded.
+        actual: The number that was over the limit.
     """
 
     def __init__(self, document: Mapping[str, Any]) -> None:
@@ -46,7 +46,7 @@ class Refused(Exception):
 
 
 def refused(response: httpx.Response) -> Refused:
-    """Return the exception for a response that is no success, and has been read."""
+    """Return the exception for a response that is an error and has been read."""
     content_type = response.headers.get("content-type", "").partition(";")[0]
     if content_type == "application/problem+json":
         with suppress(UnexpectedAnswer):

@@ -11,14 +11,14 @@ from paretour.server_sent_events import EventParser, ServerSentEvent
 from paretour.values import FINAL_STATUSES, Progress
 
 HEARTBEAT_SECONDS = 15.0  # between two signs of life from the service
-_RECONNECT_SECONDS = 1.0  # before a connection that broke is made anew
+_RECONNECT_SECONDS = 1.0  # before connecting again after a connection broke
 
 
 class JobEvents:
-    """The events of one job: what arrived, whether it has ended, and when to connect again.
+    """The events of one job: which arrived, whether the job has ended, and when to connect again.
 
-    It opens no connection itself. Connections may break, or be refused for now, for `patience`
-    seconds between two events that differ.
+    It opens no connection itself. Connections may break, or be refused temporarily, for `patience`
+    seconds between two different events.
     """
 
     def __init__(self, front_id: str, timeout: float, patience: float) -> None:
@@ -46,10 +46,10 @@ class JobEvents:
         }
 
     def begin(self, response: httpx.Response) -> None:
-        """Begin to read a response that is a success.
+        """Begin to read a successful response.
 
         Raises:
-            httpx.RemoteProtocolError: It is no stream of events.
+            httpx.RemoteProtocolError: It is not a stream of events.
             UnexpectedAnswer: It has an encoding that was not accepted.
         """
         self._parser = EventParser()
@@ -71,14 +71,14 @@ class JobEvents:
         return [progress for event in events if (progress := self._read(event)) is not None]
 
     def _read(self, event: ServerSentEvent) -> Progress | None:
-        if event != self._last:  # a stream may begin with the same event for ever, and end
+        if event != self._last:  # a stream may always repeat the last event and end
             self._waited, self._last = 0.0, event
         if event.type == "status":
             self.ended = parse_json(event.data, "status").read("status", text) in FINAL_STATUSES
         return Progress.of(parse_json(event.data, "progress")) if event.type == "progress" else None
 
     def finish(self) -> None:
-        """Check that a stream which is over did not end before the job.
+        """Check that a stream did not end before the job.
 
         Raises:
             httpx.RemoteProtocolError: It did.

@@ -1,7 +1,7 @@
 """Read JSON answers member by member, each as the type that the client expects.
 
-Whatever is wrong raises UnexpectedAnswer, whose sentence names the member, what it must be, and
-what came. Members that are not asked for are left alone, so a later service may have more of them.
+A wrong member raises UnexpectedAnswer, with a sentence that names the member, what it must be, and
+what came. Other members are ignored, so a later service may have more of them.
 """
 
 import json
@@ -17,16 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 T = TypeVar("T")
-Read = Callable[[Any, str], T]  # from a value, and what to call it, to the value as its type
+Read = Callable[[Any, str], T]  # from a value and its name in sentences to the value as its type
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
 _GREATEST = sys.float_info.max
-_COUNTS = 2**53  # counts and indexes are less, as JSON numbers of all languages are
+_COUNTS = 2**53  # counts and indexes are less: JSON numbers are exact up to here in all languages
 _SHOWN = Repr()
 _SHOWN.maxlevel, _SHOWN.maxlist, _SHOWN.maxdict, _SHOWN.maxstring = 2, 3, 3, 60
 
 
 class UnexpectedAnswer(Exception):
-    """An answer that is not what the service promises: of another program, or a broken one."""
+    """An answer that this service would not give: it is broken, or from another program."""
 
 
 def unexpected(where: str, demand: str, value: Any) -> UnexpectedAnswer:
@@ -40,14 +40,14 @@ class Members:
 
     Attributes:
         document: The object.
-        where: What to call it in a sentence, as `front/0`.
+        where: Its name in sentences, as `front/0`.
     """
 
     document: Mapping[str, Any]
     where: str
 
     def read(self, name: str, read: Read[T]) -> T:
-        """Return a member that must be there."""
+        """Return a required member."""
         if name not in self.document:
             raise UnexpectedAnswer(f"{self.where} must have a member {name}, got none")
         return read(self.document[name], f"{self.where}/{name}")
@@ -59,7 +59,7 @@ class Members:
 
 
 def parse_json(content: str | bytes, where: str) -> Members:
-    """Return the members of the JSON object that a text holds, or bytes in UTF-8."""
+    """Return the members of the JSON object in a text, or in bytes of UTF-8."""
     try:
         text = content if isinstance(content, str) else content.decode("utf-8-sig")
         document = json.loads(
@@ -99,7 +99,7 @@ def text(value: Any, where: str) -> str:
     """Read text."""
     try:
         value.encode()
-    except (AttributeError, UnicodeEncodeError):  # as of "\ud800" alone, which is no character
+    except (AttributeError, UnicodeEncodeError):  # "\ud800" alone is not a character
         raise unexpected(where, "text", value) from None
     return value
 
@@ -126,12 +126,12 @@ def count(value: Any, where: str) -> int:
 
 
 def anything(value: Any, _where: str) -> Any:
-    """Read what is not looked at."""
+    """Read a value without checking it."""
     return value
 
 
 def each(read: Read[T], length: int | None = None) -> Read[tuple[T, ...]]:
-    """Return a reader of lists, of one length if that is given, whose items are read so."""
+    """Return a reader of lists whose items `read` reads; all of this length, if one is given."""
 
     def read_list(value: Any, where: str) -> tuple[T, ...]:
         if not isinstance(value, list) or length not in (None, len(value)):
@@ -142,7 +142,7 @@ def each(read: Read[T], length: int | None = None) -> Read[tuple[T, ...]]:
 
 
 def floats(*shape: int | None) -> Read[NDArray[np.float64]]:
-    """Return a reader of finite numbers in one dimension or two; None is any length."""
+    """Return a reader of arrays of finite numbers, of one or two dimensions; None is any length."""
 
     def read(value: Any, where: str) -> NDArray[np.float64]:
         array = _array(value, where, (int, float), np.float64, shape)
@@ -154,7 +154,7 @@ def floats(*shape: int | None) -> Read[NDArray[np.float64]]:
 
 
 def indexes(*shape: int | None, below: int = _COUNTS) -> Read[NDArray[np.int64]]:
-    """Return a reader of whole numbers from 0 in one dimension or two; None is any length."""
+    """Return a reader of arrays of whole numbers from 0; None is any length."""
 
     def read(value: Any, where: str) -> NDArray[np.int64]:
         array = _array(value, where, (int,), np.int64, shape)
@@ -169,10 +169,10 @@ def indexes(*shape: int | None, below: int = _COUNTS) -> Read[NDArray[np.int64]]
 def _array(
     value: Any, where: str, types: tuple[type, ...], dtype: type, shape: Sequence[int | None]
 ) -> Any:
-    """Return numbers of these types as an array of this shape, which cannot be changed.
+    """Return numbers of these types as a read-only array of this shape.
 
-    Nested lists are flattened before NumPy sees them, and types are checked: it would take text
-    for numbers.
+    Lists are flattened and their types checked before NumPy sees them: it would accept text as
+    numbers.
     """
     length, *width = shape
     rows = value if width else [value]
@@ -204,6 +204,6 @@ def _items(length: int | None) -> str:
 
 
 def read_only(array: AnyArray) -> AnyArray:
-    """Return an array that cannot be changed any more."""
+    """Make an array read-only, and return it."""
     array.setflags(write=False)
     return array

@@ -14,10 +14,10 @@ class FleetRoute:
 
     Attributes:
         vehicle: The id of its type.
-        stops: The ids of its stops in order, with its start and end where these are stops.
+        stops: The ids of its stops in order, with its start and end if these are stops.
         lengths: Its lengths, shape (2,).
-        arrivals: When it reaches each of these stops, at the first when it leaves, shape
-            (len(stops),); None where no objective is time.
+        arrivals: When it reaches each of these stops; at the first, when it leaves. Shape
+            (len(stops),). None if no objective is time.
     """
 
     vehicle: str
@@ -33,7 +33,7 @@ class FleetPlan:
     Attributes:
         balance: 0 at the least first length of the front, 1 at the least second.
         lengths: Its lengths, shape (2,).
-        routes: Of the vehicles that leave.
+        routes: The routes of the vehicles used.
         unassigned: The ids of the stops that it leaves out.
     """
 
@@ -52,13 +52,13 @@ class FleetFront:
         status: The status of its job.
         plans: The m plans.
         lengths: Their lengths, shape (m, 2).
-        points: The number of nondominated plans found, of which these are returned.
+        points: The number of nondominated plans found; the front is a subset of these.
         hypervolume: The share of the box at the reference point that the plans dominate.
         reference_point: The reference point of the hypervolume, shape (2,); None while it is not
             known.
         objectives: Both objectives, as the request named them.
         terminated: Why the search ended; None while it runs.
-        document: The answer as it came, with every member.
+        document: The whole answer, with every member.
     """
 
     id: str

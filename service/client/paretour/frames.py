@@ -1,4 +1,4 @@
-"""Members of requests that are DataFrames, as arrays and stops. No library of them is imported."""
+"""Turn DataFrames in requests into arrays and stops, without importing pandas or polars."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -14,18 +14,18 @@ _IDS = ("id", "name")
 _LONGITUDES = ("lon", "lng", "longitude")
 _LATITUDES = ("lat", "latitude")
 _OF_FLEETS = ("demand", "service", "prize", "window")
-_MOST_SHOWN = 80  # characters of what was wrong
-_Cells = list[tuple[str, Any]]  # of a column: where each is, and its value
+_MOST_SHOWN = 80  # characters of a wrong value in a sentence
+_Cells = list[tuple[str, Any]]  # the cells of a column: the position and the value of each
 
 
 def without_frames(value: Any, name: str = "") -> Any:
-    """Return members of a request with arrays, or stops, in place of DataFrames.
+    """Return the members of a request with arrays or stops in place of DataFrames.
 
-    A DataFrame of `stops` has columns id, lon and lat, and maybe those of a fleet's stops; every
-    other one is a table of numbers. Costs may be infinite, and empty on the diagonal.
+    A DataFrame of `stops` has columns id, lon and lat, and for fleets those of their stops. Any
+    other DataFrame is a table of numbers. Costs may be infinite, and empty on the diagonal.
 
     Raises:
-        ValueError: A column is missing, or a cell is not what its column asks for; named.
+        ValueError: A column is missing, or a cell does not fit its column; the message names it.
     """
     if isinstance(value, Mapping):
         return {key: without_frames(each, key) for key, each in value.items()}
@@ -45,7 +45,7 @@ def _numbers(frame: Any, name: str) -> NDArray[Any]:
     numbers = cells if cells.dtype.kind in "iuf" else _as_floats(cells)
     wrong = ~(np.isfinite(numbers) | (costs & np.isposinf(numbers)))
     if costs and wrong.any() and len(rows) == len(columns):
-        np.fill_diagonal(wrong, val=False)  # which is disregarded
+        np.fill_diagonal(wrong, val=False)  # the diagonal does not count
         numbers = np.where(np.eye(len(rows), dtype=bool), 0, numbers)
     for at in map(tuple, np.argwhere(wrong)):
         column = f", column {columns[at[1]]!r}" if columns else ""
@@ -54,7 +54,7 @@ def _numbers(frame: Any, name: str) -> NDArray[Any]:
 
 
 def _as_floats(cells: NDArray[Any]) -> NDArray[np.float64]:
-    """Return cells as numbers, those that are none as nan."""
+    """Return cells as numbers; a cell that is not a number becomes nan."""
     floats = [float(each) if isinstance(each, Real | Decimal) else np.nan for each in cells.flat]
     return np.array(floats, dtype=np.float64).reshape(cells.shape)
 
@@ -77,7 +77,7 @@ def _stops(frame: Any) -> list[dict[str, Any]]:
 
 
 def _column(frame: Any, names: Sequence[str], *, needed: bool = True) -> _Cells:
-    """Return the cells of the column that has the first of some names; none where it may lack."""
+    """Return the cells of the first column with one of these names; none if it is not needed."""
     columns = list(getattr(frame, "columns", ()))
     plain = [str(column).lower() for column in columns]
     name = next((each for each in names if each in plain), None)
@@ -93,12 +93,12 @@ def _column(frame: Any, names: Sequence[str], *, needed: bool = True) -> _Cells:
 
 
 def _labels(frame: Any) -> list[Any]:
-    """Return the label of each row: that of the index, or a number where a library has none."""
+    """Return the label of each row: that of its index, or a number if there is no index."""
     return list(getattr(frame, "index", range(len(frame))))
 
 
 def _ids(cells: _Cells) -> list[str]:
-    """Return ids as texts: 1 for 1.0 where all are whole, as a column with a gap becomes floats."""
+    """Return ids as texts. If all are whole, 1.0 becomes 1: a gap makes a column one of floats."""
     for where, cell in cells:
         if _is_empty(cell):
             raise _wrong(where, "an id", cell)
@@ -108,7 +108,7 @@ def _ids(cells: _Cells) -> list[str]:
 
 
 def _of_fleet(name: str, cell: Any, where: str) -> float | list[float]:
-    """Return what a vehicle's visit needs: a number, or a list of them."""
+    """Return a member of a fleet's stop: a number, or a list of numbers."""
     listed = isinstance(cell, list | tuple | np.ndarray)
     if name in ("service", "prize"):
         return _number(cell, where)
@@ -124,7 +124,7 @@ def _number(cell: Any, where: str) -> float:
 
 
 def _is_empty(cell: Any) -> bool:
-    """Return whether a cell is empty: None, or what does not equal itself, as NaN, NaT and NA."""
+    """Return whether a cell is empty: None, or unequal to itself, as NaN, NaT and NA are."""
     if cell is None:
         return True
     same = cell == cell  # NA of pandas for NA

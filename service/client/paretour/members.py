@@ -38,13 +38,13 @@ class PlanRequest(PlanOptions, total=False):
 
 
 class StopRequest(TypedDict, total=False):
-    """A stop: an id of the caller's own, and maybe longitude and latitude in degrees."""
+    """A stop: an id that the caller chooses, and maybe longitude and latitude in degrees."""
 
     id: Required[str]
     location: ArrayLike | None
 
 
-# Written as a call, for `from` is a keyword. It is great_circle, road_time or road_distance.
+# Written as a call because `from` is a keyword. It is great_circle, road_time or road_distance.
 ObjectiveRequest = TypedDict(
     "ObjectiveRequest",
     {
@@ -61,8 +61,8 @@ ObjectiveRequest = TypedDict(
 class FrontRequest(PlanRequest, total=False):
     """The members of a request to POST /front: coordinates, matrices, or stops with objectives.
 
-    With stops, `start` and `initial_tours` may name them by id. `augment` is without effect.
-    Where there is no way from one city to another, its cost is None or infinite.
+    With stops, `start` and `initial_tours` may name them by id. `augment` has no effect. Where
+    there is no way from one city to another, its cost is None or infinite.
     """
 
     coordinates: ArrayLike
@@ -75,7 +75,7 @@ class FrontRequest(PlanRequest, total=False):
 
 
 class FleetStopRequest(StopRequest, total=False):
-    """A stop of a fleet, and what it asks of the vehicle that visits it."""
+    """A stop of a fleet, with its demands on the vehicle that visits it."""
 
     demand: Sequence[int]
     service: float
@@ -91,7 +91,7 @@ class ShipmentRequest(TypedDict):
 
 
 class VehicleRequest(TypedDict, total=False):
-    """So many vehicles that are alike."""
+    """A number of equal vehicles."""
 
     id: Required[str]
     count: int
@@ -104,7 +104,7 @@ class VehicleRequest(TypedDict, total=False):
 
 
 class FleetObjectiveRequest(ObjectiveRequest, total=False):
-    """An objective, and whether a plan's length is the sum over routes or the longest."""
+    """An objective, and whether it is the sum over all routes or the longest route."""
 
     over: Literal["sum", "max"]
 
@@ -151,7 +151,7 @@ class CoverageRequest(PlanRequest, total=False):
 
 
 class RobotRequest(TypedDict, total=False):
-    """A robot: where it starts, and with `closed` false maybe where it ends."""
+    """A robot: where it starts, and with `closed` false also where it ends."""
 
     id: Required[str]
     start: int

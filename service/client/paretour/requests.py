@@ -1,4 +1,4 @@
-"""Build the requests that have a front planned: JSON, and a file beside it where one is better."""
+"""Build the requests that plan a front: JSON, and a file beside it for large arrays."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -19,9 +19,9 @@ from paretour.members import (
 )
 from paretour.values import Front
 
-_DEFAULT_TIME_LIMIT = 1.0  # seconds, the service's own
+_DEFAULT_TIME_LIMIT = 1.0  # seconds, the default of the service
 _OBJECTIVES = 2
-_BOUND_SECONDS = 5.0  # that the service takes at most to prove a bound
+_BOUND_SECONDS = 5.0  # seconds: the most that the service takes to prove a bound
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Plan:
 
     @property
     def json(self) -> bytes:
-        """The members as JSON, without the file; of infinite costs null, as JSON has none."""
+        """The members as JSON, without the file. Infinite costs become null."""
         try:
             return json.dumps(self.request, default=_listed, allow_nan=False).encode()
         except ValueError:
@@ -67,8 +67,8 @@ class Plan:
 def front_plan(request: FrontRequest) -> Plan:
     """Return the request to POST /front, with matrices that are arrays as a NumPy file.
 
-    They are `matrices`, two DataFrames among them, or the matrix of each objective where both are
-    arrays, of numbers: None in an array of objects becomes null in JSON.
+    The file holds `matrices`, which may be two DataFrames, or the matrices of both objectives, if
+    these are arrays of numbers. Arrays of objects are sent as JSON, with null for None.
     """
     members: dict[str, Any] = without_frames(request)
     objectives: Sequence[Mapping[str, Any]] = members.get("objectives", ())
@@ -84,7 +84,7 @@ def front_plan(request: FrontRequest) -> Plan:
 
 
 def _fit_a_file(matrices: Any) -> bool:
-    """Return whether matrices are two arrays of one shape, as a file must have them."""
+    """Return whether matrices are two arrays of the same shape, which a file needs."""
     if not isinstance(matrices, list) or len(matrices) != _OBJECTIVES:
         return False
     if not all(map(_is_array, matrices)):
@@ -93,7 +93,7 @@ def _fit_a_file(matrices: Any) -> bool:
 
 
 def _is_array(matrices: Any) -> bool:
-    """Return whether matrices are an array that a file can have, which is not of objects."""
+    """Return whether matrices are an array that a file can hold: not an array of objects."""
     return isinstance(matrices, np.ndarray) and not matrices.dtype.hasobject
 
 
@@ -104,18 +104,18 @@ def _matrices_file(matrices: NDArray[Any]) -> File:
 
 
 def coverage_plan(request: CoverageRequest | RobotsRequest, png: bytes | None) -> Plan:
-    """Return the request to POST /coverage. The map is in it, or a PNG or PGM file."""
+    """Return the request to POST /coverage. The map is a member, or a PNG or PGM file."""
     return Plan("/coverage", without_frames(request), None if png is None else File("map", png))
 
 
 def replan_plan(front: Front | str, request: ReplanRequest) -> Plan:
-    """Return the request to replan a front, or the one with this id."""
+    """Return the request to replan a front, given as such or by its id."""
     path = front_path(front.id if isinstance(front, Front) else front)
     return Plan(f"{path}/replan", without_frames(request))
 
 
 def front_path(front_id: str) -> str:
-    """Return the path of a front, whatever its id holds."""
+    """Return the path of a front; any characters in its id are escaped."""
     return f"/front/{quote(front_id, safe='')}"
 
 
@@ -125,12 +125,12 @@ def fleet_plan(request: FleetRequest) -> Plan:
 
 
 def _listed(array: Any) -> Any:
-    """Return an array as nested lists, and a scalar of NumPy as a number."""
+    """Return an array of NumPy as nested lists, and a scalar as a number."""
     return array.tolist()
 
 
 def _with_null(value: Any, is_cost: bool = False) -> Any:
-    """Return members of a request with None in place of costs that are infinite."""
+    """Return members of a request with None in place of infinite costs."""
     if is_cost and isinstance(value, float):
         return None if value == np.inf else value
     if isinstance(value, Mapping):

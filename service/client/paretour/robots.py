@@ -29,7 +29,7 @@ class RobotRoute:
         robot: Its id.
         tour: Its places in order, from its start to its end, shape (k,).
         lengths: Its lengths, shape (2,).
-        path: Its way over the map, where the request asked for paths.
+        path: Its path over the map, if the request asked for paths.
     """
 
     robot: str
@@ -45,7 +45,7 @@ class RobotPlan:
     Attributes:
         balance: 0 at the least first length of the front, 1 at the least second.
         lengths: Its lengths, shape (2,).
-        routes: Of the robots that leave.
+        routes: The routes of the robots used.
     """
 
     balance: float
@@ -63,11 +63,11 @@ class RobotFront:
         plans: The m plans.
         lengths: Their lengths, shape (m, 2).
         places: The row and column of each place, shape (n, 2).
-        points: The number of nondominated plans found, of which these are returned.
+        points: The number of nondominated plans found; the front is a subset of these.
         hypervolume: The share of the box at the reference point that the plans dominate.
         objectives: Both objectives, as the service names them.
         terminated: Why the search ended; None while it runs.
-        document: The answer as it came, with every member.
+        document: The whole answer, with every member.
         uncovered: The free cells of the map that no path leads to.
     """
 

@@ -1,4 +1,4 @@
-"""Read the maps of ROS, a map.yaml and the picture that it names, as a request for coverage."""
+"""Read maps of ROS (a map.yaml and the picture that it names) as requests for coverage."""
 
 import math
 import os
@@ -9,21 +9,21 @@ from typing import Any, cast
 
 from paretour.members import CoverageRequest
 
-_MOST_BYTES = 2**16  # of a map.yaml, which has some hundred
+_MOST_BYTES = 2**16  # in a map.yaml, which usually has about a hundred
 _MOST_PICTURE = 2**30  # bytes; the service allows far fewer
-_MOST_BRACKETS = 100  # of a map.yaml, which has two
-_SHOWN = 80  # characters of what was wrong
+_MOST_BRACKETS = 100  # in a map.yaml, which usually has two
+_SHOWN = 80  # characters of a wrong value in a sentence
 _REQUIRED = ("image", "resolution", "origin", "occupied_thresh", "free_thresh", "negate")
 
 
 def read_ros_map(path: str | Path) -> tuple[CoverageRequest, bytes]:
-    """Return what a map.yaml says of its map, as members of a request, and the picture it names.
+    """Return the members of a request that a map.yaml defines, and the content of its picture.
 
-    The path of the picture counts from the folder of the map.yaml, as in map_server. It is not
-    decoded here. Needs PyYAML: `pip install 'paretour-client[ros]'`.
+    The path of the picture is relative to the folder of the map.yaml, as in map_server. The picture
+    is not decoded. Needs PyYAML: `pip install 'paretour-client[ros]'`.
 
     Args:
-        path: Of the map.yaml.
+        path: The path of the map.yaml.
 
     Raises:
         ValueError: The file is not a map.yaml; the message says what is wrong.
@@ -36,7 +36,7 @@ def read_ros_map(path: str | Path) -> tuple[CoverageRequest, bytes]:
 
 
 def parse_ros_map(content: bytes) -> tuple[CoverageRequest, str]:
-    """Return what a map.yaml says of its map, as members of a request, and its picture's path.
+    """Return the members of a request that a map.yaml defines, and the path of its picture.
 
     Raises:
         ValueError: The bytes are not a map.yaml; the message says what is wrong.
@@ -59,10 +59,10 @@ def parse_ros_map(content: bytes) -> tuple[CoverageRequest, str]:
 
 
 def read_bounded(path: Path, most: int) -> bytes:
-    """Return the bytes of a regular file; never wait for one that is none, as a pipe is.
+    """Return the bytes of a regular file; never wait for another kind of file, such as a pipe.
 
     Raises:
-        ValueError: It is no regular file, has more bytes than that, or no file can have its name.
+        ValueError: It is not a regular file, has more bytes, or has an impossible name.
         OSError: It cannot be read.
     """
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
@@ -76,10 +76,10 @@ def read_bounded(path: Path, most: int) -> bytes:
 
 
 def _parse(content: bytes) -> Mapping[str, Any]:
-    """Return the values of a map.yaml, each a text or a list of texts."""
+    """Return the values of a map.yaml, each as a text or a list of texts."""
     import yaml
 
-    # Whoever parses YAML goes down a level for each bracket, and PyYAML takes a square of them.
+    # A parser of YAML goes down a level for each bracket, and PyYAML takes quadratic time for that.
     if content.count(b"[") + content.count(b"{") > _MOST_BRACKETS:
         raise ValueError(f"a map.yaml must have at most {_MOST_BRACKETS} brackets, got more")
     try:
@@ -88,14 +88,14 @@ def _parse(content: bytes) -> Mapping[str, Any]:
         raise ValueError(f"a map.yaml must be YAML: {' '.join(str(error).split())}") from None
     if not isinstance(root, yaml.MappingNode):
         raise ValueError("a map.yaml must be keys with values")
-    # A key that is a list may name others over and over: to write it out would never end.
+    # A key that is a list may repeat other lists: writing it out might never end.
     return {
         key.value: _value(value) for key, value in root.value if isinstance(key, yaml.ScalarNode)
     }
 
 
 def _value(node: Any) -> str | list[str] | None:
-    """Return what a node of YAML says, as text: whoever needs a number reads one from it."""
+    """Return the value of a node of YAML as text; numbers are read from it later."""
     if isinstance(node.value, str):
         return node.value
     if all(isinstance(each.value, str) for each in node.value if hasattr(each, "value")):
@@ -122,7 +122,7 @@ def _origin(keys: Mapping[str, Any]) -> list[float]:
 
 
 def _flag(keys: Mapping[str, Any]) -> bool:
-    """Return negate, which is 0 or 1, or a truth value of YAML."""
+    """Return negate, which is 0 or 1, or a boolean of YAML."""
     flags = {"0": False, "false": False, "no": False, "1": True, "true": True, "yes": True}
     value = keys["negate"]
     if not isinstance(value, str) or value.lower() not in flags:
@@ -135,7 +135,7 @@ def _number(keys: Mapping[str, Any], name: str) -> float:
 
 
 def _as_number(value: Any, name: str) -> float:
-    """Return a finite number, as YAML 1.2 writes it: 5e-2 is one."""
+    """Return a finite number, in the form of YAML 1.2, in which 5e-2 is a number."""
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError):

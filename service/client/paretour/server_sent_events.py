@@ -15,23 +15,23 @@ _LINE_END = re.compile("\r\n|\r|\n")
 
 @dataclass(frozen=True)
 class ServerSentEvent:
-    """An event: its type, and its data, lines with a line feed between them."""
+    """An event: its type and its data. Lines of data are separated by line feeds."""
 
     type: str
     data: str
 
 
 class EventParser:
-    """A parser of one stream, which is fed chunks of bytes that may end anywhere."""
+    """A parser of one stream. It takes chunks of bytes that may end anywhere."""
 
     def __init__(self) -> None:
         # "utf-8-sig" drops a byte order mark at the beginning, as the standard demands.
         self._decoder = codecs.getincrementaldecoder("utf-8-sig")(errors="replace")
-        self._after_return = False  # whether a line feed would belong to the line end before it
+        self._after_return = False  # whether a line feed now belongs to the last line end
         self._line = ""
         self._type = ""
         self._data: list[str] = []
-        self._length = 0  # of the data
+        self._length = 0  # characters of the data so far
 
     def feed(self, chunk: bytes) -> list[ServerSentEvent]:
         """Return the events that end in a chunk.
@@ -52,10 +52,10 @@ class EventParser:
         return events
 
     def _read(self, line: str) -> ServerSentEvent | None:
-        """Return the event that a line ends, an empty one after data."""
+        """Return the event that ends with this line, which is so for an empty line after data."""
         if not line:
             return self._dispatch()
-        field, _, value = line.partition(":")  # of a comment, the field is empty
+        field, _, value = line.partition(":")  # in a comment, the field is empty
         value = value.removeprefix(" ")
         if field == "event":
             self._type = value

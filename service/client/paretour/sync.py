@@ -29,17 +29,17 @@ class Client:
 
     Args:
         url: The address of the service.
-        api_key: The API key, for a service that demands one.
+        api_key: The API key, if the service requires one.
         timeout: Seconds to wait for a response, beyond those that the search may take.
-        patience: Seconds, in all, to wait and retry a call where the service asks for it (429,
-            503) before Refused is raised.
+        patience: Seconds, in all, to wait and retry a call when the service asks for it (429, 503)
+            before Refused is raised.
         most_bytes: The most bytes that an answer may have, decompressed.
         transport: A transport of httpx in place of the network.
 
     Raises:
-        Refused: By any call, where the service answers with a refusal.
-        UnexpectedAnswer: By any call, where an answer is not as the service gives it.
-        httpx.TransportError: By any call, where there is no answer.
+        Refused: Any call may raise it: the service answered with an error.
+        UnexpectedAnswer: Any call may raise it: the answer is not one of this service.
+        httpx.TransportError: Any call may raise it: there was no answer.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class Client:
         self._calls = Calls(timeout=timeout, patience=patience)
 
     def front(self, **request: Unpack[FrontRequest]) -> Front:
-        """Plan a front and wait for it: until its time limit, or until nothing more is found."""
+        """Plan a front and wait for it, until its time limit or until nothing more is found."""
         return self.plan(front_plan(request))
 
     def coverage(self, png: bytes | None = None, **request: Unpack[CoverageRequest]) -> Front:
@@ -71,7 +71,7 @@ class Client:
         return self.plan(coverage_plan(request, png))
 
     def replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> Front:
-        """Plan the rest of a front's way, from what has changed, and wait for it.
+        """Plan the rest of a tour that is being driven, given what has changed, and wait for it.
 
         Args:
             front: The front, or its id.
@@ -80,7 +80,7 @@ class Client:
         return self.plan(replan_plan(front, request))
 
     def submit_replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> "Job[Front]":
-        """Submit a job that plans the rest of a front's way; arguments as of `replan`."""
+        """Submit a job that plans the rest of a tour; arguments as of `replan`."""
         return self.post(replan_plan(front, request))
 
     def fleet(self, **request: Unpack[FleetRequest]) -> FleetFront:
@@ -153,9 +153,9 @@ class Client:
 
         Args:
             front: The front's id.
-            geometry: Whether its lines are straight, or follow the streets where the service has a
-                routing engine.
-            plan: Of a fleet's front, the one plan to draw, by its place from 0; None draws all.
+            geometry: Whether its lines are straight, or follow the streets, which needs a routing
+                engine in the service.
+            plan: For a fleet, the index of the one plan to draw, from 0; None draws all.
         """
         return self._connection.run(self._calls.geojson(front, geometry, plan))
 
@@ -258,7 +258,7 @@ class _Connection:
 
 
 def _chunks(response: httpx.Response) -> Iterator[bytes]:
-    """Yield the body as it comes, or the content of one that was consumed already."""
+    """Yield the body as it comes, or the content of a body that was already read."""
     if response.is_stream_consumed:
         yield response.content
     else:

@@ -25,7 +25,7 @@ from paretour.expect import (
 T = TypeVar("T")
 Array = NDArray[np.float64]
 FINAL_STATUSES = ("done", "cancelled", "failed")
-PAIR = 2  # numbers of an item, one for each objective
+PAIR = 2  # numbers of a tour or plan, one for each objective
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +48,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class Objective:
-    """An objective as the request named it, and its unit or None."""
+    """The name of an objective as in the request, and its unit or None."""
 
     name: str
     unit: str | None
@@ -59,11 +59,11 @@ class Path:
     """The way of a tour over a map, and its length.
 
     Attributes:
-        cells: Rows and columns, shape (m, 2), from the first place back to it; of an
-            open route to the last place.
+        cells: Rows and columns, shape (m, 2), from the first place back to it; for an open route,
+            to the last place.
         metres: The length.
-        points: x and y of each cell's middle in the frame of the map, in metres, shape (m, 2);
-            None where its origin is not known.
+        points: x and y of the middle of each cell in the frame of the map, in metres, shape (m, 2);
+            None if the origin of the map is not known.
     """
 
     cells: NDArray[np.int64]
@@ -88,7 +88,7 @@ class UncoveredRegion:
 
 @dataclass(frozen=True, kw_only=True)
 class Uncovered:
-    """The free cells of a map that no path leads to, as a room that is closed off.
+    """The free cells of a map that no path leads to, such as a closed room.
 
     Attributes:
         cells: How many there are.
@@ -111,11 +111,11 @@ class Tour:
         balance: 0 at the least first length of the front, 1 at the least second.
         lengths: Its length under each objective, shape (2,).
         tour: Its cities, or over a map its places, in order, shape (n,).
-        arrivals: Both its lengths up to each city, and back at the first where it is closed, shape
-            (n + 1, 2); None where the request did not ask for them.
-        path: Its way over a map, where the request asked for paths.
-        stops: The ids of its stops in order, where the request had ids.
-        kept: The share of the driven tour's remaining legs that it keeps, where it was replanned.
+        arrivals: Both its lengths up to each city, and back at the first if it is closed, shape (n
+            + 1, 2); None if the request did not ask for them.
+        path: Its path over a map, if the request asked for paths.
+        stops: The ids of its stops in order, if the request had ids.
+        kept: The share of the driven tour's remaining legs that it keeps, if it was replanned.
     """
 
     front: str
@@ -140,25 +140,24 @@ class Front:
         lengths: The lengths of each tour, shape (m, 2).
         angles: The direction of the lengths of each tour, in degrees, shape (m,).
         balances: 0 at the least first length of the tours, 1 at the least second, shape (m,).
-        points: The number of nondominated tours found, of which these are returned.
+        points: The number of nondominated tours found; the front is a subset of these.
         hypervolume: The share of the box at the reference point that the points found dominate.
-        hypervolume_bound: The most that any front can have, where a bound was asked for.
+        hypervolume_bound: The most that any front can have, if a bound was asked for.
         reference_point: The reference point of the hypervolume, shape (2,); None while it is not
             known.
-        scale: The length that is 1 in scaled objectives, shape (2,); likewise.
+        scale: The length that is 1 in scaled objectives, shape (2,); None while it is not known.
         actor: The name of the network; None where it built no tours.
-        terminated: Why the search ended: `converged`, `time_limit` or `cancelled`, or what a later
-            service says; None while it runs. `converged` proves that nothing is better only up to
+        terminated: Why the search ended: `converged`, `time_limit` or `cancelled`, or a word of a
+            later service; None while it runs. `converged` proves that nothing is better only up to
             eleven cities.
         places: Over a map, the row and column of each city, shape (n, 2).
-        paths: Over a map, the way of each tour, where the request asked for paths.
-        document: The answer as it came, with every member.
-        stops: The ids of the stops of each tour in order, where the request had ids.
-        objectives: Both objectives, where the request named them.
-        kept: The share of the driven tour's remaining legs that each tour keeps, shape (m,), where
-            it was replanned.
-        arrivals: Both lengths of each tour up to each of its cities, where the request asked for
-            them.
+        paths: Over a map, the path of each tour, if the request asked for paths.
+        document: The whole answer, with every member.
+        stops: The ids of the stops of each tour in order, if the request had ids.
+        objectives: Both objectives, if the request named them.
+        kept: The share of the driven tour's remaining legs that each tour keeps, shape (m,), if it
+            was replanned.
+        arrivals: Both lengths of each tour up to each of its cities, if the request asked for them.
         uncovered: Over a map, the free cells that no path leads to.
     """
 
@@ -220,12 +219,12 @@ class Actor:
     Attributes:
         name: The name to choose it by.
         digest: The SHA-256 of its file.
-        inputs: The kind of instance that it reads, `coordinates` or `matrices`.
+        inputs: The kind of instance that it reads: `coordinates` or `matrices`.
         commit: The commit of the source that exported it.
-        sizes: The least and the most cities that it was trained on.
+        sizes: The smallest and largest number of cities that it was trained on.
         angles: The least and the greatest angle that it was trained on, in degrees.
         config: The configuration of its training.
-        figures: Its hypervolumes, as measured at export.
+        figures: Its hypervolumes, measured at export.
         repairs: Whether it can repair its tours.
     """
 
@@ -311,14 +310,14 @@ def parse_tour(document: Mapping[str, Any]) -> Tour:
 
 
 def of_all(items: Sequence[Members], name: str, read: Read[T]) -> tuple[T, ...] | None:
-    """Return a member of all items, or None where the first has none."""
+    """Return a member of all items, or None if the first has none."""
     if not items or items[0].maybe(name, anything) is None:
         return None
     return tuple(item.read(name, read) for item in items)
 
 
 def parse_uncovered(value: Any, where: str) -> Uncovered:
-    """Read what is uncovered of a map."""
+    """Read the uncovered cells of a map."""
     found = members(value, where)
     return Uncovered(
         cells=found.read("cells", count),
@@ -362,5 +361,5 @@ def parse_path(value: Any, where: str) -> Path:
 def _stacked(
     values: Sequence[Any], shape: tuple[int, ...] = (), dtype: type = np.float64
 ) -> NDArray[Any]:
-    """Return one value an item as an array, where there are no items too."""
+    """Return one value per item as an array, also if there are no items."""
     return read_only(np.array(values, dtype=dtype).reshape(len(values), *shape))

@@ -1,1 +1,1 @@
-"""First plans of a fleet without a search: the tours of a network, cut into routes."""
+"""First plans of a fleet: a network's tours, cut into routes without any search."""

@@ -1,4 +1,4 @@
-"""Cut sequences of stops into routes: of all cuts of all sequences the best, under any weights."""
+"""Cut sequences of stops into routes: find the best of all cuts of all sequences."""
 
 from collections.abc import Callable, Sequence
 from math import inf
@@ -26,26 +26,26 @@ from service.fleet.splitting.route_table import (
 )
 from service.instance import OBJECTIVES
 
-_MOST_ROUTES = 2**22  # in the tables of all sequences together: 64 MB
-_MOST_STEPS = 2e8  # of the dynamic program of a sequence: tenths of a second
-_CYCLIC_STEPS = 1e7  # of those of all sequences from every begin; else each has its first begin
-_ALL_STEPS = 5e9  # of all cuts together
+_MOST_ROUTES = 2**22  # routes in the tables of all sequences together: 64 MB
+_MOST_STEPS = 2e8  # steps of the dynamic program of a sequence: tenths of a second
+_CYCLIC_STEPS = 1e7  # most steps with which every begin is tried; else only the first is
+_ALL_STEPS = 5e9  # steps of all cuts together
 
 
 class Cut(NamedTuple):
-    """A plan whose routes follow a sequence, and the greatest length that a limit bounds."""
+    """A plan whose routes follow a sequence, and its longest route in the limited objective."""
 
     plan: Plan
     longest: float
 
 
 class Cutter:
-    """Cuts the same sequences again and again.
+    """Cuts the same sequences repeatedly.
 
     Args:
         fleet: The fleet.
-        sequences: Of all stops to visit, shape (c,) each; one at least, and c at least 1.
-        stop: Called often; when it returns True there are no further cuts.
+        sequences: At least one sequence of all c stops to visit, shape (c,); c is at least 1.
+        stop: Called often; once it returns True, no further cuts are made.
 
     Raises:
         Refusal: The fleet has shipments, or too many types and numbers of vehicles.
@@ -65,12 +65,13 @@ class Cutter:
         self._tables = [route_table(arrays, sequence, most) for sequence in self._sequences]
         steps = len(self._sequences) * routes * self._stock.states
         self._begins = most if steps * most <= _CYCLIC_STEPS else 1
-        self.affordable = int(_ALL_STEPS / (steps * self._begins))  # so many cuts
+        self.affordable = int(_ALL_STEPS / (steps * self._begins))  # cuts
 
     def costs(self, weights: Array, limited: int | None = None) -> list[RouteCosts]:
-        """Return the costs of all routes along each sequence, under weights of both lengths.
+        """Return the costs of all routes along each sequence, with weights of both lengths.
 
-        With prizes and fixed costs in the first; a limit is to bound this objective, if one.
+        The first objective includes prizes and fixed costs. `limited` is the objective to bound, if
+        any.
         """
         return [
             self._costs(table, sequence, weights, limited)
@@ -78,7 +79,7 @@ class Cutter:
         ]
 
     def best(self, costs: Sequence[RouteCosts], limit: float = inf) -> Cut | None:
-        """Return the cut of least cost all whose routes are shorter than a limit; None: no cut."""
+        """Return the cheapest cut whose routes are all shorter than a limit, or None."""
         least, found = inf, None
         for number, routes in enumerate(costs):
             if self._stop():
@@ -94,7 +95,7 @@ class Cutter:
         return Cut(plan_of(self._sequences[number], chosen), float(longest))
 
     def least_limit(self, limited: int) -> float:
-        """Return the longest of the shortest routes that visit one required stop each."""
+        """Return the least limit that lets each required stop have a route of its own."""
         alone = self._tables[0][:, :, 0, limited].min(axis=0)
         required = [self._fleet.rules.visits[stop].prize is None for stop in self._sequences[0]]
         return float(alone[required].max(initial=0.0))
@@ -110,15 +111,15 @@ class Cutter:
         bounded = np.zeros_like(fixed + feasible) if limited is None else lengths[..., limited]
         return RouteCosts(
             cost=np.where(feasible, lengths @ weights + weights[0] * fixed, inf),
-            bounded=np.ascontiguousarray(bounded),  # of the layout that is compiled
+            bounded=np.ascontiguousarray(bounded),  # in the layout for which the code is compiled
             skipping=np.array([inf if prize is None else weights[0] * prize for prize in prizes]),
         )
 
 
 def _from_begin(fleet: Fleet, arrays: FleetArrays) -> FleetArrays:
-    """Return arrays whose times count from when the first vehicle may have to leave.
+    """Return arrays whose times count from the earliest departure.
 
-    The tolerance of what is late is relative to times: those since 1970 would allow a second.
+    The tolerance of lateness is relative to times: for seconds since 1970 it would be a second.
     """
     if fleet.rules.clock is None:
         return arrays
@@ -136,12 +137,10 @@ def warm_up() -> None:
 
 
 def _check_cuttable(fleet: Fleet, routes: int, steps: int) -> None:
-    """Raise a refusal where the routes of a fleet cannot be pieces of a tour, or are too many."""
+    """Raise a refusal if tours cannot be cut into routes of a fleet, or into too many ones."""
     if fleet.rules.shipments:
         reason = "shipments need a time_limit over 0: no cut of a tour keeps them"
         raise Refusal("no-plan", reason=reason)
     if routes > _MOST_ROUTES or steps > _MOST_STEPS:
-        reason = (
-            "so many stops, with so many types and numbers of vehicles, need a time_limit over 0"
-        )
+        reason = "this many stops, types and numbers of vehicles need a time_limit over 0"
         raise Refusal("no-plan", reason=reason)

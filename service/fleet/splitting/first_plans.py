@@ -1,7 +1,7 @@
 """First plans of a fleet: sequences of stops, cut into routes under all limits or weights.
 
-Of a sum against a maximum the plans have the least sum under each limit just below the longest
-route of the plan before (the epsilon-constraint method); of two sums they are the least under the
+For a sum against a maximum, each plan has the least sum under a limit just below the longest route
+of the plan before (the epsilon-constraint method). For two sums, the plans are the best under the
 weights of the edges of their hull (Aneja and Nair, 1979).
 """
 
@@ -17,14 +17,14 @@ from service.fleet.plans import Plan
 from service.fleet.splitting.cutter import Cutter
 from service.instance import OBJECTIVES
 
-_FEWEST = 20  # limits or weights, however long a cut takes
-_STEEPEST = 1e3  # weight of one scaled objective, with 1 of the other
-_LEAST_SCALE = 1e-290  # of an objective, relative to the other: its weight must be finite
-_ROUNDING = 1e-9  # relative, of a gain
+_FEWEST = 20  # the least number of limits or weights, even if cuts are slow
+_STEEPEST = 1e3  # weight of one scaled objective if the other has weight 1
+_LEAST_SCALE = 1e-290  # least scale relative to the other's: its weight must be finite
+_ROUNDING = 1e-9  # relative, for a gain
 
 
 def first_plans(fleet: Fleet, cutter: Cutter) -> Iterator[Plan]:
-    """Yield the best cuts of a fleet's sequences; none where no cut keeps every rule."""
+    """Yield the best cuts of a fleet's sequences; nothing if no cut keeps every rule."""
     maximum = fleet.rules.maximum
     if maximum is None:
         return _under_weights(fleet, cutter)
@@ -32,16 +32,16 @@ def first_plans(fleet: Fleet, cutter: Cutter) -> Iterator[Plan]:
 
 
 def _under_limits(cutter: Cutter, maximum: int) -> Iterator[Plan]:
-    """Yield the plan of the least sum under each limit, from none to the least there can be.
+    """Yield the plan of the least sum under each limit, from no limit to the least possible one.
 
-    Where cuts take long, neighbouring limits are so far apart that all are affordable.
+    If cuts are slow, limits are farther apart, so that there is time for all of them.
     """
     costs = cutter.costs(np.eye(OBJECTIVES)[1 - maximum], maximum)
     least = float(np.nextafter(cutter.least_limit(maximum), inf))
     limit, apart = inf, 0.0
     while cut := cutter.best(costs, limit):
         yield cut.plan
-        if not cut.plan.routes:  # all stops are left out, which no limit forbids
+        if not cut.plan.routes:  # all stops are left out: no lower limit changes this plan
             return
         if limit == inf:
             apart = (cut.longest - least) / max(_FEWEST, cutter.affordable)
@@ -49,7 +49,7 @@ def _under_limits(cutter: Cutter, maximum: int) -> Iterator[Plan]:
 
 
 def _under_weights(fleet: Fleet, cutter: Cutter) -> Iterator[Plan]:
-    """Yield the plans at both ends, and those on the hull between them, widest edges first."""
+    """Yield the plans at both ends, and then those on the hull between them."""
     scale = fleet.largest_legs
     scale = np.maximum(scale / (scale.max() or 1.0), _LEAST_SCALE)
     steepest = np.array([[_STEEPEST, 1.0], [1.0, _STEEPEST]]) / scale

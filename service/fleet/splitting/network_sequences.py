@@ -8,7 +8,7 @@ from service.fleet.splitting.route_table import Indices
 from service.instance import Instance
 from service.preferences import fan
 
-_TOURS = 21  # of evenly spread preferences
+_TOURS = 21  # the number of evenly spread preferences
 
 
 def network_sequences(
@@ -21,7 +21,8 @@ def network_sequences(
     Args:
         fleet: The fleet.
         constructor: The network, which must read matrices.
-        within: Seconds that it may take; then there may be fewer tours, or none. None honours all.
+        within: The seconds that it may take; there may be fewer tours then, or none. With None the
+            network builds all of them.
 
     Raises:
         Cancelled: The network was told to stop.
@@ -34,7 +35,7 @@ def network_sequences(
         return [clients]
     costs = fleet.costs[:, places[:, np.newaxis], places]
     if hub is not None and np.array_equal(costs[0], costs[1]):
-        # Under two equal costs every preference means the same tour.
+        # If both costs are equal, every preference leads to the same tour.
         costs = np.stack((costs[0], _angular_costs(costs[0])))
     tours = construct(constructor, Instance(matrices=costs), fan(_TOURS), within=within)
     begun = [np.roll(tour, -int(tour.argmin())) for tour in tours]
@@ -43,7 +44,7 @@ def network_sequences(
 
 
 def _hub(fleet: Fleet) -> int | None:
-    """Return a depot of the first type of vehicles; None where its routes are open at both ends."""
+    """Return a depot of the first type of vehicles; None if its routes are open at both ends."""
     vehicle = fleet.rules.vehicles[0]
     return vehicle.end if vehicle.start is None else vehicle.start
 
@@ -51,8 +52,8 @@ def _hub(fleet: Fleet) -> int | None:
 def _angular_costs(costs: Array) -> Array:
     """Return costs that are small between stops in the same direction from the first, the depot.
 
-    They are the geometric mean of the cost and the sine of half the angle at the depot, which
-    follows from three costs as from the sides of a triangle. Such tours sweep round the depot.
+    They are the geometric mean of the cost and the sine of half the angle at the depot. The angle
+    is that of a triangle whose sides are three costs. Tours of small costs sweep round the depot.
     """
     away = (costs[0] + costs[:, 0]) / 2
     sides = away[:, np.newaxis] * away

@@ -1,1 +1,1 @@
-"""Worker processes: what runs in one, how many there are, and what they tell the service."""
+"""Worker processes: the pool, the loop inside a process, and the messages between."""

@@ -10,7 +10,7 @@ from service.requests.task import Task
 
 
 def places_of(coverage: Coverage) -> list[list[int]]:
-    """Return row and column of the caller's places; of others a worker finds out."""
+    """Return row and column of the caller's places; none where a worker finds the places."""
     return [] if coverage.places is None else coverage.places.tolist()
 
 

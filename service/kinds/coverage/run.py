@@ -50,7 +50,7 @@ def run_coverage(
 def _paths(
     surveyed: Survey, front: Front, limits: Limits, stop: Callable[[], bool]
 ) -> list[CoveragePath] | None:
-    """Return the path of each tour; None where the task is stopped, which waits for none."""
+    """Return the path of each tour; None if the task is stopped before."""
     try:
         return list(surveyed.paths(front.tours, limits.path_cells, stop))
     except Cancelled:

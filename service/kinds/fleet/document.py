@@ -21,11 +21,11 @@ from service.requests.stops import Labels
 def encode_fleet(
     front: FleetFront, actor: dict[str, str] | None, subject: UnmeasuredFleet, labels: Labels
 ) -> FrontDocument:
-    """Write a front of plans as JSON.
+    """Return a front of plans as JSON.
 
     Args:
         front: The front.
-        actor: The name and digest of the network whose tours were cut into the first plans, if so.
+        actor: The name and digest of the network whose tours were cut into the first plans, if any.
         subject: The fleet, with the names of its types of vehicles.
         labels: The names of stops and objectives.
     """

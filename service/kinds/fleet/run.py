@@ -45,8 +45,8 @@ def plan_front(
     stop: Callable[[], bool],
     report: ReportOf[FleetFront],
 ) -> FleetFront:
-    """Return the front of plans of a fleet, with the options of a task, as `run_fleet` does."""
-    # Imported here, so that a service or a worker starts without PyVRP.
+    """Return the front of plans of a fleet, with the options of a task."""
+    # Imported here so that a service or a worker starts without PyVRP.
     from service.fleet.planner import FleetOptions, plan_fleet
 
     check_reference_point(task.options, partial(least_lengths, fleet), "plan")

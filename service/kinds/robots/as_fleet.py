@@ -1,8 +1,8 @@
 """Robots that share the places of a map as a fleet: its stops, and its plans as routes on the map.
 
-A robot that stands on a place has visited it, so the starts are depots. A place at which a robot
-ends has to be visited also where another robot comes by: such an end is a stop of its own, in the
-same cell.
+The place where a robot starts is visited by it, so starts are depots. The place where a robot ends
+must be visited too, maybe by another robot. So such a place becomes two stops in the same cell: the
+end of the robot, and a stop to visit.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,7 +23,7 @@ class RobotFleet:
     """A fleet of robots on a map.
 
     Args:
-        fleet: The fleet: a type of vehicles for all robots that start and end alike.
+        fleet: The fleet, with one type of vehicles for all robots with the same start and end.
         places: The place of each stop, shape (n,).
         robots: The robots of each type, by their indexes.
     """
@@ -33,7 +33,7 @@ class RobotFleet:
     robots: Sequence[Sequence[int]]
 
     def routes(self, plan: Plan) -> Iterator[tuple[int, Route]]:
-        """Yield each route of a plan with its robot: the next of the robots that are alike."""
+        """Yield each route of a plan with its robot: the next free one of its type."""
         free = [iter(robots) for robots in self.robots]
         return ((next(free[route.vehicle]), route) for route in plan.routes)
 
@@ -45,7 +45,7 @@ class RobotFleet:
 
 
 def robot_fleet(surveyed: Survey, over: tuple[Over, Over]) -> RobotFleet:
-    """Return the fleet of the robots of a survey; `over` gives the lengths of plans."""
+    """Return the fleet of the robots of a survey; `over` is that of its two objectives."""
     assert surveyed.instance.matrices is not None
     places, types = _stops_and_types(surveyed)
     vehicles = tuple(
@@ -64,7 +64,7 @@ def _stops_and_types(
     starts = {ends.start for ends in surveyed.robots}
     places = list(range(len(surveyed.places)))
     types: dict[tuple[int, int | None], list[int]] = {}
-    own_stops: dict[int, int] = {}  # ends that are also places to visit
+    own_stops: dict[int, int] = {}  # by place, the second stop where a robot ends
     for robot, (closed, start, end) in enumerate(surveyed.robots):
         assert start is not None
         if end is not None and end < surveyed.to_visit and end not in starts:

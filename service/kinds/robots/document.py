@@ -24,7 +24,7 @@ Paths = Iterator[CoveragePath | None]
 
 @dataclass(frozen=True, eq=False)
 class RobotEncoder:
-    """Writes fronts of plans for the robots of a task, whose places are surveyed, as JSON."""
+    """Writes fronts of plans for the robots of a task as JSON, once its places are surveyed."""
 
     subject: SharedCoverage
     surveyed: Survey
@@ -41,8 +41,8 @@ class RobotEncoder:
         Args:
             front: The front.
             actor: The name and digest of the network whose tours were cut into the first plans, if
-                so.
-            paths: The path of each route of each plan, where the task asks for them.
+                any.
+            paths: The path of each route of each plan, if the task asks for them.
         """
         each: Paths = repeat(None) if paths is None else iter(paths)
         members = zip(balances(front.points).tolist(), front.points.tolist(), strict=True)

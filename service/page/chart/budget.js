@@ -1,11 +1,11 @@
-/** Budget lines on the chart: at most so much of one objective, dragged or moved by keys. */
+/** Budget lines on the chart: a limit on one objective, which is dragged or moved by keys. */
 
 import { length } from "../common/numbers.js";
 import { UNNAMED, shortUnit } from "../common/objectives.js";
 
 const STEPS = [
   { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 },
-  // Along the front the second length falls.
+  // The second length falls along the front.
   { ArrowRight: -1, ArrowUp: -1, ArrowLeft: 1, ArrowDown: 1, PageUp: -10, PageDown: 10 },
 ];
 
@@ -15,11 +15,11 @@ export class Budget {
   #onBudget;
   #front = [];
   #objectives = UNNAMED;
-  #limit = null; // { axis, most }, at most one at a time
+  #limit = null; // { axis, most }; there is at most one budget
 
   /**
    * @param {uPlot} plot the chart on which the lines lie
-   * @param {(index: number) => void} onBudget told which tour is the best within a budget
+   * @param {(index: number) => void} onBudget called with the best tour within a budget
    */
   constructor(plot, onBudget) {
     this.#plot = plot;
@@ -34,14 +34,14 @@ export class Budget {
     this.place();
   }
 
-  /** Lies on another front, whose tours go from the least first length to the least second. */
+  /** Moves to another front, whose tours go from the least first length to the least second. */
   show(front) {
     if (!front.length) this.#limit = null;
     this.#front = front;
     this.place();
   }
 
-  /** The best tour within the budget, null where there is no budget. */
+  /** The best tour within the budget, null if there is no budget. */
   get index() {
     if (!this.#limit) return null;
     const { axis, most } = this.#limit;
@@ -49,21 +49,21 @@ export class Budget {
     return Math.max(0, this.#front.findLastIndex(({ lengths }) => lengths[0] <= most));
   }
 
-  /** What the budget is, in words, or how to have one. */
+  /** The budget in words, or how to set one. */
   get said() {
     if (this.#front.length < 2) return "";
     if (!this.#limit) return "For a budget, drag a handle on the edge of the chart.";
     return `Budget: ${this.#amount(this.#limit.axis, this.#limit.most)} of ${this.#objectives[this.#limit.axis].name}.`;
   }
 
-  /** A tour beyond the budget was chosen, which ends it. */
+  /** Removes the budget if a tour beyond it was chosen. */
   release(lengths) {
     if (!this.#limit || lengths[this.#limit.axis] <= this.#limit.most) return;
     this.#limit = null;
     this.place();
   }
 
-  /** Puts the lines where the chart has their budgets now. */
+  /** Moves the lines to their places on the chart. */
   place() {
     this.#lines.forEach((line, axis) => {
       line.hidden = this.#front.length < 2;

@@ -24,9 +24,9 @@ export class FrontChart {
 
   /**
    * @param {HTMLElement} names holds the names of both ends and the knee, over the chart
-   * @param {(index: number) => void} onSelect told which point was clicked
-   * @param {(index: number | null) => void} onPreview told which point is pointed at
-   * @param {(index: number) => void} onBudget told which tour is the best within a budget
+   * @param {(index: number) => void} onSelect called with the point that was clicked
+   * @param {(index: number | null) => void} onPreview called with the point under the pointer
+   * @param {(index: number) => void} onBudget called with the best tour within a budget
    */
   constructor(element, names, { onSelect, onPreview, onBudget }) {
     this.#element = element;
@@ -56,7 +56,7 @@ export class FrontChart {
     this.#place();
   }
 
-  /** The best tour within the budget that was drawn, null where there is none; and the same in words. */
+  /** The best tour within the budget line, null if there is none; and the same in words. */
   get budget() {
     return { index: this.#budget.index, said: this.#budget.said };
   }
@@ -72,7 +72,7 @@ export class FrontChart {
     this.#place();
   }
 
-  /** Marks a point as "selected", "pinned" or "previewed"; null takes the mark away. */
+  /** Marks a point as "selected", "pinned" or "previewed"; null removes the mark. */
   mark(name, lengths) {
     this.#marked[name] = lengths;
     if (name === "selected" && lengths) this.#budget.release(lengths);
@@ -87,7 +87,7 @@ export class FrontChart {
     marker.style.transform = `translate(${x}px, ${y}px)`;
   }
 
-  /** What is placed by its own size, or the chart's, waits for the layout: not at each step of the slider. */
+  /** Placing by sizes waits for the layout, so it is not done at each step of the slider. */
   #place() {
     this.#budget?.place();
     for (const name of Object.keys(this.#markers)) this.#placeMarker(name);
@@ -102,7 +102,7 @@ export class FrontChart {
     return [this.#chart.valToPos(first, "x"), this.#chart.valToPos(second, "y")];
   }
 
-  /** Tells which point is within reach of a pointer, or that there is none. */
+  /** Reports the point within reach of a pointer, or null. */
   #at(event, onPoint, onNone = () => {}) {
     if (!this.#front.length) return;
     const box = this.#chart.over.getBoundingClientRect();
@@ -142,7 +142,7 @@ function options(element) {
 /** Pixels from one label of the first axis to the next, so that long ones do not touch. */
 const apart = (_chart, _axis, _least, most) => 7 * Math.max(4, length(Math.trunc(most)).length) + 16;
 
-/** A step from each point to the next: what it bounds is what the front dominates. */
+/** A staircase from each point to the next, around the area that the front dominates. */
 function line(name, width, points) {
   const stroke = () => colour(name);
   return {

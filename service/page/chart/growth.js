@@ -11,7 +11,7 @@ export class Growth {
   #unknown;
   #chart;
 
-  /** @param {HTMLElement} unknown stands in the chart's place where there is no growth to show */
+  /** @param {HTMLElement} unknown is shown in place of the chart if there is no growth */
   constructor(element, unknown) {
     this.#element = element;
     this.#unknown = unknown;
@@ -23,7 +23,7 @@ export class Growth {
   /** Shows rows of seconds and hypervolume. */
   show(growth) {
     this.#chart.setData([growth.map(([seconds]) => seconds), growth.map(([, grown]) => 100 * grown)]);
-    const drawn = growth.length > 1; // one row is no line
+    const drawn = growth.length > 1; // one row does not make a line
     this.#element.hidden = !drawn;
     this.#unknown.hidden = drawn;
     if (!drawn) return;

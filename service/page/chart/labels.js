@@ -10,8 +10,8 @@ export class Labels {
   #indices = [];
 
   /**
-   * @param {(index: number) => void} onSelect told which tour is wanted
-   * @param {(index: number | null) => void} onPreview told which tour is to be previewed
+   * @param {(index: number) => void} onSelect called with the tour to select
+   * @param {(index: number | null) => void} onPreview called with the tour to preview
    */
   constructor(element, onSelect, onPreview) {
     this.#element = element;
@@ -25,14 +25,14 @@ export class Labels {
     });
   }
 
-  /** Names the tours of a front; where it has fewer than three, or the knee is an end, fewer names. */
+  /** Names the tours of a front: fewer names if it has fewer than three tours, or its knee is an end. */
   show(front, objectives) {
     this.#indices = front.length > 1 ? [0, kneeOf(front), front.length - 1] : [];
     const said = [`least ${objectives[0].name}`, "knee", `least ${objectives[1].name}`];
     this.#buttons.forEach((button, which) => (button.textContent = said[which]));
   }
 
-  /** Puts the names beside their points; `place` gives the pixels of a tour's. */
+  /** Puts the names beside their points; `place` returns the pixels of a tour's point. */
   place(front, place) {
     this.#places = this.#indices.map((index) => place(front[index].lengths));
     this.#buttons.forEach((button, which) => {
@@ -41,7 +41,7 @@ export class Labels {
     });
   }
 
-  /** The knee's name stands below its point, where no tour can be; those of the ends above. */
+  /** The knee's name is below its point, where no tour can be; the names of the ends are above. */
   #put(button, [x, y]) {
     const { offsetWidth: width, offsetHeight: height } = button;
     const below = button.classList.contains("knee");
@@ -55,7 +55,7 @@ export class Labels {
   }
 }
 
-/** The tour with the least sum of both lengths, each in the front's own box. */
+/** The tour with the least sum of both lengths, each scaled to 0 to 1 over the front. */
 export function kneeOf(front) {
   const ends = [front[0], front.at(-1)].map(({ lengths }) => lengths);
   const [low, high] = [Math.min, Math.max].map((pick) => [0, 1].map((axis) => pick(ends[0][axis], ends[1][axis])));

@@ -11,10 +11,10 @@ export class BalanceSlider {
   #input;
   #shown;
   #front = [];
-  #balance = 0; // of the tour that is selected
+  #balance = 0; // the index of the selected tour
   #objectives = UNNAMED;
 
-  /** @param {(index: number) => void} onSelect told which tour is wanted */
+  /** @param {(index: number) => void} onSelect called with the tour to select */
   constructor(input, shown, onSelect) {
     this.#input = input;
     this.#shown = shown;
@@ -33,7 +33,7 @@ export class BalanceSlider {
     if (!front.length) this.#shown.textContent = "";
   }
 
-  /** Stands at a tour of the front. A hand that drags the slider is pulled there when it lets go. */
+  /** Moves to a tour of the front, but leaves the thumb alone while it is dragged next to that tour. */
   select(index) {
     const { balance, lengths } = this.#front[index];
     this.#balance = balance;

@@ -5,7 +5,7 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 const known = new Map();
 dark.addEventListener("change", () => known.clear());
 
-/** The colour of a name. To ask the browser again in every frame would have it compute all styles. */
+/** The colour of a name, cached: asking the browser in every frame would make it compute all styles. */
 export function colour(name) {
   if (!known.has(name)) {
     known.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());

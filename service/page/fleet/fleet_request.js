@@ -1,4 +1,4 @@
-/** The request of a fleet, or of robots: in a few words, and as JSON. */
+/** The request of a fleet or of robots, in a few words and as JSON. */
 
 import { counted } from "../common/numbers.js";
 

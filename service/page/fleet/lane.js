@@ -3,7 +3,7 @@
 import { routeStyle } from "./route_styles.js";
 import { svgElement } from "./svg.js";
 
-export const LANE = 34; // pixels of height, of which the name takes the upper half
+export const LANE = 34; // pixels of height; the name takes the upper half
 const [NAME, BAR] = [17, 12]; // pixels: where the bar begins, and its height
 const [CASING, LINE, LEAST] = [5, 3, 2]; // pixels: the line's widths, and the least of a box
 

@@ -16,7 +16,7 @@ export class Lanes {
     new ResizeObserver(() => this.#draw()).observe(element);
   }
 
-  /** Shows lanes, each `{ name, visits }`, by a clock; none where there is no clock. */
+  /** Shows lanes, each `{ name, visits }`, by a clock; no lanes without a clock. */
   show(lanes, clock) {
     this.#lanes = clock ? lanes : [];
     this.#clock = clock;

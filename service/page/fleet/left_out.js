@@ -3,16 +3,16 @@
 import { counted, length } from "../common/numbers.js";
 import { shortUnit } from "../common/objectives.js";
 
-/** Why stops are left out, where any are. The service says no more than which; robots leave none out. */
+/** Says why stops are left out, if any are. The service only says which; robots leave none out. */
 export function reason({ unassigned }, { name }) {
   if (!unassigned) return "";
   if (!unassigned.length) return "No stop is left out.";
   const stops = counted(unassigned.length, "stop is", "stops are");
-  return `${stops} left out, as those with a prize may be. The prizes are added to ${name}:`;
+  return `${stops} left out: stops with a prize may be. Their prizes are added to ${name}:`;
 }
 
 /**
- * Each stop that is left out, with its prize where it is known.
+ * Each stop that is left out, with its prize if it is known.
  *
  * @param {Map<string, object>} asked the stops of the request by id
  */

@@ -18,13 +18,13 @@ export class PlanView {
   #objectives = UNNAMED;
   #plan = null;
 
-  /** Takes the request of which plans will be shown. */
+  /** Takes the request whose plans will be shown. */
   open(asked) {
     this.#asked = asked;
     this.show(null);
   }
 
-  /** What the two lengths are called from now on. */
+  /** Sets the names of both lengths. */
   name(objectives) {
     this.#objectives = objectives;
     const plan = this.#plan;
@@ -49,7 +49,7 @@ export class PlanView {
     list("fleet-left-out", leftOut(plan, stops, this.#objectives[0]));
   }
 
-  /** Shows a lane for each vehicle where the plan has times, and the stops of each in order. */
+  /** Shows a lane for each vehicle if the plan has times, and the stops of each vehicle in order. */
   #showTimes({ routes }, stops) {
     const names = namesOf(routes);
     const timed = routes.length > 0 && routes.every(({ arrivals }) => arrivals);
@@ -69,7 +69,7 @@ export class PlanView {
   }
 }
 
-/** Stops of a fleet have ids; places of robots are counted as people count. */
+/** Stops of a fleet have ids; places of robots are numbered from 1. */
 const nameOfStop = (stop) => (typeof stop === "number" ? nameOf(null, stop) : stop);
 
 function list(id, texts) {

@@ -11,14 +11,14 @@ export class RequestText {
     details.addEventListener("toggle", () => this.#write());
   }
 
-  /** Shows a request; hides itself where there is none. */
+  /** Shows a request; hides itself if there is none. */
   show(asked) {
     this.#asked = asked;
     this.#details.hidden = !asked;
     this.#write();
   }
 
-  /** Nothing is written while nobody looks: requests may be long. */
+  /** Writes nothing while it is folded: requests may be long. */
   #write() {
     const text = this.#asked && this.#details.open ? jsonOf(this.#asked) : "";
     this.#details.querySelector("pre").textContent = text;

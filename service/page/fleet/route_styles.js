@@ -1,6 +1,6 @@
-/** Colours and dashes by which the routes of a plan are told apart. */
+/** Colours and dashes that distinguish the routes of a plan. */
 
-const COLOURS = 8; // of Okabe and Ito (2008), in palette.css, which colour-blind people can tell apart
+const COLOURS = 8; // colours of Okabe and Ito (2008), in palette.css, which colour-blind people can tell apart
 const DASHES = [[], [9, 5], [3, 4]];
 
 /** The style of the route at this place among those of a plan: the name of its colour, and its dash. */

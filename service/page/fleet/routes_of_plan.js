@@ -31,7 +31,7 @@ export function visits(route, asked) {
   return stops.length - (ends ? ends.filter((end) => end != null).length : round ? 2 : 0);
 }
 
-/** Where a route was asked to start and end; undefined where that is not known. */
+/** Where the request wants a route to start and end; undefined if that is not known. */
 function endsOf({ vehicle, robot }, { vehicles = [], robots = [], closed }) {
   const type = vehicles.find(({ id }) => id === vehicle);
   if (type) return [type.start, type.end];

@@ -2,11 +2,11 @@
 
 const SECONDS = { s: 1, second: 1, seconds: 1, min: 60, minute: 60, minutes: 60, h: 3600, hour: 3600, hours: 3600 };
 const STEPS = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 21600, 43200, 86400]; // seconds
-const SHORT = 1800; // seconds in all, of which every second is said
+const SHORT = 1800; // seconds in all, up to which seconds are shown
 
 /**
- * The clock of these times, from the first to the last; `said` puts a time into words, and `marks`
- * are round times, at most so many. Where the unit is one of time they are hours and minutes.
+ * The clock of these times, from the first to the last. `said` puts a time into words, and `marks`
+ * returns at most `most` round times. If the unit is one of time, times are hours and minutes.
  */
 export function clockOf(times, unit) {
   const from = times.reduce((least, time) => Math.min(least, time));
@@ -17,7 +17,7 @@ export function clockOf(times, unit) {
   return { from, to, said, marks: (most) => multiples(from, to, stepOf((to - from) / most, second)) };
 }
 
-/** Hours and minutes, and seconds too where the whole is short. */
+/** Hours and minutes, and seconds too if the whole time is short. */
 function hours(seconds, short) {
   const two = (value) => String(value).padStart(2, "0");
   const all = short ? Math.round(seconds) : 60 * Math.round(seconds / 60);
@@ -25,7 +25,7 @@ function hours(seconds, short) {
   return short ? `${minutes}:${two(all % 60)}` : minutes;
 }
 
-/** A round step that is not under this one. */
+/** The least round step that is at least this one. */
 function stepOf(least, second) {
   const known = second && STEPS.find((each) => each >= least * second);
   if (known) return known / second;

@@ -18,13 +18,13 @@ const FIELDS = [
   { name: "bound", label: "Say how far from optimal the front may be", where: "more", box: true },
 ];
 
-const OFFERED = 1000; // names in a list that a browser opens without delay
+const OFFERED = 1000; // the most names in a list that a browser opens without delay
 
 export class Fields {
   #form;
   #coverage;
   #plans = false; // whether the request is for plans
-  #ids = null; // of the stops, where they have them
+  #ids = null; // the ids of the stops, if they have them
 
   constructor(form) {
     this.#form = form;
@@ -35,7 +35,7 @@ export class Fields {
     }
   }
 
-  /** What is filled in. What is no number stays as it is, for the service to name. */
+  /** The filled-in values. What is not a number stays as it is, so that the service names it. */
   get members() {
     const asked = FIELDS.filter((field) => this.#has(field));
     const texts = asked.filter(({ box }) => !box).map(({ name }) => [name, this.#form[name].value.trim()]);
@@ -45,7 +45,7 @@ export class Fields {
     return { ...Object.fromEntries(given), ...bound, ...this.#ends(given.map(([name]) => name)) };
   }
 
-  /** Lets stops be named, and offers their names. */
+  /** Takes the names of stops, and offers them in the fields. */
   name(ids, cities) {
     if (this.#form.start.value === nameOf(this.#ids, 0)) this.#form.start.value = nameOf(ids, 0);
     this.#ids = ids;
@@ -95,7 +95,7 @@ export class Fields {
     return (plans || !this.#plans) && (where !== "coverage" || !this.#coverage.hidden);
   }
 
-  /** Takes the bound, and the ends: each an index, an id, or missing; a start that is null may be anywhere. */
+  /** Takes the bound and the ends, each an index, an id, or missing; a null start may be anywhere. */
   #takeRoute(rest) {
     this.#form.open.checked = rest.closed === false;
     this.#form.bound.checked = rest.bound === true;

@@ -1,4 +1,4 @@
-/** Propose what to plan on a map of a robot that says no more than where its walls are. */
+/** Propose what to plan on a robot's map that only shows its walls. */
 
 import { nearness } from "./nearness.js";
 
@@ -9,7 +9,7 @@ const OBJECTIVES = [
   { name: "nearness to walls", unit: "" },
 ];
 
-/** The request itself; where it is a map alone, one to visit places all over it, short against far from walls. */
+/** The request itself; for a map alone, a request to visit places all over it: short against far from walls. */
 export function proposed(request) {
   const { grid, cell_size: cell } = request;
   if (!grid || !cell || Object.keys(request).some((member) => !OF_MAP.includes(member))) return request;

@@ -1,8 +1,8 @@
-/** Names of stops: their ids, or where they have none, what people count: 1, 2, 3. */
+/** Names of stops: their ids, or if they have none, numbers from 1. */
 
 export const nameOf = (ids, city) => ids?.[city] ?? String(city + 1);
 
-/** What a request calls the stop that is named: its id, its index, or the text where it is neither. */
+/** How a request refers to the stop that is named: by its id or its index; the text itself if it is neither. */
 export function stopNamed(ids, name) {
   if (ids?.includes(name)) return name;
   return !ids && /^\d+$/.test(name) && Number(name) > 0 ? Number(name) - 1 : name;

@@ -4,7 +4,7 @@ const REACH = 10; // cells from a wall, beyond which there is no risk
 const STRAIGHT = 1;
 const DIAGONAL = Math.SQRT2;
 
-/** From 1 at a wall to 0 where none is in reach. */
+/** The nearness, from 1 at a wall to 0 where no wall is in reach. */
 export const nearness = (grid) =>
   distances(grid).map((row) => row.map((cells) => Number(Math.max(0, 1 - cells / REACH).toFixed(2))));
 

@@ -1,4 +1,4 @@
-/** The names and units of both objectives, and for stops what each is measured by. */
+/** The fields of both objectives: names and units, and for stops how each is measured. */
 
 import { namesIn } from "../common/objectives.js";
 
@@ -10,7 +10,7 @@ export class ObjectiveFields {
   #own = []; // the objectives that came with costs of their own
   #shown = [];
 
-  /** @param {(axis: number, change: object) => void} onChange told of new members of one objective */
+  /** @param {(axis: number, change: object) => void} onChange called with new members of one objective */
   constructor(element, onChange) {
     this.#element = element;
     element.addEventListener("change", ({ target }) => {
@@ -19,7 +19,7 @@ export class ObjectiveFields {
     });
   }
 
-  /** Shows two objectives; those of a request for stops have sources, others have names and units alone. */
+  /** Shows two objectives; those of a request for stops have sources, others only names and units. */
   show(objectives, sourced) {
     this.#own = objectives;
     this.#shown = sourced ? namesIn({ objectives }) : objectives;
@@ -29,7 +29,7 @@ export class ObjectiveFields {
   #changed(axis, member, value) {
     if (member !== "source") return { [member]: value || undefined };
     const { matrix, coordinates } = this.#own[axis];
-    // A unit that was typed for another source would be wrong; the service says the source's own.
+    // A unit that was typed for another source would be wrong; the service knows that of the source.
     return value === OWN ? { from: undefined, matrix, coordinates } : { from: value, unit: undefined, matrix: undefined, coordinates: undefined };
   }
 }
@@ -53,7 +53,7 @@ const input = (axis, member, value) => marked(Object.assign(document.createEleme
 
 function source(axis, { from, matrix, coordinates }) {
   const made = marked(document.createElement("select"), axis, "source");
-  if (matrix || coordinates) made.append(new Option(matrix ? "Costs of the file" : "A plane of the file", OWN));
+  if (matrix || coordinates) made.append(new Option(matrix ? "Costs from the file" : "A plane from the file", OWN));
   made.append(...Object.entries(SOURCES).map(([name, title]) => new Option(title, name)));
   made.value = from ?? OWN;
   return made;

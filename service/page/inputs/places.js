@@ -1,12 +1,12 @@
 /** Tell where the stops of a request lie: on the earth, in the planes of its objectives, or nowhere. */
 
-/** That a map is of the earth, and not of an objective's plane. */
+/** Marks a map of the earth, in place of the number of an objective's plane. */
 export const EARTH = "earth";
 
 /**
- * The maps of a request: `drawn` says of each whether it is the EARTH or the plane of objective 0 or 1,
- * and `rows` has the places of each stop on all of them, two numbers a map. Beside a map of the earth, or
- * of the first objective's plane, there is a second one where the second objective has a plane.
+ * The maps of a request: `drawn` has EARTH, or the objective of the plane (0 or 1), for each map, and
+ * `rows` has the places of each stop on all maps, two numbers per map. Beside a map of the earth, or of
+ * the first objective's plane, there is a second map if the second objective has a plane.
  */
 export function mapsOf({ stops = [], objectives }) {
   const located = stops.map(({ location }) => location);

@@ -1,4 +1,4 @@
-/** Cities clicked into place: where there are two planes, first in one, then in the other. */
+/** Place cities by clicks: with two planes, first in one, then in the other. */
 
 export class Placing {
   #button;
@@ -9,10 +9,10 @@ export class Placing {
   #waiting = null; // { plane, place } of a city that has no second place yet
 
   /**
-   * @param {(row: number[]) => void} onCity told of each city that has all its places
-   * @param {(plane: number, place: number[] | null) => void} onWaiting told of a city that has one place
-   *   of two, and with null that there is none
-   * @param {{ once?: boolean }} options whether one city is all that is clicked
+   * @param {(row: number[]) => void} onCity called with each city that has all its places
+   * @param {(plane: number, place: number[] | null) => void} onWaiting called with the place of a city
+   *   that has one of two places, and with null when there is no such city
+   * @param {{ once?: boolean }} options whether only one city is placed
    */
   constructor(button, help, onCity, onWaiting, { once = false } = {}) {
     this.#button = button;
@@ -23,7 +23,7 @@ export class Placing {
     button.addEventListener("click", () => this.#turn(!this.#on));
   }
 
-  /** Takes a click into a plane, or into the only one there is. */
+  /** Takes a click into a plane, or into the only one. */
   clicked(plane, place, only = false) {
     if (!this.#on) return;
     if (only) return this.#done(place);
@@ -35,7 +35,7 @@ export class Placing {
     }
   }
 
-  /** Clicks place nothing any more. */
+  /** Ends placing by clicks. */
   stop() {
     if (this.#on) this.#turn(false);
   }

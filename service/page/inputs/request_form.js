@@ -24,14 +24,14 @@ export class RequestForm {
   #onEdited;
   #settled;
   #typedRows;
-  #rows = []; // of planes, a stop each, as they were opened, edited or typed and read
-  #brought = { coordinates: [] }; // of what was opened, the members that are not settings
+  #rows = []; // rows of planes, one per stop, as they were opened, edited, or typed and read
+  #brought = { coordinates: [] }; // the members of the opened request that are not settings
   #objectives = UNNAMED; // as they are shown
 
   /**
-   * @param {Service} service that reads what is typed
-   * @param {(instance: object, fit: boolean) => void} onEdited told of other stops or costs
-   * @param {() => Promise<boolean>} settled has what was typed read, and tells why it cannot be
+   * @param {Service} service reads what is typed
+   * @param {(instance: object, fit: boolean) => void} onEdited called with other stops or costs
+   * @param {() => Promise<boolean>} settled reads what was typed, or shows why that is not possible
    */
   constructor(form, service, onEdited, settled) {
     this.#onEdited = onEdited;
@@ -49,7 +49,7 @@ export class RequestForm {
     element("add").addEventListener("click", () => this.#onceRead(() => this.#add()));
   }
 
-  /** Takes what is asked for into the form, and shows its stops under their objectives. */
+  /** Takes a request into the form, and shows its stops under their objectives. */
   open(wanted, names = UNNAMED) {
     const kind = kindOf(wanted);
     this.#brought = this.#fields.take(wanted, kind);
@@ -79,23 +79,23 @@ export class RequestForm {
     return this.#objectives;
   }
 
-  /** What is drawn of the stops. */
+  /** The instance to draw. */
   get instance() {
     const kind = kindOf(this.#brought);
     return kind === "coordinates" ? { coordinates: this.#rows.filter(isCity) } : this.#brought;
   }
 
-  /** The ids of the stops, null where they have none. */
+  /** The ids of the stops, null if they have none. */
   get ids() {
     return this.#brought.stops?.map(({ id }) => id) ?? this.#brought.ids ?? null;
   }
 
-  /** Whether something was typed that is not among the stops. */
+  /** Whether something was typed that is not among the stops yet. */
   get unread() {
     return this.#typedRows.waiting;
   }
 
-  /** Has what was typed read now, as `TypedRows.settle`. */
+  /** Reads what was typed now, as `TypedRows.settle` does. */
   settle(reading) {
     return this.#typedRows.settle(reading);
   }
@@ -130,13 +130,13 @@ export class RequestForm {
     this.#onceRead(() => this.#delete(this.#brought.stops ? city : this.#rowOf(city)));
   }
 
-  /** The row of a city, as rows that cannot be drawn are none. */
+  /** The row of a city; rows that cannot be drawn are not cities. */
   #rowOf(city) {
     const drawn = this.#rows.flatMap((row, at) => (isCity(row) ? [at] : []));
     return drawn[city];
   }
 
-  /** The front is of other stops from the first key on; the stops are drawn once they are read. */
+  /** Reports other stops from the first key on; the stops are drawn once they are read. */
   #typed() {
     if (!this.unread) this.#onEdited(this.instance, false);
     this.#typedRows.typed(element("cities").value);
@@ -148,7 +148,7 @@ export class RequestForm {
     this.#edited();
   }
 
-  /** Changes stops when what was typed is among them; where it cannot be read, they stay as they are. */
+  /** Changes stops once what was typed is among them; if it cannot be read, they stay as they are. */
   async #onceRead(change) {
     if (this.unread) {
       this.#edited(false);
@@ -208,7 +208,7 @@ export class RequestForm {
     this.#write(this.#rows.toSpliced(row, 1), false);
   }
 
-  /** Adds a stop in the middle of the others, from where it is moved. */
+  /** Adds a stop in the middle of the others, to be moved from there. */
   #add() {
     const { stops } = this.#brought;
     const rows = stops ? stops.map(({ location }) => location ?? []) : this.#rows.filter(isCity);
@@ -225,7 +225,7 @@ export class RequestForm {
     this.#edited(false);
   }
 
-  /** A number that no stop has as its name. */
+  /** A number that is not the name of any stop. */
   #freeName() {
     const ids = this.ids ?? [];
     let number = ids.length + 1;

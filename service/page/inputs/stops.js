@@ -4,7 +4,7 @@ import { EARTH, mapsOf } from "./places.js";
 
 export const isMeasured = ({ objectives }) => Boolean(objectives?.every(({ from }) => from));
 
-/** The same request with other stops, whose objectives keep the rows and columns of `kept`. */
+/** The same request with other stops; objectives keep the rows and columns of `kept`. */
 function withStops(asked, stops, kept) {
   return { ...asked, stops, objectives: asked.objectives?.map((objective) => costsOf(objective, kept)) };
 }
@@ -23,7 +23,7 @@ export function renamed(asked, row, id) {
   return { ...asked, stops, ...Object.fromEntries(ends) };
 }
 
-/** With one of both numbers of a stop's location changed. */
+/** The request with one of the two numbers of a stop's location changed. */
 export function moved(asked, row, column, value) {
   const stops = asked.stops.map((stop, at) =>
     at === row ? { ...stop, location: (stop.location ?? [0, 0]).with(column, value) } : stop,
@@ -31,7 +31,7 @@ export function moved(asked, row, column, value) {
   return { ...asked, stops };
 }
 
-/** With a stop elsewhere on the first or second of its maps. */
+/** The request with a stop moved on the first or second of its maps. */
 export function put(asked, map, row, place) {
   const plane = mapsOf(asked).drawn[map];
   if (plane === EARTH) return { ...asked, stops: asked.stops.with(row, { ...asked.stops[row], location: place }) };
@@ -45,5 +45,5 @@ export function without(asked, row) {
   return withStops(asked, kept.map((at) => asked.stops[at]), kept);
 }
 
-/** With one more stop, of which only measured objectives know the costs. */
+/** The request with one more stop; its costs are known to measured objectives only. */
 export const withAnother = (asked, id, location) => ({ ...asked, stops: [...asked.stops, { id, location }] });

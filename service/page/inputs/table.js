@@ -11,7 +11,7 @@ export class StopsTable {
 
   /**
    * @param {{ onName: (row: number, text: string) => void, onNumber: (row: number, column: number,
-   *   text: string) => void, onDelete: (row: number) => void }} told of what was changed
+   *   text: string) => void, onDelete: (row: number) => void }} told callbacks for changes by the user
    */
   constructor(element, told) {
     this.#element = element;

@@ -1,4 +1,4 @@
-/** Have the service read rows of cities that are typed, as it reads files, once the typing pauses. */
+/** Let the service read typed rows of cities, as it reads files, once the typing pauses. */
 
 import { inRows } from "./instance.js";
 import { Problem } from "../planning/service.js";
@@ -10,11 +10,11 @@ const FOUR = "each stop must have 4 items: x and y in the first plane, then in t
 export class TypedRows {
   #service;
   #onRead;
-  #text = null; // that was typed and is not read yet
+  #text = null; // the text that was typed and is not read yet
   #timer = 0;
   #reading = new AbortController();
 
-  /** @param {(found: { coordinates: number[][], ids?: string[] }) => void} onRead told what was typed */
+  /** @param {(found: { coordinates: number[][], ids?: string[] }) => void} onRead called with what was typed */
   constructor(service, onRead) {
     this.#service = service;
     this.#onRead = onRead;
@@ -28,7 +28,7 @@ export class TypedRows {
   typed(text) {
     this.forget();
     this.#text = text;
-    // What is refused may be half a row: that is told when it is planned.
+    // A refused row may be half typed: this is reported when it is planned.
     this.#timer = setTimeout(() => this.settle().catch(disregard), PAUSE);
   }
 
@@ -38,7 +38,7 @@ export class TypedRows {
     this.#text = null;
   }
 
-  /** Reads what was typed now. Throws a Problem that names the row, or an AbortError. */
+  /** Reads now what was typed. Throws a Problem that names the row, or an AbortError. */
   async settle(reading = new AbortController()) {
     clearTimeout(this.#timer);
     this.#reading.abort();

@@ -12,7 +12,7 @@ export function drawArrows(context, places, along = false) {
   }
 }
 
-/** The pieces of a street are short, whatever their legs are. */
+/** The pieces of a street are short even if its legs are long. */
 function drawApart(context, places) {
   let far = 0;
   for (let at = 1; at < places.length; at++) {

@@ -1,4 +1,4 @@
-/** A layer of a map with a canvas of its own, so that to redraw it redraws nothing else. */
+/** A layer of a map with its own canvas, so that redrawing it redraws nothing else. */
 
 import "../vendor/leaflet/leaflet.js";
 import { onSchemeChange } from "../common/colours.js";
@@ -9,11 +9,11 @@ const { L } = globalThis;
 export class CanvasLayer extends L.Layer {
   #canvas = document.createElement("canvas");
   #size = null;
-  #ratio = 1; // of the screen's pixels to the map's
+  #ratio = 1; // the ratio of the screen's pixels to the map's
 
   /**
-   * @param {string} name of the canvas's class
-   * @param {string} pane of the map, in which it lies
+   * @param {string} name the canvas's class
+   * @param {string} pane the pane of the map to draw in
    */
   constructor(name, pane = "tours") {
     super();
@@ -62,7 +62,7 @@ export class CanvasLayer extends L.Layer {
   }
 }
 
-/** Where a position stands on a map, in pixels. Leaflet says so too, of thousands at many times the cost. */
+/** The pixels of a position on a map. Leaflet computes them too, but much more slowly for thousands. */
 function pointOn(map) {
   const scale = map.options.crs.scale(map.getZoom());
   const corner = map.getPixelOrigin().subtract(map._getMapPanePos());

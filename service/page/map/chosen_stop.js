@@ -1,4 +1,4 @@
-/** The stop that is chosen on the maps, to be moved or deleted, and what is said of it under them. */
+/** The stop that is chosen on the maps to be moved or deleted, and the help below them. */
 
 const element = (id) => document.getElementById(id);
 const HINTS = matchMedia("(pointer: coarse)").matches
@@ -14,8 +14,8 @@ export class ChosenStop {
   #onDelete;
 
   /**
-   * @param {(city: number | null) => void} onChosen told which stop is chosen
-   * @param {(city: number) => void} onDelete told which stop is to go
+   * @param {(city: number | null) => void} onChosen called with the stop that is chosen
+   * @param {(city: number) => void} onDelete called with the stop to delete
    */
   constructor(onChosen, onDelete) {
     this.#onChosen = onChosen;
@@ -32,12 +32,12 @@ export class ChosenStop {
     return this.#editable;
   }
 
-  /** Calls the stops by these names from now on. */
+  /** Sets the names of the stops. */
   name(nameOf) {
     this.#nameOf = nameOf;
   }
 
-  /** So many stops are shown; `kept` if they are as before, unless one was added or deleted. */
+  /** Takes the number of stops. The choice stays if the stops are `kept` and none was added or deleted. */
   show(count, editable, kept) {
     const chosen = editable && kept && count === this.#count ? this.#city : null;
     this.#count = count;
@@ -51,7 +51,7 @@ export class ChosenStop {
     this.#say();
   }
 
-  /** Chooses the next stop, or the one before; of none the first, or the last. */
+  /** Chooses the next stop, or the one before; if none is chosen, the first or the last. */
   turn(by) {
     if (!this.#editable) return;
     const from = this.#city ?? (by > 0 ? -1 : this.#count);

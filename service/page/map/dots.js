@@ -24,7 +24,7 @@ export class Dots extends CanvasLayer {
     return this.placed[0] ?? [];
   }
 
-  /** Draws one of them elsewhere. */
+  /** Draws one of them at another place. */
   move(at, latlng) {
     this.lines = [this.lines[0].with(at, latlng)];
     this.redraw();

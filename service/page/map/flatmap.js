@@ -12,7 +12,7 @@ export function fitting(map, room) {
   return { paddingTopLeft: [buttons, room], paddingBottomRight: [room, room], animate: false };
 }
 
-/** A ring around a place, of a style by its name, that is put on a map where it is wanted. */
+/** A ring around a place, in the style of this name, to be put on a map. */
 export function ring(name, side) {
   const icon = L.divIcon({ className: `ring ${name}`, iconSize: [side, side], tooltipAnchor: [0, -side / 2] });
   return L.marker([0, 0], { icon, interactive: false, keyboard: false });
@@ -29,7 +29,7 @@ export function flatMap(element, options) {
     zoomControl: !BY_FINGER,
     zoomSnap: 0,
     scrollWheelZoom: false, // the wheel scrolls the page
-    dragging: !BY_FINGER, // and so does one finger
+    dragging: !BY_FINGER, // so does one finger
     ...options,
   });
   for (const [name, height] of Object.entries(PANES)) map.createPane(name).style.zIndex = height;

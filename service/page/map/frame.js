@@ -13,7 +13,7 @@ export class Frame {
     this.#size = size;
   }
 
-  /** The frame that holds these places, whatever their units; of none, or one, a square. */
+  /** The frame that holds these places, in any unit; a square for one place or none. */
   static around(places) {
     if (places.length < 2) {
       const [x, y] = places[0] ?? [SIDE / 2, SIDE / 2];

@@ -8,7 +8,7 @@ import { Routes } from "./routes.js";
 import { TourLine } from "./tourline.js";
 
 const { L } = globalThis;
-const TINT = 0.55; // how much of a cell's colour the dearest cost takes
+const TINT = 0.55; // the share of a cell's colour at the highest cost
 const POINTED = 9; // pixels from a place within which it is pointed at
 
 export class GridMap {
@@ -16,7 +16,7 @@ export class GridMap {
   #element;
   #grid = null;
   #image = null;
-  #cells = []; // of the places
+  #cells = []; // the places
   #places = L.featureGroup();
   #unreached = L.featureGroup();
   #renderer = L.canvas({ padding: 0.2 });
@@ -24,10 +24,10 @@ export class GridMap {
   #start = ring("start", 18);
   #end = ring("end", 18);
   #highlight = ring("highlight", 16);
-  #tour = null; // that is selected
+  #tour = null; // the selected tour
   #lines = { pinned: new TourLine("pinned", [5, 5]), selected: new TourLine("selected") };
   #routes = new Routes();
-  #visits = []; // of the routes that are drawn, `{ name, stops }` each
+  #visits = []; // the routes that are drawn, each `{ name, stops }`
 
   constructor(element) {
     this.#element = element;
@@ -41,7 +41,7 @@ export class GridMap {
     onSchemeChange(() => this.#grid && this.#colour());
   }
 
-  /** Shows a grid, rows of 0 and 1, tinted by a layer of costs where there is one. */
+  /** Shows a grid, rows of 0 and 1, tinted by a layer of costs if there is one. */
   show({ grid, cost_layer, places }) {
     this.#grid = { grid, costs: cost_layer };
     for (const name of Object.keys(this.#lines)) this.draw(name, null);
@@ -65,7 +65,7 @@ export class GridMap {
     for (const { box } of regions) this.#unreached.addLayer(L.rectangle(corners(box), outlined));
   }
 
-  /** Draws the path of a tour as "selected" or "pinned"; null takes it away. */
+  /** Draws the path of a tour as "selected" or "pinned"; null removes it. */
   draw(name, item) {
     const path = lineOf(item?.path);
     this.#lines[name].show(path);
@@ -87,7 +87,7 @@ export class GridMap {
     return least <= POINTED ? far.indexOf(least) : null;
   }
 
-  /** Rings a place, and says what it is; null takes the ring away. */
+  /** Rings a place, and says what it is; null removes the ring. */
   #point(place) {
     this.#mark(this.#highlight, place === null ? undefined : middle(this.#cells[place]));
     if (place === null) return this.#highlight.unbindTooltip();
@@ -130,16 +130,16 @@ export class GridMap {
 /** Rows go down the map, columns to the right. */
 const middle = ([row, column]) => [-row - 0.5, column + 0.5];
 
-/** Two corners of a box, of which the first and the last cell are in it. */
+/** Two corners of a box, given the first and the last cell in it. */
 const corners = ([[top, left], [bottom, right]]) => [[-top, left], [-bottom - 1, right + 1]];
 
-/** The line of a path on the map; of none, as while a front is found, it is empty. */
+/** The line of a path on the map; empty without a path, as while a front is searched. */
 const lineOf = (path) => turns(path?.cells ?? []).map(middle);
 
 /** x and y of a position on the map. */
 const flat = ([lat, lng]) => [lng, lat];
 
-/** Of a path's cells, its ends and those where it turns. */
+/** The cells of a path at its ends and where it turns. */
 const turns = (cells) =>
   cells.filter(([row, column], at) => {
     const [before, after] = [cells[at - 1], cells[at + 1]];

@@ -1,6 +1,6 @@
 /** Take hold of the stops on a map: choose one, drag it, or move and delete it by keys. */
 
-const REACH = { mouse: 9, pen: 14, touch: 22 }; // pixels from a stop within which it is taken hold of
+const REACH = { mouse: 9, pen: 14, touch: 22 }; // pixels from a stop within which it can be grabbed
 const STILL = 4; // pixels that a pointer may move in a click
 const STEP = 10; // pixels that an arrow key moves a stop, with Shift one
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
@@ -9,14 +9,14 @@ export class Handling {
   #map;
   #plane;
   #chosen;
-  #held = null; // { city, from, moved } of the stop under a pointer
+  #held = null; // { city, from, moved }: the stop under a pointer
   #nudged = null; // where keys have moved the chosen stop so far
   #dragged = false; // whether the click to come is the end of a drag
 
   /**
-   * @param {L.Map} map whose stops these are
+   * @param {L.Map} map the map of the stops
    * @param {object} plane with `near(point, reach)`, the city at a point in pixels or null;
-   *   `pointOf(city)`; and `drag(city, point)` and `drop(city, point)`, told where one is put
+   *   `pointOf(city)`; and `drag(city, point)` and `drop(city, point)`, called with the place where a stop is put
    * @param {ChosenStop} chosen the stop that is chosen
    */
   constructor(map, plane, chosen) {
@@ -60,7 +60,7 @@ export class Handling {
     if (moved) this.#plane.drop(city, this.#point(event));
   }
 
-  /** A drag that the browser broke off leaves the stop where it was. */
+  /** Puts the stop back if the browser ends a drag. */
   #letGo() {
     if (!this.#held) return;
     const { city, from } = this.#held;
@@ -105,7 +105,7 @@ export class Handling {
     if (this.#chosen.city !== null) this.#plane.drop(this.#chosen.city, point);
   }
 
-  /** The stop at a pointer, null where there is none, or none may be changed. */
+  /** The stop at a pointer; null if there is none, or stops cannot be changed. */
   #at(event) {
     if (!this.#chosen.editable) return null;
     return this.#plane.near(this.#point(event), REACH[event.pointerType] ?? REACH.mouse);

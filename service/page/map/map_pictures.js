@@ -5,7 +5,7 @@ const DASHED = { colour: "pinned", dash: [5, 5] };
 
 export const styleOfTour = (dashed) => (dashed ? DASHED : SELECTED);
 
-/** The map of stops at these places, with tours, each `{ cities, dashed }`, of which the last is selected; `lineOf` gives the line of a way. */
+/** The map of stops, with tours `{ cities, dashed }`, the last one selected; `lineOf` returns the line of a way. */
 export function pictureOfTours(places, tours, lineOf) {
   const lines = tours.map(({ cities, dashed }) => ({ places: lineOf(cities), ...styleOfTour(dashed) }));
   return { places: places.filter(Boolean), lines, starts: startsOf(lines.slice(-1)) };

@@ -13,7 +13,7 @@ import { Ways } from "./ways/ways.js";
 
 const element = (id) => document.getElementById(id);
 
-const EDITED = ["stops", "coordinates"]; // of which stops are moved and deleted on the map
+const EDITED = ["stops", "coordinates"]; // kinds of instances whose stops can be moved and deleted on the map
 
 /** The maps that are drawn, as of `mapsOf`. */
 const placed = (instance, kind) =>
@@ -34,10 +34,10 @@ export class Maps {
   #flown = false; // whether both objectives are measured in straight lines
 
   /**
-   * @param {(plane: number, place: number[], only: boolean) => void} onClick told where a plane was
-   *   clicked, in longitude and latitude where it is the only one
-   * @param {(plane: number, city: number, place: number[]) => void} onMove told where a stop was put
-   * @param {(city: number) => void} onDelete told which stop is to go
+   * @param {(plane: number, place: number[], only: boolean) => void} onClick called with the place where a plane was
+   *   clicked, in longitude and latitude if it is the only one
+   * @param {(plane: number, city: number, place: number[]) => void} onMove called with the place where a stop was put
+   * @param {(city: number) => void} onDelete called with the stop to delete
    */
   constructor({ onClick, onMove, onDelete }) {
     const clicked = (plane, place) => onClick(plane, place, this.#kind === "stops");
@@ -46,7 +46,7 @@ export class Maps {
     this.#grid = new GridMap(element("grid"));
   }
 
-  /** Draws map tiles under stops, where there are any; the credit says whom they are by. */
+  /** Draws map tiles under stops, if there are any; the credit names their source. */
   tile({ url, credit }) {
     if (!url) return;
     this.#tilesCredit = credit;
@@ -65,7 +65,7 @@ export class Maps {
     this.#sayCredit();
   }
 
-  /** The ways along streets by which tours are drawn. */
+  /** The ways along streets that tours are drawn along. */
   get ways() {
     return this.#ways;
   }
@@ -79,7 +79,7 @@ export class Maps {
     element("credit").textContent = this.#onEarth ? this.#tilesCredit || this.#streetsCredit : "";
   }
 
-  /** Calls the maps by these objectives, and the stops by ids, or by numbers where there are none. */
+  /** Names the maps after these objectives, and the stops by ids, or by numbers without ids. */
   name(objectives, ids) {
     this.#objectives = objectives;
     this.#ids = ids;
@@ -95,7 +95,7 @@ export class Maps {
     element("length-1").hidden = single || this.#drawn[0] === EARTH;
   }
 
-  /** Rings a place on a map that is clicked, but no stop yet; null takes the rings away. */
+  /** Rings a clicked place that is not a stop yet; null removes the rings. */
   wait(plane, place) {
     this.#planes.wait(plane, place);
   }
@@ -164,7 +164,7 @@ export class Maps {
     else if (this.#drawn.length) this.#planes.draw(name, item?.tour ?? null, closed);
   }
 
-  /** The stops along a tour, as one way, or along each route of a plan. */
+  /** The stops along a tour as one way, or along each route of a plan. */
   waysOf(item, closed) {
     return isPlan(item) ? this.#routes(item).map(({ stops }) => stops) : [roundOf(item.tour, closed)];
   }

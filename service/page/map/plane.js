@@ -14,14 +14,14 @@ const { L } = globalThis;
 const NARROW = 240; // pixels, as a map on a phone
 const CROWD = 300; // stops
 const POINTED = 6; // pixels from a stop within which it is pointed at
-const [MOVING, STILL] = [1500, 150]; // stops of a way that are drawn while one follows another, and the milliseconds until all are
+const [MOVING, STILL] = [1500, 150]; // stops drawn of a way that changes, and milliseconds until all are
 
 export class Plane {
   #map;
   #frame = Frame.around([]);
   #stops = new Dots();
-  #pointed = null; // the city that is pointed at
-  #rests = {}; // timers until a way is drawn whole, by its name
+  #pointed = null; // the city under the pointer
+  #rests = {}; // timers until the whole way is drawn, by its name
   #start = ring("start", 18);
   #end = ring("end", 18);
   #highlight = ring("highlight", 16);
@@ -32,7 +32,7 @@ export class Plane {
   #names = L.layerGroup();
   #surroundings = { streets: null, places: [], extent: [] };
   #places = [];
-  #along = () => null; // of a way through cities the places along the streets
+  #along = () => null; // the places along the streets of a way through cities
   #onEarth = false;
   #tiles = null;
 
@@ -89,7 +89,7 @@ export class Plane {
     this.#showSurroundings();
   }
 
-  /** Draws places by name, and streets where there are no tiles, from now on; the next stops are shown with all of an `extent`. */
+  /** Draws named places, and streets without tiles, from now on; the next stops are shown with a whole `extent`. */
   surround(surroundings) {
     this.#surroundings = surroundings;
     this.#showSurroundings();
@@ -108,7 +108,7 @@ export class Plane {
     else this.#tiles.remove();
   }
 
-  /** Draws a way through cities as "selected" or "pinned", back to the first where it is closed; of none nothing. */
+  /** Draws a way through cities as "selected" or "pinned", back to the first if it is closed; nothing without a way. */
   draw(name, cities) {
     this.#line(name, cities);
     if (name !== "selected") return;
@@ -116,7 +116,7 @@ export class Plane {
     this.#mark(this.#end, cities[0] === cities.at(-1) ? null : cities.at(-1));
   }
 
-  /** Draws the line of a way; one of thousands of stops by some of them, until no other follows. */
+  /** Draws the line of a way. During changes, one of thousands of stops is drawn through some of them. */
   #line(name, cities) {
     const along = this.#along(cities);
     const apart = along ? 1 : Math.ceil(cities.length / MOVING);
@@ -126,7 +126,7 @@ export class Plane {
     if (apart > 1) this.#rests[name] = setTimeout(() => this.#lines[name].show(this.#latlngs(cities, along)), STILL);
   }
 
-  /** Draws ways along the streets from now on: `along` gives the places of a way through cities, or null where it does not know. */
+  /** Draws ways along the streets from now on: `along` returns the places of a way through cities, or null. */
   follow(along) {
     this.#along = along;
   }
@@ -148,20 +148,20 @@ export class Plane {
     this.#mark(this.#start, starts.size === 1 ? [...starts][0] : null);
   }
 
-  /** Rings a city, and says what it is; null takes the ring away. */
+  /** Rings a city, and says what it is; null removes the ring. */
   highlight(city, said = "") {
     this.#mark(this.#highlight, city);
     if (city == null) this.#highlight.unbindTooltip();
     else this.#highlight.bindTooltip(said, { permanent: true, direction: "top" }).openTooltip();
   }
 
-  /** Rings a place that is clicked, but no stop yet; null takes the ring away. */
+  /** Rings a clicked place that is not a stop yet; null removes the ring. */
   wait(place) {
     if (place) this.#waiting.setLatLng(this.#frame.latlng(place)).addTo(this.#map);
     else this.#waiting.remove();
   }
 
-  /** What Handling is to know of the cities, and to do with them. */
+  /** The interface of the cities for Handling. */
   #handled(onMove) {
     const placeAt = (point) => this.#frame.place(this.#map.containerPointToLatLng(point));
     return {

@@ -6,14 +6,14 @@ import { Plane } from "./plane.js";
 export class Planes {
   #maps;
   #tour = null;
-  #routes = []; // of the plan that is drawn
+  #routes = []; // the routes of the plan that is drawn
   #ids = null;
   #chosen;
 
   /**
-   * @param {(plane: number, place: number[]) => void} onClick told where a map was clicked
-   * @param {(plane: number, city: number, place: number[]) => void} onMove told where a stop was put
-   * @param {(city: number) => void} onDelete told which stop is to go
+   * @param {(plane: number, place: number[]) => void} onClick called with the place where a map was clicked
+   * @param {(plane: number, city: number, place: number[]) => void} onMove called with the place where a stop was put
+   * @param {(city: number) => void} onDelete called with the stop to delete
    */
   constructor(elements, { onClick, onMove, onDelete }) {
     this.#chosen = new ChosenStop((city) => this.#highlight(city), onDelete);
@@ -24,12 +24,12 @@ export class Planes {
     });
   }
 
-  /** Rings a place on a map that is clicked, but no stop yet; null takes the rings away. */
+  /** Rings a clicked place that is not a stop yet; null removes the rings. */
   wait(plane, place) {
     this.#maps.forEach((map, at) => map.wait(at === plane ? place : null));
   }
 
-  /** Calls the cities by these ids, or by numbers where there are none. */
+  /** Names the cities by these ids, or by numbers without ids. */
   name(ids) {
     this.#ids = ids;
     this.#chosen.name((city) => this.#nameOf(city));
@@ -50,7 +50,7 @@ export class Planes {
     this.#maps[0].surround(surroundings);
   }
 
-  /** Draws cities, rows of four numbers, or of two where there is one map; tours are taken away. */
+  /** Draws cities, rows of four numbers, or of two for one map; removes tours. */
   show(rows, fit = true, onEarth = false) {
     this.#tour = null;
     this.#routes = [];
@@ -63,7 +63,7 @@ export class Planes {
     return this.#maps.map(({ drawn }) => drawn);
   }
 
-  /** Draws a tour as "selected" or "pinned"; null takes it away. */
+  /** Draws a tour as "selected" or "pinned"; null removes it. */
   draw(name, tour, closed = true) {
     if (name === "selected") this.#tour = tour;
     const cities = roundOf(tour ?? [], closed);
@@ -80,7 +80,7 @@ export class Planes {
     return this.#maps[plane].drawnLine(cities);
   }
 
-  /** Draws the routes of a plan, each `{ name, stops, style }`; none takes them away. */
+  /** Draws the routes of a plan, each `{ name, stops, style }`; without routes, removes them. */
   drawRoutes(routes) {
     this.#routes = routes;
     for (const map of this.#maps) if (map.places.length) map.drawRoutes(routes);
@@ -96,7 +96,7 @@ export class Planes {
   }
 }
 
-/** Says where a stop stands on a tour, or on the one of these routes, each `{ name, stops }`, that visits it; of a depot nothing. */
+/** Says the position of a stop on a tour, or on the only one of these routes that visits it; "" for a depot. */
 export function turnOf(city, tour, routes) {
   if (tour?.includes(city)) return `: ${ordinal(tour.indexOf(city) + 1)} on the tour`;
   const visiting = routes.filter(({ stops }) => stops.includes(city));
@@ -104,7 +104,7 @@ export function turnOf(city, tour, routes) {
   return `: ${ordinal(visiting[0].stops.indexOf(city) + 1)} of ${visiting[0].name}`;
 }
 
-/** The cities of a tour, back to the first where it is closed. */
+/** The cities of a tour, back to the first if it is closed. */
 export const roundOf = (tour, closed) => (closed && tour.length ? [...tour, tour[0]] : tour);
 
 const ENDINGS = { one: "st", two: "nd", few: "rd", other: "th" };

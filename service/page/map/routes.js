@@ -4,7 +4,7 @@ import { colour } from "../common/colours.js";
 import { drawArrows } from "./arrows.js";
 import { CanvasLayer } from "./canvas_layer.js";
 
-// Pixels: some of the colours alone are too pale for the ground.
+// Pixels of a line and of its darker edge: some of the colours alone are too pale on the map.
 const CASING = 1.5;
 const [LINE, THIN] = [3, 2];
 const NARROW = 400; // of a map, as on a phone

@@ -1,9 +1,9 @@
-/** Draw streets on one canvas, beneath the tours of those who drive them. */
+/** Draw streets on one canvas, below the tours. */
 
 import { colour } from "../common/colours.js";
 import { CanvasLayer } from "./canvas_layer.js";
 
-// From the least to the greatest, so that the greater lie above. Widths are pixels, on a map this wide.
+// From small to large streets, so that large ones are on top. Widths are pixels, on a map this wide.
 const KINDS = { path: ["line", 1], side: ["edge", 1.5], main: ["edge", 3.5] };
 const WIDE = 600;
 
@@ -35,7 +35,7 @@ export class Streets extends CanvasLayer {
   }
 }
 
-/** Longitude and latitude of each place of a line, of which each is written from the one before. */
+/** Longitude and latitude of each place of a line; each place is stored relative to the one before. */
 function placesAlong(row, { origin, step }) {
   const at = [0, 0];
   return Array.from({ length: row.length / 2 }, (_, place) => {

@@ -1,11 +1,11 @@
-/** Draw a tour on a canvas of its own, so that choosing another tour redraws nothing else. */
+/** Draw a tour on its own canvas, so that choosing another tour redraws nothing else. */
 
 import { colour } from "../common/colours.js";
 import { drawArrows } from "./arrows.js";
 import { CanvasLayer } from "./canvas_layer.js";
 
-// To fill wide lines is most of a frame where there is no graphics processor, and of hundreds of
-// cities narrow ones are clearer anyway.
+// Without a graphics processor, filling wide lines takes most of a frame; and for hundreds of cities narrow lines are
+// clearer anyway.
 const MANY = 150;
 const [WIDE, NARROW] = [2, 1]; // pixels
 
@@ -15,7 +15,7 @@ export class TourLine extends CanvasLayer {
   #along = false;
 
   /**
-   * @param {string} name of its colour, and of its class
+   * @param {string} name the name of its colour and of its class
    * @param {number[]} dash as a canvas takes it; lines without one have arrowheads
    */
   constructor(name, dash = []) {
@@ -24,7 +24,7 @@ export class TourLine extends CanvasLayer {
     this.#dash = dash;
   }
 
-  /** Draws a line through these, maybe along streets; none takes it away. */
+  /** Draws a line through these positions, maybe along streets; without positions, removes it. */
   show(latlngs, along = false) {
     this.lines = [latlngs];
     this.#along = along;

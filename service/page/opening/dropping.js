@@ -1,8 +1,8 @@
 /** Take files that are dropped anywhere on the page. */
 
 /**
- * Marks an element while something is held over the page, and opens the files that are let go; of
- * folders, which a browser gives no content of, the name of the first is told.
+ * Marks an element while something is dragged over the page, and opens the files that are dropped. A
+ * browser gives no content of folders, so only the name of the first one is passed on.
  */
 export function takeDropped(marked, openFiles, onFolder) {
   for (const kind of ["dragover", "drop"]) addEventListener(kind, (event) => event.preventDefault());

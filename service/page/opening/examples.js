@@ -1,10 +1,10 @@
-/** The examples that can be chosen, and the one that is. */
+/** The list of examples, and the chosen one. */
 
 export class Examples {
   #choice;
   #about;
   #all = [];
-  #asked = null; // for by the chosen one, as JSON
+  #asked = null; // the request of the chosen example, as JSON
 
   /** @param {HTMLSelectElement} choice @param {HTMLElement} about where the story of an example stands */
   constructor(choice, about) {
@@ -12,7 +12,7 @@ export class Examples {
     this.#about = about;
   }
 
-  /** Takes the list of examples, of which the first can be chosen by itself. */
+  /** Takes the list of examples; the first may be chosen by the page itself. */
   offer(all) {
     this.#all = all;
     this.#choice.append(...all.map(({ file, title }) => new Option(title, file)));
@@ -26,7 +26,7 @@ export class Examples {
     return this.#all.find(({ file }) => file === this.#choice.value);
   }
 
-  /** Chooses an example by its file, and tells its story; false where there is no such file. */
+  /** Chooses an example by its file, and shows its story. Returns false if there is no such file. */
   choose(file) {
     this.#choice.value = this.#all.some((example) => example.file === file) ? file : "";
     this.#about.textContent = this.chosen?.about ?? "";
@@ -37,12 +37,12 @@ export class Examples {
     this.choose("");
   }
 
-  /** Says what the chosen example asks for, before anything is changed. */
+  /** Stores the request of the chosen example, before anything is changed. */
   opened(asked) {
     this.#asked = JSON.stringify(asked);
   }
 
-  /** The file of the chosen example, if this is still what it asks for; null otherwise. */
+  /** The file of the chosen example, if this is still its request; null otherwise. */
   unchanged(asked) {
     return asked && this.chosen && JSON.stringify(asked) === this.#asked ? this.chosen.file : null;
   }

@@ -1,4 +1,4 @@
-/** The name of the file that is shown, and what was taken for granted when it was read. */
+/** The name of the open file, and notes on what was assumed when it was read. */
 
 export class FileNotes {
   #status;
@@ -6,8 +6,8 @@ export class FileNotes {
 
   /**
    * @param {HTMLElement} status a live region, which is read out when it is filled
-   * @param {HTMLButtonElement} button that dismisses the notes
-   * @param {() => void} onDismissed told once that was pressed and is gone, and the focus with it
+   * @param {HTMLButtonElement} button dismisses the notes
+   * @param {() => void} onDismissed called once that was pressed and is gone, and the focus with it
    */
   constructor(status, button, onDismissed) {
     this.#status = status;

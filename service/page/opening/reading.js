@@ -1,4 +1,4 @@
-/** Have the service read files, and text that is pasted as a file would be. */
+/** Let the service read files, and pasted text as if it were a file. */
 
 import { namesIn } from "../common/objectives.js";
 import { inRows } from "../inputs/instance.js";
@@ -7,7 +7,7 @@ import { Problem } from "../planning/service.js";
 import { withoutRoads } from "./roads.js";
 
 /**
- * What the form opens, the names of its objectives, and the file's name with what was taken for granted;
+ * The request that the form opens, the names of its objectives, and the file's name with the notes on it.
  * `roads` says whether the service has a routing engine.
  */
 export async function read(service, files, roads, signal) {
@@ -21,7 +21,7 @@ export async function read(service, files, roads, signal) {
   return { members, objectives: namesIn(members), name, notes };
 }
 
-/** What the browser cannot read would look like a service that does not answer. */
+/** A file that the browser cannot read would look like a service that does not answer. */
 async function checked(file) {
   const reader = file.stream().getReader();
   try {

@@ -1,8 +1,8 @@
-/** Say of a request for ways by road that the service has no routing engine, before it is planned. */
+/** Say before planning that a request needs a routing engine, and that the service has none. */
 
-const MISSING = "This service has no routing engine, which knows ways by road";
+const MISSING = "This service has no routing engine for costs by road";
 
-/** What was read, with straight lines where the reader chose roads; where the file asks for them, with a note. */
+/** The answer with straight lines if the reader chose roads; with a note if the file itself asks for roads. */
 export function withoutRoads(answer) {
   const { request, notes, name: file } = answer;
   const asked = request.objectives?.filter?.(isRoad) ?? [];
@@ -10,10 +10,10 @@ export function withoutRoads(answer) {
   const chosen = notes.find(({ code }) => code === "objectives");
   if (!chosen) {
     const names = asked.map(({ name }) => `“${name}”`).join(" and ");
-    return { ...answer, notes: [...notes, { file, code: "no-router", text: `${MISSING}: have ${names} measured otherwise.` }] };
+    return { ...answer, notes: [...notes, { file, code: "no-router", text: `${MISSING}: choose another measure for ${names}.` }] };
   }
   const straight = { name: "second distance", from: "great_circle" };
-  const text = `${MISSING}: both objectives are straight lines, of which one tour is the best. A column of costs would be a second objective.`;
+  const text = `${MISSING}: both objectives are straight lines, so one tour is the best under both. A column of costs would be a second objective.`;
   return {
     ...answer,
     request: { ...request, objectives: request.objectives.map((each) => (isRoad(each) ? straight : each)) },

@@ -3,20 +3,20 @@
 export class Surroundings {
   #service;
   #result;
-  #example = null; // whose surroundings are drawn
+  #example = null; // the example whose surroundings are drawn
 
   constructor(service, result) {
     this.#service = service;
     this.#result = result;
   }
 
-  /** Draws what is known of an example before its stops are. */
+  /** Draws the surroundings that come before the stops. */
   begin(example) {
     this.#example = example;
     this.#result.surround(drawn(example));
   }
 
-  /** Draws what comes after the stops. The maps are good without it. */
+  /** Draws the surroundings that come after the stops. The maps work without them. */
   async fetch() {
     const example = this.#example;
     const [streets, legs] = await Promise.all([example.streets, example.legs].map((file) => this.#get(file)));

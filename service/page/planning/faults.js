@@ -1,11 +1,11 @@
-/** Show each fault of a refusal at the field that it is about. */
+/** Show each fault of an error at its field. */
 
 const FIELD_OF = { coordinates: "cities", matrices: "cities", stops: "cities", closed: "end" };
 for (const member of ["tour", "done", "remove", "add", "position"]) FIELD_OF[member] = "replan";
 const COLUMNS = ["x₁", "y₁", "x₂", "y₂"];
 const FIELD_OF_CODE = { unauthorized: "key" };
 
-/** Shows the faults of a problem; whatever has no field of its own is said under the buttons. */
+/** Shows the faults of a problem at their fields, and all others below the buttons. */
 export function showFaults(problem) {
   clearFaults();
   const faults = faultsOf(problem);
@@ -20,10 +20,10 @@ export function showFaults(problem) {
   first?.focus();
 }
 
-/** Requests for plans have not all fields of the form. */
+/** Requests for plans do not have all fields of the form. */
 const seen = (said) => (said?.closest("[hidden]") ? null : said);
 
-/** Of one fault the problem itself says the most. */
+/** If there is only one fault, the problem itself says the most. */
 function faultsOf({ message, errors = [] }) {
   return errors.length > 1 ? errors : [{ ...errors[0], detail: message }];
 }
@@ -51,7 +51,7 @@ function mark(name, row) {
   return document.querySelector(`#stops [data-row="${row}"]`) ?? field;
 }
 
-/** Marks the text of the stops, which are not in the table while it cannot be read. */
+/** Marks a row of the text: stops are not in the table while the text cannot be read. */
 function markText(row) {
   const area = document.getElementById("cities");
   area.setAttribute("aria-invalid", "true");
@@ -60,7 +60,7 @@ function markText(row) {
   return area;
 }
 
-/** Selects a row of text, in which empty lines are none. */
+/** Selects a row of text; empty lines are not rows. */
 function selectLine(area, row) {
   const line = [...area.value.matchAll(/^.*\S.*$/gm)][row];
   if (line) area.setSelectionRange(line.index, line.index + line[0].length);
@@ -68,15 +68,15 @@ function selectLine(area, row) {
 
 const counted = (index) => Number(index) + 1; // as people count
 
-// What the service says of requests, and what is said of the page instead.
+// Sentences of the service about requests, and those that the page shows instead.
 const SAID = [
   [/^(start|end) must be a city, 0 to (\d+), got (-?\d+)/, (_, name, last, got) => `${name} must be a stop, 1 to ${counted(last)}, got ${counted(got)}`],
   [/^(start|end) must be the index of a city, as there are no stops with ids/, (_, name) => `${name} must be the number of a stop, as the stops have no names`],
-  [/^end must not be the start.*/, () => "end must be another stop than the start; leave it empty for a tour that returns"],
+  [/^end must not be the start.*/, () => "end must not be the start; leave it empty for a tour that returns"],
   [/^(coordinates|stops) must have 1 item or more.*/, () => "There must be a stop: open a file, add one, or click it into place"],
 ];
 
-/** What a fault calls by its name in the request is called here as on the page. */
+/** Replaces names of members in the sentence of a fault by their labels on the page. */
 function inWords(fault, field) {
   const label = document.querySelector(`label[for="${field}"]`)?.textContent;
   const detail = SAID.reduce((said, [pattern, instead]) => said.replace(pattern, instead), fault);

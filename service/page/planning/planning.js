@@ -3,26 +3,26 @@
 import { asksForPlans } from "../common/nouns.js";
 import { Problem } from "./service.js";
 
-const GLANCE = 300; // milliseconds from one look at a growing front to the next
+const GLANCE = 300; // milliseconds between two requests for a growing front
 const MOST_WAIT = 5; // seconds between two attempts
-const MANY = 1500; // stops, of which a network's front takes longer than many a search
+const MANY = 1500; // stops: for more, the network's front may take longer than a search
 const REFUSED = Symbol("the network has no plan");
-// Of shipments, of windows that are hard to keep, and of very many stops, only the search finds any.
+// With shipments, tight windows or very many stops, only the search finds plans.
 const SEARCH_ALONE = ["no-plan", "too-many-for-network"];
 const FINAL = ["done", "cancelled", "failed"];
 
 /**
- * A front being planned. What there is to show comes as `{ stage, alone, answer, growth }`: the
- * front of the network alone, where it is known, the best so far, and how that grew, a row of
- * seconds and hypervolume each. Stages: "warming-up", where the search is not compiled yet,
- * "queued", "running", "done" and "cancelled".
+ * A front being planned. It yields states `{ stage, alone, answer, growth }`: the front of the
+ * network alone, if it is known; the best front so far; and its growth, in rows of seconds and
+ * hypervolume. Stages: "warming-up" (the search is not compiled yet), "queued", "running", "done"
+ * and "cancelled".
  */
 export class Planning {
   #service;
   #left = new AbortController();
-  #id = null; // of the job, while there is one
+  #id = null; // the id of the job, while there is one
   #own = false; // whether the job was begun here
-  #stopped = null; // the front as it was when it was to be stopped
+  #stopped = null; // the front when it was stopped
 
   constructor(service) {
     this.#service = service;
@@ -37,7 +37,7 @@ export class Planning {
     }
   }
 
-  /** The network's front, after a null for each time that the service is not warm yet. */
+  /** Yields null each time that the service is not warm yet, and then the network's front. */
   async *#alone(request) {
     const { initial_tours, bound, ...body } = request.body;
     // Where the search follows, the network's tours come soonest without repairs, which plans have not.
@@ -59,7 +59,7 @@ export class Planning {
     }
   }
 
-  /** The front of what is left of a way, from what has changed since its front was planned. */
+  /** The front of the rest of a way, given what has changed since its front was planned. */
   async *replan(id, body) {
     for await (const answer of this.#patiently({ path: `front/${id}/replan`, body })) {
       if (answer) yield { stage: "done", alone: null, answer, growth: [] };
@@ -67,7 +67,7 @@ export class Planning {
     }
   }
 
-  /** What becomes of a front that the service has already. */
+  /** The states of a front that the service already has. */
   async *follow(id, alone = null) {
     this.#id = id;
     const growth = alone ? [[0, alone.hypervolume]] : [];
@@ -75,7 +75,7 @@ export class Planning {
       yield* this.#followed(`front/${id}`, alone, growth);
     } catch (error) {
       if (error.code !== "unknown-front" || !this.#stopped) throw error;
-      // It ended between the look and the stop, which forgot it.
+      // It ended just before it was stopped, so stopping deleted it.
       this.#id = null;
       yield { stage: "cancelled", alone, answer: grown(alone, this.#stopped), growth };
     }
@@ -103,13 +103,13 @@ export class Planning {
     yield { stage: answer.status, alone, answer: grown(alone, answer), growth };
   }
 
-  /** Ends the plan with the best front so far, or with none where there is no job yet. */
+  /** Ends the plan with the best front so far, or without a front if there is no job yet. */
   async stop() {
     if (this.#id) await this.#end(`front/${this.#id}`);
     else this.#left.abort();
   }
 
-  /** Ends a job. One that is done stays as it is: to delete it would be to forget its front. */
+  /** Ends a job. A finished job stays as it is: deleting it would delete its front. */
   async #end(path) {
     const answer = await this.#service.get(path);
     if (FINAL.includes(answer.status)) return;
@@ -119,7 +119,7 @@ export class Planning {
     });
   }
 
-  /** Nobody waits for the front any more; a job that was begun here ends. */
+  /** Stops following the front, and ends its job if it was begun here. */
   leave() {
     this.#left.abort();
     if (this.#id && this.#own) this.#end(`front/${this.#id}`).catch(() => {});
@@ -133,7 +133,7 @@ export class Planning {
     return this.#left.signal;
   }
 
-  /** The answer to a request, after a null for each time that the service is not warm yet. */
+  /** Yields null each time that the service is not warm yet, and then the answer to a request. */
   async *#patiently(request, headers) {
     for (;;) {
       try {

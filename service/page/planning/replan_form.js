@@ -1,4 +1,4 @@
-/** The fields in which is said what has changed since a tour was planned. */
+/** The fields for what has changed since a tour was planned. */
 
 import { isMeasured } from "../inputs/stops.js";
 import { Placing } from "../inputs/placing.js";
@@ -9,11 +9,11 @@ export class ReplanForm {
   #added = [];
   #vehicle = null;
   #way = null;
-  #vehicles = 0; // places so far, each of which needs an id of its own
+  #vehicles = 0; // added places so far, each with a different id
   #placings;
 
   /**
-   * @param {() => void} onReplan told when to plan what is left
+   * @param {() => void} onReplan called to plan the rest
    * @param {(plane: number, place: number[] | null) => void} onWaiting as of Placing
    */
   constructor(onReplan, onWaiting) {
@@ -47,7 +47,7 @@ export class ReplanForm {
     return { at: element("at").value.trim(), removed: names.filter(Boolean), added: this.#added, vehicle: this.#vehicle };
   }
 
-  /** The places that are no stops of the front yet. */
+  /** The places that are not stops of the front yet. */
   get places() {
     return [...this.#added, ...(this.#vehicle ? [this.#vehicle] : [])];
   }
@@ -67,6 +67,6 @@ export class ReplanForm {
 
   #say() {
     const said = this.places.map(({ id, row }) => `${id} at ${row.join(", ")}`);
-    element("replan-help").textContent = said.length ? `To be taken in: ${said.join("; ")}.` : "";
+    element("replan-help").textContent = said.length ? `Stops to add: ${said.join("; ")}.` : "";
   }
 }

@@ -1,10 +1,10 @@
-/** Replanning: what has changed on the way, as the body of `POST /front/{id}/replan`, and its stops. */
+/** Replanning: the stops of a way, and what has changed on it as the body of `POST /front/{id}/replan`. */
 
 import { Problem } from "./service.js";
 
 /**
- * The stops of a front that may be replanned: all that there ever were, in the order in which they are
- * drawn. `keys` are what the service calls them, `names` what the page does.
+ * The stops of a front that can be replanned: all stops so far, also those visited, in the order in which
+ * they are drawn. `keys` are their names in the service, and `names` those on the page.
  */
 export class Way {
   constructor(instance, ids, cities) {
@@ -13,7 +13,7 @@ export class Way {
     this.names = this.keys.map((key) => (typeof key === "number" ? String(key + 1) : key));
   }
 
-  /** What has changed: `at` is the last stop visited, of a tour with these cities. */
+  /** The changes: `at` is the last stop visited, on a tour through these cities. */
   body({ at, removed, added, vehicle }, tour) {
     const visit = (name) => tour.indexOf(this.names.indexOf(name));
     const unknown = [at, ...removed].find((name) => name && visit(name) < 0);
@@ -28,7 +28,7 @@ export class Way {
     };
   }
 
-  /** The way with the stops that came to it, once it is replanned. */
+  /** The way with the added stops, once it is replanned. */
   with(stops) {
     const { coordinates, stops: before } = this.instance;
     const rows = stops.map(({ row }) => row);
@@ -43,7 +43,7 @@ export class Way {
     return way;
   }
 
-  /** The answer about what is left, its tours in cities of this way. */
+  /** The answer about the rest, with its tours in cities of this way. */
   answer(found) {
     const city = new Map(this.keys.map((key, index) => [String(key), index]));
     return { ...found, front: found.front.map((item) => ({ ...item, tour: item.stops.map((id) => city.get(id)) })) };

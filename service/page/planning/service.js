@@ -2,7 +2,7 @@
 
 import { EventSourceParserStream } from "../vendor/eventsource-parser/stream.js";
 
-/** Why the service refused, or that it did not answer at all. */
+/** An error of the service, or that it did not answer. */
 export class Problem extends Error {
   constructor({ code, detail, errors = [] }, retryAfter = null) {
     super(detail);
@@ -13,7 +13,7 @@ export class Problem extends Error {
 }
 
 export class Service {
-  /** @param {() => string} key the caller's API key, empty where there is none */
+  /** @param {() => string} key the caller's API key, empty if there is none */
   constructor(key) {
     this.key = key;
   }
@@ -29,7 +29,7 @@ export class Service {
     return content(await this.ask(path, options));
   }
 
-  /** The request that files are, with what was taken for granted. */
+  /** The request made from files, with notes on what was assumed. */
   async read(files, signal) {
     const body = new FormData();
     for (const file of files) body.append("file", file);
@@ -58,7 +58,7 @@ export class Service {
     }
   }
 
-  /** The response, where it is one of success; a Problem is thrown otherwise. */
+  /** The response if it is a success; throws a Problem otherwise. */
   async ask(path, options = {}) {
     const headers = { ...options.headers };
     if (this.key()) headers.Authorization = `Bearer ${this.key()}`;
@@ -68,7 +68,7 @@ export class Service {
   }
 }
 
-/** What an answer says; one of a proxy, as a page that asks to sign in, is none of the service's. */
+/** The JSON of an answer. A page of a proxy, such as one for signing in, is not an answer of the service. */
 async function content(response) {
   const text = await whole(response.text());
   try {
@@ -78,7 +78,7 @@ async function content(response) {
   }
 }
 
-/** A connection that was lost ends a stream like any other end; leaving it is no end. */
+/** A lost connection ends a stream like any other end; leaving the stream is an AbortError. */
 function broken(error) {
   if (error.name === "AbortError") throw error;
   return { done: true };
@@ -86,7 +86,7 @@ function broken(error) {
 
 const reached = (path, options) => whole(fetch(path, options));
 
-/** A response, or all of its text, where the network brings it. */
+/** A response, or its text, unless the network fails. */
 async function whole(arriving) {
   try {
     return await arriving;

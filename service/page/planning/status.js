@@ -1,4 +1,4 @@
-/** Say what the page is doing, and what came of it. */
+/** Say what the page is doing, and with which result. */
 
 import { nounOf } from "../common/nouns.js";
 import { counted } from "../common/numbers.js";
@@ -12,16 +12,16 @@ const SAID = {
   running: "The search is improving the network’s front.",
 };
 
-/** Said once, however often it comes: screen readers read each change. */
+/** Says a text only once in a row: screen readers read each change. */
 export function say(text) {
   if (element("status").textContent === text) return;
   element("status").textContent = element("waiting").textContent = text;
 }
 
-// Where the network has no front of its own to show.
+// If the network has no front to show.
 const SEARCH_ALONE = { queued: "The search waits for its turn.", running: "The search is running." };
 
-/** What is to be said of a state of a planning. */
+/** The sentence for a state of a planning. */
 export const sentence = (state) =>
   (!state.alone && SEARCH_ALONE[state.stage]) || SAID[state.stage] || ended(state);
 

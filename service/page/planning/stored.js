@@ -1,14 +1,13 @@
-/** Follow a front that the service has already, by a link to it. */
+/** Follow a front that the service already has, by a link to it. */
 
 import { Problem } from "./service.js";
 
 const GONE = ["unknown-front", "front-expired"];
-const FORGOTTEN = "the service has no front of this link any more, and the link does not say which stops to plan again: open them, and press Plan";
+const FORGOTTEN = "the service no longer has the front of this link, and the link does not say which stops to plan again: open them, and press Plan";
 
 /**
- * The states of a stored front, as a planning yields them. One that the service has no more is
- * planned again, where the request is known; of one that no search was to improve, the network's is
- * all there is.
+ * The states of a stored front, as a planning yields them. If the service no longer has the front, it is
+ * planned again if the request is known. A front without a search is the network's front.
  */
 export async function* stored(planning, id, request, searched) {
   try {

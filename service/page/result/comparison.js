@@ -1,4 +1,4 @@
-/** Compare the selected tour's figures with those of the pinned one. */
+/** Compare the figures of the selected tour with those of the pinned one. */
 
 import { difference, length } from "../common/numbers.js";
 import { withUnit } from "../common/objectives.js";

@@ -5,7 +5,7 @@ import { fragment } from "./link.js";
 import { pngOf, svgOf } from "./picture.js";
 import { python } from "./python.js";
 
-const ALONE = "This link opens the front without its maps: what was asked for is too long for an address.";
+const ALONE = "This link opens the front without its maps: the request is too long for an address.";
 const COPIED = "Copied"; // a button's text, for a moment after it was last pressed
 const MOMENT = 1500; // ms
 const OF_FRONT = ["link", "json", "csv", "geojson", "svg", "png"];
@@ -17,10 +17,10 @@ export class ExportButtons {
   #service;
 
   /**
-   * @param {Service} service that has the front
+   * @param {Service} service the service that has the front
    * @param {() => Promise<{ request: object, asked: object, example: string | null, objectives: object[],
-   *   picture: object, balance: number, driven: boolean } | null>} screen what is on the screen; the
-   *   example that it is; whether its lines can follow the streets; null where that cannot be read
+   *   picture: object, balance: number, driven: boolean } | null>} screen what is on the screen, the
+   *   file of its example, and whether its lines can follow the streets; null if the form cannot be read
    */
   constructor(service, screen) {
     this.#service = service;
@@ -39,7 +39,7 @@ export class ExportButtons {
     on("png", async ({ picture }) => download("front.png", "image/png", await pngOf(svgOf(picture))));
   }
 
-  /** Takes a front along, or none. */
+  /** Takes a front to export, or null. */
   show(answer) {
     this.#shown = answer;
     say("");
@@ -55,7 +55,7 @@ export class ExportButtons {
     await copy(location.href, button);
   }
 
-  /** Of very many stops the streets are refused: then the lines are straight, and that is said. */
+  /** Streets are refused for very many stops: then the lines are straight, with a note. */
   async #saveGeojson(driven) {
     const streets = driven && (await this.#geojson("?geometry=roads").catch(({ message }) => say(straight(message))));
     download("front.geojson", "application/geo+json", streets || (await this.#geojson("")));
@@ -73,7 +73,7 @@ function say(text) {
   element("link-help").textContent = text;
 }
 
-const said = new Map(); // of buttons that say so: their own text, and the timer that puts it back
+const said = new Map(); // buttons that show they were pressed: their own text, and the timer that restores it
 
 async function copy(text, button) {
   await navigator.clipboard.writeText(text);

@@ -36,7 +36,7 @@ function csvOfPlans(plans, titles) {
 
 const line = (row) => `${row.map((field) => quoted(`${field}`, /[,"]/)).join(",")}\n`;
 
-/** The text between quotation marks, where it has a character that would end it. */
+/** The text in quotation marks, if it has a character that would end it. */
 const quoted = (text, ending) => (ending.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
 
 /** Lets the browser save a text, or a blob, as a file. */

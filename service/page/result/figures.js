@@ -1,4 +1,4 @@
-/** Show a front's hypervolume, the angle of a tour, and the times that the front took. */
+/** Show a front's hypervolume, the angle of a tour, and the time that the front took. */
 
 import { nounOf } from "../common/nouns.js";
 import { titled } from "../common/objectives.js";
@@ -13,7 +13,7 @@ export const showTourFigures = (list, tour) =>
   list.replaceChildren(...(tour ? [...angle(tour), ...kept(tour)] : []).flatMap(pair));
 
 const angle = (tour) => (tour.angle == null ? [] : [["Angle of the tour", degrees(tour.angle)]]);
-const kept = (tour) => (tour.kept == null ? [] : [["Legs kept of the tour before", `${Math.round(100 * tour.kept)} %`]]);
+const kept = (tour) => (tour.kept == null ? [] : [["Legs kept of the driven tour", `${Math.round(100 * tour.kept)} %`]]);
 
 const worth = (alone, answer) => [
   ["Hypervolume", share(answer.hypervolume)],
@@ -21,7 +21,7 @@ const worth = (alone, answer) => [
   ...(answer.hypervolume_bound == null ? [] : shortOf(answer)),
 ];
 
-/** How much hypervolume the best front can have at most, and how much of that is missing here. */
+/** The most hypervolume that any front can have, and how much of that is missing here. */
 const shortOf = ({ hypervolume, hypervolume_bound: bound }) => [
   ["No front has more than", share(bound)],
   ["Short of optimal by at most", share(bound > 0 ? 1 - hypervolume / bound : 0)],

@@ -3,8 +3,8 @@
 const MOST = 16000; // characters, beyond which chats, mail and some servers cut addresses off
 
 /**
- * The link's fragment, with what was asked for deflated, and in base64 as addresses may hold it, or
- * with the file of the example that it is; `whole` says whether that was short enough to be in it.
+ * The link's fragment, with the file of the example, or with the request, deflated and in base64 for
+ * addresses. `whole` says whether the request was short enough to be in it.
  */
 export async function fragment(id, balance, asked, example = null) {
   const front = `#front=${encodeURIComponent(id)}${balance === undefined ? "" : `&balance=${Number(balance.toFixed(6))}`}`;
@@ -39,7 +39,7 @@ async function unpacked(text) {
     const bytes = Uint8Array.from(deflated, (character) => character.charCodeAt(0));
     return await through(bytes, new DecompressionStream("deflate-raw")).json();
   } catch {
-    return null; // a link that was cut short still names its front
+    return null; // a truncated link still names its front
   }
 }
 

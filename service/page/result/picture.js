@@ -8,7 +8,7 @@ import { SIDE, dot, round, text } from "./picture_parts.js";
 
 const MARGIN = { left: 70, right: 20, top: 40, bottom: 50 };
 const TICKS = 4;
-const WIDTH = 0.62; // of a bold letter, in its size
+const WIDTH = 0.62; // the width of a bold letter, relative to its size
 const FONT = "system-ui, sans-serif";
 
 /**
@@ -23,7 +23,7 @@ export function svgOf({ front, selected, choice, objectives, maps }) {
   return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${SIDE + 30}" width="${width}" height="${SIDE + 30}" font-family="${FONT}"><rect width="100%" height="100%" fill="${colour("card")}"/>${title}${placed.join("")}</svg>`;
 }
 
-/** The same as a PNG, with two of its pixels to each unit. */
+/** The same as a PNG, with two pixels per unit. */
 export async function pngOf(svg) {
   const image = new Image();
   image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;

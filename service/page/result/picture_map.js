@@ -4,7 +4,7 @@ import { SIDE, dot, round, text } from "./picture_parts.js";
 import { colour } from "../common/colours.js";
 
 const ROOM = 40; // units beside the map
-const [NAMES, ACROSS, MOST_LETTERS] = [8, 4, 12]; // of the list of names: how many, in a line, and how long
+const [NAMES, ACROSS, MOST_LETTERS] = [8, 4, 12]; // the list of names: how many, how many in a line, and their length
 
 /** A map whose longer side fills its panel; north, or the larger y, is up. A grid's ground is a picture of its cells. */
 export function mapPanel({ title, places, lines, starts, ground }) {
@@ -27,7 +27,7 @@ function boundsOf(places) {
 const imageOf = ({ href, width, height }, [x, y], unit) =>
   `<image href="${href}" x="${x}" y="${y}" width="${round(width * unit)}" height="${round(height * unit)}" preserveAspectRatio="none" style="image-rendering:pixelated"/>`;
 
-/** A line, on a darker one where it is cased: some of the colours alone are too pale for the ground. */
+/** A line, on a darker one if it is cased: some of the colours alone are too pale on the map. */
 function lineOf({ places, colour: name, dash, cased }, put) {
   const through = `M${places.map((place) => put(place).join(" ")).join("L")}`;
   return `${cased ? stroke(through, "ink", 4, dash) : ""}${stroke(through, name, cased ? 2.5 : 2, dash)}`;

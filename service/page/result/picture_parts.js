@@ -1,4 +1,4 @@
-/** Parts of which the panels of a picture are made: dots and texts in SVG, and the size of a panel. */
+/** The parts of a picture's panels: dots and texts in SVG, and the size of a panel. */
 
 import { colour } from "../common/colours.js";
 

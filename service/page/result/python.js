@@ -2,7 +2,7 @@
 
 import { asksForPlans } from "../common/nouns.js";
 
-const MIDDLE = 0.5; // of balances
+const MIDDLE = 0.5; // the middle balance
 
 /** The program that plans the same, and prints the tour, or the plan, of the same balance. */
 export function python({ path, body }, balance) {
@@ -26,7 +26,7 @@ print(plan.lengths, [${robots ? "(route.robot, route.tour.tolist())" : "route.st
 
 const NAMES = new Map([[null, "None"], [undefined, "None"], [true, "True"], [false, "False"]]);
 
-/** A value of JSON as a literal of Python. */
+/** A JSON value as a Python literal. */
 function literal(value) {
   if (NAMES.has(value)) return NAMES.get(value);
   if (Array.isArray(value)) return `[${value.map(literal).join(", ")}]`;

@@ -15,7 +15,7 @@ import { BalanceSlider } from "../chart/slider.js";
 import { RoutedWay, pathOfWays } from "../map/ways/routed_way.js";
 import { nearest } from "./tours.js";
 
-const MIDDLE = 0.5; // of balances
+const MIDDLE = 0.5; // the middle balance
 
 const element = (id) => document.getElementById(id);
 
@@ -28,17 +28,17 @@ export class Result {
   #front = [];
   #closed = true;
   #before = null; // the tour that was replanned, and whether it was closed
-  #balance = MIDDLE; // wanted by the viewer
+  #balance = MIDDLE; // the balance that the viewer chose
   #selected = null;
   #previewed = null; // pointed at on the chart
   #pinned = null;
   #frame = 0;
   #objectives = UNNAMED;
   #ids = null; // of the stops
-  #id = null; // of the front, once it is final
-  #routed = null; // where the service has a routing engine
+  #id = null; // the id of the front, once it is final
+  #routed = null; // set if the service has a routing engine
 
-  /** @param {object} edited told of clicks on the maps, and of stops moved and deleted: see Maps */
+  /** @param {object} edited callbacks for clicks on the maps, and for stops moved and deleted: see Maps */
   constructor(edited) {
     const onSelect = (index) => this.#choose(index);
     this.#maps = new Maps(edited);
@@ -52,7 +52,7 @@ export class Result {
     this.clear({});
   }
 
-  /** What the two lengths are called from now on, and the stops, where they have ids. */
+  /** Sets the names of both lengths, and of the stops if they have ids. */
   name(objectives, ids = null) {
     this.#objectives = objectives;
     this.#ids = ids;
@@ -86,7 +86,7 @@ export class Result {
     showFigures(element("figures"), null, null);
   }
 
-  /** The front of the network alone, where it is known, and the best so far. */
+  /** Shows the front of the network alone, if it is known, and the best front so far. */
   show({ stage, alone, answer, growth }) {
     this.#front = answer.front;
     this.#id = ["done", "cancelled"].includes(stage) ? answer.id : null;
@@ -128,15 +128,15 @@ export class Result {
     this.#draw();
   }
 
-  /** Rings a place on a map that is clicked, but no stop yet; null takes the rings away. */
+  /** Rings a clicked place that is not a stop yet; null removes the rings. */
   wait = (plane, place) => this.#maps.wait(plane, place);
 
-  /** The balance that the viewer wants of the next front. */
+  /** The balance to select in the next front. */
   want(balance) {
     this.#balance = balance ?? MIDDLE;
   }
 
-  /** What is taken along: a picture, the balance of what is selected, and whether its lines can follow the streets. */
+  /** What is exported: a picture, the balance of the selected tour, and whether its lines can follow the streets. */
   get taken() {
     const driven = Boolean(this.#routed) && this.#maps.driven;
     return { picture: this.#selected && this.#picture, balance: this.#selected?.balance, driven };
@@ -150,12 +150,12 @@ export class Result {
     return { front: this.#front, selected: this.#selected, choice, objectives: this.#objectives, maps };
   }
 
-  /** The cities of a tour, back to its start where it is closed; none of a plan. */
+  /** The cities of a tour, back to its start if it is closed; none for a plan. */
   #round({ tour = [], closed = this.#closed }) {
     return closed && tour.length ? [...tour, tour[0]] : tour;
   }
 
-  /** Keeps the selected tour on the maps of an instance of which the rest is planned. */
+  /** Keeps the selected tour on the maps while the rest of it is planned. */
   replan(instance, names) {
     const before = this.#selected && { tour: this.#selected.tour, closed: this.#closed };
     this.clear(instance, { fit: false, editable: false });
@@ -177,7 +177,7 @@ export class Result {
     this.#drawSoon();
   }
 
-  /** Shows a tour in the selected one's place, until it is selected or left. */
+  /** Shows a tour in place of the selected one, until it is selected or left. */
   #preview(index) {
     const previewed = index === null ? null : this.#front[index];
     if (previewed === this.#previewed) return;
@@ -185,7 +185,7 @@ export class Result {
     this.#drawSoon();
   }
 
-  /** However often the slider or the pointer moves between two frames, it is drawn once. */
+  /** Draws once per frame, even if the slider or the pointer moves more often. */
   #drawSoon() {
     cancelAnimationFrame(this.#frame);
     this.#frame = requestAnimationFrame(() => this.#draw());
@@ -226,7 +226,7 @@ export class Result {
     this.#follow();
   }
 
-  /** Wants the ways of what is selected along the streets, once its front is final. */
+  /** Requests the ways along the streets of the selected tour or plan, once its front is final. */
   #follow() {
     const item = this.#selected;
     if (!item || !this.#id || !this.#maps.driven) return this.#routed?.forget();

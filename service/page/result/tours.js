@@ -1,6 +1,6 @@
 /** Find the tour of a front that is nearest to a balance or to a place on the chart. */
 
-/** The index of the tour that is nearest to a balance: 0 at the least first length, 1 at the least second. */
+/** The index of the tour nearest to a balance: 0 at the least first length, 1 at the least second. */
 export function nearest(front, balance) {
   let best = 0;
   for (let index = 1; index < front.length; index++) {

@@ -1,1 +1,1 @@
-"""Requests of `POST /fleet`: several vehicles, and a front of their plans."""
+"""The fields of `POST /fleet`, and their checks."""

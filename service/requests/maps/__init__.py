@@ -1,1 +1,1 @@
-"""Maps in requests: pictures, occupancy grids of ROS, and the fields that say how to read them."""
+"""The map of a request: pictures, occupancy grids of ROS, and robots that share a map."""

@@ -1,1 +1,1 @@
-"""Requests of `POST /front/{id}/replan`: turn the changes into a task for the rest of the way."""
+"""`POST /front/{id}/replan`: from a stored Task and what has changed to a new Task."""

@@ -1,1 +1,1 @@
-"""Bounds: how much hypervolume no front of an instance exceeds, and what that is computed from."""
+"""Bounds: a hypervolume that no front of the instance exceeds."""

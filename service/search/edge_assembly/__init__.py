@@ -1,1 +1,1 @@
-"""Edge assembly: what is better in one tour put into another (Nagata and Kobayashi, 2013)."""
+"""Edge assembly: improve a tour by parts of another (Nagata and Kobayashi, 2013)."""

@@ -1,1 +1,1 @@
-"""Constructed tours, from which descents set out where nothing better is known."""
+"""Construct tours without a network, as starts of descents."""

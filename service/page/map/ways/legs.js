@@ -9,7 +9,7 @@ export class Legs {
     this.#stops = new Map(data.legs.map((_, stop) => [data.nodes[stop].join(), stop]));
   }
 
-  /** Longitude and latitude of the places along a way through stops at these; null where some way is not known. */
+  /** Longitude and latitude of the places along a way through stops at these places; null if some way is not known. */
   along(places) {
     const { origin, step, nodes } = this.#data;
     const stops = places.map((place) => this.#stops.get(place.map((at, axis) => Math.round((at - origin[axis]) / step)).join()));
@@ -18,7 +18,7 @@ export class Legs {
     return [...stops.slice(0, 1), ...visited].map((node) => nodes[node].map((steps, axis) => origin[axis] + step * steps));
   }
 
-  /** The nodes from one stop to another, without the first; where a node leads to several, a digit says to which. */
+  /** The nodes from one stop to another, without the first. If several nodes follow a node, a digit says which one. */
   #way(from, to) {
     const digits = this.#data.legs[from][to];
     const way = [];

@@ -1,18 +1,18 @@
 /** Ask the service for the ways of a tour, or of a plan's routes, along the streets, as its routing engine knows them. */
 
-const REST = 250; // milliseconds for which a tour is selected before its way is asked for
+const REST = 250; // milliseconds for which a tour is selected before its way is requested
 
 export class RoutedWay {
   #service;
   #ways;
   #onFound;
   #timer = 0;
-  #wanted = null; // the ways that are to come
+  #wanted = null; // the ways that are being requested
 
   /**
-   * @param {Service} service which has a routing engine
-   * @param {Ways} ways in which ways are kept
-   * @param {() => void} onFound told when others are known
+   * @param {Service} service a service with a routing engine
+   * @param {Ways} ways stores the ways
+   * @param {() => void} onFound called when new ways are known
    */
   constructor(service, ways, onFound) {
     this.#service = service;
@@ -28,7 +28,7 @@ export class RoutedWay {
     this.#timer = setTimeout(() => this.#ask(path, wanted), REST);
   }
 
-  /** Wants none any more. */
+  /** Drops the request for ways. */
   forget() {
     clearTimeout(this.#timer);
     this.#wanted = null;

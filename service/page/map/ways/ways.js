@@ -1,13 +1,13 @@
-/** Ways through the stops that are drawn, along the streets as far as these are known. */
+/** Ways through the stops on the map, along the streets as far as these are known. */
 
 import { Legs } from "./legs.js";
 
 export class Ways {
-  #places = []; // of the stops, longitude and latitude of each
-  #legs = null; // of an example
-  #found = new Map(); // by the stops of a way
+  #places = []; // longitude and latitude of each stop
+  #legs = null; // the legs of an example
+  #found = new Map(); // the ways along the streets, by their stops
 
-  /** Knows the legs of an example from now on, or those of none. */
+  /** Takes the legs of an example, or null. */
   know(legs) {
     this.#legs = legs && new Legs(legs);
     this.#found.clear();
@@ -19,12 +19,12 @@ export class Ways {
     this.#found.clear();
   }
 
-  /** Keeps a way that was asked for: the places along it, longitude and latitude of each. */
+  /** Stores a way that was requested: the longitude and latitude of the places along it. */
   keep(cities, places) {
     this.#found.set(cities.join(), places);
   }
 
-  /** The places along a way through stops, null where they are not known. */
+  /** The places along a way through stops, null if they are not known. */
   along(cities) {
     if (!cities.length || !this.#places.length || (!this.#legs && !this.#found.size)) return null;
     const key = cities.join();
