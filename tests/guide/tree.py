@@ -20,7 +20,7 @@ FOLDERS = {
     "service/guide": "These pages.",
     "service/page": "The web page, plain JavaScript modules: `main.js` puts it together.",
     "service/page/chart": "The chart of the front, the slider, and the growth of the hypervolume.",
-    "service/page/common": "Numbers, colours, nouns, and the names of objectives.",
+    "service/page/common": "The kinds of plans, numbers, colours, and the names of objectives.",
     "service/page/fleet": "Fleets: their request in the form, and the selected plan by vehicle.",
     "service/page/inputs": "The fields of a request, and cities clicked into place.",
     "service/page/map": "The maps: two planes, one of both objectives, or a grid.",
