@@ -21,7 +21,8 @@ from service.errors import Cancelled
 from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile, UnreadableFile
 from service.jobs import compiled_code, runner
-from service.requests.task import Task, TaskSource, parse_task
+from service.requests.parser import parse_task
+from service.requests.task import Task, TaskSource
 from tests.cli.test_terminal_text import REQUEST
 from tests.client.test_robots import REQUEST as ROBOTS
 from tests.client.test_unexpected_answers import answers_of

@@ -17,11 +17,12 @@ from typer.testing import CliRunner
 
 from service.cli import backends
 from service.cli.commands import app as command_line
+from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from tests.helpers.serving import LIMITS, app_of, problem, serving
 from tests.kinds.requests import CITIES, Asked, as_input, requests, rest_of
 
 Ask = Callable[[httpx.Client, Asked], httpx.Response]
-LIMIT = 0.1  # seconds of search
+LIMIT = 0.2  # seconds of search
 SEEN = 0.7  # seconds of search, in which it reports its progress
 LONG = 60.0  # seconds of search, of which no test waits for the end
 LATER = {"Prefer": "respond-async"}
@@ -53,7 +54,8 @@ HERE_NOT = ("replanned stops", "replanned coverage")  # the service alone has th
 
 @pytest.fixture(scope="module")
 def url() -> Iterator[str]:
-    with serving(app_of(limits=replace(LIMITS, seconds=LONG))) as address:
+    store = SqliteStore(IN_MEMORY, entries=1000, max_age=3600)
+    with serving(app_of(store=store, limits=replace(LIMITS, seconds=LONG))) as address:
         yield address
 
 
@@ -94,7 +96,7 @@ def events_of(client: httpx.Client, front: str) -> Iterator[tuple[str, Any]]:
 
 
 def wait(client: httpx.Client, asked: Asked) -> httpx.Response:
-    answer = post(client, asked)
+    answer = post(client, asked).raise_for_status()
     document = answer.json()
     assert (document["status"], document["kind"]) == ("done", asked.kind)
     assert document["front"]

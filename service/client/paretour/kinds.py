@@ -19,7 +19,7 @@ _PARSERS: Mapping[str, Callable[[Mapping[str, Any]], FrontOfAnyKind]] = {
 
 
 def kind_of(document: Mapping[str, Any]) -> str:
-    """Return the kind of the front in a JSON answer; of version 0.1, which had no such member, tours.
+    """Return the kind of the front in a JSON answer; tours where it names none, as in version 0.1.
 
     Raises:
         UnexpectedAnswer: It is none of those known here.
