@@ -71,9 +71,10 @@ def requests() -> Iterator[tuple[str, Asked]]:
 
 def rest_of(kind: str, front: str) -> Asked:
     """Return the request to replan a front of a kind, after its first stop or place."""
-    body = {"done": ["stop-0"] if kind == "stops" else [0]}
-    of = "coverage" if kind == "coverage" else "front"
-    return Asked(("replan", front), f"/front/{front}/replan", body, of, "tour")
+    path = f"/front/{front}/replan"
+    if kind == "coverage":
+        return Asked(("replan", front), path, {"done": [0], "paths": True}, kind, "tour")
+    return Asked(("replan", front), path, {"done": ["stop-0"]}, "front", "tour")
 
 
 def as_input(asked: Asked, **options: Any) -> bytes:

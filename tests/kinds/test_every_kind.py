@@ -208,7 +208,7 @@ def replan(client: httpx.Client, asked: Asked) -> httpx.Response:
 
 def member(name: str, value: object, client: httpx.Client, asked: Asked) -> httpx.Response:
     """Ask with one more member of the request."""
-    return post(client, asked, **{name: value})
+    return post(client, asked, **{name: value, "time_limit": LIMIT / 4})
 
 
 HTTP: Mapping[str, Ask] = {
