@@ -22,8 +22,7 @@ from tests.helpers.serving import LIMITS, app_of, problem, serving
 from tests.kinds.requests import CITIES, Asked, as_input, requests, rest_of
 
 Ask = Callable[[httpx.Client, Asked], httpx.Response]
-LIMIT = 0.2  # seconds of search
-SEEN = 0.7  # seconds of search, in which it reports its progress
+LIMIT = 0.7  # seconds of search, in which it reports its progress
 LONG = 60.0  # seconds of search, of which no test waits for the end
 LATER = {"Prefer": "respond-async"}
 KINDS = ("cities", "stops", "coverage", "robots", "fleet", "replanned stops", "replanned coverage")
@@ -55,7 +54,9 @@ HERE_NOT = ("replanned stops", "replanned coverage")  # the service alone has th
 @pytest.fixture(scope="module")
 def url() -> Iterator[str]:
     store = SqliteStore(IN_MEMORY, entries=1000, max_age=3600)
-    with serving(app_of(store=store, limits=replace(LIMITS, seconds=LONG))) as address:
+    with serving(
+        app_of(store=store, limits=replace(LIMITS, cities=CITIES, seconds=LONG))
+    ) as address:
         yield address
 
 
@@ -79,7 +80,8 @@ def asked(client: httpx.Client) -> dict[str, Asked]:
 def post(
     client: httpx.Client, asked: Asked, headers: Mapping[str, str] | None = None, **options: Any
 ) -> httpx.Response:
-    body = {"time_limit": LIMIT, **asked.body, **options}
+    """Ask for a front, by default for what the network finds."""
+    body = {"time_limit": 0, **asked.body, **options}
     return client.post(asked.path, json=body, headers=headers)
 
 
@@ -125,7 +127,7 @@ def kind_while_queued(client: httpx.Client, asked: Asked) -> httpx.Response:
 
 
 def events(client: httpx.Client, asked: Asked) -> httpx.Response:
-    accepted = post(client, asked, LATER, time_limit=SEEN)
+    accepted = post(client, asked, LATER, time_limit=LIMIT)
     seen = list(events_of(client, accepted.json()["id"]))
     progress = [data for name, data in seen if name == "progress"]
     assert progress[-1]["hypervolume"] > 0
@@ -166,7 +168,7 @@ def own_reference_point(client: httpx.Client, asked: Asked) -> httpx.Response:
 
 
 def time_limit(client: httpx.Client, asked: Asked) -> httpx.Response:
-    answer = post(client, asked)
+    answer = post(client, asked, time_limit=LIMIT)
     assert answer.json()["terminated"] == "time_limit"
     return answer
 
@@ -200,7 +202,7 @@ def replan(client: httpx.Client, asked: Asked) -> httpx.Response:
     front = post(client, asked).json()
     first = front["front"][0]
     done = first.get("stops", first.get("tour", [0]))[:1]
-    answer = client.post(f"/front/{front['id']}/replan", json={"done": done, "time_limit": LIMIT})
+    answer = client.post(f"/front/{front['id']}/replan", json={"done": done, "time_limit": 0})
     if answer.is_success:
         assert all("kept" in each for each in answer.json()["front"])
     return answer
@@ -208,7 +210,7 @@ def replan(client: httpx.Client, asked: Asked) -> httpx.Response:
 
 def member(name: str, value: object, client: httpx.Client, asked: Asked) -> httpx.Response:
     """Ask with one more member of the request."""
-    return post(client, asked, **{name: value, "time_limit": LIMIT / 4})
+    return post(client, asked, **{name: value})
 
 
 HTTP: Mapping[str, Ask] = {
@@ -249,7 +251,7 @@ def test_over_http(option: str, kind: str, client: httpx.Client, asked: dict[str
         assert answer.is_success, answer.text
 
 
-def planned(asked: Asked, url: str | None, *formats: str, limit: float = LIMIT) -> Result:
+def planned(asked: Asked, url: str | None, *formats: str, limit: float = 0) -> Result:
     """Have the command plan what is on its standard input."""
     where = [] if url is None else ["--url", url]
     arguments = [*asked.command, "-", "--time-limit", str(limit), *formats, *where]
@@ -280,7 +282,7 @@ def refused_here(kind: str, place: str | None, result: Result) -> bool:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_command_prints_json(kind: str, place: str | None, asked: dict[str, Asked]) -> None:
-    result = planned(asked[kind], place, "--json")
+    result = planned(asked[kind], place, "--json", limit=LIMIT)
     if refused_here(kind, place, result):
         return
     assert result.exit_code == 0, result.stderr

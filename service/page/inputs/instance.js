@@ -1,4 +1,4 @@
-/** What is asked for, as the page has it, in words and as the request for it. */
+/** Describe what is asked for, and make the request for it. */
 
 import { isCity } from "./cities.js";
 import { rounded } from "./distances.js";
