@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +45,17 @@ class Progress:
     seconds: float
     hypervolume: float
     points: int
+
+
+A = TypeVar("A")
+B = TypeVar("B")
+# Takes the progress of a search, and a function that returns its best front so far of n tours.
+ReportOf = Callable[[Progress, Callable[[int], A]], None]
+
+
+def reporting(report: ReportOf[B], converted: Callable[[A], B]) -> ReportOf[A]:
+    """Return a function that reports fronts after their conversion."""
+    return lambda progress, best: report(progress, lambda size: converted(best(size)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -138,6 +149,3 @@ class Front:
     def angles(self) -> Array:
         """The direction of each point in scaled objective space, in degrees, shape (m,)."""
         return angles(self.points, self.scale)
-
-
-Report = Callable[[Progress, Callable[[int], Front]], None]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from service.construction.first_tours import MIN_CONSTRUCTED, SHARE, Constructor, construct
 from service.construction.repairs import repairs_worth
 from service.errors import Cancelled, NoTour, Obstacle
-from service.front import Front, PlanOptions, Progress, Report, SearchResult
+from service.front import Front, PlanOptions, Progress, ReportOf, SearchResult
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.search.best_subset import best_subset, selection_seconds
@@ -37,7 +37,7 @@ def plan(
     instance: Instance,
     options: PlanOptions,
     stop: Callable[[], bool] = lambda: False,
-    report: Report = lambda *_: None,
+    report: ReportOf[Front] = lambda *_: None,
 ) -> Front:
     """Return the best front found for an instance within the time limit.
 
@@ -121,7 +121,7 @@ def _improved(
     options: PlanOptions,
     deadline: float,
     stop: Callable[[], bool],
-    report: Callable[[Progress, Callable[[int], SearchResult]], None],
+    report: ReportOf[SearchResult],
 ) -> SearchResult:
     """Return the result of a search that leaves enough time to select from it."""
     if options.time_limit == 0:
@@ -145,7 +145,7 @@ def _report_front(
     instance: Instance,
     options: PlanOptions,
     constructed: int,
-    report: Report,
+    report: ReportOf[Front],
     progress: Progress,
     best: Callable[[int], SearchResult],
 ) -> None:

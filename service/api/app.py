@@ -12,7 +12,7 @@ from starlette.responses import Response
 
 from service.actor_info import ActorInfo
 from service.api.auth import Access
-from service.api.body_budget import AnswerBudget, BodyBounds
+from service.api.body_budget import BodyBounds, BodyBudget
 from service.api.exception_handlers import HANDLED, answer_refusal
 from service.api.files import FileRoutes
 from service.api.geojson.answers import FrontAnswers, Streets
@@ -101,7 +101,8 @@ def create_app(
 ) -> FastAPI:
     """Return the application, which starts the engine and closes engine and store at its end."""
     edge = edge or Edge()
-    answers = FrontAnswers(edge.streets, AnswerBudget(edge.bodies.under_way, edge.bodies.share))
+    budget = BodyBudget(edge.bodies.under_way, edge.bodies.share, answers=True)
+    answers = FrontAnswers(edge.streets, budget)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:

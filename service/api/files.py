@@ -8,7 +8,7 @@ from starlette.responses import Response
 
 from service.api.auth import client_of
 from service.api.body import receive_files
-from service.api.body_budget import AnswerBudget, BodyBudget
+from service.api.body_budget import BodyBudget
 from service.api.compression import compressed
 from service.api.responses import FileAnswer, json_bytes, problem_responses
 from service.api.task_parser import TaskParser
@@ -35,7 +35,7 @@ class FileRoutes:
     """
 
     def __init__(
-        self, parser: TaskParser, budget: BodyBudget, most_bytes: int, answers: AnswerBudget
+        self, parser: TaskParser, budget: BodyBudget, most_bytes: int, answers: BodyBudget
     ) -> None:
         self._parser = parser
         self._budget = budget

@@ -2,7 +2,6 @@
 
 import asyncio
 import hashlib
-import time
 import uuid
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -32,6 +31,7 @@ from service.api.responses import (
 )
 from service.api.stored_fronts import find_record
 from service.api.task_parser import TaskParser
+from service.jobs.deadline import Deadline
 from service.jobs.engine import Engine, record_in_time
 from service.jobs.record import Record
 from service.jobs.store import Store
@@ -51,11 +51,11 @@ _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
 
 @dataclass(frozen=True)
 class _Body:
-    """A body as it came, the time when it came, and the id of a front to replan, if any."""
+    """A body as it came, the id of a front to replan, if any, and when to answer at the latest."""
 
     source: TaskSource
     front: str | None
-    received: float  # of time.monotonic()
+    deadline: Deadline
 
 
 class PlanRoutes:
@@ -171,7 +171,7 @@ class PlanRoutes:
         # Until there is an answer: a task that waits or is being planned still holds its body.
         with self.budget.open(client_of(request)) as allowance:
             received = await receive_source(request, kind, self._limits.body_bytes, allowance)
-            body = _Body(received, front, time.monotonic())
+            body = _Body(received, front, Deadline.after(self._seconds))
             if front is None:
                 task = await self.parser.parse(received)
             else:
@@ -207,13 +207,12 @@ class PlanRoutes:
             first = await self._submit(record, task, allowance)
             return _accepted_response(self._engine.state(first).record, geometry)
         if record.key is None:
-            record = await self._run(request, record, task)
+            record = await self._run(request, record, task, body.deadline)
         else:
             first = await self._submit(record, task, allowance)
-            record = await record_in_time(self._engine, first, self._seconds)
+            record = await record_in_time(self._engine, first, body.deadline)
         if record.problem is None:
-            left = self._seconds - (time.monotonic() - body.received)
-            return await self._answers.front(request, record, geometry, left)
+            return await self._answers.front(request, record, geometry, body.deadline.left())
         # The problem may be that of an earlier request that this one repeats.
         return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
 
@@ -254,10 +253,12 @@ class PlanRoutes:
             client=client_of(request),
         )
 
-    async def _run(self, request: Request, record: Record, task: Task) -> Record:
+    async def _run(
+        self, request: Request, record: Record, task: Task, deadline: Deadline
+    ) -> Record:
         disconnect = asyncio.ensure_future(disconnected(request))
         try:
-            return await self._engine.run(record, task, disconnect)
+            return await self._engine.run(record, task, disconnect, deadline)
         finally:
             disconnect.cancel()
 

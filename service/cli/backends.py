@@ -1,18 +1,14 @@
 """The two backends that plan for the command: this process, and a service at a URL."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from functools import partial
 from http import HTTPStatus
-from typing import Any, Protocol
+from typing import Protocol, cast
 
 import httpx
-from paretour import Actor, Client, FleetFront, Front, Job, Plan, Refused, RobotFront
-from paretour.calls import AnyFront
-from paretour.fleets import parse_fleet
-from paretour.robots import parse_robots
-from paretour.values import parse_front
+from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Refused
+from paretour.kinds import parse_any
 from rich.console import Console
 
 from service.cli.errors import UsageError
@@ -27,18 +23,12 @@ class Backend(Protocol):
     Ctrl-C ends a search early: the front is then the best so far.
     """
 
-    def front(self, plan: Plan, console: Console) -> Front:
-        """Plan a front.
+    def front(self, plan: Plan, console: Console) -> FrontOfAnyKind:
+        """Plan a front, whatever its kind.
 
         Raises:
             KeyboardInterrupt: Ctrl-C was pressed before there was a front.
         """
-
-    def fleet(self, plan: Plan, console: Console) -> FleetFront:
-        """Plan a front of plans for a fleet."""
-
-    def robots(self, plan: Plan, console: Console) -> RobotFront:
-        """Plan a front of plans for several robots that share a map."""
 
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors to choose from."""
@@ -56,25 +46,15 @@ class RemoteBackend:
     url: str
     api_key: str | None
 
-    def front(self, plan: Plan, console: Console) -> Front:
-        """Plan a front.
+    def front(self, plan: Plan, console: Console) -> FrontOfAnyKind:
+        """Plan a front, whatever its kind.
 
         Raises:
             Refused: The service does not plan it.
             KeyboardInterrupt: Ctrl-C was pressed before there was a front.
         """
         with self._client() as client:
-            return _result(client.post(plan), plan, console)
-
-    def fleet(self, plan: Plan, console: Console) -> FleetFront:
-        """Plan a front of plans for a fleet, with the same exceptions."""
-        with self._client() as client:
-            return _result(client.fleet_job(client.post(plan).id), plan, console)
-
-    def robots(self, plan: Plan, console: Console) -> RobotFront:
-        """Plan a front of plans for several robots, with the same exceptions."""
-        with self._client() as client:
-            return _result(client.robots_job(client.post(plan).id), plan, console)
+            return _result(client.any_job(client.post(plan).id), plan, console)
 
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors that the service has loaded."""
@@ -92,26 +72,14 @@ class LocalBackend:
     compiler, and a command with an error or with a URL need not wait for that.
     """
 
-    def front(self, plan: Plan, console: Console) -> Front:
-        """Plan a front.
+    def front(self, plan: Plan, console: Console) -> FrontOfAnyKind:
+        """Plan a front, whatever its kind, and answer as the service does.
 
         Raises:
             UsageError: The request cannot be planned.
             Refused: A routing engine is needed, and fails.
             KeyboardInterrupt: Ctrl-C was pressed before there was a front.
         """
-        return parse_front(self._document(plan, console))
-
-    def fleet(self, plan: Plan, console: Console) -> FleetFront:
-        """Plan a front of plans for a fleet, with the same exceptions."""
-        return parse_fleet(self._document(plan, console))
-
-    def robots(self, plan: Plan, console: Console) -> RobotFront:
-        """Plan a front of plans for several robots, with the same exceptions."""
-        return parse_robots(self._document(plan, console))
-
-    def _document(self, plan: Plan, console: Console) -> Mapping[str, Any]:
-        """Return the answer to a request, as the service gives it."""
         from service.cli.configuration import load_settings, load_with
         from service.errors import Cancelled, Refusal
         from service.jobs.compiled_code import warm_up
@@ -130,9 +98,9 @@ class LocalBackend:
             load_settings(),
         )
         upload = None if plan.file is None else plan.file.content
-        kinds: Mapping[str, TaskKind] = {"/coverage": "coverage", "/fleet": "fleet"}
+        kind = cast(TaskKind, plan.path.removeprefix("/"))
         try:
-            source = TaskSource(kinds.get(plan.path, "front"), plan.json, upload)
+            source = TaskSource(kind, plan.json, upload)
             task = parse_task(source, runner.limits, runner.infos)
             if task.actor in runner.actors:
                 runner.actors[task.actor].load()  # before the clock of its time limit starts
@@ -149,8 +117,7 @@ class LocalBackend:
                 raise Refused(error.document("")) from None
             raise UsageError(str(error)) from None
         status = "cancelled" if interrupted() else "done"
-        answer: Mapping[str, Any] = json.loads(document.json(id="", status=status))
-        return answer
+        return parse_any(json.loads(document.json(id="", status=status)))
 
     def actors(self) -> tuple[Actor, ...]:
         """Return the actors in the directory that the settings name."""
@@ -164,7 +131,7 @@ class LocalBackend:
         return tuple(Actor(**asdict(actor.info)) for _, actor in sorted(loaded.items()))
 
 
-def _result(job: Job[AnyFront], plan: Plan, console: Console) -> AnyFront:
+def _result(job: Job[FrontOfAnyKind], plan: Plan, console: Console) -> FrontOfAnyKind:
     """Return the front of a job, with progress until it ends; at Ctrl-C the best so far.
 
     Raises:

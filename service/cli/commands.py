@@ -92,7 +92,7 @@ def front(  # noqa: PLR0913  an option each
 ) -> None:
     """Plan the front of tours through the cities of a file, or of one for each objective."""
     from service.cli.backends import backend_for
-    from service.cli.output import OutputFormat, run_front
+    from service.cli.fronts import OutputFormat, run_front
     from service.cli.plans import plan_cities
 
     options = {

@@ -1,5 +1,7 @@
 """The command `paretour coverage`."""
 
+from functools import partial
+
 from service.cli.options import (
     ActorName,
     ApiKey,
@@ -56,10 +58,8 @@ def coverage(  # noqa: PLR0913  an option each
 ) -> None:
     """Plan the front of tours of a robot through places all over a map, or of plans for several."""
     from service.cli.backends import backend_for
-    from service.cli.errors import exit_on_error
-    from service.cli.fleets.robots import run_robots
-    from service.cli.output import OutputFormat, run_front
-    from service.cli.plans import has_robots, plan_map
+    from service.cli.fronts import OutputFormat, run_front
+    from service.cli.plans import plan_map
 
     options = {
         "cell_size": cell_size,
@@ -78,12 +78,8 @@ def coverage(  # noqa: PLR0913  an option each
         "repairs": repairs,
     }
     poses = {"start_pose": start_pose, "end_pose": end_pose}
-    output = OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot)
-    backend = backend_for(url, api_key)
-    with exit_on_error():
-        output.check()
-        plan = plan_map(file, cost_layer, options, poses, robots or ())
-    if has_robots(plan):
-        run_robots(plan, backend, output)
-    else:
-        run_front(lambda: (plan, None), backend, output)
+    run_front(
+        partial(plan_map, file, cost_layer, options, poses, robots or ()),
+        backend_for(url, api_key),
+        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
+    )

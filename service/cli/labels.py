@@ -1,20 +1,18 @@
 """The names of both lengths and of all stops, for printing and drawing."""
 
-from paretour import FleetFront, Front, RobotFront
+from paretour import Front, FrontOfAnyKind
 
 from service.cli.inputs import Ids, ids_in
 from service.cli.terminal_chart import LABELS
 from service.errors.printable import printable
 
-AnyFront = Front | FleetFront | RobotFront
 
-
-def labels_of(front: AnyFront) -> tuple[str, ...]:
+def labels_of(front: FrontOfAnyKind) -> tuple[str, ...]:
     """Return the label of either length: the name of its objective with the unit, if it has any."""
     return LABELS if front.objectives is None else tuple(map(printable, _names(front)))
 
 
-def _names(front: AnyFront) -> list[str]:
+def _names(front: FrontOfAnyKind) -> list[str]:
     return [
         each.name if each.unit is None else f"{each.name} ({each.unit})"
         for each in front.objectives or ()
@@ -26,7 +24,7 @@ def columns_of(front: Front) -> tuple[str, ...]:
     return ("length_1", "length_2") if front.objectives is None else tuple(_names(front))
 
 
-def lengths_as_text(front: AnyFront, lengths: tuple[float, float]) -> str:
+def lengths_as_text(front: FrontOfAnyKind, lengths: tuple[float, float]) -> str:
     """Return both lengths of a tour as the end of a sentence, with names and units if any."""
     first, second = (f"{length:.6g}" for length in lengths)
     if front.objectives is None:

@@ -1,15 +1,14 @@
-"""Run the commands that plan, and print results: data on stdout, a line about it on stderr."""
+"""Print tours, fronts of tours and actors: data on stdout, a line about it on stderr."""
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour import Actor, Choice, Front, Plan, Tour, Uncovered
+from paretour import Actor, Choice, FleetFront, Front, FrontOfAnyKind, Plan, Tour
 from paretour.choice import the_way
+from paretour.expect import unexpected
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
@@ -33,39 +32,6 @@ _TERMINATED: Mapping[str | None, str] = {
 }
 
 
-@dataclass(frozen=True, kw_only=True)
-class OutputFormat:
-    """The format to print a front in, and the file to draw it into.
-
-    By default it is a chart with three tours on a terminal, and a table of all tours elsewhere.
-    Of plans the table stands under the chart as well.
-    """
-
-    as_json: bool = False
-    as_csv: bool = False
-    as_table: bool = False
-    plot: Path | None = None
-
-    def check(self) -> None:
-        """Raise UsageError if two formats are asked for."""
-        if self.as_json + self.as_csv + self.as_table > 1:
-            raise UsageError("a front is printed as --json, --csv or --table, not as both")
-
-
-def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> None:
-    """Plan a front, print it and draw it."""
-    with exit_on_error():
-        output.check()
-        draw = None if output.plot is None else _drawing_into(output.plot)
-        plan, ids = build_plan()
-        front = backend.front(plan, _STDERR)
-        _print(front, ids or ids_of(front), output, Console())
-        if draw is not None:
-            draw(front, plan)
-    _STDERR.print(front_summary(front), highlight=False, markup=False)
-    print_uncovered(front.uncovered, _STDERR)
-
-
 def run_tour(
     build_plan: BuildPlan, backend: Backend, angle: float | None, choice: Choice, as_json: bool
 ) -> None:
@@ -75,6 +41,8 @@ def run_tour(
             the_way(angle, choice)
         plan, ids = build_plan()
         front = backend.front(plan, _STDERR)
+        if not isinstance(front, Front):
+            raise unexpected("answer/kind", "of tours", front.document["kind"])
         with _usage_errors():
             tour = front.choose(angle, **choice)
     if as_json:
@@ -103,11 +71,6 @@ def run_actors(backend: Backend, as_json: bool) -> None:
         Console().print(actors_as_table(actors))
 
 
-def front_as_json(front: Front) -> str:
-    """Return a front as the service answers it."""
-    return json.dumps(front.document)
-
-
 def front_as_rows(front: Front, ids: Ids | None = None) -> list[tuple[object, ...]]:
     """Return a row for each tour, with spaces between its cities, or between their ids.
 
@@ -132,12 +95,16 @@ def front_as_table(front: Front) -> Table:
     return table
 
 
-def print_chart(front: Front, console: Console) -> None:
-    """Print a chart of a front on a console, and the lengths of three of its tours."""
-    utf8 = console.encoding.startswith("utf")
-    point, labels = "•" if utf8 else "o", labels_of(front)
-    console.print(draw_front(front.lengths, point, labels), highlight=False, markup=False)
-    table = Table("tour", "balance", "angle", *map(escape, labels))
+def print_chart(front: FrontOfAnyKind, console: Console) -> None:
+    """Print a chart of a front on a console."""
+    point = "•" if console.encoding.startswith("utf") else "o"
+    chart = draw_front(front.lengths, point, labels_of(front))
+    console.print(chart, highlight=False, markup=False)
+
+
+def named_tours(front: Front) -> Table:
+    """Return a table of three tours of a front: both ends and the knee."""
+    table = Table("tour", "balance", "angle", *map(escape, labels_of(front)))
     for column in table.columns[1:]:
         column.justify = "right"
     named = front.objectives
@@ -146,19 +113,20 @@ def print_chart(front: Front, console: Console) -> None:
         lengths = (f"{length:.6g}" for length in front.lengths[i])
         balance, angle = f"{front.balances[i]:.3f}", f"{front.angles[i]:.2f}"
         table.add_row(escape(name), balance, angle, *lengths)
-    console.print(table)
+    return table
 
 
-def front_summary(front: Front) -> str:
+def front_summary(front: FrontOfAnyKind, noun: str = "tours") -> str:
     """Return a line about the size, the hypervolume and the end of a front's search."""
-    found = f"{len(front.tours)} of {front.points} tours found"
-    bound = front.hypervolume_bound
+    found = f"{len(front.lengths)} of {front.points} {noun} found"
+    bound = front.hypervolume_bound if isinstance(front, Front) else None
     most = "" if bound is None else f", and no front has more than {bound:.2%}"
     return f"{found}, hypervolume {front.hypervolume:.2%}{most}; {end_of_search(front.terminated)}"
 
 
-def print_uncovered(uncovered: Uncovered | None, console: Console) -> None:
+def print_uncovered(front: FrontOfAnyKind, console: Console) -> None:
     """Print a line about the cells of a map that no path leads to, if there are any."""
+    uncovered = None if isinstance(front, FleetFront) else front.uncovered
     if uncovered is None or not uncovered.regions:
         return
     row, column = uncovered.regions[0].cell
@@ -222,43 +190,3 @@ def three_tours(lengths: NDArray[np.float64], names: Sequence[str] = LABELS) -> 
         "knee": int(((lengths - low) / box).sum(axis=1).argmin()),
         f"least {second}": int(np.lexsort((lengths[:, 0], lengths[:, 1]))[0]),
     }
-
-
-def _print(front: Front, ids: Ids | None, output: OutputFormat, console: Console) -> None:
-    if output.as_json:
-        print_data(front_as_json(front))
-    elif output.as_csv:
-        print_csv(front_as_rows(front, ids))
-    elif console.is_terminal and len(front.tours) and not output.as_table:
-        print_chart(front, console)
-        _STDERR.print("--table prints every tour, --csv its cities too", highlight=False)
-    else:
-        console.print(front_as_table(front))
-
-
-def check_plot(path: Path) -> None:
-    """Raise UsageError if no picture can be drawn into a file, or matplotlib is not installed."""
-    try:
-        from service.cli.plot import check_path
-    except ModuleNotFoundError:
-        raise UsageError("--plot needs matplotlib: pip install 'paretour[plot]'") from None
-    check_path(path)
-
-
-def _drawing_into(path: Path) -> Callable[[Front, Plan], None]:
-    """Return a function that draws a front, and over a map its tours, into a file.
-
-    Raises:
-        UsageError: No picture can be drawn into it, or matplotlib is not installed.
-    """
-    check_plot(path)
-    from service.cli.plot import plot_front
-
-    def draw(front: Front, plan: Plan) -> None:
-        if front.paths is None:
-            return plot_front(front, path)
-        from service.cli.plot_map import plot_map
-
-        return plot_map(front, plan, path, three_tours(front.lengths))
-
-    return draw

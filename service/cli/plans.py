@@ -72,8 +72,8 @@ def plan_map(
     options: Options,
     poses: Mapping[str, str | None] | None = None,
     robots: Sequence[str] = (),
-) -> Plan:
-    """Return the plan for places on the map in a file, maybe with costs in another.
+) -> tuple[Plan, None]:
+    """Return the plan for places on the map in a file, maybe with costs in another; and no ids.
 
     Args:
         file: The map, or a request.
@@ -99,12 +99,7 @@ def plan_map(
     given = _without_none({**options, **parsed, **members})
     whole = {**request, **given}
     _check_complete(whole)
-    return coverage_plan(cast(CoverageRequest, whole), picture)
-
-
-def has_robots(plan: Plan) -> bool:
-    """Return whether a plan for a map is for several robots, so that its front is of plans."""
-    return bool(plan.request.get("robots"))
+    return coverage_plan(cast(CoverageRequest, whole), picture), None
 
 
 def _parse_robots(poses: Sequence[str]) -> list[dict[str, Any]] | None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from matplotlib.backend_bases import FigureCanvasBase
 from matplotlib.figure import Figure
-from paretour import Front
+from paretour import FrontOfAnyKind
 
 from service.cli.errors import UsageError
 from service.cli.labels import labels_of
@@ -21,8 +21,8 @@ def check_path(path: Path) -> None:
         raise UsageError(f"--plot must be in a directory that is there, got {path}")
 
 
-def plot_front(front: Front, path: Path) -> None:
-    """Draw the lengths of every tour into a file, the first to the right and the second up."""
+def plot_front(front: FrontOfAnyKind, path: Path, noun: str = "tours") -> None:
+    """Draw the lengths of a front into a file, the first to the right and the second up."""
     figure = Figure(figsize=(6, 4.5), layout="constrained")
     axes = figure.add_subplot()
     first, second = front.lengths.T
@@ -30,6 +30,6 @@ def plot_front(front: Front, path: Path) -> None:
     axes.scatter(first, second, s=14)
     for label, text in zip((axes.xaxis.label, axes.yaxis.label), labels_of(front), strict=True):
         label.set(text=text, parse_math=False)  # a name may have a dollar sign in it
-    axes.set_title(f"{len(front.tours)} tours, hypervolume {front.hypervolume:.2%}")
+    axes.set_title(f"{len(front.lengths)} {noun}, hypervolume {front.hypervolume:.2%}")
     axes.spines[["top", "right"]].set_visible(False)
     figure.savefig(path, dpi=150)

@@ -49,7 +49,7 @@ def progress_bar(console: Console, seconds: float) -> Iterator[Callable[[SearchP
         task = bar.add_task("planning", total=seconds, found="")
 
         def show(progress: SearchProgress) -> None:
-            found = f"hypervolume {progress.hypervolume:.2%}, {progress.points} tours"
+            found = f"hypervolume {progress.hypervolume:.2%}, {progress.points} found"
             bar.update(task, completed=progress.seconds, found=found)
 
         yield show

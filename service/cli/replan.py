@@ -43,7 +43,7 @@ def replan(  # noqa: PLR0913  an option each
 ) -> None:
     """Plan the rest of a tour when things have changed, from a front that a service has."""
     from service.cli.backends import RemoteBackend
-    from service.cli.output import OutputFormat, run_front
+    from service.cli.fronts import OutputFormat, run_front
     from service.cli.plans import plan_rest
 
     options = {

@@ -157,13 +157,6 @@ end
 
 function verbs.check_place(now) return refusal(now) or 'new' end
 
--- A client's turn comes after those of all others that wait.
-local function queue_turn(client, wait)
-  if wait == 'again' or not redis.call('ZSCORE', TURNS, client) then
-    redis.call('ZADD', TURNS, redis.call('INCR', TURN), client)
-  end
-end
-
 -- Admission to the queue and to the records at once. Who waits for the front needs a worker now.
 function verbs.submit(now)
   local waits = ARGV[6] ~= ''
@@ -172,31 +165,35 @@ function verbs.submit(now)
   if reply then return reply end
   reply = admit(now, 7)
   redis.call('HSET', front_of(ARGV[7]), 'client', ARGV[5])
-  queue_turn(ARGV[5])
   return reply
 end
 
--- The record that waits and is next: the first of the client whose turn is longest ago.
+-- The record that waits and is next, in the order of service/jobs/fair_queue.py: clients without a
+-- running record come first; of these newcomers, then who has waited longest since the last turn.
 local function next_in_turn()
-  local first, waiting = {}, {}
+  local first, waiting, served = {}, {}, {}
   for _, id in ipairs(redis.call('ZRANGE', UNFINISHED, 0, -1)) do
-    local status, client, caller =
-      unpack(redis.call('HMGET', front_of(id), 'status', 'client', 'caller'))
+    local status, seen, client, caller =
+      unpack(redis.call('HMGET', front_of(id), 'status', 'seen', 'client', 'caller'))
     client = client or caller or ''
-    if status == 'queued' and not first[client] then
+    if status == 'running' then
+      served[client] = true
+    elseif status == 'queued' and seen then
+      return id -- A worker handed it back: this is still the same turn.
+    elseif status == 'queued' and not first[client] then
       first[client] = id
       waiting[#waiting + 1] = client
     end
   end
-  for _, client in ipairs(redis.call('ZRANGE', TURNS, 0, -1)) do
-    if not first[client] then redis.call('ZREM', TURNS, client) end
-  end
   local found, least
   for _, client in ipairs(waiting) do
     local turn = tonumber(redis.call('ZSCORE', TURNS, client) or 0)
+    if served[client] then turn = turn + 2 ^ 40 end -- behind all others
     if not least or turn < least then found, least = client, turn end
   end
-  if found then queue_turn(found, 'again') end
+  if not found then return nil end
+  redis.call('ZADD', TURNS, redis.call('INCR', TURN), found)
+  redis.call('ZREMRANGEBYRANK', TURNS, 0, -1001) -- the latest 1000 are remembered
   return first[found]
 end
 

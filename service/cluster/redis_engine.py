@@ -29,6 +29,7 @@ from service.errors import (
     ShuttingDown,
     StoreUnavailable,
 )
+from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.record import Record, StopReason, as_ended, as_failed
 from service.jobs.store import STORE_BYTES
@@ -50,11 +51,10 @@ class RedisEngine:
         queue: How many jobs may wait in addition to one for each worker.
         share: The share of all of these that one client may hold. It may always hold one more than
             there are workers.
-        seconds: How long a client waits at most.
         on_front: Called with every front that was planned, by one of the replicas.
     """
 
-    def __init__(  # noqa: PLR0913  all but the first three are keyword-only
+    def __init__(
         self,
         redis: Redis,
         store: RedisStore,
@@ -62,14 +62,12 @@ class RedisEngine:
         *,
         queue: int,
         share: float = 1.0,
-        seconds: float,
         on_front: Callable[[FrontDocument], None] = lambda _: None,
     ) -> None:
         self._store = store
         self._send = send
         self._queue = queue
         self._share = share
-        self._seconds = seconds
         self._on_front = on_front
         self._subscriptions = Subscriptions(redis, self._on_finished)
         self._tasks: set[asyncio.Task[None]] = set()
@@ -118,13 +116,14 @@ class RedisEngine:
         record: Record,
         task: Task,  # noqa: ARG002  # a worker reads it from the record
         disconnected: Future[None],
+        deadline: Deadline,
     ) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it."""
         await self._submit(record, waits=True)
         ending = asyncio.ensure_future(final_record(self, record))
         try:
             await asyncio.wait(
-                (ending, disconnected), timeout=self._seconds, return_when=asyncio.FIRST_COMPLETED
+                (ending, disconnected), timeout=deadline.left(), return_when=asyncio.FIRST_COMPLETED
             )
             if not ending.done():
                 reason = Cancelled if disconnected.done() else DeadlineExceeded
@@ -264,6 +263,4 @@ def connect(  # noqa: PLR0913  a setting each
     )
     store = RedisStore(redis, entries=entries, max_age=max_age, max_bytes=max_bytes)
     send = partial(send_record, make_celery(redis_url, seconds))
-    return store, RedisEngine(
-        redis, store, send, queue=queue, share=share, seconds=seconds, on_front=on_front
-    )
+    return store, RedisEngine(redis, store, send, queue=queue, share=share, on_front=on_front)

@@ -16,7 +16,7 @@ end
 local P = 'paretour:'
 local NUMBER, LOST = P .. 'number', P .. 'lost'
 local UNFINISHED, FINISHED, GONE = P .. 'unfinished', P .. 'finished', P .. 'gone'
--- Of clients that wait: the number of the turn that each had last, or came in at; and the last one.
+-- The number of each client's latest turn; and the number of the latest turn of all.
 local TURNS, TURN = P .. 'turns', P .. 'turn'
 local WORKERS, TOLD = P .. 'workers', P .. 'told'
 -- Of finished records: how many each client has and of how many bytes, the bytes of all, and

@@ -27,6 +27,7 @@ from service.cluster.records import StoredRecord
 from service.cluster.worker_store import TakenOver, WorkerStore
 from service.errors import Cancelled, DeadlineExceeded, WorkerLost
 from service.front import Progress
+from service.jobs.deadline import Deadline
 from service.jobs.record import Record, StopReason, as_ended, as_failed
 from service.jobs.runner import MakeRunner, Reporter, Runner
 from service.jobs.submission import MOST_ATTEMPTS
@@ -76,7 +77,7 @@ class RecordWorker:
         if stored.attempts > MOST_ATTEMPTS:
             self._store.finish(as_failed(stored.record, WorkerLost(), stored.record.front))
             return
-        deadline = time.monotonic() + self._seconds
+        deadline = Deadline.after(self._seconds)
         supervisor = _Supervisor(
             stored, self._store, deadline, self._is_draining, self._runner.terminate
         )
@@ -114,7 +115,7 @@ class _Supervisor:
         self,
         stored: StoredRecord,
         store: WorkerStore,
-        deadline: float,
+        deadline: Deadline,
         is_draining: IsDraining,
         terminate: Callable[[], None],
     ) -> None:
@@ -163,15 +164,15 @@ class _Supervisor:
 
     def _is_over_within(self, seconds: float) -> bool:
         """Terminate the runner's calls again and again, and return whether planning is over."""
-        deadline = time.monotonic() + seconds
-        while time.monotonic() < deadline:
+        deadline = Deadline.after(seconds)
+        while not deadline.over():
             self._terminate()
             if self._over.wait(_TERMINATE_EVERY):
                 return True
         return False
 
     def _current_reason(self) -> StopReason | type[TakenOver | Draining] | None:
-        if time.monotonic() > self._deadline:
+        if self._deadline.over():
             return DeadlineExceeded
         return Draining if self._is_draining() else self._store.stop_reason(self._stored.record.id)
 

@@ -3,7 +3,7 @@
 from contextlib import suppress
 from dataclasses import replace
 from socket import gethostname
-from time import monotonic, sleep, time
+from time import sleep, time
 from typing import Any
 
 from redis import Redis
@@ -29,6 +29,7 @@ from service.cluster.records import (
     stored_record,
 )
 from service.front import Progress
+from service.jobs.deadline import Deadline
 from service.jobs.record import Record, StopReason
 from service.jobs.store import UnreadableRecord, log_dropped
 from service.kinds.front_document import FrontDocument
@@ -108,12 +109,12 @@ class WorkerStore:
         self._call_until_answered("hand_back", id, self._worker)
 
     def _call_until_answered(self, verb: str, *arguments: Argument) -> Any:
-        deadline = monotonic() + _PATIENCE
+        deadline = Deadline.after(_PATIENCE)
         while True:
             try:
                 return self._call(verb, *arguments)
             except UNAVAILABLE:
-                if monotonic() > deadline:
+                if deadline.over():
                     raise
                 sleep(_PAUSE)
 
@@ -144,10 +145,10 @@ def takes_work(redis_url: str) -> bool:
     and the result is True.
     """
     script = connect_script(redis_url)
-    deadline = monotonic() + _LOST_AFTER
+    deadline = Deadline.after(_LOST_AFTER)
     try:
         workers, waiting, idle = script(args=["idle", time(), gethostname(), QUEUE])
-        while workers and waiting and idle and monotonic() < deadline:
+        while workers and waiting and idle and not deadline.over():
             sleep(_CHECK_EVERY)
             workers, waiting, still = script(args=["idle", time(), gethostname(), QUEUE])
             idle = set(idle).intersection(still)

@@ -19,6 +19,7 @@ from service.errors.exceptions import (
     TooManyPlaces,
     WarmingUp,
     WorkerLost,
+    invalid,
 )
 from service.errors.problems import PROBLEMS
 from service.errors.roads import (
@@ -60,4 +61,5 @@ __all__ = [
     "TooManyPlaces",
     "WarmingUp",
     "WorkerLost",
+    "invalid",
 ]

@@ -100,6 +100,11 @@ class Refusal(Exception):
         return _without_none(members)
 
 
+def invalid(part: str, demand: str) -> Refusal:
+    """Return the refusal of a part of a request, as matrices/0/2, that misses a demand."""
+    return Refusal("invalid-request", detail=f"{part} {demand}", pointer=f"/{part}")
+
+
 class InvalidInstance(Refusal, ValueError):
     """The cities, or the costs between them, cannot be planned."""
 

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from service.errors import Refusal
+from service.errors import Refusal, invalid
 from service.fleet.least_paths import least_paths
 from service.instance import OBJECTIVES, largest_costs, ordinary_costs
 
@@ -17,11 +17,6 @@ Array = NDArray[np.float64]
 Over = Literal["sum", "max"]
 Span = tuple[float, float]
 ALWAYS: Span = (0.0, inf)
-
-
-def invalid(part: str, demand: str) -> Refusal:
-    """Return the refusal of a part of a fleet, as vehicles/0/start, that misses a demand."""
-    return Refusal("invalid-request", detail=f"{part} {demand}", pointer=f"/{part}")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -23,7 +23,7 @@ from service.fleet.splitting.first_plans import first_plans
 from service.fleet.splitting.network_sequences import network_sequences
 from service.fleet.sweep import Sweep
 from service.fleet.translation import FREE, Translation
-from service.front import Progress, Termination
+from service.front import Progress, ReportOf, Termination
 from service.pareto import hypervolume, nondominated
 from service.search.best_subset import best_subset, selection_seconds
 
@@ -58,15 +58,12 @@ class FleetOptions:
     iterations: int = _NO_LIMIT
 
 
-Report = Callable[[Progress, Callable[[int], FleetFront]], None]
-
-
 def plan_fleet(
     fleet: Fleet,
     options: FleetOptions,
     constructor: Constructor | None = None,
     stop: Callable[[], bool] = lambda: False,
-    report: Report = lambda *_: None,
+    report: ReportOf[FleetFront] = lambda *_: None,
 ) -> FleetFront:
     """Return the best front of plans found for a fleet within the time limit.
 
@@ -137,7 +134,7 @@ class _Search:
         fleet: Fleet,
         options: FleetOptions,
         stop: Callable[[], bool],
-        report: Report,
+        report: ReportOf[FleetFront],
         began: float,
         loose: bool = False,
     ) -> None:

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from service.errors import DeadlineExceeded, ShuttingDown
 from service.front import Progress
+from service.jobs.deadline import Deadline
 from service.jobs.record import Record
 from service.requests.task import Task
 
@@ -53,12 +54,15 @@ class Engine(Protocol):
     async def check_ready(self) -> None:
         """Raise a refusal when some kinds of tasks would be refused at the moment."""
 
-    async def run(self, record: Record, task: Task, disconnected: Future[None]) -> Record:
+    async def run(
+        self, record: Record, task: Task, disconnected: Future[None], deadline: Deadline
+    ) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it.
 
-        The task is that of the record's source.
+        At the deadline it ends with the best front so far. The task is that of the record's source.
 
         Raises:
+            DeadlineExceeded: Nothing was found in time.
             QueueFull: No place is left.
             ShareFull: The client holds its share of the places.
             ShuttingDown: No more jobs are taken.
@@ -96,15 +100,15 @@ class Engine(Protocol):
 _GRACE = 0.5  # seconds to wait longer, for a job that ends at the same time limit
 
 
-async def record_in_time(engine: Engine, record: Record, seconds: float) -> Record:
-    """Return the record of a job once it is finished, or its present state after some seconds.
+async def record_in_time(engine: Engine, record: Record, deadline: Deadline) -> Record:
+    """Return the record of a job once it is finished, or its present state at a deadline.
 
     Raises:
-        DeadlineExceeded: Nothing was found in this time. The job goes on.
+        DeadlineExceeded: Nothing was found in time. The job goes on.
         ShuttingDown: It is left unfinished for the next start.
     """
     try:
-        async with asyncio.timeout(seconds + _GRACE):
+        async with asyncio.timeout(deadline.left() + _GRACE):
             async for state in engine.watch(record):
                 record = state.record
     except TimeoutError:

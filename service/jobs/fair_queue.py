@@ -22,9 +22,11 @@ _REMEMBERED = 1000  # clients whose latest turn is remembered
 
 
 class FairQueue:
-    """Waiting submissions; the client whose latest turn is longest ago is next.
+    """Waiting submissions, which clients have planned in turn.
 
-    Clients with a running submission wait behind those without.
+    Clients without a running submission come first. Of these a newcomer is next, the earliest if
+    there are several, then the client whose latest turn is longest ago. The workers of a cluster
+    follow the same policy, in `service/cluster/records.lua`.
     """
 
     def __init__(self) -> None:

@@ -16,6 +16,7 @@ from service.errors import (
     StoreUnavailable,
     WarmingUp,
 )
+from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.record import Record, as_cancelled, as_failed, as_finished
 from service.jobs.retries import UnsavedRecords
@@ -105,10 +106,12 @@ class LocalEngine:
         self._workers.check_ready()
         self._unsaved.check_none()
 
-    async def run(self, record: Record, task: Task, disconnected: Future[None]) -> Record:
+    async def run(
+        self, record: Record, task: Task, disconnected: Future[None], deadline: Deadline
+    ) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it."""
         self._unsaved.check_none()
-        submission = self._workers.reserve(task, client=record.client)
+        submission = self._workers.reserve(task, deadline=deadline, client=record.client)
         self._queue(submission)
         disconnected.add_done_callback(lambda _: self._workers.stop(submission))
         try:

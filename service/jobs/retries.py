@@ -2,9 +2,9 @@
 
 import asyncio
 import logging
-from time import monotonic
 
 from service.errors import StoreUnavailable
+from service.jobs.deadline import Deadline
 from service.jobs.record import Record, as_failed
 from service.jobs.store import Store
 
@@ -57,13 +57,11 @@ class UnsavedRecords:
         """
         self._ids.add(record.id)
         _LOG.error("front %s cannot be stored, and is tried again", record.id, exc_info=error)
-        pause, deadline = (
-            GrowingPause(_SHORTEST_PAUSE, _LONGEST_PAUSE),
-            monotonic() + self._patience,
-        )
+        pause = GrowingPause(_SHORTEST_PAUSE, _LONGEST_PAUSE)
+        deadline = Deadline.after(self._patience)
         try:
             while not await self._is_saved(record):
-                if monotonic() > deadline and record.front.tours:
+                if deadline.over() and record.front.tours:
                     empty = record.front.without_tours()
                     record = as_failed(record, StoreUnavailable(), empty)
                 await pause.wait()

@@ -41,7 +41,7 @@ class RunningJob:
 
     def reserve(self, workers: WorkerPool, task: Task) -> None:
         """Take a place in the queue for its task; it raises what WorkerPool.reserve raises."""
-        self.submission = workers.reserve(task, self._notify, True, self.record.client)
+        self.submission = workers.reserve(task, self._notify, client=self.record.client)
 
     def end(self, record: Record) -> None:
         """Take the final record."""

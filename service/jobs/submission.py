@@ -21,7 +21,6 @@ class Submission:
         number: Tells it from the pool's other submissions, also in messages.
         task: The task.
         on_change: Called when a worker begins, and with each progress.
-        patient: Whether its time limit counts from the start of planning, not from submission.
         client: The client whose turn in the queue, and whose share of the places, it takes.
     """
 
@@ -30,12 +29,10 @@ class Submission:
         number: int,
         task: Task,
         on_change: Callable[[], None],
-        patient: bool,
         client: str = "",
     ) -> None:
         self.number = number
         self.task = task
-        self.patient = patient
         self.client = client
         self.attempts = 0
         self.stop_reason: StopReason | None = None

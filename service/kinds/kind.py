@@ -6,12 +6,12 @@ from typing import Any, Protocol
 
 from service.actor_info import ActorInfo
 from service.construction.first_tours import Constructor
-from service.front import Progress
+from service.front import ReportOf
 from service.kinds.front_document import FrontDocument
 from service.requests.limits import Limits
 from service.requests.task import KindName, Task
 
-Report = Callable[[Progress, Callable[[int], FrontDocument]], None]
+Report = ReportOf[FrontDocument]
 
 
 class NamedActor(Constructor, Protocol):

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from service.coverage.survey import Survey
 from service.errors import NoTour
-from service.front import Front, Progress
+from service.front import Front, reporting
 from service.instance import Instance, cumulated_lengths
+from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report, Tools
 from service.kinds.tour_document import encode_front
 from service.planner import plan
@@ -27,14 +28,10 @@ def plan_tours(
     """Plan or replan the front of a task; `surveyed` is the map, if it has one."""
     actor = tools.actors[task.actor]
 
-    def report_encoded(progress: Progress, best: Callable[[int], Front]) -> None:
-        report(
-            progress,
-            lambda size: encode_front(
-                best(size), actor.info.identity, surveyed, labels=task.labels
-            ),
-        )
+    def encoded(front: Front) -> FrontDocument:
+        return encode_front(front, actor.info.identity, surveyed, labels=task.labels)
 
+    report_encoded = reporting(report, encoded)
     try:
         if task.earlier is not None:
             return replan(actor, instance, task.options, task.earlier, stop, report_encoded)

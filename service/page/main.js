@@ -4,7 +4,7 @@ import { Examples } from "./opening/examples.js";
 import { ExportButtons } from "./result/export_buttons.js";
 import { clearFaults, showFault, showFaults } from "./planning/faults.js";
 import { FileNotes } from "./opening/file_notes.js";
-import { kindOf } from "./inputs/instance.js";
+import { formOf, kindOf } from "./common/kinds.js";
 import { linked } from "./result/link.js";
 import { UNNAMED, namesIn } from "./common/objectives.js";
 import { Placing } from "./inputs/placing.js";
@@ -53,7 +53,7 @@ let refusal = null; // the refusal of such files, while that example is fetched 
 /** Opens a request in the form, and shows its stops under their objectives. */
 function open(wanted, names) {
   giveUp();
-  element("order").open = !["coordinates", "grid"].includes(kindOf(wanted));
+  element("order").open = !kindOf(wanted).onGrid && formOf(wanted) !== "coordinates";
   input.open(wanted, names);
 }
 
@@ -132,7 +132,7 @@ function show(state) {
     result.name(objectives, way?.names ?? input.ids);
     result.show(way?.replanned ? { ...state, answer: way.answer(state.answer) } : state);
     answered(state.answer);
-    if (state.stage === "done" && !["fleet", "grid", "unknown"].includes(kindOf(input.instance))) {
+    if (state.stage === "done" && formOf(input.instance)) {
       way ??= new Way(input.instance, input.ids, state.answer.cities);
       replanForm.show(way);
     }

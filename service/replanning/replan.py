@@ -9,7 +9,7 @@ import numpy as np
 
 from service.construction.first_tours import Constructor
 from service.errors import Refusal
-from service.front import Front, PlanOptions, Progress, Report
+from service.front import Front, PlanOptions, ReportOf, reporting
 from service.instance import Instance, tour_lengths
 from service.pareto import nondominated
 from service.planner import plan
@@ -29,7 +29,7 @@ def replan(
     options: PlanOptions,
     earlier: EarlierTours,
     stop: Callable[[], bool] = lambda: False,
-    report: Report = lambda *_: None,
+    report: ReportOf[Front] = lambda *_: None,
 ) -> Front:
     """Return the best front found for an instance whose cities were in an earlier front, mostly.
 
@@ -63,11 +63,11 @@ def replan(
         choose = partial(with_most_kept_at, instance, earlier.driven, earlier.balance)
         wanted = replace(wanted, choose_again=choose)
 
-    def report_kept(progress: Progress, best: Callable[[int], Front]) -> None:
-        report(progress, lambda size: _with_kept(instance, best(size), earlier))
+    def with_kept(front: Front) -> Front:
+        return replace(front, kept=kept_shares(instance, front.tours, earlier.driven))
 
     wanted = replace(wanted, initial_tours=first)
-    front = plan(constructor, instance, wanted, stop, report_kept)
+    front = plan(constructor, instance, wanted, stop, reporting(report, with_kept))
     timings = {**front.timings, "construction": front.timings["construction"] + 1000 * spent}
     front = replace(front, timings=timings)
     if earlier.min_kept > 0:
@@ -75,7 +75,7 @@ def replan(
     elif len(first):
         tours = most_like_driven(instance, front.tours, front.points, first, earlier.driven)
         front = replace(front, tours=tours)
-    return _with_kept(instance, front, earlier)
+    return with_kept(front)
 
 
 def _first_tours(instance: Instance, earlier: EarlierTours) -> Tours:
@@ -113,7 +113,3 @@ def _keeping(
     chosen = best_subset(tour_lengths(instance, tours), size, front.reference_point)
     points = tour_lengths(instance, tours[chosen])
     return replace(front, tours=tours[chosen], points=points, found=len(tours))
-
-
-def _with_kept(instance: Instance, front: Front, earlier: EarlierTours) -> Front:
-    return replace(front, kept=kept_shares(instance, front.tours, earlier.driven))

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from pydantic import GetPydanticSchema, ValidationInfo
 from pydantic_core.core_schema import with_info_after_validator_function
 
-from service.requests.validation import invalid, show
+from service.errors import invalid
+from service.requests.validation import show
 
 Array = NDArray[np.float64]
 Rows = list[list[float]]

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from service.coverage.coverage import Coverage
+from service.errors import invalid
 from service.instance import CLOSED, Kind, RouteEnds
 from service.requests.arrays import array_field, check_costs, cost_matrix
 from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
@@ -31,7 +32,7 @@ from service.requests.schemas import (
     PlanePoint,
     PositiveNumber,
 )
-from service.requests.validation import invalid, parse_json, too_many_cities
+from service.requests.validation import parse_json, too_many_cities
 
 Matrix = Annotated[NDArray[np.float64], array_field(cost_matrix, CostRows)]
 Cell = Annotated[list[NonNegativeInteger], Field(min_length=2, max_length=2, fail_fast=True)]

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from pydantic import Field, GetPydanticSchema
 from pydantic_core.core_schema import no_info_after_validator_function
 
+from service.errors import invalid
 from service.instance import OBJECTIVES, PLANE, Kind
 from service.requests.arrays import stack_matrices
 from service.requests.schemas import (
@@ -38,7 +39,6 @@ from service.requests.stops import (
     kind_of,
     locations_of,
 )
-from service.requests.validation import invalid
 
 _COLUMNS = 2 * OBJECTIVES  # x and y in the plane of each objective
 _MOST_SYMMETRIES = 8  # that earlier versions showed the network

@@ -3,14 +3,14 @@
 from collections.abc import Mapping, Sequence
 from typing import TypeVar
 
-from service.errors import Refusal
+from service.errors import Refusal, invalid
 from service.requests.arrays import check_costs
 from service.requests.front import FORMS, FrontRequest
 from service.requests.limits import Limits, check_limits, check_router, lower_defaults
 from service.requests.npy import read_npy
 from service.requests.schemas import LARGEST
 from service.requests.stop_fields import find_index
-from service.requests.validation import invalid, parse_json, too_many_cities
+from service.requests.validation import parse_json, too_many_cities
 
 _REFERENCES = {"start", "end", "initial_tours"}  # the fields that may name stops by their ids
 AnyFrontRequest = TypeVar("AnyFrontRequest", bound=FrontRequest)

@@ -4,12 +4,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
-from service.errors import Refusal
+from service.errors import Refusal, invalid
 from service.front import PlanOptions
 from service.instance import Array, Kind
 from service.requests.schemas import PlanFields, PlanRequest
 from service.requests.stops import ROAD_MEASURES, Measured, Source, base_of
-from service.requests.validation import invalid
 
 _TOURS_BY_ID = 100  # initial tours that may name every stop by its id
 _ID_BYTES = 40  # of an id in an answer that count as one cell: a UUID with its quotation marks

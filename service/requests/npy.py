@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from service.errors import invalid
 from service.instance import OBJECTIVES
-from service.requests.validation import invalid, shorten, too_many_cities
+from service.requests.validation import shorten, too_many_cities
 
 _MAGIC = b"\x93NUMPY"
 _LENGTH_BYTES = {b"\1\0": 2, b"\2\0": 4}  # of the header's length, by the file's version

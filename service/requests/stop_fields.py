@@ -7,7 +7,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
-from service.errors import Refusal
+from service.errors import invalid
 from service.requests.arrays import check_costs, cost_matrix
 from service.requests.schemas import (
     LARGEST,
@@ -18,7 +18,7 @@ from service.requests.schemas import (
     Text,
 )
 from service.requests.stops import UNITS, Matrix, Measure, Measured, Objective, Plane, Source, Stop
-from service.requests.validation import invalid, show
+from service.requests.validation import show
 
 _TYPO = 2  # neighbouring characters that are wrong, left out or added
 StopReference = Annotated[
@@ -181,6 +181,4 @@ def _check_located(part: str, measure: Measure, stops: Sequence[Stop]) -> None:
     """Raise a refusal where a measure needs the location of a stop that has none."""
     for index, stop in enumerate(stops):
         if stop.location is None:
-            pointer = f"/stops/{index}/location"
-            sentence = f"stops/{index}/location is required by {part} {measure}"
-            raise Refusal("invalid-request", detail=sentence, pointer=pointer)
+            raise invalid(f"stops/{index}/location", f"is required by {part} {measure}")

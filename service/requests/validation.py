@@ -65,11 +65,6 @@ def refusal_of(
     return Refusal("invalid-request", detail=faults[0].detail + more, errors=faults)
 
 
-def invalid(part: str, demand: str) -> Refusal:
-    """Return the refusal of a part of a request, as matrices/0/2, that misses a demand."""
-    return Refusal("invalid-request", detail=f"{part} {demand}", pointer=f"/{part}")
-
-
 def too_many_cities(part: str, limit: int, actual: int, condition: str = "") -> Refusal:
     """Return the refusal of more rows, each a city, than are allowed, under a condition if any."""
     detail = f"{part} must have at most {limit} rows{condition}, got {actual}"

@@ -12,7 +12,7 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
-from service.front import Progress, SearchResult, Termination
+from service.front import Progress, ReportOf, SearchResult, Termination
 from service.instance import Instance, tour_lengths
 from service.pareto import nondominated
 from service.search import candidates
@@ -32,9 +32,6 @@ REPORT_EVERY = 0.1  # seconds
 KINDS = ((True, True), (False, True), (True, False), (False, False))  # closed, of coordinates
 
 
-Report = Callable[[Progress, Callable[[int], SearchResult]], None]
-
-
 def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a default
     instance: Instance,
     tours: NDArray[np.integer],
@@ -44,7 +41,7 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
     iterations: int | None = None,
     seed: int = 0,
     stop: Callable[[], bool] | None = None,
-    report: Report | None = None,
+    report: ReportOf[SearchResult] | None = None,
     reference_point: Array | None = None,
     capacity: int = MAX_POINTS,
     touched: NDArray[np.integer] | None = None,
@@ -97,7 +94,7 @@ def _run(
     reserve: Callable[[int], float],
     iterations: int | None,
     stop: Callable[[], bool] | None,
-    report: Report | None,
+    report: ReportOf[SearchResult] | None,
 ) -> Termination:
     """Run a search until it converges, or its deadline, its iterations or `stop` end it."""
     began = reported = time.monotonic()

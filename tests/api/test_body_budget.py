@@ -15,7 +15,7 @@ from starlette.responses import Response
 from starlette.types import Message
 
 from service.api.app import Edge
-from service.api.body_budget import AnswerBudget, BodyBounds, BodyBudget
+from service.api.body_budget import BodyBounds, BodyBudget
 from service.errors import Refusal
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.kinds.json_parts import joined
@@ -147,7 +147,7 @@ def test_the_body_of_a_job_counts_until_the_job_has_ended(
 
 
 def test_an_answer_gives_its_bytes_back_once_it_is_sent_or_has_failed() -> None:
-    budget = AnswerBudget(BUDGET, share=0.5)
+    budget = BodyBudget(BUDGET, share=0.5, answers=True)
     sent: list[Message] = []
 
     async def send(message: Message) -> None:
@@ -169,7 +169,7 @@ def test_an_answer_gives_its_bytes_back_once_it_is_sent_or_has_failed() -> None:
 
 
 def test_long_answers_have_room_beside_others_or_alone() -> None:
-    budget = AnswerBudget(BUDGET, share=0.5)
+    budget = BodyBudget(BUDGET, share=0.5, answers=True)
     with budget.open("one", 2 * BUDGET), budget.open("other", 1000):
         with pytest.raises(Refusal, match="must fit into 800000 bytes"):
             budget.open("other", 200_000)
@@ -180,6 +180,24 @@ def test_long_answers_have_room_beside_others_or_alone() -> None:
             budget.open("one", 200_000)
         with budget.open("other", 200_000):
             assert budget.used == 500_000
+    assert budget.used == 0
+
+
+def test_short_answers_pass_beside_any_number_of_long_ones() -> None:
+    budget = BodyBudget(BUDGET, share=0.5, answers=True)
+    with budget.open("one", BUDGET), ExitStack() as short:
+        for _ in range(20):
+            short.enter_context(budget.open("other", 130_000))
+        assert budget.used == BUDGET
+
+
+def test_a_body_that_is_handed_over_is_given_back_by_its_new_holder() -> None:
+    budget = BodyBudget(BUDGET, share=0.5)
+    with budget.open("one", 200_000) as allowance:
+        other = allowance.hand_over()
+    assert budget.used == 200_000
+    with other:
+        pass
     assert budget.used == 0
 
 

@@ -1,5 +1,6 @@
 """POST /front against a live server: fronts, and what the engine says where there is none."""
 
+import asyncio
 import json
 import time
 from collections.abc import Iterator
@@ -13,13 +14,27 @@ import numpy as np
 import pytest
 
 from service.actor import OnnxActor
+from service.api.app import Edge
 from service.instance import Instance, step_lengths, tour_lengths
+from service.jobs.deadline import Deadline
+from service.jobs.local_engine import LocalEngine
+from service.jobs.record import Record
+from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.task_runner import load_runner
+from service.requests.task import Task
 from service.server import Ending, build
 from service.settings import Settings
 from tests.helpers.actors import Shuffler
 from tests.helpers.artifacts import by_row_sums
-from tests.helpers.serving import LIMITS, app_of, problem, runner_of, serving, workers_of
+from tests.helpers.serving import (
+    LIMITS,
+    app_of,
+    engine_app,
+    problem,
+    runner_of,
+    serving,
+    workers_of,
+)
 
 CITIES = np.random.default_rng(5).random((12, 4)).tolist()
 MANY_CITIES = np.random.default_rng(0).random((300, 4)).tolist()
@@ -181,8 +196,7 @@ def test_a_client_that_goes_away_frees_its_worker() -> None:
 
 
 def test_a_request_that_takes_too_long_is_answered_with_what_was_found() -> None:
-    workers = workers_of(runner_of(limits=PATIENT), seconds=1)
-    with serving(app_of(workers=workers, limits=PATIENT)) as address:
+    with serving(app_of(limits=PATIENT, edge=Edge(request_seconds=1))) as address:
         request = {"coordinates": MANY_CITIES, "time_limit": 600}
         answer = httpx.post(f"{address}/front", json=request, timeout=60)
         assert (answer.status_code, answer.json()["terminated"]) == (200, "time_limit")
@@ -190,10 +204,34 @@ def test_a_request_that_takes_too_long_is_answered_with_what_was_found() -> None
 
 
 def test_a_request_that_takes_too_long_for_any_front_is_504(tmp_path: Path) -> None:
-    workers = workers_of(runner_of(Shuffler(tmp_path / "gate")), seconds=0.5)
-    with serving(app_of(workers=workers)) as address:
+    app = app_of(Shuffler(tmp_path / "gate"), edge=Edge(request_seconds=0.5))
+    with serving(app) as address:
         answer = httpx.post(f"{address}/front", json={"coordinates": CITIES}, timeout=60)
         problem(answer, 504, "overdue")
+
+
+class SlowEngine(LocalEngine):
+    """An engine that takes half a second to admit a job, and notes how much time that has left."""
+
+    left: float
+
+    async def check_warm(self) -> None:
+        await asyncio.sleep(0.5)
+
+    async def run(
+        self, record: Record, task: Task, disconnected: asyncio.Future[None], deadline: Deadline
+    ) -> Record:
+        self.left = deadline.left()
+        return await super().run(record, task, disconnected, deadline)
+
+
+def test_the_seconds_of_a_request_count_from_when_it_came() -> None:
+    store = SqliteStore(IN_MEMORY, entries=9, max_age=60)
+    engine = SlowEngine(workers_of(), store, pytest.fail)
+    with serving(engine_app(store, engine, edge=Edge(request_seconds=60))) as address:
+        request = {"coordinates": CITIES, "time_limit": 0.1}
+        assert httpx.post(f"{address}/front", json=request, timeout=60).status_code == 200
+    assert engine.left <= 59.5
 
 
 def test_a_full_queue_is_503_and_health_answers_all_the_while(tmp_path: Path) -> None:

@@ -76,8 +76,7 @@ class Planless:
     """A runner that plans nothing."""
 
     actors: ClassVar[dict[str, Any]] = {}
-    infos = ACTORS
-    limits = LIMITS
+    limits, infos = LIMITS, ACTORS
 
     def run(self, *_: object) -> Any:
         raise Cancelled

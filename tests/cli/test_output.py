@@ -12,15 +12,14 @@ from rich.console import Console
 
 from service.cli.data import csv_text
 from service.cli.errors import UsageError
+from service.cli.fronts import OutputFormat, run_front
 from service.cli.labels import ids_of
 from service.cli.output import (
-    OutputFormat,
-    front_as_json,
     front_as_rows,
     front_as_table,
     front_summary,
+    named_tours,
     print_chart,
-    run_front,
     run_tour,
     stops_of,
     tour_as_json,
@@ -51,8 +50,9 @@ def build_named() -> tuple[Plan, tuple[str, ...]]:
     return Plan("/front", {}), ("depot", "b 2", "c")
 
 
-def test_json_is_the_answer_of_the_service() -> None:
-    assert json.loads(front_as_json(THE_FRONT)) == FRONT
+def test_json_is_the_answer_of_the_service(capsys: pytest.CaptureFixture[str]) -> None:
+    run_front(build_plan, Prepared(), OutputFormat(as_json=True))
+    assert json.loads(capsys.readouterr().out) == FRONT
 
 
 def test_csv_has_a_line_for_each_tour() -> None:
@@ -78,6 +78,7 @@ def test_a_chart_and_tables_have_names_as_they_are() -> None:
     stream = io.StringIO()
     console = Console(file=stream, width=100)
     print_chart(NAMED_FRONT, console)
+    console.print(named_tours(NAMED_FRONT))
     console.print(front_as_table(NAMED_FRONT))
     printed = stream.getvalue()
     chart, _, tables = printed.partition("least")

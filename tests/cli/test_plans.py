@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from service.cli.errors import UsageError
-from service.cli.plans import has_robots, plan_cities, plan_map
+from service.cli.plans import plan_cities, plan_map
 
 
 def test_options_stand_over_the_file_where_they_are_given(tmp_path: Path) -> None:
@@ -52,7 +52,7 @@ def test_a_map_is_a_file_beside_its_options_and_costs(tmp_path: Path) -> None:
     (tmp_path / "map.png").write_bytes(b"PNG")
     (tmp_path / "costs.csv").write_text("1,2\n3,4\n")
     options = {"cell_size": 1.0, "spacing": 2.0, "paths": None}
-    plan = plan_map(tmp_path / "map.png", tmp_path / "costs.csv", options)
+    plan, _ = plan_map(tmp_path / "map.png", tmp_path / "costs.csv", options)
     assert plan.file is not None
     assert (plan.path, plan.file.content) == ("/coverage", b"PNG")
     np.testing.assert_array_equal(plan.request["cost_layer"], [[1, 2], [3, 4]])
@@ -73,7 +73,7 @@ def test_a_message_lacks_no_cell_size(tmp_path: Path) -> None:
     options = {"spacing": 2.0, "unknown": None, "cell_size": None}
     (tmp_path / "costs.csv").write_text("1\n")
     poses = {"start_pose": "-1,2.5", "end_pose": None}
-    plan = plan_map(tmp_path / "map.json", tmp_path / "costs.csv", options, poses)
+    plan, _ = plan_map(tmp_path / "map.json", tmp_path / "costs.csv", options, poses)
     assert plan.request.keys() == {"occupancy_grid", "spacing", "cost_layer", "start_pose"}
     assert plan.request["occupancy_grid"] == {"info": {}, "data": [0]}
     assert plan.request["start_pose"] == [-1.0, 2.5]
@@ -82,8 +82,7 @@ def test_a_message_lacks_no_cell_size(tmp_path: Path) -> None:
 def test_robots_share_a_map_without_a_second_objective(tmp_path: Path) -> None:
     (tmp_path / "map.png").write_bytes(b"PNG")
     options = {"cell_size": 1.0, "spacing": 2.0}
-    plan = plan_map(tmp_path / "map.png", None, options, robots=["-1,2.5", "3,4,1.57"])
-    assert has_robots(plan)
+    plan, _ = plan_map(tmp_path / "map.png", None, options, robots=["-1,2.5", "3,4,1.57"])
     assert plan.request["robots"] == [
         {"id": "robot-1", "start_pose": [-1.0, 2.5]},
         {"id": "robot-2", "start_pose": [3.0, 4.0, 1.57]},

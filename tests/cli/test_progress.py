@@ -16,7 +16,7 @@ def test_progress_is_shown_on_a_terminal_only(terminal: bool) -> None:
     console = Console(file=text, force_terminal=terminal, width=100)
     with progress_bar(console, seconds=2) as show:
         show(Progress(seconds=1.0, hypervolume=0.5, points=7))
-    assert ("hypervolume 50.00%, 7 tours" in text.getvalue()) == terminal
+    assert ("hypervolume 50.00%, 7 found" in text.getvalue()) == terminal
 
 
 def test_ctrl_c_sets_a_flag_and_the_second_one_interrupts() -> None:

@@ -9,13 +9,12 @@ from typing import Any
 import matplotlib.image
 import numpy as np
 import pytest
-from paretour import Plan, RobotFront, coverage_plan
+from paretour import Actor, Plan, RobotFront, coverage_plan
 from paretour.robots import parse_robots
 from rich.console import Console
 
 from service.cli.fleets.plot import plot_robots
-from service.cli.fleets.robots import run_robots
-from service.cli.output import OutputFormat
+from service.cli.fronts import OutputFormat, run_front
 from tests.helpers.command import paretour
 
 GRID = [[0, 0, 0, 0]]
@@ -32,6 +31,7 @@ OBJECTIVES = [
 ]
 ANSWER: dict[str, Any] = {
     "id": "",
+    "kind": "robots",
     "status": "done",
     "objectives": OBJECTIVES,
     "places": REQUEST["places"],
@@ -58,15 +58,19 @@ ANSWER: dict[str, Any] = {
 class Prepared:
     """A backend that has its answer."""
 
-    def robots(self, plan: Plan, console: Console) -> RobotFront:
+    def front(self, plan: Plan, console: Console) -> RobotFront:
         """Return the answer."""
         del plan, console
         return parse_robots(ANSWER)
 
+    def actors(self) -> tuple[Actor, ...]:
+        """Return none."""
+        return ()
+
 
 def printed(capsys: pytest.CaptureFixture[str], **formats: bool) -> str:
     plan = coverage_plan(REQUEST, None)
-    run_robots(plan, Prepared(), OutputFormat(**formats))  # type: ignore[arg-type]
+    run_front(lambda: (plan, None), Prepared(), OutputFormat(**formats))  # type: ignore[arg-type]
     return capsys.readouterr().out
 
 

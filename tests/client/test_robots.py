@@ -35,3 +35,4 @@ def test_a_job_for_robots_is_found_by_its_id(connect: Connect, url: str) -> None
     front = job.result()
     assert front.plans[0].routes[0].path is None
     assert client.robots_job(job.id).front().document == front.document
+    assert front.reference_point.tolist() == front.document["reference_point"]

@@ -8,6 +8,7 @@ import httpx
 import pytest
 from redis.asyncio import Redis as AsyncRedis
 
+from service.api.app import Edge
 from service.cluster.redis_engine import RedisEngine
 from service.cluster.redis_store import RedisStore
 from tests.helpers.actors import Shuffler
@@ -33,7 +34,7 @@ def serve(request: pytest.FixtureRequest, actor: Shuffler) -> Iterator[Serve]:
 
 
 def test_who_waits_too_long_is_given_the_best_front_so_far(serve: Serve) -> None:
-    with serve(seconds=1.0) as served:
+    with serve(edge=Edge(request_seconds=1.0)) as served:
         answer = served.client.post("/front", json=LONG).json()
         assert (answer["status"], answer["terminated"]) == ("done", "time_limit")
         check(answer)
@@ -43,7 +44,7 @@ def test_work_that_found_nothing_in_time_is_504_and_its_worker_is_free_again(
     serve: Serve, actor: Shuffler
 ) -> None:
     actor.close()
-    with serve(seconds=1.0) as served:
+    with serve(edge=Edge(request_seconds=1.0)) as served:
         problem(served.client.post("/front", json=LONG), 504, "overdue")
         actor.open()
         assert ended(served.client, later(served.client))["status"] == "done"
@@ -60,7 +61,7 @@ def test_a_job_whose_message_was_lost_is_done_all_the_same(serve: Serve) -> None
     with serve() as served:
         connection = AsyncRedis.from_url(served.redis_url)
         store = RedisStore(connection, entries=9, max_age=60)
-        forgetful = RedisEngine(connection, store, lambda _: None, queue=8, seconds=600)
+        forgetful = RedisEngine(connection, store, lambda _: None, queue=8)
         app = engine_app(store, forgetful, limits=PATIENT)
         with serving(app) as url, httpx.Client(base_url=url) as client:
             path = later(client)

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 import redis as redis_client
+from hypothesis import HealthCheck, example, given, settings
 from redis.asyncio import Redis as AsyncRedis
 
 from service.cluster.redis_store import RedisStore
@@ -13,6 +14,7 @@ from service.cluster.worker_store import LEASE, WorkerStore
 from service.jobs.record import Record
 from tests.helpers.redis_server import Redis
 from tests.helpers.stores import job, record
+from tests.helpers.turns import EVENTS, clients_by_policy
 
 pytestmark = pytest.mark.usefixtures("connection")
 
@@ -45,29 +47,42 @@ def finished(id_: str) -> Record:
     return record(id_)
 
 
-def test_clients_take_turns_whoever_came_first(redis: Redis) -> None:
-    ids = ("a1", "a2", "a3", "a4", "b1", "b2", "c1")
-    submitted(redis.url, *ids)
-    worker = WorkerStore(redis.url, "host:1:aa")
-    assert [begun(worker, each) for each in ids] == ["a1", "b1", "c1", "a2", "b2", "a3", "a4"]
-    assert begun(worker, "a1") is None
-    submitted(redis.url, "a5", "b3", "d1")
-    assert [begun(worker, each) for each in ("d1", "b3", "a5")] == ["a5", "b3", "d1"]
+@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(events=EVENTS)
+@example("aaa.b.-.c..")
+@example("aab..b--.a.")
+def test_turns_follow_the_policy(redis: Redis, events: str) -> None:
+    worker, running, turns = WorkerStore(redis.url, "host:1:aa"), list[str](), ""
+    with redis_client.Redis.from_url(redis.url) as connection:
+        connection.flushall()
+    for number, event in enumerate(events):
+        if event == "-":
+            for id_ in running[:1]:
+                worker.finish(finished(id_))
+            del running[:1]
+        elif event != ".":
+            submitted(redis.url, f"{event}{number}")
+        elif id_ := begun(worker, f"turn {number}"):
+            running.append(id_)
+            turns += id_[0]
+    assert turns == clients_by_policy(events)
 
 
-def test_one_that_comes_often_waits_for_one_that_comes_seldom(
-    redis: Redis, connection: Any
-) -> None:
-    worker = WorkerStore(redis.url, "host:1:aa")
-    submitted(redis.url, "a1", "a2", "a3")
-    assert begun(worker, "a1") == "a1"
-    submitted(redis.url, "b1")
-    assert begun(worker, "a2") == "a2"  # its turn was before that of b, which came later
-    submitted(redis.url, "a4")
-    assert [begun(worker, each) for each in ("a3", "b1", "a4")] == ["b1", "a3", "a4"]
-    submitted(redis.url, "c1")
-    worker.begin("c1", known_lost=False)
-    assert connection.zcard("paretour:turns") <= 1  # of clients that wait, or had the last turn
+def test_turns_of_many_clients_take_little_memory(redis: Redis, connection: Any) -> None:
+    connection.zadd("paretour:turns", {f"client {number}": number for number in range(3000)})
+    connection.set("paretour:turn", 3000)
+    submitted(redis.url, "a1")
+    assert begun(WorkerStore(redis.url, "host:1:aa"), "a1") == "a1"
+    assert connection.zcard("paretour:turns") == 1000
+    assert connection.zscore("paretour:turns", "a") == 3001
+
+
+def test_a_record_that_was_handed_back_is_next(redis: Redis) -> None:
+    submitted(redis.url, "a1", "b1")
+    one, other = WorkerStore(redis.url, "host:1:aa"), WorkerStore(redis.url, "host:2:bb")
+    assert begun(one, "a1") == "a1"
+    one.hand_back("a1")
+    assert [begun(other, each) for each in ("a1", "b1")] == ["a1", "b1"]
 
 
 def test_a_message_whose_worker_is_lost_is_of_the_record_that_it_had(
@@ -104,16 +119,16 @@ def test_what_ended_while_it_waited_takes_no_turn(redis: Redis) -> None:
     assert [begun(worker, each) for each in ("a1", "a2", "b1")] == ["a2", "b1", None]
 
 
-def test_jobs_of_the_last_release_have_no_turn_and_come_first(redis: Redis) -> None:
+def test_jobs_that_name_no_client_take_turns_by_their_callers(redis: Redis) -> None:
     async def put() -> None:
         store = RedisStore(AsyncRedis.from_url(redis.url), entries=9, max_age=60)
         await store.put(job("old", caller="us"))
         await store.close()
 
-    submitted(redis.url, "a1")
+    submitted(redis.url, "a1", "a2")
     asyncio.run(put())
     worker = WorkerStore(redis.url, "host:1:aa")
-    assert [begun(worker, each) for each in ("a1", "old")] == ["old", "a1"]
+    assert [begun(worker, each) for each in ("a1", "a2", "old")] == ["a1", "old", "a2"]
 
 
 def test_what_a_worker_finishes_keeps_its_source_unless_it_failed(redis: Redis) -> None:

@@ -95,7 +95,6 @@ class Clustered:
         queue: int = 8,
         folder: Path | None = None,
         edge: Edge | None = None,
-        seconds: float = SECONDS,
         share: float = 1.0,
     ) -> Iterator[Served]:
         """A replica, and a worker that goes on for the next with these actors."""
@@ -110,7 +109,7 @@ class Clustered:
         while not state.workers():
             time.sleep(0.02)
         store, engine = connect(
-            url, entries=1000, max_age=SECONDS, queue=queue, share=share, seconds=seconds
+            url, entries=1000, max_age=SECONDS, queue=queue, share=share, seconds=SECONDS
         )
         app = engine_app(store, engine, *actors, limits=PATIENT, edge=edge)
         with serving(app) as address, httpx.Client(base_url=address, timeout=60) as client:

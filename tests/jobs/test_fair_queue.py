@@ -4,10 +4,12 @@ import asyncio
 from collections.abc import Sequence
 
 import pytest
+from hypothesis import example, given
 
 from service.jobs.fair_queue import FairQueue
 from service.jobs.submission import Submission
 from tests.helpers.scripted_runner import task
+from tests.helpers.turns import EVENTS, clients_by_policy
 
 
 def turns(before: str, then: str, taken: int = 1, served: Sequence[str] = ()) -> str:
@@ -23,10 +25,10 @@ def turns(before: str, then: str, taken: int = 1, served: Sequence[str] = ()) ->
     async def take() -> str:
         queue = FairQueue()
         for number, client in enumerate(before):
-            queue.append(Submission(number, task(), lambda: None, True, client))
+            queue.append(Submission(number, task(), lambda: None, client))
         order = [queue.take().client for _ in range(taken)]
         for number, client in enumerate(then, len(before)):
-            queue.append(Submission(number, task(), lambda: None, True, client))
+            queue.append(Submission(number, task(), lambda: None, client))
         while len(queue):
             following = queue.next(served)
             assert queue.take(served) is following
@@ -55,11 +57,29 @@ def test_a_client_that_is_served_waits_behind_those_that_are_not() -> None:
     assert turns("ab", "aabb", 2, served="a") == "abbbaa"
 
 
+@given(events=EVENTS)
+@example("aaa.b.-.c..")
+def test_turns_follow_the_policy(events: str) -> None:
+    async def take() -> str:
+        queue, running, turns = FairQueue(), list[str](), ""
+        for number, event in enumerate(events):
+            if event == "-":
+                del running[:1]
+            elif event != ".":
+                queue.append(Submission(number, task(), lambda: None, event))
+            elif len(queue):
+                running.append(queue.take(running).client)
+                turns += running[-1]
+        return turns
+
+    assert asyncio.run(take()) == clients_by_policy(events)
+
+
 def test_turns_of_many_clients_take_little_memory() -> None:
     async def take() -> int:
         queue = FairQueue()
         for number in range(3000):
-            submission = Submission(number, task(), lambda: None, True, str(number))
+            submission = Submission(number, task(), lambda: None, str(number))
             queue.append(submission)
             queue.take()
         return len(queue._turns)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from service.errors import NotFound, StoreUnavailable
+from service.jobs.deadline import Deadline
 from service.jobs.local_engine import LocalEngine
 from service.jobs.record import Record, as_finished
 from service.jobs.retries import UnsavedRecords
@@ -133,7 +134,9 @@ async def full_store() -> None:
     first, second = new_record(), new_record("1" * 32)
     await engine.submit(first, task())
     following = asyncio.ensure_future(_statuses(engine, first))
-    running = asyncio.ensure_future(engine.run(second, task(), asyncio.Future()))
+    running = asyncio.ensure_future(
+        engine.run(second, task(), asyncio.Future(), Deadline.after(60))
+    )
     await asyncio.sleep(0)
     alone = workers.given
     store.full = True
@@ -148,7 +151,7 @@ async def full_store() -> None:
         engine.check_ready(),
         engine.check_place("me"),
         engine.submit(new_record("2" * 32), task()),
-        engine.run(new_record("3" * 32), task(), asyncio.Future()),
+        engine.run(new_record("3" * 32), task(), asyncio.Future(), Deadline.after(60)),
     ):
         with pytest.raises(StoreUnavailable):
             await refused

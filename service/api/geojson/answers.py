@@ -15,7 +15,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from service.api.auth import client_of
-from service.api.body_budget import AnswerBudget
+from service.api.body_budget import BodyBudget
 from service.api.compression import compressed
 from service.api.disconnect import unless_disconnected
 from service.api.geojson.accept import GEOJSON, accepts_geojson
@@ -72,7 +72,7 @@ class FrontAnswers:
         budget: The bytes of all answers that are being made and sent.
     """
 
-    def __init__(self, streets: Streets | None, budget: AnswerBudget) -> None:
+    def __init__(self, streets: Streets | None, budget: BodyBudget) -> None:
         self._streets = streets
         self.budget = budget
 

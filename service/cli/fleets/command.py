@@ -1,12 +1,21 @@
 """The command `paretour fleet`."""
 
-import json
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, cast
 
 from typer import Option
 
-from service.cli.options import ApiKey, AsJson, FleetFile, Seed, TimeLimit, Url, VehiclesFile
+from service.cli.options import (
+    ApiKey,
+    AsJson,
+    FleetFile,
+    Plot,
+    Seed,
+    TimeLimit,
+    Url,
+    VehiclesFile,
+)
 
 if TYPE_CHECKING:
     from paretour import Plan
@@ -20,35 +29,27 @@ def fleet(  # noqa: PLR0913  an option each
     seed: Seed = None,
     as_json: AsJson = False,
     as_csv: Annotated[bool, Option("--csv", help="Print a line for each route.")] = False,
+    as_table: Annotated[
+        bool, Option("--table", help="Print all plans without a chart on a terminal too.")
+    ] = False,
+    plot: Plot = None,
     url: Url = None,
     api_key: ApiKey = None,
 ) -> None:
     """Plan the front of plans for several vehicles."""
-    from rich.console import Console
-
     from service.cli.backends import backend_for
-    from service.cli.data import print_csv, print_data
-    from service.cli.errors import UsageError, exit_on_error
-    from service.cli.fleets.output import plans_as_rows, plans_as_table
+    from service.cli.fronts import OutputFormat, run_front
 
-    console = Console(stderr=True)
-    with exit_on_error():
-        if as_json and as_csv:
-            raise UsageError("a front is printed as --json or --csv, not as both")
-        plan = read_fleet(file, vehicles, {"time_limit": time_limit, "size": size, "seed": seed})
-        front = backend_for(url, api_key).fleet(plan, console)
-    if as_json:
-        print_data(json.dumps(front.document))
-    elif as_csv:
-        print_csv(plans_as_rows(front))
-    else:
-        Console().print(plans_as_table(front))
-    found = f"{len(front.plans)} of {front.points} plans, hypervolume {front.hypervolume:.6g}"
-    console.print(found, highlight=False)
+    options = {"time_limit": time_limit, "size": size, "seed": seed}
+    run_front(
+        partial(read_fleet, file, vehicles, options),
+        backend_for(url, api_key),
+        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
+    )
 
 
-def read_fleet(file: Path, vehicles: Path | None, options: dict[str, Any]) -> "Plan":
-    """Return the plan in a file, or in two of stops and vehicles.
+def read_fleet(file: Path, vehicles: Path | None, options: dict[str, Any]) -> "tuple[Plan, None]":
+    """Return the plan in a file, or in two of stops and vehicles; and no ids.
 
     Options that are given replace its members.
 
@@ -63,4 +64,4 @@ def read_fleet(file: Path, vehicles: Path | None, options: dict[str, Any]) -> "P
 
     request, _ = read_request([file] if vehicles is None else [file, vehicles], "fleet")
     given = {name: value for name, value in options.items() if value is not None}
-    return fleet_plan(cast(FleetRequest, {**request, **given}))
+    return fleet_plan(cast(FleetRequest, {**request, **given})), None

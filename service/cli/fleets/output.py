@@ -1,8 +1,10 @@
 """Print fronts of plans: as CSV, a line for each route, and as a table, a row for each plan."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
 
-from paretour import FleetFront, FleetPlan, FleetRoute, RobotFront, RobotPlan, RobotRoute
+from paretour import FleetFront, FleetPlan, RobotFront, RobotPlan
 from rich.markup import escape
 from rich.table import Table
 
@@ -12,41 +14,70 @@ from service.cli.labels import labels_of
 FrontOfPlans = FleetFront | RobotFront
 
 
-def plans_as_rows(front: FrontOfPlans) -> list[tuple[object, ...]]:
+@dataclass(frozen=True, kw_only=True)
+class Movers:
+    """Those who go the routes of a plan: vehicles, or robots.
+
+    Args:
+        heading: Of the column with the one who goes a route.
+        visited: The heading of the column with what a route visits, in order.
+        mover: Returns who goes a route.
+        visits: Returns what it visits, in order.
+        counts: By the headings of further columns of a table: a number of each plan.
+    """
+
+    heading: str
+    visited: str
+    mover: Callable[[Any], str]
+    visits: Callable[[Any], Sequence[object]]
+    counts: dict[str, Callable[[Any], int]]
+
+
+VEHICLES = Movers(
+    heading="vehicle",
+    visited="stops",
+    mover=lambda route: route.vehicle,
+    visits=lambda route: route.stops,
+    counts={
+        "vehicles": lambda plan: len(plan.routes),
+        "left out": lambda plan: len(plan.unassigned),
+    },
+)
+ROBOTS = Movers(
+    heading="robot",
+    visited="places",
+    mover=lambda route: route.robot,
+    visits=lambda route: route.tour.tolist(),
+    counts={"robots": lambda plan: len(plan.routes)},
+)
+
+
+def plans_as_rows(front: FrontOfPlans, movers: Movers) -> list[tuple[object, ...]]:
     """Return a row for each route: its plan, the plan's lengths, who goes it, and its stops."""
     names = [each.name for each in front.objectives]
-    who, where = ("robot", "places") if isinstance(front, RobotFront) else ("vehicle", "stops")
+    of_routes = [f"route {name}" for name in names]
     rows: list[tuple[object, ...]] = [
-        ("plan", "balance", *names, who, *(f"route {name}" for name in names), where)
+        ("plan", "balance", *names, movers.heading, *of_routes, movers.visited)
     ]
     for number, plan in enumerate(_plans(front)):
         for route in plan.routes:
-            mover, stops = _members(route)
-            lengths = (*plan.lengths.tolist(), mover, *route.lengths.tolist())
-            rows.append((number, plan.balance, *lengths, stops))
+            lengths = (*plan.lengths.tolist(), movers.mover(route), *route.lengths.tolist())
+            visits = csv_text([movers.visits(route)], delimiter=" ")
+            rows.append((number, plan.balance, *lengths, visits))
     return rows
 
 
-def _plans(front: FrontOfPlans) -> Sequence[FleetPlan | RobotPlan]:
-    return front.plans
-
-
-def _members(route: FleetRoute | RobotRoute) -> tuple[str, str]:
-    """Return who goes a route, and its stops with spaces between."""
-    if isinstance(route, RobotRoute):
-        return route.robot, " ".join(map(str, route.tour))
-    return route.vehicle, csv_text([route.stops], delimiter=" ")
-
-
-def plans_as_table(front: FrontOfPlans) -> Table:
+def plans_as_table(front: FrontOfPlans, movers: Movers) -> Table:
     """Return a table with a row for each plan."""
-    counts = ("robots",) if isinstance(front, RobotFront) else ("vehicles", "left out")
-    table = Table("plan", "balance", *map(escape, labels_of(front)), *counts)
+    table = Table("plan", "balance", *map(escape, labels_of(front)), *movers.counts)
     for column in table.columns:
         column.justify = "right"
     for number, plan in enumerate(_plans(front)):
         lengths = (f"{length:.6g}" for length in plan.lengths)
-        left_out = () if isinstance(plan, RobotPlan) else (str(len(plan.unassigned)),)
-        routes = str(len(plan.routes))
-        table.add_row(str(number), f"{plan.balance:.3f}", *lengths, routes, *left_out)
+        counts = (str(count(plan)) for count in movers.counts.values())
+        table.add_row(str(number), f"{plan.balance:.3f}", *lengths, *counts)
     return table
+
+
+def _plans(front: FrontOfPlans) -> Sequence[FleetPlan | RobotPlan]:
+    return front.plans

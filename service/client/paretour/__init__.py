@@ -15,6 +15,7 @@ from paretour.choice import Choice
 from paretour.errors import Refused
 from paretour.expect import UnexpectedAnswer
 from paretour.fleets import FleetFront, FleetPlan, FleetRoute
+from paretour.kinds import FrontOfAnyKind
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
@@ -52,6 +53,7 @@ __all__ = [
     "FleetRequest",
     "FleetRoute",
     "Front",
+    "FrontOfAnyKind",
     "FrontRequest",
     "Job",
     "Objective",

@@ -14,13 +14,12 @@ from paretour.choice import Choice, parameters
 from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
 from paretour.expect import Members, UnexpectedAnswer, each, members, parse_json, text, unexpected
-from paretour.fleets import FleetFront, parse_fleet
+from paretour.kinds import FrontOfAnyKind
 from paretour.requests import Plan, front_path
-from paretour.robots import RobotFront, parse_robots
-from paretour.values import FINAL_STATUSES, Actor, Front, Tour, parse_actor, parse_front, parse_tour
+from paretour.values import FINAL_STATUSES, Actor, Tour, parse_actor, parse_tour
 
 T = TypeVar("T")
-AnyFront = TypeVar("AnyFront", Front, FleetFront, RobotFront)
+AnyFront = TypeVar("AnyFront", bound=FrontOfAnyKind)
 Parse = Callable[[Mapping[str, Any]], AnyFront]
 Geometry = Literal["straight", "roads"]
 
@@ -60,23 +59,9 @@ class Calls:
     timeout: float
     patience: float
 
-    def plan(self, plan: Plan) -> Call[Front]:
-        """Plan a front and wait for it."""
-        return parse_front(
-            _answer((yield from self._post(plan, self.timeout + plan.seconds))).document
-        )
-
-    def plan_fleet(self, plan: Plan) -> Call[FleetFront]:
-        """Plan a front of plans for a fleet and wait for it."""
-        return parse_fleet(
-            _answer((yield from self._post(plan, self.timeout + plan.seconds))).document
-        )
-
-    def plan_robots(self, plan: Plan) -> Call[RobotFront]:
-        """Plan a front of plans for several robots and wait for it."""
-        return parse_robots(
-            _answer((yield from self._post(plan, self.timeout + plan.seconds))).document
-        )
+    def plan(self, plan: Plan, parse: Parse[AnyFront]) -> Call[AnyFront]:
+        """Plan a front and wait for it, parsed so."""
+        return parse(_answer((yield from self._post(plan, self.timeout + plan.seconds))).document)
 
     def submit(self, plan: Plan) -> Call[str]:
         """Submit a job that plans a front; return the front's id."""

@@ -65,6 +65,7 @@ class RobotFront:
         places: The row and column of each place, shape (n, 2).
         points: The number of nondominated plans found; the front is a subset of these.
         hypervolume: The share of the box at the reference point that the plans dominate.
+        reference_point: The reference point, shape (2,).
         objectives: Both objectives, as the service names them.
         terminated: Why the search ended; None while it runs.
         document: The whole answer, with every member.
@@ -78,6 +79,7 @@ class RobotFront:
     places: NDArray[np.int64]
     points: int
     hypervolume: float
+    reference_point: Array | None
     objectives: tuple[Objective, ...]
     terminated: str | None
     document: Mapping[str, Any]
@@ -100,6 +102,7 @@ def parse_robots(document: Mapping[str, Any]) -> RobotFront:
         places=places,
         points=answer.read("points", count),
         hypervolume=answer.read("hypervolume", number),
+        reference_point=answer.maybe("reference_point", floats(PAIR)),
         objectives=objectives_of(answer) or (),
         terminated=answer.maybe("terminated", text),
         document=document,

@@ -10,6 +10,7 @@ from paretour.calls import AnyFront, Call, Calls, Geometry, Parse, client_header
 from paretour.choice import Choice
 from paretour.events import JobEvents
 from paretour.fleets import FleetFront, parse_fleet
+from paretour.kinds import FrontOfAnyKind, parse_any
 from paretour.members import (
     CoverageRequest,
     FleetRequest,
@@ -114,15 +115,15 @@ class Client:
 
     def plan(self, plan: Plan) -> Front:
         """Send a plan that was built before, and wait for the front."""
-        return self._connection.run(self._calls.plan(plan))
+        return self._connection.run(self._calls.plan(plan, parse_front))
 
     def plan_fleet(self, plan: Plan) -> FleetFront:
         """Send a plan for a fleet that was built before, and wait for the front of its plans."""
-        return self._connection.run(self._calls.plan_fleet(plan))
+        return self._connection.run(self._calls.plan(plan, parse_fleet))
 
     def plan_robots(self, plan: Plan) -> RobotFront:
         """Send a plan for robots that was built before, and wait for the front of its plans."""
-        return self._connection.run(self._calls.plan_robots(plan))
+        return self._connection.run(self._calls.plan(plan, parse_robots))
 
     def post(self, plan: Plan) -> "Job[Front]":
         """Send a plan that was built before, as a job."""
@@ -139,6 +140,10 @@ class Client:
     def robots_job(self, front: str) -> "Job[RobotFront]":
         """Return the job of a front of plans for several robots, in the same way."""
         return Job(front, parse_robots, self._connection, self._calls)
+
+    def any_job(self, front: str) -> "Job[FrontOfAnyKind]":
+        """Return the job of a front of whatever kind, in the same way."""
+        return Job(front, parse_any, self._connection, self._calls)
 
     def tour(
         self, angle: float | None = None, front: str | None = None, **choice: Unpack[Choice]

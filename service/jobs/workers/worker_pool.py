@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import count
 
 from service.errors import Cancelled, DeadlineExceeded, ShuttingDown, WarmingUp, WorkerLost
+from service.jobs.deadline import Deadline
 from service.jobs.fair_queue import FairQueue, check_place, places_of_client
 from service.jobs.record import StopReason
 from service.jobs.runner import MakeRunner
@@ -36,7 +37,7 @@ class WorkerPool:
         queue: How many submissions may wait while all of these are busy.
         share: The share of all places, of workers and queue, that one client may hold. It may
             always hold one more than there are workers.
-        seconds: The time limit of a submission.
+        seconds: The time limit of a submission without a deadline.
         stop_seconds: How long a stopped task may go on until its process is killed.
         on_front: Called with every front as the worker wrote it.
         on_failed: Called with the reason where no process gets ready in three tries.
@@ -133,10 +134,16 @@ class WorkerPool:
         self,
         task: Task,
         on_change: Callable[[], None] = lambda: None,
-        patient: bool = False,
+        deadline: Deadline | None = None,
         client: str = "",
     ) -> Submission:
-        """Take a place for a task and return its submission. The arguments are those of Submission.
+        """Take a place for a task and return its submission.
+
+        Args:
+            task: The task.
+            on_change: Called when a worker begins, and with each progress.
+            deadline: When to stop it; None gives it the pool's `seconds` from when a worker begins.
+            client: The client whose turn and place it takes.
 
         Raises:
             QueueFull: No place is left.
@@ -145,9 +152,9 @@ class WorkerPool:
         """
         self.check_open()
         self.check_place(client)
-        submission = Submission(next(self._numbers), task, on_change, patient, client)
-        if not patient:
-            self._start_timer(submission)
+        submission = Submission(next(self._numbers), task, on_change, client)
+        if deadline is not None:
+            self._start_timer(submission, deadline)
         self._reserved.add(submission)
         return submission
 
@@ -166,11 +173,11 @@ class WorkerPool:
         self,
         task: Task,
         on_change: Callable[[], None] = lambda: None,
-        patient: bool = False,
+        deadline: Deadline | None = None,
         client: str = "",
     ) -> Submission:
         """Reserve a place for a task and queue it there; arguments and errors are of reserve."""
-        submission = self.reserve(task, on_change, patient, client)
+        submission = self.reserve(task, on_change, deadline, client)
         self.queue(submission)
         return submission
 
@@ -193,12 +200,9 @@ class WorkerPool:
         if submission.number in worker.submissions:
             worker.process.kill()
 
-    def _start_timer(self, submission: Submission) -> None:
-        if submission.timer is None:
-            loop = asyncio.get_running_loop()
-            submission.timer = loop.call_later(
-                self._seconds, self.stop, submission, DeadlineExceeded
-            )
+    def _start_timer(self, submission: Submission, deadline: Deadline) -> None:
+        loop = asyncio.get_running_loop()
+        submission.timer = loop.call_later(deadline.left(), self.stop, submission, DeadlineExceeded)
 
     def _requeue_from(self, worker: Worker) -> None:
         """Queue the submissions of a lost worker once more, or end them."""
@@ -266,7 +270,8 @@ class WorkerPool:
         tasks = {}
         for submission in worker.submissions.values():
             submission.begin()
-            self._start_timer(submission)
+            if submission.timer is None:
+                self._start_timer(submission, Deadline.after(self._seconds))
             tasks[submission.number] = submission.task
         try:
             worker.process.send(Do(tasks))

@@ -9,15 +9,13 @@ from service.errors import NoTour
 from service.fleet.fleet import Fleet
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront
-from service.front import Progress
+from service.front import ReportOf, reporting
 from service.kinds.fleet.document import encode_fleet
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import NamedActor, Report, Tools
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import check_reference_point
 from service.requests.task import Task
-
-ReportPlans = Callable[[Progress, Callable[[int], FleetFront]], None]
 
 
 def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report) -> FrontDocument:
@@ -45,7 +43,7 @@ def plan_front(
     fleet: Fleet,
     actor: NamedActor | None,
     stop: Callable[[], bool],
-    report: ReportPlans,
+    report: ReportOf[FleetFront],
 ) -> FleetFront:
     """Return the front of plans of a fleet, with the options of a task."""
     # Imported here so that a service or a worker starts without PyVRP.
@@ -59,15 +57,6 @@ def plan_front(
         reference_point=task.options.reference_point,
     )
     return plan_fleet(fleet, options, actor, stop, report)
-
-
-def reporting(report: Report, encode: Callable[[FleetFront], FrontDocument]) -> ReportPlans:
-    """Return a function that reports fronts of plans, written by this function."""
-
-    def report_encoded(progress: Progress, best: Callable[[int], FleetFront]) -> None:
-        report(progress, lambda size: encode(best(size)))
-
-    return report_encoded
 
 
 def identity_of(front: FleetFront, actor: NamedActor | None) -> dict[str, str] | None:

@@ -8,7 +8,8 @@ from service.coverage.path import CoveragePath
 from service.coverage.survey import Survey, survey
 from service.errors import Cancelled
 from service.fleet.plans import FleetFront
-from service.kinds.fleet.run import identity_of, plan_front, reporting
+from service.front import reporting
+from service.kinds.fleet.run import identity_of, plan_front
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report, Tools
 from service.kinds.robots.as_fleet import RobotFleet, robot_fleet

@@ -2,7 +2,6 @@
 
 import uPlot from "../vendor/uplot/uPlot.esm.js";
 import { colour, onSchemeChange } from "../common/colours.js";
-import { nounOf } from "../common/nouns.js";
 import { counted, length } from "../common/numbers.js";
 import { UNNAMED, withUnit } from "../common/objectives.js";
 import { Budget } from "./budget.js";
@@ -61,14 +60,14 @@ export class FrontChart {
     return { index: this.#budget.index, said: this.#budget.said };
   }
 
-  /** Shows the network's front, the improved one, and lets the points of the latter be clicked. */
-  show(alone, improved) {
+  /** Shows the network's front and the improved one, of what `noun` says, and lets the points of the latter be clicked. */
+  show(alone, improved, noun) {
     this.#front = improved.length ? improved : alone;
     this.#labels.show(this.#front, this.#objectives);
     this.#chart.setData(uPlot.join([columns(alone), columns(improved)]));
     this.#budget.show(this.#front);
     this.#element.classList.toggle("empty", !this.#front.length);
-    this.#element.setAttribute("aria-label", described(this.#front, this.#objectives));
+    this.#element.setAttribute("aria-label", described(this.#front, this.#objectives, noun));
     this.#place();
   }
 
@@ -174,11 +173,10 @@ function roomy(_, least, most) {
   return [least - room, most + room];
 }
 
-function described(front, objectives) {
+function described(front, objectives, { one, many }) {
   if (!front.length) return NONE;
   const from = (axis) => length(Math.min(front[0].lengths[axis], front.at(-1).lengths[axis]));
   const to = (axis) => length(Math.max(front[0].lengths[axis], front.at(-1).lengths[axis]));
-  const { one, many } = nounOf(front);
   const ranges = objectives.map(({ name }, axis) => `${name} from ${from(axis)} to ${to(axis)}`);
   return `A front of ${counted(front.length, one, many)}: ${ranges.join(", ")}`;
 }

@@ -1,6 +1,5 @@
 /** A slider from the least first length of a front to the least second; arrow keys go tour by tour. */
 
-import { nounOf } from "../common/nouns.js";
 import { length } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
 import { nearest } from "../result/tours.js";
@@ -13,6 +12,7 @@ export class BalanceSlider {
   #front = [];
   #balance = 0; // the index of the selected tour
   #objectives = UNNAMED;
+  #noun; // of what the front holds
 
   /** @param {(index: number) => void} onSelect called with the tour to select */
   constructor(input, shown, onSelect) {
@@ -27,8 +27,9 @@ export class BalanceSlider {
     this.#objectives = objectives;
   }
 
-  show(front) {
+  show(front, noun) {
     this.#front = front;
+    this.#noun = noun;
     this.#input.disabled = !front.length;
     if (!front.length) this.#shown.textContent = "";
   }
@@ -40,7 +41,7 @@ export class BalanceSlider {
     if (!this.#input.matches(":active") || nearest(this.#front, Number(this.#input.value)) !== index) this.#input.value = balance;
     const at = balance.toFixed(2);
     this.#shown.textContent = at;
-    const place = `${nounOf(this.#front).one} ${index + 1} of ${this.#front.length}`;
+    const place = `${this.#noun.one} ${index + 1} of ${this.#front.length}`;
     const said = this.#objectives.map(({ name }, axis) => `${name} ${length(lengths[axis])}`);
     this.#input.setAttribute("aria-valuetext", `${at}, ${place}: ${said.join(", ")}`);
   }

@@ -1,6 +1,5 @@
 /** The fields of a request: their names, and which kinds of request have them. */
 
-import { asksForPlans } from "../common/nouns.js";
 import { nameOf, stopNamed } from "./names.js";
 
 // Requests for plans have those that say so, others have all; those of coverage stand where there is a grid.
@@ -63,11 +62,11 @@ export class Fields {
     return { closed: false, ...(given.includes("start") ? {} : { start: null }) };
   }
 
-  /** Takes the settings that a request names, and gives back its other members. */
-  take(request, kind) {
+  /** Takes the settings that a request of a kind names, and gives back its other members. */
+  take(request, { onGrid, movers }) {
     const rest = { ...request };
-    this.#coverage.hidden = kind !== "grid";
-    this.#show(asksForPlans(request));
+    this.#coverage.hidden = !onGrid;
+    this.#show(Boolean(movers));
     this.#ids = request.stops?.map(({ id }) => id) ?? request.ids ?? null;
     if (!this.#plans) this.#takeRoute(rest);
     for (const field of FIELDS) {

@@ -1,8 +1,9 @@
-/** The kinds of instance (fleet, planes, matrices, grid, stops, or not known) and the requests for them. */
+/** Describe what is asked for, and make the request for it. */
 
 import { isCity } from "./cities.js";
 import { rounded } from "./distances.js";
 import { describedFleet, describedRobots } from "../fleet/fleet_request.js";
+import { formOf, kindOf } from "../common/kinds.js";
 import { counted } from "../common/numbers.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
 import { nameOf } from "./names.js";
@@ -11,19 +12,16 @@ import { Problem } from "../planning/service.js";
 // Two matrices of more fill the longest body that a service takes, and the browser's memory.
 const MOST_ROUNDED = 1500;
 
-export const kindOf = ({ vehicles, grid, matrices, coordinates, stops }) =>
-  Array.isArray(vehicles) ? "fleet" : grid ? "grid" : matrices ? "matrices" : coordinates ? "coordinates" : stops ? "stops" : "unknown";
-
 /** In a few words, what was brought that cannot be typed. */
 export function described(asked) {
-  const { grid, matrices, robots, places, stops, coordinates } = asked;
-  if (kindOf(asked) === "unknown") return "The link names a front alone: where its stops lie is not known here.";
-  if (kindOf(asked) === "fleet") return describedFleet(asked);
-  if (stops || coordinates) return "";
-  if (matrices) return `Two matrices of ${counted(matrices[0]?.length ?? 0, "stop", "stops")}.`;
+  const { grid, matrices, places } = asked;
+  const { onGrid, movers } = kindOf(asked);
+  if (!onGrid && movers) return describedFleet(asked);
+  if (!onGrid && matrices) return `Two matrices of ${counted(matrices[0]?.length ?? 0, "stop", "stops")}.`;
+  if (!onGrid) return formOf(asked) ? "" : "The link names a front alone: where its stops lie is not known here.";
   const where = places ? `${places.length} places` : "places laid out by the spacing";
   const map = `grid of ${grid.length} by ${grid[0]?.length ?? 0} cells; ${where}.`;
-  return Array.isArray(robots) ? describedRobots(asked, `a ${map}`) : `A ${map}`;
+  return movers ? describedRobots(asked, `a ${map}`) : `A ${map}`;
 }
 
 /**
@@ -32,18 +30,18 @@ export function described(asked) {
  */
 export function askedFor(opened, settings, { rows, whole }) {
   const asked = { ...opened, ...settings };
-  return kindOf(opened) === "coordinates" ? { ...asked, coordinates: rows, rounded: whole } : asked;
+  return formOf(opened) === "coordinates" ? { ...asked, coordinates: rows, rounded: whole } : asked;
 }
 
 /** The request by which the service is asked for it. */
 export function requestFor({ rounded: whole, ids, names, ...body }) {
-  const kind = kindOf(body);
-  if (kind === "fleet") return { path: "fleet", body };
-  if (kind === "grid") return { path: "coverage", body: { ...body, paths: true } };
+  const { path, onGrid } = kindOf(body);
+  const form = formOf(body);
+  if (onGrid) return { path, body: { ...body, paths: true } };
   // A row that is no city is named by the service, which wants to see it for that.
-  const planes = kind === "coordinates" && whole && body.coordinates.length && body.coordinates.every(isCity);
+  const planes = form === "coordinates" && whole && body.coordinates.length && body.coordinates.every(isCity);
   const short = planes ? { ...without(body, "coordinates"), matrices: wholeDistances(body.coordinates) } : body;
-  return { path: "front", body: (ids || names) && kind !== "stops" ? long(short, ids, names) : short };
+  return { path, body: (ids || names) && form && form !== "stops" ? long(short, ids, names) : short };
 }
 
 /** The long form of a request, in which stops have ids and objectives have names. */
@@ -64,7 +62,7 @@ export function inRows(request) {
   const { stops, objectives, ...others } = request;
   const planes = objectives?.length === 2 ? objectives.map(({ coordinates }) => coordinates) : [];
   const inPlanes = stops && planes.length && planes.every((plane) => isPlane(plane, stops.length));
-  if (!inPlanes || kindOf(others) !== "unknown" || stops.some((stop) => Object.keys(stop).join() !== "id")) return request;
+  if (!inPlanes || formOf(request) !== "stops" || stops.some((stop) => Object.keys(stop).join() !== "id")) return request;
   const coordinates = planes[0].map((place, row) => [...place, ...planes[1][row]]);
   return { ...others, coordinates, ids: stops.map(({ id }) => id), names: namesIn(request) };
 }

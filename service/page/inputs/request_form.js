@@ -2,7 +2,7 @@
 
 import { isCity, textOf } from "./cities.js";
 import { Fields } from "./fields.js";
-import { askedFor, described, kindOf, requestFor } from "./instance.js";
+import { askedFor, described, requestFor } from "./instance.js";
 import { RequestText } from "../fleet/request_text.js";
 import { nameOf } from "./names.js";
 import { ObjectiveFields } from "./objective_fields.js";
@@ -10,7 +10,7 @@ import { isMeasured, moved, put, renamed, withAnother, without } from "./stops.j
 import { StopsTable } from "./table.js";
 import { TypedRows } from "./typed_rows.js";
 import { counted } from "../common/numbers.js";
-import { asksForPlans } from "../common/nouns.js";
+import { formOf, kindOf } from "../common/kinds.js";
 import { UNNAMED, namesIn } from "../common/objectives.js";
 
 const element = (id) => document.getElementById(id);
@@ -51,12 +51,12 @@ export class RequestForm {
 
   /** Takes a request into the form, and shows its stops under their objectives. */
   open(wanted, names = UNNAMED) {
-    const kind = kindOf(wanted);
+    const [kind, form] = [kindOf(wanted), formOf(wanted)];
     this.#brought = this.#fields.take(wanted, kind);
     this.#objectives = wanted.names ?? names;
-    element("typed").hidden = kind !== "coordinates";
-    element("named").hidden = kind === "unknown" || asksForPlans(wanted);
-    this.#text.show(asksForPlans(wanted) ? wanted : null);
+    element("typed").hidden = form !== "coordinates";
+    element("named").hidden = Boolean(kind.movers) || !(kind.onGrid || form);
+    this.#text.show(kind.movers ? wanted : null);
     element("brought").textContent = described(wanted);
     element("brought").hidden = !element("brought").textContent;
     this.#show(wanted.coordinates ?? []);
@@ -81,8 +81,7 @@ export class RequestForm {
 
   /** The instance to draw. */
   get instance() {
-    const kind = kindOf(this.#brought);
-    return kind === "coordinates" ? { coordinates: this.#rows.filter(isCity) } : this.#brought;
+    return formOf(this.#brought) === "coordinates" ? { coordinates: this.#rows.filter(isCity) } : this.#brought;
   }
 
   /** The ids of the stops, null if they have none. */
@@ -169,20 +168,20 @@ export class RequestForm {
   }
 
   #edited(fit = true) {
-    const kind = kindOf(this.#brought);
-    const rows = this.#tableRows(kind);
-    this.#table.show(COLUMNS[kind] ?? [], rows);
-    element("count").textContent = COLUMNS[kind] ? counted(rows.length, "stop", "stops") : "";
-    for (const id of ["add", "place"]) element(id).disabled = kind !== "coordinates" && !isMeasured(this.#brought);
-    element("add").hidden = element("place").hidden = !COLUMNS[kind];
+    const form = formOf(this.#brought);
+    const rows = this.#tableRows(form);
+    this.#table.show(COLUMNS[form] ?? [], rows);
+    element("count").textContent = COLUMNS[form] ? counted(rows.length, "stop", "stops") : "";
+    for (const id of ["add", "place"]) element(id).disabled = form !== "coordinates" && !isMeasured(this.#brought);
+    element("add").hidden = element("place").hidden = !COLUMNS[form];
     this.#fields.name(this.ids, rows.length);
     this.#onEdited(this.instance, fit);
   }
 
-  #tableRows(kind) {
-    if (kind === "coordinates") return this.#rows.map((numbers, city) => ({ name: nameOf(this.ids, city), numbers }));
-    if (kind === "fleet") return []; // its stops are not edited
-    return (this.#brought.stops ?? []).map(({ id, location }) => ({ name: id, numbers: location ?? [] }));
+  #tableRows(form) {
+    if (form === "coordinates") return this.#rows.map((numbers, city) => ({ name: nameOf(this.ids, city), numbers }));
+    if (form !== "stops") return [];
+    return this.#brought.stops.map(({ id, location }) => ({ name: id, numbers: location ?? [] }));
   }
 
   #rename(row, text) {

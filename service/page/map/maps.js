@@ -3,11 +3,10 @@
 import { GridMap } from "./gridmap.js";
 import { pictureOfRoutes, pictureOfTours, startsOf, styleOfTour } from "./map_pictures.js";
 import { UNNAMED, titled } from "../common/objectives.js";
-import { kindOf } from "../inputs/instance.js";
+import { formOf, kindOf } from "../common/kinds.js";
 import { EARTH, mapsOf } from "../inputs/places.js";
 import { stylesOf } from "../fleet/route_styles.js";
 import { namesOf } from "../fleet/routes_of_plan.js";
-import { isPlan } from "../common/nouns.js";
 import { Planes, roundOf } from "./planes.js";
 import { Ways } from "./ways/ways.js";
 
@@ -16,14 +15,14 @@ const element = (id) => document.getElementById(id);
 const EDITED = ["stops", "coordinates"]; // kinds of instances whose stops can be moved and deleted on the map
 
 /** The maps that are drawn, as of `mapsOf`. */
-const placed = (instance, kind) =>
-  ["stops", "fleet"].includes(kind) ? mapsOf(instance) : { drawn: kind === "coordinates" ? [0, 1] : [], rows: instance.coordinates ?? [] };
+const placed = (instance) => (instance.stops ? mapsOf(instance) : { drawn: instance.coordinates ? [0, 1] : [], rows: instance.coordinates ?? [] });
 
 export class Maps {
   #planes;
   #ways = new Ways();
   #grid;
-  #kind = "coordinates";
+  #kind = kindOf({});
+  #form = null; // of its request
   #drawn = [0, 1]; // what is drawn on the first map, and on the second: see `mapsOf`
   #tilesCredit = "";
   #streetsCredit = "";
@@ -40,7 +39,7 @@ export class Maps {
    * @param {(city: number) => void} onDelete called with the stop to delete
    */
   constructor({ onClick, onMove, onDelete }) {
-    const clicked = (plane, place) => onClick(plane, place, this.#kind === "stops");
+    const clicked = (plane, place) => onClick(plane, place, this.#form === "stops");
     this.#planes = new Planes([element("plane-1"), element("plane-2")], { onClick: clicked, onMove, onDelete });
     this.#planes.follow((cities) => this.#ways.along(cities));
     this.#grid = new GridMap(element("grid"));
@@ -106,17 +105,18 @@ export class Maps {
    */
   show(instance, fit, editable) {
     this.#kind = kindOf(instance);
+    this.#form = formOf(instance);
     this.#robots = instance.robots ?? [];
     this.#flown = Boolean(instance.objectives?.every(({ from }) => from === "great_circle"));
-    const { drawn, rows } = placed(instance, this.#kind);
+    const { drawn, rows } = placed(instance);
     const onEarth = drawn[0] === EARTH;
     this.#drawn = drawn;
     this.#title();
     document.querySelectorAll(".plane").forEach((figure, map) => (figure.hidden = map >= drawn.length));
-    document.querySelector(".wide").hidden = this.#kind !== "grid";
-    if (this.#kind === "grid") this.#grid.show(instance);
+    document.querySelector(".wide").hidden = !this.#kind.onGrid;
+    if (this.#kind.onGrid) this.#grid.show(instance);
     else this.#planes.show(rows, fit, onEarth);
-    this.#planes.edit(editable && EDITED.includes(this.#kind), !fit);
+    this.#planes.edit(editable && EDITED.includes(this.#form), !fit);
     this.#onEarth = onEarth && rows.length > 0;
     this.#ways.lead(this.#onEarth ? rows.map((row) => row.slice(0, 2)) : []);
     this.#sayLines(null);
@@ -125,7 +125,7 @@ export class Maps {
 
   /** Shows the places that the service laid out on the grid, and what no path leads to. */
   place(places, uncovered) {
-    if (this.#kind === "grid" && places) this.#grid.place(places, uncovered?.regions);
+    if (this.#kind.onGrid && places) this.#grid.place(places, uncovered?.regions);
   }
 
   /**
@@ -134,8 +134,8 @@ export class Maps {
    */
   pictures(tours) {
     const { item } = tours.at(-1);
-    if (this.#kind === "grid") return [{ title: "Map", ...this.#pictureOnGrid(tours, item) }];
-    const routes = isPlan(item) ? this.#routes(item) : null;
+    if (this.#kind.onGrid) return [{ title: "Map", ...this.#pictureOnGrid(tours, item) }];
+    const routes = this.#kind.movers ? this.#routes(item) : null;
     return this.#planes.drawn.slice(0, this.#drawn.length).map((places, plane) => ({
       title: element(`plane-${plane + 1}-title`).textContent,
       ...this.#pictureOn(plane, places, routes, tours),
@@ -148,25 +148,26 @@ export class Maps {
   }
 
   #pictureOnGrid(tours, item) {
-    const paths = isPlan(item)
+    const { movers } = this.#kind;
+    const paths = movers
       ? this.#paths(item).map(({ style, ...others }) => ({ ...others, ...style, cased: true }))
       : tours.map((tour) => ({ path: tour.item.path, ...styleOfTour(tour.dashed) }));
     const drawn = this.#grid.pictureOf(paths);
-    return { ...drawn, starts: startsOf(isPlan(item) ? drawn.lines : drawn.lines.slice(-1)) };
+    return { ...drawn, starts: startsOf(movers ? drawn.lines : drawn.lines.slice(-1)) };
   }
 
   /** Draws a tour as "selected" or "pinned", closed or open; null takes it away. Of plans the selected one alone is drawn. */
   draw(name, item, closed = true) {
     if (name === "selected") this.#sayLines(item, closed);
-    if (this.#kind === "fleet") {
-      if (name === "selected") this.#planes.drawRoutes(isPlan(item) ? this.#routes(item) : []);
-    } else if (this.#kind === "grid") this.#drawOnGrid(name, item);
-    else if (this.#drawn.length) this.#planes.draw(name, item?.tour ?? null, closed);
+    if (this.#kind.onGrid) this.#drawOnGrid(name, item);
+    else if (this.#kind.movers) {
+      if (name === "selected") this.#planes.drawRoutes(item ? this.#routes(item) : []);
+    } else if (this.#drawn.length) this.#planes.draw(name, item?.tour ?? null, closed);
   }
 
   /** The stops along a tour as one way, or along each route of a plan. */
   waysOf(item, closed) {
-    return isPlan(item) ? this.#routes(item).map(({ stops }) => stops) : [roundOf(item.tour, closed)];
+    return this.#kind.movers ? this.#routes(item).map(({ stops }) => stops) : [roundOf(item.tour, closed)];
   }
 
   /** Says under the map's title whether the lines of what is drawn follow the streets. */
@@ -178,8 +179,9 @@ export class Maps {
   }
 
   #drawOnGrid(name, item) {
-    this.#grid.draw(name, isPlan(item) ? null : item);
-    if (name === "selected") this.#grid.drawRoutes(isPlan(item) ? this.#paths(item) : []);
+    const { movers } = this.#kind;
+    this.#grid.draw(name, movers ? null : item);
+    if (name === "selected") this.#grid.drawRoutes(movers && item ? this.#paths(item) : []);
   }
 
   /** The paths of a plan's robots, each `{ name, stops, path, style }`, whose stops are places. */
@@ -191,7 +193,7 @@ export class Maps {
   /** The routes of a plan, each `{ name, stops, style }`, whose stops are indexes. */
   #routes({ routes }) {
     const index = new Map(this.#ids?.map((id, at) => [id, at]));
-    const names = namesOf(routes);
+    const names = namesOf(routes, this.#kind.movers);
     const styles = stylesOf(routes);
     return routes.map(({ stops }, at) => ({
       name: names[at],

@@ -1,6 +1,6 @@
 /** Plan a request in two steps: the network's front at once, then the improved one. */
 
-import { asksForPlans } from "../common/nouns.js";
+import { kindOf } from "../common/kinds.js";
 import { Problem } from "./service.js";
 
 const GLANCE = 300; // milliseconds between two requests for a growing front
@@ -41,7 +41,7 @@ export class Planning {
   async *#alone(request) {
     const { initial_tours, bound, ...body } = request.body;
     // Where the search follows, the network's tours come soonest without repairs, which plans have not.
-    const soonest = body.time_limit === 0 || asksForPlans(body) ? {} : { repairs: 0 };
+    const soonest = body.time_limit === 0 || kindOf(body).movers ? {} : { repairs: 0 };
     try {
       yield* this.#patiently({ path: request.path, body: { ...body, time_limit: 0, ...soonest } });
     } catch (error) {

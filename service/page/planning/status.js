@@ -1,6 +1,6 @@
 /** Say what the page is doing, and with which result. */
 
-import { nounOf } from "../common/nouns.js";
+import { kindNamed } from "../common/kinds.js";
 import { counted } from "../common/numbers.js";
 
 const element = (id) => document.getElementById(id);
@@ -28,7 +28,7 @@ export const sentence = (state) =>
 function ended({ stage, answer }) {
   if (!answer) return "Stopped before anything was found.";
   const { front, points } = answer;
-  const { one, many } = nounOf(front);
+  const { one, many } = kindNamed(answer).noun;
   const found = `${counted(points, one, many)} found`;
   const shown = front.length < points ? `, the best ${front.length} of them shown` : "";
   return `${stage === "cancelled" ? "Stopped" : "Done"}: ${found}${shown}.`;

@@ -1,21 +1,20 @@
 /** Say in a sentence what the selected tour gives up of one objective, and what it gains of the other. */
 
 import { length } from "../common/numbers.js";
-import { nounOf } from "../common/nouns.js";
 import { shortUnit } from "../common/objectives.js";
 
-/** The sentence about a tour of a front, whose tours go from the least first length to the least second. */
-export function choiceOf(front, tour, objectives) {
+/** The sentence about a tour of a front, whose tours go from the least first length to the least second; `noun` is what it calls one. */
+export function choiceOf(front, tour, objectives, { one }) {
   const kept = tour.kept == null ? "" : ` Keeps ${Math.round(100 * tour.kept)} % of the legs.`;
-  return `${sentence(front, tour, objectives)}${kept}`;
+  return `${sentence(front, tour, objectives, one)}${kept}`;
 }
 
-function sentence(front, tour, objectives) {
-  if (front.length < 2) return `This ${nounOf(front).one} is the best under both objectives.`;
+function sentence(front, tour, objectives, one) {
+  if (front.length < 2) return `This ${one} is the best under both objectives.`;
   const [first, second] = objectives.map(({ name }) => name);
   const least = front[0];
   const gain = step(least, tour, 1, objectives, "less");
-  if (tour.lengths[0] === least.lengths[0]) return `The least ${first}. Every other ${nounOf(front).one} has less ${second}, for more ${first}.`;
+  if (tour.lengths[0] === least.lengths[0]) return `The least ${first}. Every other ${one} has less ${second}, for more ${first}.`;
   const cost = step(least, tour, 0, objectives, "more");
   const most = tour.lengths[1] === front.at(-1).lengths[1] ? `: the least ${second} there is` : "";
   return `${cost} than the least, for ${gain}${most}.`;

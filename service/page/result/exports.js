@@ -1,8 +1,7 @@
 /** Write a request as a curl command, and a front as CSV. */
 
-import { isPlan } from "../common/nouns.js";
+import { kindNamed } from "../common/kinds.js";
 import { UNNAMED } from "../common/objectives.js";
-import { movedBy, stopsOf, wordsOf } from "../fleet/routes_of_plan.js";
 
 /** The same request as a shell command. */
 export function curl({ path, body }) {
@@ -11,9 +10,11 @@ export function curl({ path, body }) {
 }
 
 /** A front as CSV: a tour on each line, or a route of a plan, with these names of objectives, and the answer's ids where it has them. */
-export function csv({ front }, objectives) {
+export function csv(answer, objectives) {
+  const { front } = answer;
+  const { movers } = kindNamed(answer);
   const titles = objectives === UNNAMED ? ["length_1", "length_2"] : objectives.map(({ name, unit }) => (unit ? `${name} (${unit})` : name));
-  if (isPlan(front[0])) return csvOfPlans(front, titles);
+  if (movers) return csvOfPlans(front, titles, movers);
   const rows = front.map(({ angle, lengths, tour, stops }) => {
     const places = stops?.map((id) => quoted(id, /[ "]/)) ?? tour;
     return [angle, ...lengths, places.join(" ")];
@@ -22,14 +23,13 @@ export function csv({ front }, objectives) {
 }
 
 /** A route on each line, after the members of its plan. */
-function csvOfPlans(plans, titles) {
+function csvOfPlans(plans, titles, { one, stops, by, through }) {
   const rows = plans.flatMap(({ balance, lengths, routes }, plan) =>
     routes.map((route) => {
-      const places = stopsOf(route).map((stop) => quoted(`${stop}`, /[ "]/)).join(" ");
-      return [plan, balance, ...lengths, movedBy(route), ...route.lengths, places];
+      const places = route[through].map((stop) => quoted(`${stop}`, /[ "]/)).join(" ");
+      return [plan, balance, ...lengths, route[by], ...route.lengths, places];
     }),
   );
-  const { one, stops } = wordsOf(plans[0]);
   const head = ["plan", "balance", ...titles, one.toLowerCase(), ...titles.map((title) => `route ${title}`), stops.toLowerCase()];
   return [head, ...rows].map(line).join("");
 }

@@ -1,6 +1,6 @@
 /** Show a front's hypervolume, the angle of a tour, and the time that the front took. */
 
-import { nounOf } from "../common/nouns.js";
+import { kindNamed } from "../common/kinds.js";
 import { titled } from "../common/objectives.js";
 import { degrees, length, share } from "../common/numbers.js";
 
@@ -29,7 +29,7 @@ const shortOf = ({ hypervolume, hypervolume_bound: bound }) => [
 
 const known = (answer) => [
   ["Reference point", answer.reference_point.map(length).join(", ")],
-  [titled({ name: nounOf(answer.front).many }), `${answer.front.length} of ${answer.points.toLocaleString("en")} found`],
+  [titled({ name: kindNamed(answer).noun.many }), `${answer.front.length} of ${answer.points.toLocaleString("en")} found`],
   ["Time", answer.terminated ? took(answer) : "still searching"],
   ["Network", answer.actor?.name ?? "none"],
 ];

@@ -7,7 +7,7 @@ import { showFigures, showTourFigures } from "./figures.js";
 import { Growth } from "../chart/growth.js";
 import { nameOf } from "../inputs/names.js";
 import { Maps } from "../map/maps.js";
-import { isPlan } from "../common/nouns.js";
+import { kindNamed, kindOf } from "../common/kinds.js";
 import { PlanView } from "../fleet/plan_view.js";
 import { counted, length } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
@@ -25,6 +25,7 @@ export class Result {
   #growth;
   #slider;
   #planView = new PlanView();
+  #kind = kindOf({}); // of the front
   #front = [];
   #closed = true;
   #before = null; // the tour that was replanned, and whether it was closed
@@ -70,17 +71,18 @@ export class Result {
     cancelAnimationFrame(this.#frame);
     this.#maps.show(instance, fit, editable);
     this.#planView.open(instance);
+    this.#kind = kindOf(instance);
     element("uncovered").textContent = "";
     element("shade").textContent = instance.cost_layer ? `shaded: ${this.#objectives[1].name}` : "";
     this.#front = [];
     this.#id = null;
     this.#balance = MIDDLE;
     this.#selected = this.#pinned = this.#previewed = this.#before = null;
-    this.#chart.show([], []);
+    this.#chart.show([], [], this.#kind.noun);
     this.#legend("alone", false);
     this.#legend("improved", false);
     this.#growth.show([]);
-    this.#slider.show([]);
+    this.#slider.show([], this.#kind.noun);
     this.#drawPin();
     this.#draw();
     showFigures(element("figures"), null, null);
@@ -88,20 +90,21 @@ export class Result {
 
   /** Shows the front of the network alone, if it is known, and the best front so far. */
   show({ stage, alone, answer, growth }) {
+    this.#kind = kindNamed(answer);
     this.#front = answer.front;
     this.#id = ["done", "cancelled"].includes(stage) ? answer.id : null;
     this.#previewed = null;
     this.#closed = answer.closed !== false;
     // Until the search has found something, the best front so far is the network's.
     const improved = answer.front === alone?.front ? [] : answer.front;
-    this.#chart.show(alone?.front ?? [], improved);
+    this.#chart.show(alone?.front ?? [], improved, this.#kind.noun);
     this.#legend("alone", alone !== null);
     this.#legend("improved", improved.length > 0);
     this.#growth.show(growth);
-    this.#slider.show(answer.front);
+    this.#slider.show(answer.front, this.#kind.noun);
     this.#maps.place(answer.places, answer.uncovered);
     element("uncovered").textContent = unreached(answer.uncovered);
-    element("tour-title").textContent = isPlan(answer.front[0]) ? "Selected plan" : "Tour";
+    element("tour-title").textContent = this.#kind.movers ? "Selected plan" : "Tour";
     if (this.#front.length) this.#select(this.#chart.budget.index ?? nearest(this.#front, this.#balance));
     showFigures(element("figures"), alone, answer);
   }
@@ -146,7 +149,7 @@ export class Result {
     const lines = [this.#pinned ?? this.#before, this.#selected].filter(Boolean);
     const tours = lines.map((item) => ({ item, cities: this.#round(item), dashed: item !== this.#selected }));
     const maps = this.#maps.pictures(tours);
-    const choice = choiceOf(this.#front, this.#selected, this.#objectives);
+    const choice = choiceOf(this.#front, this.#selected, this.#objectives, this.#kind.noun);
     return { front: this.#front, selected: this.#selected, choice, objectives: this.#objectives, maps };
   }
 
@@ -214,10 +217,10 @@ export class Result {
     element("budget").textContent = this.#chart.budget.said;
     this.#chart.mark("previewed", this.#previewed?.lengths ?? null);
     this.#maps.draw("selected", shown, this.#closed);
-    this.#planView.show(shown);
+    this.#planView.show(this.#kind.movers ? shown : null, this.#kind.movers);
     compare(element("comparison"), this.#objectives, shown, this.#pinned);
     showTourFigures(element("tour-figures"), shown);
-    element("choice").textContent = shown ? choiceOf(this.#front, shown, this.#objectives) : "";
+    element("choice").textContent = shown ? choiceOf(this.#front, shown, this.#objectives, this.#kind.noun) : "";
     for (const objective of [0, 1]) {
       const said = shown ? length(shown.lengths[objective]) : "";
       element(`length-${objective + 1}`).textContent = said;
@@ -230,7 +233,7 @@ export class Result {
   #follow() {
     const item = this.#selected;
     if (!item || !this.#id || !this.#maps.driven) return this.#routed?.forget();
-    this.#routed?.want(pathOfWays(this.#id, item, this.#front.indexOf(item)), this.#maps.waysOf(item, this.#closed));
+    this.#routed?.want(pathOfWays(this.#id, this.#kind, item, this.#front.indexOf(item)), this.#maps.waysOf(item, this.#closed));
   }
 
   /** Says what a colour on the chart means, while it is there. */
@@ -240,8 +243,8 @@ export class Result {
 
   /** The order of a tour's stops, back to its start where it is closed; of a plan each vehicle has its own. */
   #order() {
-    element("order").hidden = isPlan(this.#selected);
-    if (!element("order").open || isPlan(this.#selected)) return;
+    element("order").hidden = Boolean(this.#kind.movers && this.#selected);
+    if (!element("order").open || element("order").hidden) return;
     const names = named(this.#selected, this.#ids);
     const back = this.#closed && names.length > 1 ? [names[0]] : [];
     element("order").querySelector("p").textContent = [...names, ...back].join(" → ");

@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import to_json
 
+from service.errors import invalid
 from service.fleet.fleet import Rules, Shipment, VehicleType
 from service.front import PlanOptions
 from service.instance import OBJECTIVES
@@ -28,7 +29,7 @@ from service.requests.schemas import (
 )
 from service.requests.stop_fields import find_index, read_objectives, read_stops
 from service.requests.stops import Labels, Stops, locations_of
-from service.requests.validation import invalid, parse_json, show, too_many_cities
+from service.requests.validation import parse_json, show, too_many_cities
 
 _MOST_VEHICLE_TYPES = 100
 

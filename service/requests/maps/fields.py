@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from service.errors import invalid
 from service.requests.arrays import Array, array_field, rectangular_array
 from service.requests.maps.occupancy_grid import OccupancyGrid
 from service.requests.maps.pictures import (
@@ -22,7 +23,7 @@ from service.requests.maps.pictures import (
     read_picture,
 )
 from service.requests.schemas import ArrayRows, AsInteger, Number, PlanRequest, PositiveNumber
-from service.requests.validation import invalid, too_many_cells
+from service.requests.validation import too_many_cells
 
 Layer = Annotated[NDArray[np.float64], array_field(rectangular_array, ArrayRows)]
 _Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]

@@ -5,9 +5,8 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from service.errors import Refusal
+from service.errors import Refusal, invalid
 from service.requests.maps.size import check_size
-from service.requests.validation import invalid
 
 SIGNATURES = (b"P5", b"P2")
 _LONGEST_HEADER = 4096  # bytes, with its comments

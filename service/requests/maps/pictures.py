@@ -12,11 +12,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from service.errors import invalid
 from service.requests.maps.pgm import SIGNATURES as PGM_SIGNATURES
 from service.requests.maps.pgm import read_pgm
 from service.requests.maps.png import SIGNATURE as PNG_SIGNATURE
 from service.requests.maps.png import read_png
-from service.requests.validation import invalid
 
 Mode = Literal["trinary", "scale", "raw"]
 Channels = NDArray[np.uint8]  # (rows, columns, channels)

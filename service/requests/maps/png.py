@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from service.errors import Refusal
+from service.errors import Refusal, invalid
 from service.requests.maps.size import check_size
-from service.requests.validation import invalid, shorten
+from service.requests.validation import shorten
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _LENGTH = struct.Struct(">I")

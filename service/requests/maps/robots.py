@@ -8,11 +8,12 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.coverage.coverage import Coverage
 from service.coverage.robots import Robot
+from service.errors import invalid
 from service.fleet.fleet import Over
 from service.instance import OBJECTIVES
 from service.requests.maps.fields import ABSENT
 from service.requests.schemas import NonNegativeInteger, Number, Text
-from service.requests.validation import invalid, show
+from service.requests.validation import show
 
 MOST_ROBOTS = 100
 _METRES = {"sum": "total distance", "max": "longest route"}

@@ -1,6 +1,7 @@
 """The bound on the size of a map, which is checked before any of its cells is read."""
 
-from service.requests.validation import invalid, too_many_cells
+from service.errors import invalid
+from service.requests.validation import too_many_cells
 
 
 def check_size(columns: int, rows: int, most: int) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from service.errors import invalid
 from service.requests.arrays import costs_array
 from service.requests.replan.earlier_front import EarlierFront
 from service.requests.replan.fields import CostEntry, NewStop, ReplanRequest
@@ -20,7 +21,7 @@ from service.requests.stops import (
     Stop,
     changed_costs,
 )
-from service.requests.validation import invalid, show
+from service.requests.validation import show
 
 Array = NDArray[np.float64]
 

@@ -5,6 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
+from service.errors import invalid
 from service.instance import OBJECTIVES
 from service.requests.coverage import Cell
 from service.requests.limits import Limits, limited_schema
@@ -12,7 +13,6 @@ from service.requests.maps.fields import Layer, empty_array
 from service.requests.maps.robots import RobotPose
 from service.requests.schemas import GEOMETRY, LARGEST, Geometry, PlanePoint, PlanFields, Text
 from service.requests.stop_fields import Latitude, Longitude, ObjectiveItem, StopReference
-from service.requests.validation import invalid
 
 Cost = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
 _Row = Annotated[list[Cost | None], Field(min_length=1, fail_fast=True)]

@@ -11,7 +11,7 @@ from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage, size_of
 from service.coverage.grid import free_cells
 from service.coverage.places import find_places
-from service.errors import InvalidCoverage
+from service.errors import InvalidCoverage, invalid
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.limits import Limits, check_amounts, lower_defaults
 from service.requests.parser import coverage_task
@@ -27,7 +27,7 @@ from service.requests.replan.way import (
 )
 from service.requests.stops import Stop
 from service.requests.task import Task
-from service.requests.validation import invalid, too_many_cities
+from service.requests.validation import too_many_cities
 
 Array = NDArray[np.float64]
 Cells = NDArray[np.int64]

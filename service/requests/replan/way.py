@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from service.errors import invalid
 from service.instance import CLOSED, RouteEnds
 from service.requests.replan.costs import AllStops
 from service.requests.replan.earlier_front import EarlierFront
 from service.requests.replan.fields import ReplanRequest
 from service.requests.stop_fields import find_index
-from service.requests.validation import invalid, show
+from service.requests.validation import show
 
 Tours = NDArray[np.int64]
 

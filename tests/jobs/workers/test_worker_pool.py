@@ -23,6 +23,7 @@ from service.errors import (
     WarmingUp,
     WorkerLost,
 )
+from service.jobs.deadline import Deadline
 from service.jobs.runner import Runner
 from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.front_document import FrontDocument
@@ -306,18 +307,31 @@ def is_ready(workers: WorkerPool) -> bool:
     return False
 
 
-@pytest.mark.parametrize("patient", [True, False])
-def test_work_that_takes_too_long_ends_with_the_best_front_so_far(patient: bool) -> None:
+@pytest.mark.parametrize("seconds", [2.0, None])
+def test_work_that_takes_too_long_ends_with_the_best_front_so_far(seconds: float | None) -> None:
     async def test(workers: WorkerPool) -> None:
-        await workers.submit(task(), patient=True).front()
+        await workers.submit(task()).front()
         told: list[None] = []
-        submission = workers.submit(task("report and hang"), lambda: told.append(None), patient)
+        deadline = None if seconds is None else Deadline.after(seconds)
+        submission = workers.submit(task("report and hang"), lambda: told.append(None), deadline)
         found = await submission.front()
         assert (found.terminated, found.points) == ("time_limit", 1)
         # That it was begun, and what was found.
         assert len(told) > 1
 
-    run(test, seconds=2.0)
+    run(test, seconds=2.0 if seconds is None else 600.0)
+
+
+def test_work_whose_deadline_is_over_while_it_waits_fails() -> None:
+    async def test(workers: WorkerPool) -> None:
+        running = workers.submit(task("wait"))
+        await until(lambda: workers.working == 1)
+        with pytest.raises(DeadlineExceeded):
+            await workers.submit(task(), deadline=Deadline.after(0)).front()
+        assert workers.waiting == 0
+        workers.stop(running)
+
+    run(test, queue=1)
 
 
 def test_work_that_takes_too_long_and_found_nothing_fails() -> None:

@@ -45,10 +45,10 @@ export class RoutedWay {
   }
 }
 
-/** The path at which the service tells the way of a tour of a front, or those of a plan's routes. */
-export function pathOfWays(front, { lengths, routes }, index) {
+/** The path at which the service tells the way of a tour of a front of a kind, or those of a plan's routes. */
+export function pathOfWays(front, { movers }, { lengths }, index) {
   const geometry = "roads";
-  if (routes) return `front/${front}?${new URLSearchParams({ plan: index, geometry })}`;
+  if (movers) return `front/${front}?${new URLSearchParams({ plan: index, geometry })}`;
   return `tour?${new URLSearchParams({ front, first_at_most: lengths[0], geometry })}`;
 }
 

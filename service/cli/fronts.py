@@ -1,0 +1,168 @@
+"""Plan a front of any kind for the command, and print and draw it: what differs is in one table."""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from paretour import Front, FrontOfAnyKind, Plan, RobotFront
+from paretour.kinds import kind_of
+from rich.console import Console
+from rich.table import Table
+
+from service.cli.backends import Backend
+from service.cli.data import print_csv, print_data
+from service.cli.errors import UsageError, exit_on_error
+from service.cli.fleets.output import ROBOTS, VEHICLES, Movers, plans_as_rows, plans_as_table
+from service.cli.inputs import Ids
+from service.cli.labels import ids_of
+from service.cli.output import (
+    BuildPlan,
+    front_as_rows,
+    front_as_table,
+    front_summary,
+    named_tours,
+    print_chart,
+    print_uncovered,
+    three_tours,
+)
+
+Rows = list[tuple[object, ...]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Kind:
+    """How fronts of a kind are printed and drawn.
+
+    Args:
+        noun: What they hold.
+        rows: Returns the rows of a front for CSV, with the ids of its stops, if they have any.
+        table: Returns a table of a front: a row for each of what it holds.
+        under_chart: Returns the table that stands under its chart on a terminal.
+        hint: What else may be printed than that.
+        draw: Draws a front, the answer to a plan, into a file. It imports what draws.
+    """
+
+    noun: str
+    rows: Callable[[Any, Ids | None], Rows]
+    table: Callable[[Any], Table]
+    under_chart: Callable[[Any], Table]
+    hint: str
+    draw: Callable[[Any, Plan, Path], None]
+
+
+def _draw_lengths(noun: str) -> Callable[[FrontOfAnyKind, Plan, Path], None]:
+    def draw(front: FrontOfAnyKind, _: Plan, path: Path) -> None:
+        from service.cli.plot import plot_front
+
+        plot_front(front, path, noun)
+
+    return draw
+
+
+def _draw_map(front: Front, plan: Plan, path: Path) -> None:
+    """Draw three tours over the map of a plan; without paths, or a map in it, the lengths alone."""
+    if front.paths is None or plan.path != "/coverage":
+        return _draw_lengths("tours")(front, plan, path)
+    from service.cli.plot_map import plot_map
+
+    return plot_map(front, plan, path, three_tours(front.lengths))
+
+
+def _draw_robots(front: RobotFront, plan: Plan, path: Path) -> None:
+    from service.cli.fleets.plot import plot_robots
+
+    names = [each.name for each in front.objectives]
+    plot_robots(front, plan, path, three_tours(front.lengths, names))
+
+
+def _kind_of_tours(draw: Callable[[Front, Plan, Path], None]) -> _Kind:
+    return _Kind(
+        noun="tours",
+        rows=lambda front, ids: front_as_rows(front, ids or ids_of(front)),
+        table=front_as_table,
+        under_chart=named_tours,
+        hint="--table prints every tour, --csv its cities too",
+        draw=draw,
+    )
+
+
+def _kind_of_plans(movers: Movers, draw: Callable[[Any, Plan, Path], None]) -> _Kind:
+    table = partial(plans_as_table, movers=movers)
+    return _Kind(
+        noun="plans",
+        rows=lambda front, _: plans_as_rows(front, movers),
+        table=table,
+        under_chart=table,
+        hint="--csv prints every route",
+        draw=draw,
+    )
+
+
+_KINDS: Mapping[str, _Kind] = {
+    "front": _kind_of_tours(_draw_lengths("tours")),
+    "coverage": _kind_of_tours(_draw_map),
+    "fleet": _kind_of_plans(VEHICLES, _draw_lengths("plans")),
+    "robots": _kind_of_plans(ROBOTS, _draw_robots),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputFormat:
+    """The format to print a front in, and the file to draw it into.
+
+    By default it is a chart with three tours, or all plans, on a terminal, and a table of all
+    elsewhere.
+    """
+
+    as_json: bool = False
+    as_csv: bool = False
+    as_table: bool = False
+    plot: Path | None = None
+
+    def check(self) -> None:
+        """Raise UsageError if two formats are asked for, or nothing can be drawn into the file."""
+        if self.as_json + self.as_csv + self.as_table > 1:
+            raise UsageError("a front is printed as --json, --csv or --table, not as both")
+        if self.plot is not None:
+            _check_plot(self.plot)
+
+
+def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> None:
+    """Plan a front, print it and draw it."""
+    stderr = Console(stderr=True)
+    with exit_on_error():
+        output.check()
+        plan, ids = build_plan()
+        front = backend.front(plan, stderr)
+        kind = _KINDS[kind_of(front.document)]
+        _print(front, kind, ids, output)
+        if output.plot is not None:
+            kind.draw(front, plan, output.plot)
+    stderr.print(front_summary(front, kind.noun), highlight=False, markup=False)
+    print_uncovered(front, stderr)
+
+
+def _print(front: FrontOfAnyKind, kind: _Kind, ids: Ids | None, output: OutputFormat) -> None:
+    console = Console()
+    if output.as_json:
+        print_data(json.dumps(front.document))
+    elif output.as_csv:
+        print_csv(kind.rows(front, ids))
+    elif console.is_terminal and len(front.lengths) and not output.as_table:
+        print_chart(front, console)
+        console.print(kind.under_chart(front))
+        Console(stderr=True).print(kind.hint, highlight=False)
+    else:
+        console.print(kind.table(front))
+
+
+def _check_plot(path: Path) -> None:
+    """Raise UsageError if no picture can be drawn into a file, or matplotlib is not installed."""
+    try:
+        from service.cli.plot import check_path
+    except ModuleNotFoundError:
+        raise UsageError("--plot needs matplotlib: pip install 'paretour[plot]'") from None
+    check_path(path)

@@ -1,0 +1,39 @@
+"""The kinds of fronts, as the member `kind` of an answer names them, and what reads each."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from paretour.expect import members, text, unexpected
+from paretour.fleets import FleetFront, parse_fleet
+from paretour.robots import RobotFront, parse_robots
+from paretour.values import Front, parse_front
+
+FrontOfAnyKind = Front | FleetFront | RobotFront
+
+_PARSERS: Mapping[str, Callable[[Mapping[str, Any]], FrontOfAnyKind]] = {
+    "front": parse_front,
+    "coverage": parse_front,
+    "fleet": parse_fleet,
+    "robots": parse_robots,
+}
+
+
+def kind_of(document: Mapping[str, Any]) -> str:
+    """Return the kind of the front in a JSON answer; tours where it names none, as in version 0.1.
+
+    Raises:
+        UnexpectedAnswer: It is none of those known here.
+    """
+    kind = members(document, "answer").maybe("kind", text) or "front"
+    if kind not in _PARSERS:
+        raise unexpected("answer/kind", f"one of {', '.join(_PARSERS)}", kind)
+    return kind
+
+
+def parse_any(document: Mapping[str, Any]) -> FrontOfAnyKind:
+    """Return the front in a JSON answer, whatever its kind.
+
+    Raises:
+        UnexpectedAnswer: Its kind is unknown, or a member is missing or wrong.
+    """
+    return _PARSERS[kind_of(document)](document)

@@ -1,0 +1,339 @@
+"""Every kind of plan with every option: it works, or it is refused for the reason in a table."""
+
+import json
+import signal
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
+from typing import Any
+from uuid import uuid4
+
+import httpx
+import pytest
+from click.testing import Result
+from rich.console import Console
+from typer.testing import CliRunner
+
+from service.cli import backends
+from service.cli.commands import app as command_line
+from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
+from tests.helpers.serving import LIMITS, app_of, problem, serving
+from tests.kinds.requests import CITIES, Asked, as_input, requests, rest_of
+
+Ask = Callable[[httpx.Client, Asked], httpx.Response]
+LIMIT = 0.7  # seconds of search, in which it reports its progress
+LONG = 60.0  # seconds of search, of which no test waits for the end
+LATER = {"Prefer": "respond-async"}
+KINDS = ("cities", "stops", "coverage", "robots", "fleet", "replanned stops", "replanned coverage")
+NO_STOPS, NO_EARTH = "cities in planes lie nowhere", "a robot's map is not on the earth"
+PLANS = "a plan has a tour for each vehicle: GET /front/{id} has them all"
+SINGLE = "the option is about single tours, or the network that builds them"
+EARLIER = "the search starts from the tours of the earlier front"
+# What does not work: the option and the kind, the status and the code of the refusal, and why.
+REFUSED: Mapping[tuple[str, str], tuple[int, str, str]] = {
+    ("geojson", "cities"): (406, "no-locations", NO_STOPS),
+    ("geojson", "coverage"): (406, "no-locations", NO_EARTH),
+    ("geojson", "robots"): (406, "no-locations", NO_EARTH),
+    ("geojson", "replanned coverage"): (406, "no-locations", NO_EARTH),
+    ("tour", "robots"): (404, "no-tours", PLANS),
+    ("tour", "fleet"): (404, "no-tours", PLANS),
+    ("replan", "robots"): (409, "not-replannable", "only tours are replanned"),
+    ("replan", "fleet"): (409, "not-replannable", "only tours are replanned"),
+    ("initial_tours", "replanned stops"): (422, "invalid-request", EARLIER),
+    ("initial_tours", "replanned coverage"): (422, "invalid-request", EARLIER),
+    **{
+        (option, kind): (422, "invalid-request", SINGLE)
+        for option in ("preferences", "bound", "repairs", "arrivals", "initial_tours")
+        for kind in ("robots", "fleet")
+    },
+}
+HERE_NOT = ("replanned stops", "replanned coverage")  # the service alone has the earlier front
+
+
+@pytest.fixture(scope="module")
+def url() -> Iterator[str]:
+    store = SqliteStore(IN_MEMORY, entries=1000, max_age=3600)
+    with serving(
+        app_of(store=store, limits=replace(LIMITS, cities=CITIES, seconds=LONG))
+    ) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def client(url: str) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=url, timeout=60) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def asked(client: httpx.Client) -> dict[str, Asked]:
+    """The request of each kind; those to replan are of fronts that the service has."""
+    found = dict(requests())
+    for kind in ("stops", "coverage"):
+        front = post(client, found[kind]).raise_for_status().json()["id"]
+        found[f"replanned {kind}"] = rest_of(kind, front)
+    assert tuple(found) == KINDS
+    return found
+
+
+def post(
+    client: httpx.Client, asked: Asked, headers: Mapping[str, str] | None = None, **options: Any
+) -> httpx.Response:
+    """Ask for a front, by default for what the network finds."""
+    body = {"time_limit": 0, **asked.body, **options}
+    return client.post(asked.path, json=body, headers=headers)
+
+
+def events_of(client: httpx.Client, front: str) -> Iterator[tuple[str, Any]]:
+    """Yield the events of a job, until it ends or nobody listens."""
+    with client.stream("GET", f"/front/{front}/events") as stream:
+        name = ""
+        for line in stream.iter_lines():
+            field, _, value = line.partition(": ")
+            if field == "event":
+                name = value
+            elif field == "data":
+                yield name, json.loads(value)
+
+
+def wait(client: httpx.Client, asked: Asked) -> httpx.Response:
+    answer = post(client, asked).raise_for_status()
+    document = answer.json()
+    assert (document["status"], document["kind"]) == ("done", asked.kind)
+    assert document["front"]
+    return answer
+
+
+def respond_async(client: httpx.Client, asked: Asked) -> httpx.Response:
+    accepted = post(client, asked, LATER)
+    assert accepted.status_code == 202
+    assert accepted.headers["Preference-Applied"] == "respond-async"
+    last = dict(events_of(client, accepted.json()["id"]))
+    assert last["status"]["status"] == "done"
+    answer = client.get(accepted.headers["Location"])
+    assert answer.json()["kind"] == asked.kind
+    assert answer.json()["front"]
+    return accepted
+
+
+def kind_while_queued(client: httpx.Client, asked: Asked) -> httpx.Response:
+    """The kind is known, and stays, from the first moment on."""
+    front = post(client, asked, LATER).json()["id"]
+    answer = client.get(f"/front/{front}")
+    assert answer.json()["kind"] == asked.kind
+    client.delete(f"/front/{front}")
+    return answer
+
+
+def events(client: httpx.Client, asked: Asked) -> httpx.Response:
+    accepted = post(client, asked, LATER, time_limit=LIMIT)
+    seen = list(events_of(client, accepted.json()["id"]))
+    progress = [data for name, data in seen if name == "progress"]
+    assert progress[-1]["hypervolume"] > 0
+    assert progress[-1]["points"] > 0
+    assert seen[-1] == ("status", {"id": accepted.json()["id"], "status": "done"})
+    return accepted
+
+
+def repeated_key(client: httpx.Client, asked: Asked) -> httpx.Response:
+    key = {"Idempotency-Key": uuid4().hex}
+    first, again = (post(client, asked, key) for _ in range(2))
+    assert first.json() == again.json()
+    assert first.json()["front"]
+    problem(post(client, asked, key, seed=1), 422, "idempotency-mismatch")
+    return again
+
+
+def geojson(client: httpx.Client, asked: Asked) -> httpx.Response:
+    answer = post(client, asked, {"Accept": "application/geo+json"})
+    if answer.is_success:
+        shapes = [each["geometry"]["type"] for each in answer.json()["features"]]
+        assert {"LineString", "Point"} <= set(shapes)
+    return answer
+
+
+def default_reference_point(client: httpx.Client, asked: Asked) -> httpx.Response:
+    answer = post(client, asked)
+    assert answer.json()["hypervolume"] > 0
+    assert all(number > 0 for number in answer.json()["reference_point"])
+    return answer
+
+
+def own_reference_point(client: httpx.Client, asked: Asked) -> httpx.Response:
+    answer = post(client, asked, reference_point=[1e6, 1e7])
+    assert answer.json()["reference_point"] == [1e6, 1e7]
+    assert answer.json()["hypervolume"] > 0
+    return answer
+
+
+def time_limit(client: httpx.Client, asked: Asked) -> httpx.Response:
+    answer = post(client, asked, time_limit=LIMIT)
+    assert answer.json()["terminated"] == "time_limit"
+    return answer
+
+
+def size(client: httpx.Client, asked: Asked) -> httpx.Response:
+    answer = post(client, asked, size=1)
+    assert len(answer.json()["front"]) == 1
+    return answer
+
+
+def cancel(client: httpx.Client, asked: Asked) -> httpx.Response:
+    front = post(client, asked, LATER, time_limit=LONG).json()["id"]
+    next(data for name, data in events_of(client, front) if data.get("points"))
+    ended = client.delete(f"/front/{front}")
+    document = client.get(f"/front/{front}").json()
+    assert (document["status"], document["terminated"]) == ("cancelled", "cancelled")
+    assert document["front"]
+    assert ended.json() == document
+    return ended
+
+
+def tour(client: httpx.Client, asked: Asked) -> httpx.Response:
+    front = post(client, asked).json()
+    answer = client.get("/tour", params={"front": front["id"], "balance": 0})
+    if answer.is_success:
+        assert answer.json() == {"front": front["id"], **front["front"][0]}
+    return answer
+
+
+def replan(client: httpx.Client, asked: Asked) -> httpx.Response:
+    front = post(client, asked).json()
+    first = front["front"][0]
+    done = first.get("stops", first.get("tour", [0]))[:1]
+    answer = client.post(f"/front/{front['id']}/replan", json={"done": done, "time_limit": 0})
+    if answer.is_success:
+        assert all("kept" in each for each in answer.json()["front"])
+    return answer
+
+
+def member(name: str, value: object, client: httpx.Client, asked: Asked) -> httpx.Response:
+    """Ask with one more member of the request."""
+    return post(client, asked, **{name: value})
+
+
+HTTP: Mapping[str, Ask] = {
+    "wait": wait,
+    "respond-async": respond_async,
+    "kind while it is planned": kind_while_queued,
+    "events": events,
+    "repeated key": repeated_key,
+    "geojson": geojson,
+    "default reference point": default_reference_point,
+    "own reference point": own_reference_point,
+    "time limit": time_limit,
+    "size": size,
+    "cancel": cancel,
+    "tour": tour,
+    "replan": replan,
+    "preferences": partial(member, "preferences", 3),
+    "bound": partial(member, "bound", True),
+    "repairs": partial(member, "repairs", 0),
+    "arrivals": partial(member, "arrivals", True),
+    "initial_tours": partial(member, "initial_tours", [list(range(CITIES))]),
+    "seed": partial(member, "seed", 7),
+}
+
+
+def test_the_table_names_options_and_kinds() -> None:
+    assert all(option in HTTP and kind in KINDS for option, kind in REFUSED)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("option", HTTP)
+def test_over_http(option: str, kind: str, client: httpx.Client, asked: dict[str, Asked]) -> None:
+    answer = HTTP[option](client, asked[kind])
+    if (option, kind) in REFUSED:
+        status, code, _ = REFUSED[option, kind]
+        problem(answer, status, code)
+    else:
+        assert answer.is_success, answer.text
+
+
+def planned(asked: Asked, url: str | None, *formats: str, limit: float = 0) -> Result:
+    """Have the command plan what is on its standard input."""
+    where = [] if url is None else ["--url", url]
+    arguments = [*asked.command, "-", "--time-limit", str(limit), *formats, *where]
+    return CliRunner().invoke(command_line, arguments, input=as_input(asked))
+
+
+@pytest.fixture(params=["local", "url"])
+def place(
+    request: pytest.FixtureRequest,
+    url: str,
+    quick_actors: Mapping[str, str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> str | None:
+    """The service that shall plan; None where this process shall."""
+    for name, value in quick_actors.items():
+        monkeypatch.setenv(name, value)
+    return url if request.param == "url" else None
+
+
+def refused_here(kind: str, place: str | None, result: Result) -> bool:
+    """Return whether this process cannot plan a kind, after a check that the command says so."""
+    if place is not None or kind not in HERE_NOT:
+        return False
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "--url" in result.stderr
+    return True
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_command_prints_json(kind: str, place: str | None, asked: dict[str, Asked]) -> None:
+    result = planned(asked[kind], place, "--json", limit=LIMIT)
+    if refused_here(kind, place, result):
+        return
+    assert result.exit_code == 0, result.stderr
+    answer = json.loads(result.stdout)
+    assert (answer["kind"], answer["status"]) == (asked[kind].kind, "done")
+    assert answer["terminated"] == "time_limit"
+    assert answer["hypervolume"] > 0
+    assert "found, hypervolume" in result.stderr
+    assert "stopped at the time limit" in " ".join(result.stderr.split())
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_command_prints_csv(kind: str, place: str | None, asked: dict[str, Asked]) -> None:
+    result = planned(asked[kind], place, "--csv")
+    if refused_here(kind, place, result):
+        return
+    assert result.exit_code == 0, result.stderr
+    head, *rows = result.stdout.splitlines()
+    assert head.split(",")[-1] == asked[kind].column
+    assert rows
+    if asked[kind].column == "tour":
+        visited = CITIES - 1 if kind.startswith("replanned") else CITIES
+        assert all(len(row.split(",")[-1].split()) >= visited for row in rows)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_command_prints_tables_and_draws(
+    kind: str, place: str | None, asked: dict[str, Asked], tmp_path: Any
+) -> None:
+    result = planned(asked[kind], place, "--table", "--plot", str(tmp_path / "front.svg"))
+    if refused_here(kind, place, result):
+        return
+    assert result.exit_code == 0, result.stderr
+    assert "balance" in result.stdout
+    assert "<svg" in (tmp_path / "front.svg").read_text()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_ctrl_c_gives_the_best_so_far(
+    kind: str, place: str | None, asked: dict[str, Asked], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    @contextmanager
+    def pressed(_: Console, __: float) -> Iterator[Callable[[object], None]]:
+        yield lambda progress: progress.points and signal.raise_signal(signal.SIGINT)  # type: ignore[attr-defined]
+
+    monkeypatch.setattr(backends, "progress_bar", pressed)
+    result = planned(asked[kind], place, "--json", limit=LONG)
+    if refused_here(kind, place, result):
+        return
+    assert result.exit_code == 0, result.stderr
+    answer = json.loads(result.stdout)
+    assert (answer["status"], answer["terminated"]) == ("cancelled", "cancelled")
+    assert answer["front"]
+    assert "stopped before its time" in " ".join(result.stderr.split())
