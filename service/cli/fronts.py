@@ -1,4 +1,4 @@
-"""Plan a front of any kind for the command, and print and draw it: what differs is in one table."""
+"""Plan, print and draw a front of any kind for the command; a table has what differs by kind."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -34,15 +34,16 @@ Rows = list[tuple[object, ...]]
 
 @dataclass(frozen=True, kw_only=True)
 class _Kind:
-    """How fronts of a kind are printed and drawn.
+    """How to print and draw fronts of a kind.
 
     Args:
-        noun: What they hold.
+        noun: The name of what they hold.
         rows: Returns the rows of a front for CSV, with the ids of its stops, if they have any.
-        table: Returns a table of a front: a row for each of what it holds.
-        under_chart: Returns the table that stands under its chart on a terminal.
-        hint: What else may be printed than that.
-        draw: Draws a front, the answer to a plan, into a file. It imports what draws.
+        table: Returns a table of a front, with a row for each tour or plan.
+        under_chart: Returns the table to print under the chart on a terminal.
+        hint: The options that print more.
+        draw: Draws a front, the answer to a plan, into a file. It imports matplotlib when it is
+            called.
     """
 
     noun: str
@@ -63,7 +64,7 @@ def _draw_lengths(noun: str) -> Callable[[FrontOfAnyKind, Plan, Path], None]:
 
 
 def _draw_map(front: Front, plan: Plan, path: Path) -> None:
-    """Draw three tours over the map of a plan; without paths, or a map in it, the lengths alone."""
+    """Draw three tours over the map of a plan; only the lengths if it has no paths or no map."""
     if front.paths is None or plan.path != "/coverage":
         return _draw_lengths("tours")(front, plan, path)
     from service.cli.plot_map import plot_map

@@ -8,7 +8,7 @@ from service.errors.printable import printable
 
 
 def labels_of(front: FrontOfAnyKind) -> tuple[str, ...]:
-    """Return the label of either length: the name of its objective with the unit, if it has any."""
+    """Return the labels of both lengths: the name of the objective, with its unit if it has one."""
     return LABELS if front.objectives is None else tuple(map(printable, _names(front)))
 
 
@@ -25,7 +25,7 @@ def columns_of(front: Front) -> tuple[str, ...]:
 
 
 def lengths_as_text(front: FrontOfAnyKind, lengths: tuple[float, float]) -> str:
-    """Return both lengths of a tour as the end of a sentence, with names and units if any."""
+    """Return both lengths of a tour, with names and units if any, as the end of a sentence."""
     first, second = (f"{length:.6g}" for length in lengths)
     if front.objectives is None:
         return f"lengths {first} and {second}"

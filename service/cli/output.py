@@ -117,7 +117,7 @@ def named_tours(front: Front) -> Table:
 
 
 def front_summary(front: FrontOfAnyKind, noun: str = "tours") -> str:
-    """Return a line about the size, the hypervolume and the end of a front's search."""
+    """Return a line about a front: its size, its hypervolume, and how its search ended."""
     found = f"{len(front.lengths)} of {front.points} {noun} found"
     bound = front.hypervolume_bound if isinstance(front, Front) else None
     most = "" if bound is None else f", and no front has more than {bound:.2%}"

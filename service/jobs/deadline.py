@@ -1,4 +1,4 @@
-"""Deadlines: a time by which something is to be over, handed down to all who work towards it."""
+"""Deadlines: the time by which something must be done, passed down to all the code that does it."""
 
 from dataclasses import dataclass
 from time import monotonic

@@ -86,6 +86,6 @@ def test_a_link_that_would_be_too_long_opens_the_front_without_its_maps(
     assert len(link) < 100
     with open_page(browser, link) as other:
         wait_until_planned(other)
-        expect(other.get_by_text("The link names a front alone")).to_be_visible()
+        expect(other.get_by_text("The link only names a front")).to_be_visible()
         expect(other.locator("#plane-1")).to_be_hidden()
         expect(other.get_by_label("A front of")).to_be_visible()

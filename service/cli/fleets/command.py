@@ -49,7 +49,7 @@ def fleet(  # noqa: PLR0913  an option each
 
 
 def read_fleet(file: Path, vehicles: Path | None, options: dict[str, Any]) -> "tuple[Plan, None]":
-    """Return the plan in a file, or in two of stops and vehicles; and no ids.
+    """Return the plan in a file, or in a file of stops and one of vehicles; and no ids.
 
     Options that are given replace its members.
 

@@ -16,14 +16,14 @@ FrontOfPlans = FleetFront | RobotFront
 
 @dataclass(frozen=True, kw_only=True)
 class Movers:
-    """Those who go the routes of a plan: vehicles, or robots.
+    """The movers on the routes of a plan: vehicles, or robots.
 
     Args:
-        heading: Of the column with the one who goes a route.
+        heading: The heading of the column with the mover of a route.
         visited: The heading of the column with what a route visits, in order.
-        mover: Returns who goes a route.
-        visits: Returns what it visits, in order.
-        counts: By the headings of further columns of a table: a number of each plan.
+        mover: Returns the mover of a route.
+        visits: Returns the visits of a route, in order.
+        counts: Functions that return a number of a plan, by the headings of further columns.
     """
 
     heading: str
@@ -53,7 +53,7 @@ ROBOTS = Movers(
 
 
 def plans_as_rows(front: FrontOfPlans, movers: Movers) -> list[tuple[object, ...]]:
-    """Return a row for each route: its plan, the plan's lengths, who goes it, and its stops."""
+    """Return a row for each route: plan, lengths of the plan, vehicle or robot, stops."""
     names = [each.name for each in front.objectives]
     of_routes = [f"route {name}" for name in names]
     rows: list[tuple[object, ...]] = [

@@ -1,4 +1,4 @@
-"""The kinds of fronts, as the member `kind` of an answer names them, and what reads each."""
+"""The kinds of fronts, named as by the member `kind` of answers, and the parser of each."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -19,10 +19,10 @@ _PARSERS: Mapping[str, Callable[[Mapping[str, Any]], FrontOfAnyKind]] = {
 
 
 def kind_of(document: Mapping[str, Any]) -> str:
-    """Return the kind of the front in a JSON answer; tours where it names none, as in version 0.1.
+    """Return the kind of the front in a JSON answer; "front" if it names none, as in version 0.1.
 
     Raises:
-        UnexpectedAnswer: It is none of those known here.
+        UnexpectedAnswer: The kind is unknown.
     """
     kind = members(document, "answer").maybe("kind", text) or "front"
     if kind not in _PARSERS:
@@ -31,7 +31,7 @@ def kind_of(document: Mapping[str, Any]) -> str:
 
 
 def parse_any(document: Mapping[str, Any]) -> FrontOfAnyKind:
-    """Return the front in a JSON answer, whatever its kind.
+    """Return the front in a JSON answer, of any kind.
 
     Raises:
         UnexpectedAnswer: Its kind is unknown, or a member is missing or wrong.

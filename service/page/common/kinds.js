@@ -1,9 +1,9 @@
-/** The kinds of plans, a row each: looked up by what a request is of, or by what an answer says that it is. */
+/** The table of the kinds of plans: looked up for a request by its members, or for an answer by its `kind`. */
 
 const TOURS = { one: "tour", many: "tours" };
 const PLANS = { one: "plan", many: "plans" };
 
-// Those who go a plan's routes, in words; the members of a route that say who does, and what it visits; and what Python prints of it.
+// The names of vehicles or robots on the page; the members of a route with its mover and its visits; and how Python prints it.
 const VEHICLES = {
   one: "Vehicle", many: "Vehicles", stops: "Stops", listed: "Stops of each vehicle",
   by: "vehicle", through: "stops", printed: "route.stops",
@@ -13,7 +13,7 @@ const ROBOTS = {
   by: "robot", through: "tour", printed: "(route.robot, route.tour.tolist())",
 };
 
-// A front is asked for at a `path`, in Python by a `call`; it holds what the `noun` says: tours, or plans with routes of `movers`.
+// The `path` of HTTP, the `call` in Python, and the `noun` of what a front holds: tours, or plans with routes of `movers`.
 const KINDS = {
   front: { path: "front", call: "front", noun: TOURS },
   coverage: { path: "coverage", call: "coverage", noun: TOURS, onGrid: true },
@@ -24,10 +24,10 @@ const KINDS = {
 /** The kind of an answer. */
 export const kindNamed = ({ kind }) => KINDS[kind];
 
-/** The kind of a request; where nothing is known of it, that of a front. */
+/** The kind of a request; that of a front if nothing is known. */
 export const kindOf = ({ vehicles, grid, robots }) =>
   KINDS[Array.isArray(vehicles) ? "fleet" : !grid ? "front" : Array.isArray(robots) ? "robots" : "coverage"];
 
-/** Which member of a request for a front has its stops; null for other kinds, or where that is not known. */
+/** The member with the stops in a request for a front; null for other kinds, or if it is not known. */
 export const formOf = (request) =>
   (kindOf(request) === KINDS.front && ["matrices", "coordinates", "stops"].find((member) => request[member])) || null;

@@ -1,6 +1,6 @@
 /** The routes of a plan by vehicle or robot: their names, and how much they visit. */
 
-/** What each route is called: its robot, or its type of vehicle, with a number where several routes have one type. */
+/** The name of each route: its robot, or its type of vehicle, with a number if several routes have that type. */
 export function namesOf(routes, { by }) {
   const used = new Map();
   return routes.map(({ [by]: name }) => {

@@ -12,33 +12,33 @@ import { Problem } from "../planning/service.js";
 // Two matrices of more fill the longest body that a service takes, and the browser's memory.
 const MOST_ROUNDED = 1500;
 
-/** In a few words, what was brought that cannot be typed. */
+/** Describes what was opened that cannot be typed. */
 export function described(asked) {
   const { grid, matrices, places } = asked;
   const { onGrid, movers } = kindOf(asked);
   if (!onGrid && movers) return describedFleet(asked);
   if (!onGrid && matrices) return `Two matrices of ${counted(matrices[0]?.length ?? 0, "stop", "stops")}.`;
-  if (!onGrid) return formOf(asked) ? "" : "The link names a front alone: where its stops lie is not known here.";
+  if (!onGrid) return formOf(asked) ? "" : "The link only names a front: the places of its stops are not known.";
   const where = places ? `${places.length} places` : "places laid out by the spacing";
   const map = `grid of ${grid.length} by ${grid[0]?.length ?? 0} cells; ${where}.`;
   return movers ? describedRobots(asked, `a ${map}`) : `A ${map}`;
 }
 
 /**
- * What is asked for, as the page opens it: a request, beside whose coordinates or matrices may stand
- * `rounded`, the `ids` of the stops, and `names`, both objectives as the user calls them.
+ * The request as the page opens it. Beside coordinates or matrices it may have `rounded`, the `ids` of the
+ * stops, and `names`: the user's names of both objectives.
  */
 export function askedFor(opened, settings, { rows, whole }) {
   const asked = { ...opened, ...settings };
   return formOf(opened) === "coordinates" ? { ...asked, coordinates: rows, rounded: whole } : asked;
 }
 
-/** The request by which the service is asked for it. */
+/** The request to send to the service. */
 export function requestFor({ rounded: whole, ids, names, ...body }) {
   const { path, onGrid } = kindOf(body);
   const form = formOf(body);
   if (onGrid) return { path, body: { ...body, paths: true } };
-  // A row that is no city is named by the service, which wants to see it for that.
+  // A row that is not a city is sent as it is, so that the service can name it.
   const planes = form === "coordinates" && whole && body.coordinates.length && body.coordinates.every(isCity);
   const short = planes ? { ...without(body, "coordinates"), matrices: wholeDistances(body.coordinates) } : body;
   return { path, body: (ids || names) && form && form !== "stops" ? long(short, ids, names) : short };
@@ -57,7 +57,7 @@ function long({ coordinates, matrices, ...others }, ids, names = UNNAMED) {
   };
 }
 
-/** Stops that lie in both objectives' planes alone as rows, which can be edited: `long` the other way. */
+/** Stops that only have places in both planes, as rows that can be edited: the reverse of `long`. */
 export function inRows(request) {
   const { stops, objectives, ...others } = request;
   const planes = objectives?.length === 2 ? objectives.map(({ coordinates }) => coordinates) : [];

@@ -14,7 +14,7 @@ const element = (id) => document.getElementById(id);
 
 const EDITED = ["stops", "coordinates"]; // kinds of instances whose stops can be moved and deleted on the map
 
-/** The maps that are drawn, as of `mapsOf`. */
+/** The maps to draw, as `mapsOf` returns them. */
 const placed = (instance) => (instance.stops ? mapsOf(instance) : { drawn: instance.coordinates ? [0, 1] : [], rows: instance.coordinates ?? [] });
 
 export class Maps {
@@ -23,7 +23,7 @@ export class Maps {
   #grid;
   #kind = kindOf({});
   #form = null; // of its request
-  #drawn = [0, 1]; // what is drawn on the first map, and on the second: see `mapsOf`
+  #drawn = [0, 1]; // the contents of the first map and of the second: see `mapsOf`
   #tilesCredit = "";
   #streetsCredit = "";
   #onEarth = false;
