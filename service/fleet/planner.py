@@ -78,8 +78,8 @@ def plan_fleet(
             the best front so far of at most n plans.
 
     Raises:
-        Refusal: There is no plan (with the reason if it is known), or none was found in time.
-        Cancelled: `stop` returned True before a plan was found.
+        Refusal: There is no plan, and why where that is known; or none was found in time.
+        Cancelled: It was told to stop before it had a plan.
     """
     began = time.monotonic()
     checked = began + (_FINDING_FAULTS * options.time_limit or _BRIEF)
