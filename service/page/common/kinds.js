@@ -4,14 +4,8 @@ const TOURS = { one: "tour", many: "tours" };
 const PLANS = { one: "plan", many: "plans" };
 
 // Those who go a plan's routes, in words; the members of a route that say who does, and what it visits; and what Python prints of it.
-const VEHICLES = {
-  one: "Vehicle", many: "Vehicles", stops: "Stops", listed: "Stops of each vehicle",
-  by: "vehicle", through: "stops", printed: "route.stops",
-};
-const ROBOTS = {
-  one: "Robot", many: "Robots", stops: "Places", listed: "Places of each robot",
-  by: "robot", through: "tour", printed: "(route.robot, route.tour.tolist())",
-};
+const VEHICLES = { one: "Vehicle", many: "Vehicles", stops: "Stops", listed: "Stops of each vehicle", by: "vehicle", through: "stops", printed: "route.stops" };
+const ROBOTS = { one: "Robot", many: "Robots", stops: "Places", listed: "Places of each robot", by: "robot", through: "tour", printed: "(route.robot, route.tour.tolist())" };
 
 // A front is asked for at a `path`, in Python by a `call`; it holds what the `noun` says: tours, or plans with routes of `movers`.
 const KINDS = {
