@@ -63,8 +63,7 @@ def _request_in(files: Sequence[NamedFile], kind: Kind, unrounded: bool = False)
         echo(f"{note.file}: {note.text}", err=True)
     if reading.kind != kind:
         noun = {"front": "one tour", "fleet": "vehicles", "coverage": "a map"}[reading.kind]
-        sentence = f"{reading.name} is about {noun}: `paretour {reading.kind}` plans that"
-        raise UsageError(f"{sentence}, not `paretour {kind}`")
+        raise UsageError(f"{reading.name} is about {noun}: `paretour {reading.kind}` plans that")
     request = reading.request
     if "matrices" in request:
         return {**request, "matrices": _as_arrays(request["matrices"])}

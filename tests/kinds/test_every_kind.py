@@ -308,6 +308,20 @@ def test_the_command_prints_csv(kind: str, place: str | None, asked: dict[str, A
         assert all(len(row.split(",")[-1].split()) >= visited for row in rows)
 
 
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in HERE_NOT])
+def test_the_command_chooses_a_tour_of_cities_or_names_the_command_that_plans(
+    kind: str, place: str | None, asked: dict[str, Asked]
+) -> None:
+    command = asked[kind].command[0]
+    result = planned(replace(asked[kind], command=("tour",)), place, "--knee")
+    if command == "front":
+        assert result.exit_code == 0, result.stderr
+        assert len(result.stdout.split()) == CITIES
+    else:
+        assert (result.exit_code, result.stdout) == (2, "")
+        assert result.stderr.strip().endswith(f"`paretour {command}` plans that")
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_command_prints_tables_and_draws(
     kind: str, place: str | None, asked: dict[str, Asked], tmp_path: Any

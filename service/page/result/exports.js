@@ -10,9 +10,8 @@ export function curl({ path, body }) {
 }
 
 /** A front as CSV: a tour on each line, or a route of a plan, with these names of objectives, and the answer's ids where it has them. */
-export function csv(answer, objectives) {
-  const { front } = answer;
-  const { movers } = kindNamed(answer);
+export function csv({ kind, front }, objectives) {
+  const { movers } = kindNamed({ kind });
   const titles = objectives === UNNAMED ? ["length_1", "length_2"] : objectives.map(({ name, unit }) => (unit ? `${name} (${unit})` : name));
   if (movers) return csvOfPlans(front, titles, movers);
   const rows = front.map(({ angle, lengths, tour, stops }) => {
