@@ -1,5 +1,6 @@
 """A service runs its own code in any folder, says why it cannot, and calls nobody unasked."""
 
+import json
 import os
 import signal
 import subprocess
@@ -108,6 +109,50 @@ def test_a_service_writes_its_cache_alone_and_connects_to_nobody(tmp_path: Path)
     written = {path for path in [*home.rglob("*"), *work.rglob("*")] if path.is_file()}
     assert {path for path in written if "numba" not in str(path)} == set()
     assert outward == set()
+
+
+ENGINES = ("llvmlite", "numba", "onnxruntime", "pyvrp", "scipy")
+MAP = {"grid": [[0] * 4] * 3, "cell_size": 1, "places": [[0, 0], [2, 3], [1, 1]]}
+FLEET = {
+    "stops": [{"id": str(number)} for number in range(4)],
+    "vehicles": [{"id": "van", "start": 0}],
+    "objectives": [{"name": name, "matrix": [[1] * 4] * 4} for name in "ab"],
+}
+
+
+def engines(pid: int) -> set[str]:
+    """The libraries that plan, as far as a process has them loaded."""
+    loaded = Path(f"/proc/{pid}/maps").read_text()
+    return {name for name in ENGINES if f"/site-packages/{name}/" in loaded}
+
+
+@pytest.mark.usefixtures("compiled")
+def test_the_process_of_the_service_loads_nothing_that_plans(
+    tmp_path: Path, quick_actors: dict[str, str]
+) -> None:
+    with served(tmp_path, **quick_actors) as (process, url):
+        until_ok(f"{url}/health/ready", process, log_of(tmp_path))
+        client = httpx.Client(base_url=url, timeout=60)
+        layer, robots = {"cost_layer": [[1] * 4] * 3}, {"robots": [{"id": "r"}]}
+        ids = []
+        for path, body in (
+            ("/front", {"coordinates": CITIES}),
+            ("/coverage", {**MAP, **layer}),
+            ("/coverage", {**MAP, **robots}),
+            ("/fleet", FLEET),
+        ):
+            # A long body is parsed in a process of its own.
+            for more in (0, 2**18):
+                content = json.dumps({**body, "time_limit": 0.1}).encode() + b" " * more
+                headers = {"Content-Type": "application/json"}
+                answer = client.post(path, content=content, headers=headers)
+                assert answer.status_code == 200, answer.text
+                ids.append(answer.json()["id"])
+        for front in ids[:4]:
+            body = {"done": [0], "time_limit": 0.1}
+            assert client.post(f"/front/{front}/replan", json=body).status_code == 200
+        assert client.get("/tour", params={"front": ids[0], "knee": True}).status_code == 200
+        assert engines(process.pid) == set()
 
 
 def test_onnx_runtime_is_imported_in_one_place_with_its_telemetry_off() -> None:

@@ -1,9 +1,12 @@
 """Rules of the repository that can be run."""
 
+import ast
 import re
 import subprocess
 import sys
 from collections import Counter
+from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from statistics import median
 
@@ -20,6 +23,7 @@ TOP_LEVEL = {"pyproject.toml", "Dockerfile", "README.md", "LICENSE"} | {
 MOST_AT_THE_TOP = 15  # Python files of service/ itself
 MOST_IN_A_FOLDER = 24  # modules, beside the __init__.py
 MOST_LINES = 400
+MOST_IN_A_CHAIN = 25  # modules, of which each imports the next
 CODE = ("service", "models", "export")
 RIDDLES = re.compile(r"(What|Who|Whatever|Whichever|How|Where|When)\b")
 
@@ -86,3 +90,22 @@ def test_every_released_actor_has_a_model_card_and_a_checkpoint() -> None:
     for actor in (ROOT / "service/actors").glob("*.onnx"):
         assert (ROOT / f"models/checkpoints/{actor.stem}.md").exists()
         assert (ROOT / f"models/checkpoints/{actor.stem}.pt").exists()
+
+
+def test_no_chain_of_imports_is_long() -> None:
+    """What a module imports when it is loaded, and what that imports in turn."""
+    names = {".".join(path.with_suffix("").parts): path for path in modules(".py")}
+    names = {name.removesuffix(".__init__"): path for name, path in names.items()}
+
+    def imported(name: str) -> Iterator[str]:
+        for node in ast.parse((ROOT / names[name]).read_text()).body:
+            if isinstance(node, ast.ImportFrom) and node.module in names:
+                for alias in node.names:
+                    inside = f"{node.module}.{alias.name}"
+                    yield inside if inside in names else node.module
+
+    @cache
+    def length(name: str) -> int:
+        return 1 + max((length(each) for each in imported(name) if each != name), default=0)
+
+    assert max(map(length, names)) <= MOST_IN_A_CHAIN

@@ -13,7 +13,6 @@ from typing import Any, TypeVar
 
 from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
 from service.jobs.record import Record
-from service.jobs.sqlite_eviction import FINISHED, next_out
 from service.jobs.sqlite_schema import IN_MEMORY, UNFINISHED, open_file
 from service.jobs.store import (
     COLUMNS,
@@ -42,6 +41,22 @@ _READ = ", ".join(
 _AT_ONCE = 16  # records that are written together
 _SLACK = 16  # records may exceed the limits by a sixteenth until some are read
 _LOG = logging.getLogger("paretour")
+
+_FINISHED = f"NOT {UNFINISHED}"
+_SUMS = f"SELECT count(*), total(size), min(kept), max(size) FROM front WHERE {_FINISHED}"
+# The records dropped by dropping the oldest of the client with most again and again.
+_FIRST_OUT = f"""
+SELECT number FROM (
+    SELECT number, row_number() OVER (PARTITION BY client ORDER BY number DESC) AS place
+    FROM front WHERE {_FINISHED}
+) ORDER BY place DESC, number LIMIT ?
+"""
+# The oldest of the client that takes most bytes; if nobody has two, of those with one.
+_LARGEST_OUT = f"""
+SELECT min(number) FROM front WHERE {_FINISHED} GROUP BY client
+ORDER BY count(*) > 1 DESC, sum(size) DESC, min(number) LIMIT 1
+"""
+_Condition = tuple[str] | tuple[str, float] | tuple[str, float, float]
 
 
 class SqliteStore:
@@ -108,7 +123,7 @@ class SqliteStore:
 
     async def latest(self, caller: str, client: str) -> Record:
         """Return the caller's record that was finished last for this client."""
-        return await self._found("caller = ? AND client = ?", caller, client, among=FINISHED)
+        return await self._found("caller = ? AND client = ?", caller, client, among=_FINISHED)
 
     async def delete(self, record: Record) -> None:
         """Delete a record, and leave no trace of it."""
@@ -248,7 +263,7 @@ class SqliteStore:
         self._puts = self._bytes_put = 0
         oldest = self._clock() - self._max_age
         limits = oldest, self._entries, self._max_bytes
-        while (out := next_out(self._database, *limits)) is not None:
+        while (out := _next_out(self._database, *limits)) is not None:
             self._drop(*out)
 
     def _drop(self, where: str, *values: float) -> None:
@@ -273,3 +288,22 @@ def _is_short(record: Record) -> bool:
 def _source_size(columns: dict[str, Any]) -> int:
     """Return the bytes that the source of a record takes, given all its columns."""
     return record_size({name: columns[name] for name in SOURCE_COLUMNS})
+
+
+def _next_out(
+    database: sqlite3.Connection, oldest: float, entries: int, max_bytes: int
+) -> _Condition | None:
+    """Return the finished records to drop next, as a condition with its values; None for none.
+
+    Args:
+        database: The store's file.
+        oldest: The time before which no record may have been kept.
+        entries: How many records there may be.
+        max_bytes: The most bytes of all together, and so of each.
+    """
+    count, size, first, longest = database.execute(_SUMS).fetchone()
+    if count and (first < oldest or longest > max_bytes):
+        return f"{_FINISHED} AND (kept < ? OR size > ?)", oldest, max_bytes
+    if count > entries:
+        return f"number IN ({_FIRST_OUT})", count - entries
+    return (f"number = ({_LARGEST_OUT})",) if size > max_bytes else None

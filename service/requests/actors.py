@@ -35,7 +35,7 @@ def actor_for_plans(actors: Mapping[str, ActorInfo]) -> str:
 def _check_able(name: str, kind: Kind, able: list[str], actors: Mapping[str, ActorInfo]) -> None:
     if name in able:
         return
-    among = f"one of {', '.join(able)}" if able else "one that is loaded, and there is none"
+    among = f"one of {', '.join(able)}" if able else "one that is loaded, and none is"
     if name not in actors:
         raise Refusal("unknown-actor", among=among, came=repr(name[:80]), pointer="/actor")
     inputs = actors[name].inputs

@@ -20,8 +20,7 @@ from service.cli.commands import app
 from service.errors import Cancelled
 from service.files.reader import read_files
 from service.files.reading import Bounds, NamedFile, UnreadableFile
-from service.jobs import compiled_code, runner
-from service.requests.task import Task, TaskSource, parse_task
+from service.jobs import compiled_code, task_runner
 from tests.cli.test_terminal_text import REQUEST
 from tests.client.test_robots import REQUEST as ROBOTS
 from tests.client.test_unexpected_answers import answers_of
@@ -74,12 +73,11 @@ def screen(monkeypatch: pytest.MonkeyPatch) -> Screen:
 
 
 class Planless:
-    """A runner that parses tasks as the service does, and plans none."""
+    """A runner that plans nothing."""
 
     actors: ClassVar[dict[str, Any]] = {}
-
-    def parse(self, source: TaskSource) -> Task:
-        return parse_task(source, LIMITS, ACTORS)
+    infos = ACTORS
+    limits = LIMITS
 
     def run(self, *_: object) -> Any:
         raise Cancelled
@@ -123,7 +121,7 @@ def planless(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have the command plan nothing, and read its settings once."""
     settings = configuration.load_settings()
     monkeypatch.setattr(configuration, "load_settings", lambda: settings)
-    monkeypatch.setattr(runner, "load_runner", lambda *_: Planless())
+    monkeypatch.setattr(task_runner, "load_runner", lambda *_: Planless())
     monkeypatch.setattr(compiled_code, "warm_up", lambda: None)
 
 
