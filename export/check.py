@@ -10,21 +10,14 @@ from torch import Generator, Tensor
 
 from models.data.instances import uniform_cities
 from models.data.preferences import fan_of_preferences
-from models.networks.actor import Actor, StepwiseActor
-from models.networks.pa_one import OneActor
-from models.rollout import log_likelihoods_by_city
-from models.rollout_repairs import repaired_tours
+from models.networks.actor import Actor
+from models.rollout_repairs import from_the_first_city
 from service.onnx_runtime import onnxruntime
 
 CITIES = (3, 7, 20, 40, 200, 1000)
 PREFERENCES = (1, 20, 100)
 REPAIRS = (0, 1, 10, 50)  # of tours of PA-One
 _MANY_CITIES = 200  # above which torch takes minutes for more than one repair
-# Logits this close are a tie: float32 sums of two orders differ by less, and either city may win.
-_TIE = 1e-3
-# PA-One joins by many comparisons at once; small changes to the cities show which were close.
-_LEAST_ROUNDING, _ROUNDING_OF_A_CITY = 1e-6, 1e-8  # sums of more floats are less exact
-_ROUNDINGS = 8  # times that cities are moved so
 
 
 class TourMismatch(Exception):
@@ -85,7 +78,7 @@ def _instance(actor: Actor, n: int, generator: Generator) -> Tensor:
 
 
 def _numbers_of_repairs(actor: Actor, n: int, repairs: Sequence[int]) -> Sequence[int]:
-    if not isinstance(actor, OneActor):
+    if not actor.repairs_tours:
         return (0,)
     return [times for times in repairs if times <= 1 or n <= _MANY_CITIES]
 
@@ -97,31 +90,19 @@ def _compare_tours(
     preferences: Tensor,
     repairs: int,
 ) -> None:
-    expected = _torch_tours(actor, instance, preferences, repairs)
+    expected = actor.repaired_tours(instance, preferences, repairs)[0][0]
     tours = torch.from_numpy(onnx_tours(running, instance[0], preferences, repairs))
-    if repairs > 0:
-        tours = _from_the_first_city(tours)
+    if repairs > 0:  # such tours begin anywhere
+        tours, expected = from_the_first_city(tours), from_the_first_city(expected)
     if torch.equal(tours, expected):
         return
-    if isinstance(actor, StepwiseActor):
-        _check_ties(actor, instance, preferences, (tours, expected))
-    else:
-        _check_rounding(actor, instance, preferences, repairs, (tours, expected))
-
-
-def _from_the_first_city(tours: Tensor) -> Tensor:
-    """Return the same closed tours, in the same direction, from city 0 on."""
-    n = tours.shape[1]
-    places = tours.argmin(dim=1, keepdim=True) + torch.arange(n)
-    return tours.gather(1, places % n)
-
-
-def _torch_tours(actor: Actor, instance: Tensor, preferences: Tensor, repairs: int) -> Tensor:
-    """Return the tours that torch builds: repaired ones from city 0 on, as they begin anywhere."""
-    if isinstance(actor, OneActor):
-        tours = repaired_tours(actor, instance, preferences, repairs)[0][0]
-        return _from_the_first_city(tours) if repairs > 0 else tours
-    return actor.tours(instance, preferences)[0]
+    ties = actor.are_ties(instance, preferences, repairs, (tours, expected))
+    for i in (~ties).nonzero().flatten().tolist():
+        parting = int((tours[i] != expected[i]).nonzero()[0])
+        raise TourMismatch(
+            f"tours of {tours.shape[1]} cities part at position {parting}, and rounding alone "
+            "cannot be why"
+        )
 
 
 def _check_dimensions(model: ModelProto) -> None:
@@ -137,53 +118,3 @@ def _check_dimensions(model: ModelProto) -> None:
         shape = [d.dim_param or d.dim_value for d in value.type.tensor_type.shape.dim]
         if shape != expected[value.name]:
             raise TourMismatch(f"{value.name} must have shape {expected[value.name]}, got {shape}")
-
-
-def _check_rounding(
-    actor: Actor,
-    instance: Tensor,
-    preferences: Tensor,
-    repairs: int,
-    both: tuple[Tensor, Tensor],
-) -> None:
-    """Raise TourMismatch unless the tours that differ do so in torch when cities are rounded."""
-    tours, expected = both
-    robust = torch.ones(len(expected), dtype=torch.bool)
-    rounding = max(_LEAST_ROUNDING, _ROUNDING_OF_A_CITY * tours.shape[1])
-    generator = Generator().manual_seed(0)
-    for _ in range(_ROUNDINGS):
-        moved = instance * (1 + rounding * torch.randn(instance.shape, generator=generator))
-        robust &= (_torch_tours(actor, moved, preferences, repairs) == expected).all(dim=1)
-    differs = tours != expected
-    for i in (differs.any(dim=1) & robust).nonzero().flatten().tolist():
-        parting = int(differs[i].nonzero()[0])
-        raise TourMismatch(
-            f"tours of {tours.shape[1]} cities part at position {parting}, though cities may be "
-            f"rounded by {rounding:g} of themselves in torch without a change"
-        )
-
-
-def _check_ties(
-    actor: StepwiseActor, instance: Tensor, preferences: Tensor, both: tuple[Tensor, Tensor]
-) -> None:
-    """Raise TourMismatch unless torch finds both cities about as likely where two tours part."""
-    rows, members, places = actor.grouped(preferences)
-    with torch.no_grad():
-        memory, conditioning = actor.remember(instance, rows), actor.decoder.condition(rows)
-        likelihoods = [
-            log_likelihoods_by_city(actor.decoder, memory, conditioning, tours[None, members])[
-                0, places
-            ]
-            for tours in both
-        ]
-    differs = both[0] != both[1]
-    for i in differs.any(dim=1).nonzero().flatten().tolist():
-        parting = int(differs[i].nonzero()[0])
-        # Tours from a given city have one choice fewer than cities.
-        choice = parting - (differs.shape[1] - likelihoods[0].shape[1])
-        gap = float((likelihoods[0][i, choice] - likelihoods[1][i, choice]).abs())
-        if not gap <= _TIE:
-            raise TourMismatch(
-                f"tours of {differs.shape[1]} cities part at position {parting}, where "
-                f"log-likelihoods must differ by at most {_TIE}, got {gap:g}"
-            )

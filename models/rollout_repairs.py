@@ -16,12 +16,9 @@ import torch
 from jaxtyping import Bool, Float, Int
 from torch import Generator, Tensor, nn
 
-from models.data.preferences import turned_outwards, weights
 from models.networks.joining.candidates import Candidates
 from models.networks.joining.costs import Matrices, Planes, Problem, along, weighted_sums
 from models.networks.joining.fragments import NEVER
-from models.networks.joining.repairs import cut, laid_out, repair_problem
-from models.networks.pa_one import OneActor
 
 
 class Cut(NamedTuple):
@@ -66,43 +63,11 @@ class RepairState(NamedTuple):
     freshness: Float[Tensor, "r n"]
 
 
-@torch.no_grad()
-def repaired_tours(
-    actor: OneActor,
-    instances: Tensor,
-    preferences: Float[Tensor, "k 2"],
-    repairs: int,
-) -> tuple[Int[Tensor, "b k n"], Int[Tensor, "b k n"]]:
-    """Return a tour of each instance and preference after the repairs, and one they visited."""
-    rows = weights(turned_outwards(preferences))
-    built = actor.tours(instances, preferences)
-    states = [
-        _repaired(actor, actor.problem(instance, rows), tours, repairs)
-        for instance, tours in zip(instances, built, strict=True)
-    ]
-    tours = torch.stack([state.tours for state in states])
-    return tours, torch.stack([state.visited for state in states])
-
-
-def _repaired(
-    actor: OneActor,
-    problem: Problem,
-    tours: Int[Tensor, "r n"],
-    repairs: int,
-) -> RepairState:
-    least = least_costs(actor.first_candidates(problem))
-    state = unrepaired(problem.costs, tours)
-    for number in torch.arange(repairs):
-        places = state.tours, state.freshness
-        sizes = sizes_of_cut(tours.shape[1], int(number))
-        cities = cities_to_cut(problem, least, places, number, sizes)
-        cuts = cut(state.tours, cities)
-        between, fragments = repair_problem(problem, cuts)
-        new = laid_out(
-            cuts, actor.joined_to_one(between, fragments.trimmed(), actor.repair_joinings)
-        )
-        state = state_after_repair(problem.costs, problem.weights, state, cities, new)
-    return state
+def from_the_first_city(tours: Int[Tensor, "k n"]) -> Int[Tensor, "k n"]:
+    """Return the same closed tours, in the same direction, from city 0 on."""
+    n = tours.shape[1]
+    places = tours.argmin(dim=1, keepdim=True) + torch.arange(n)
+    return tours.gather(1, places % n)
 
 
 def least_costs(candidates: Candidates) -> Float[Tensor, "r n"]:

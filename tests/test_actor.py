@@ -1,6 +1,7 @@
 """The released network, as the service runs it."""
 
 import hashlib
+import json
 import time
 from pathlib import Path
 from threading import Timer
@@ -11,6 +12,7 @@ import pytest
 from service.actor import OnnxActor, load_actors
 from service.errors import Cancelled
 from service.instance import Instance
+from service.onnx_runtime import onnxruntime
 from service.preferences import fan, from_angles
 from service.settings import Settings
 from tests.helpers.artifacts import METADATA, always_city_0, by_row_sums
@@ -170,39 +172,46 @@ def test_cities_at_one_place_are_visited_in_a_run(actor: OnnxActor) -> None:
     assert changes.tolist() == [9] * 5
 
 
-def test_many_cities_at_one_place_take_no_longer_than_few(actor: OnnxActor) -> None:
-    cities = np.random.default_rng(7).random((400, 4))
-    cities[50:] = 0.5
-    used = time.process_time()
-    actor.tours(Instance(coordinates=cities), from_angles(fan(50)))
-    assert time.process_time() - used < 1
+def work(path: Path, instance: Instance, folder: Path) -> int:
+    """Return the bytes of the results of all operations of a network that builds 20 tours.
 
-
-def cpu_seconds(actor: OnnxActor, instance: Instance) -> float:
-    used = time.process_time()
+    ONNX Runtime's profile has them. Unlike seconds they do not depend on the machine.
+    """
+    options = onnxruntime.SessionOptions()
+    options.enable_profiling, options.profile_file_prefix = True, str(folder / "profile")
+    actor = OnnxActor(path, threads=1)
+    session = actor._session = onnxruntime.InferenceSession(path, options)
     tours = actor.tours(instance, from_angles(fan(20)))
     np.testing.assert_array_equal(np.sort(tours, axis=1), np.tile(np.arange(instance.n), (20, 1)))
-    return time.process_time() - used
+    events = json.loads(Path(session.end_profiling()).read_text())
+    return sum(int(event.get("args", {}).get("output_size", 0)) for event in events)
+
+
+def test_many_cities_at_one_place_are_as_much_work_as_one(tmp_path: Path) -> None:
+    cities = np.random.default_rng(7).random((400, 4))
+    few = work(RELEASED, Instance(coordinates=cities[:51]), tmp_path)
+    cities[51:] = cities[50]
+    assert 0 < work(RELEASED, Instance(coordinates=cities), tmp_path) == few
 
 
 @pytest.mark.parametrize("coinciding", [1990, 1980])
-def test_cities_that_coincide_in_one_plane_take_no_longer_than_others(
-    actor: OnnxActor, coinciding: int
+def test_cities_that_coincide_in_one_plane_are_no_more_work_than_others(
+    coinciding: int, tmp_path: Path
 ) -> None:
     cities = np.random.default_rng(9).random((2000, 4))
-    usual = cpu_seconds(actor, Instance(coordinates=cities))
+    usual = work(RELEASED, Instance(coordinates=cities), tmp_path)
     cities[:coinciding, :2] = cities[coinciding:, 2:] = 0.5
-    assert cpu_seconds(actor, Instance(coordinates=cities)) < 4 * usual
+    assert work(RELEASED, Instance(coordinates=cities), tmp_path) < 4 * usual
 
 
-def test_equal_costs_take_no_longer_than_others() -> None:
-    actor = OnnxActor(RELEASED.with_name("pa-one-matrix.onnx"), threads=1)
+def test_equal_costs_are_no_more_work_than_others(tmp_path: Path) -> None:
+    path = RELEASED.with_name("pa-one-matrix.onnx")
     random = np.random.default_rng(10)
     costs = random.random((2, 400, 400))
-    usual = cpu_seconds(actor, Instance(matrices=costs))
+    usual = work(path, Instance(matrices=costs), tmp_path)
     half = np.where(random.integers(0, 2, 400) == random.integers(0, 2, (400, 1)), 1.0, 9.0)
     for tied in (np.full_like(costs, 7.0), np.stack((half, half)), np.stack((costs[0], half))):
-        assert cpu_seconds(actor, Instance(matrices=tied)) < 4 * usual
+        assert work(path, Instance(matrices=tied), tmp_path) < 4 * usual
 
 
 def test_a_call_under_way_is_terminated_and_the_next_is_not(actor: OnnxActor) -> None:
@@ -211,6 +220,6 @@ def test_a_call_under_way_is_terminated_and_the_next_is_not(actor: OnnxActor) ->
     Timer(0.2, actor.terminate).start()
     began = time.monotonic()
     with pytest.raises(Cancelled):
-        actor.tours(instance, from_angles(fan(200)))
-    assert time.monotonic() - began < 1
+        actor.tours(instance, from_angles(fan(200)), repairs=200)  # minutes
+    assert time.monotonic() - began < 30
     assert actor.tours(Instance(coordinates=np.eye(4)), from_angles(fan(2))).shape == (2, 4)

@@ -29,7 +29,7 @@ def test_every_line_of_the_log_is_an_object_and_each_request_has_one() -> None:
     assert line["logger"] == "paretour.requests"
     assert (line["method"], line["path"], line["status"]) == ("GET", "/front/{id}", 404)
     assert line["caller"] == "anonymous"
-    assert 0 < line["seconds"] < 10
+    assert line["seconds"] > 0
     assert b"secret" not in service.log
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import torch
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 from torch import Generator, Tensor, nn
 
 from models.data.instances import distinct_starts
@@ -22,6 +22,9 @@ from models.rollout import (
     sampling,
     starts_in_turn,
 )
+
+# Logits this close are a tie: float32 sums of two orders differ by less, and either city may win.
+_TIE = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +54,7 @@ class Actor(nn.Module, ABC):
     precisions: ClassVar[tuple[str, ...]] = ("float32", "bfloat16")  # of products in training
     # Whether imitation differs by the city at which a tour starts.
     imitates_starts: ClassVar[bool] = True
+    repairs_tours: ClassVar[bool] = False
 
     @property
     @abstractmethod
@@ -60,6 +64,36 @@ class Actor(nn.Module, ABC):
     @abstractmethod
     def tours(self, instances: Tensor, preferences: Float[Tensor, "k 2"]) -> Int[Tensor, "b k n"]:
         """Return the greedy tour of each instance for each preference."""
+
+    def repaired_tours(
+        self, instances: Tensor, preferences: Float[Tensor, "k 2"], repairs: int
+    ) -> tuple[Int[Tensor, "b k n"], Int[Tensor, "b k n"]]:
+        """Return the greedy tours after the repairs, and for each another that they visited.
+
+        Raises:
+            ValueError: repairs are asked for, and the actor makes none.
+        """
+        if repairs > 0:
+            raise ValueError(f"{type(self).__name__} cannot repair tours, got repairs {repairs}")
+        tours = self.tours(instances, preferences)
+        return tours, tours
+
+    @abstractmethod
+    def are_ties(
+        self,
+        instance: Tensor,
+        preferences: Float[Tensor, "k 2"],
+        repairs: int,
+        both: tuple[Int[Tensor, "k n"], Int[Tensor, "k n"]],
+    ) -> Bool[Tensor, " k"]:
+        """Return which tours may differ by rounding alone; tours that are equal may.
+
+        Args:
+            instance: one, as the actor reads it, shape (1, ...).
+            preferences: unit vectors.
+            repairs: of the tours.
+            both: tours for each preference as another program built them, and as this one did.
+        """
 
     @abstractmethod
     def sampled_tours_with_log_likelihoods(
@@ -136,6 +170,30 @@ class StepwiseActor(Actor):
         memory = self.remember(instances, rows)
         conditioning = self.decoder.condition(rows)
         return roll_out(self.decoder, memory, conditioning, starts, greedily)[:, places]
+
+    @torch.no_grad()
+    def are_ties(
+        self,
+        instance: Tensor,
+        preferences: Float[Tensor, "k 2"],
+        repairs: int,  # noqa: ARG002, there are none
+        both: tuple[Int[Tensor, "k n"], Int[Tensor, "k n"]],
+    ) -> Bool[Tensor, " k"]:
+        """Return for which tours both cities are about as likely where the two part."""
+        rows, members, places = self.grouped(preferences)
+        memory, conditioning = self.remember(instance, rows), self.decoder.condition(rows)
+        one, other = (
+            log_likelihoods_by_city(self.decoder, memory, conditioning, tours[None, members])[
+                0, places
+            ]
+            for tours in both
+        )
+        differs = both[0] != both[1]
+        partings = differs.int().argmax(dim=1, keepdim=True)
+        # Tours from a given city have one choice fewer than cities.
+        choices = partings - (differs.shape[1] - one.shape[1])
+        gaps = (one - other).gather(1, choices.clamp(min=0))[:, 0].abs()
+        return (gaps <= _TIE) & (choices[:, 0] >= 0) | ~differs.any(dim=1)
 
     def sampled_tours_with_log_likelihoods(
         self,

@@ -34,7 +34,13 @@ from models.networks.joining.fragments import NEVER, Fragments, all_alone, mutua
 from models.networks.joining.messages import MessagePassingLayer
 from models.networks.joining.neighbours import EDGE, Neighbours, of_both_ends
 from models.networks.joining.prices import priced_problem
-from models.networks.joining.repairs import ENOUGH, last_two_joined
+from models.networks.joining.repairs import (
+    ENOUGH,
+    cut,
+    laid_out,
+    last_two_joined,
+    repair_problem,
+)
 from models.networks.joining.shortlists import (
     RowLists,
     Sizes,
@@ -46,10 +52,22 @@ from models.networks.joining.shortlists import (
 from models.networks.layers import feedforward
 from models.networks.rows import stacked
 from models.rollout_pa_one import Judgement
+from models.rollout_repairs import (
+    RepairState,
+    cities_to_cut,
+    from_the_first_city,
+    least_costs,
+    sizes_of_cut,
+    state_after_repair,
+    unrepaired,
+)
 
 MANY = 1000  # cities, more than which are joined three times a look
 
 _STEEPNESS = 1.5  # how fast logits fall with such a cost, at first
+# Of the costs of cities: moves so small show which comparisons were close.
+_LEAST_ROUNDING, _ROUNDING_OF_A_CITY = 1e-6, 1e-8  # sums of more floats are less exact
+_ROUNDINGS = 8  # times that cities are moved so
 
 
 class OneActor(Actor):
@@ -59,6 +77,7 @@ class OneActor(Actor):
     construction = "fragments"
     precisions = ("float32",)
     imitates_starts = False  # it learns edges
+    repairs_tours = True
     has_directions: ClassVar[bool] = False  # or all steps cost as much as the step back
     candidates: ClassVar[int] = CANDIDATES  # of each end
     # Of fragments, for one evaluation of the network: in building tours, in building those of many
@@ -109,6 +128,57 @@ class OneActor(Actor):
         """Return the greedy tour of each instance for each preference."""
         rows = weights(turned_outwards(preferences))
         return torch.stack([self.built(self.problem(instance, rows)) for instance in instances])
+
+    @torch.no_grad()
+    def repaired_tours(
+        self, instances: Tensor, preferences: Float[Tensor, "k 2"], repairs: int
+    ) -> tuple[Int[Tensor, "b k n"], Int[Tensor, "b k n"]]:
+        """Return the greedy tours after the repairs, and for each another that they visited."""
+        rows = weights(turned_outwards(preferences))
+        built = self.tours(instances, preferences)
+        states = [
+            self._repaired(self.problem(instance, rows), tours, repairs)
+            for instance, tours in zip(instances, built, strict=True)
+        ]
+        tours = torch.stack([state.tours for state in states])
+        return tours, torch.stack([state.visited for state in states])
+
+    def _repaired(self, problem: Problem, tours: Int[Tensor, "r n"], repairs: int) -> RepairState:
+        least = least_costs(self.first_candidates(problem))
+        state = unrepaired(problem.costs, tours)
+        for number in torch.arange(repairs):
+            places = state.tours, state.freshness
+            sizes = sizes_of_cut(tours.shape[1], int(number))
+            cities = cities_to_cut(problem, least, places, number, sizes)
+            cuts = cut(state.tours, cities)
+            between, fragments = repair_problem(problem, cuts)
+            joined = self.joined_to_one(between, fragments.trimmed(), self.repair_joinings)
+            new = laid_out(cuts, joined)
+            state = state_after_repair(problem.costs, problem.weights, state, cities, new)
+        return state
+
+    def are_ties(
+        self,
+        instance: Tensor,
+        preferences: Float[Tensor, "k 2"],
+        repairs: int,
+        both: tuple[Int[Tensor, "k n"], Int[Tensor, "k n"]],
+    ) -> Bool[Tensor, " k"]:
+        """Return which tours are equal, or become others when cities are moved a little.
+
+        Edges are chosen by many comparisons at once; small moves show which of them were close.
+        """
+        tours, expected = both
+        ties = (tours == expected).all(dim=1)
+        rounding = max(_LEAST_ROUNDING, _ROUNDING_OF_A_CITY * tours.shape[1])
+        generator = Generator().manual_seed(0)
+        for _ in range(_ROUNDINGS):
+            moved = instance * (1 + rounding * torch.randn(instance.shape, generator=generator))
+            again = self.repaired_tours(moved, preferences, repairs)[0][0]
+            if repairs > 0:
+                again = from_the_first_city(again)
+            ties |= (again != expected).any(dim=1)
+        return ties
 
     def problem(self, instance: Tensor, weights: Float[Tensor, "r 2"]) -> Problem:
         """Return the problem that one instance is under the weights of each row."""

@@ -15,7 +15,7 @@ from service.fleet.enumeration import exact_plans, is_enumerable
 from service.fleet.evaluation import points_of, violations
 from service.fleet.fleet import ALWAYS, Array, Fleet, Rules
 from service.fleet.necessary import check_necessary
-from service.fleet.plans import FleetFront, Plan
+from service.fleet.plans import FleetFront, Plan, Route
 from service.fleet.scales import Units
 from service.fleet.solver import Solver
 from service.fleet.splitting.cutter import Cutter
@@ -78,7 +78,8 @@ def plan_fleet(
             the best front so far of at most n plans.
 
     Raises:
-        Refusal: There is no plan, and why where that is known; or none was found in time.
+        Refusal: There is no plan, and why where that is known; or none was found in time. Where no
+            rule can be broken, one is found in any time.
         Cancelled: It was told to stop before it had a plan.
     """
     began = time.monotonic()
@@ -95,6 +96,18 @@ def plan_fleet(
         plans = _constructed(fleet, constructor, stop)
         constructed = _front(fleet, options, plans, terminated="converged", began=began)
         return replace(constructed, constructed=len(plans))
+    return _searched(fleet, options, constructor, stop, report, began)
+
+
+def _searched(
+    fleet: Fleet,
+    options: FleetOptions,
+    constructor: Constructor | None,
+    stop: Callable[[], bool],
+    report: Report,
+    began: float,
+) -> FleetFront:
+    """Return the front that a search finds; where it had no time, that of a plan without one."""
     search = _Search(fleet, options, stop, report, began)
     if constructor is not None and not fleet.rules.shipments:
         search.begin_at(constructor)
@@ -102,7 +115,31 @@ def plan_fleet(
     if not search.found and terminated != "cancelled" and fleet.rules.has_bounds:
         search = _Search(fleet, options, stop, report, began, loose=True)
         terminated = search.run()
+    if not search.found and terminated != "cancelled":
+        plan = _one_route(fleet)
+        if not violations(fleet, plan):
+            return _front(fleet, options, [plan], terminated=terminated, began=began)
     return search.front(options.size, terminated)
+
+
+def _one_route(fleet: Fleet) -> Plan:
+    """Return the plan in which one of the largest vehicles goes to the nearest stop each time.
+
+    What a shipment picks up is delivered at once. O(n^2), so that there is time for it when there
+    was none for a search. It may break rules.
+    """
+    rules = fleet.rules
+    vehicle = max(range(len(rules.vehicles)), key=lambda index: rules.vehicles[index].capacity)
+    with np.errstate(over="ignore"):
+        costs = (fleet.costs / scale_of(fleet)[:, np.newaxis, np.newaxis]).sum(axis=0)
+    deliveries = {each.pickup: each.delivery for each in rules.shipments}
+    left = [stop for stop in rules.clients if stop not in deliveries.values()]
+    position, stops = rules.vehicles[vehicle].start, list[int]()
+    while left:
+        stop = left.pop(0 if position is None else int(costs[position, left].argmin()))
+        stops += [stop, deliveries[stop]] if stop in deliveries else [stop]
+        position = stops[-1]
+    return Plan((Route(vehicle, tuple(stops)),) if stops else ())
 
 
 def _constructed(

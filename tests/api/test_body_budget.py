@@ -102,7 +102,7 @@ def test_stalled_uploads_take_no_more_than_the_budget(url: str) -> None:
     with ExitStack() as connections:
         for _ in range(20):
             connections.enter_context(stalled(url, 90_000))
-        deadline = time.monotonic() + 10
+        deadline = time.monotonic() + 60
         refused = None
         while refused is None and time.monotonic() < deadline:
             answer = httpx.post(f"{url}/front", content=95_000 * b" " + REQUEST, headers=JSON)
@@ -219,7 +219,7 @@ def test_answers_that_nobody_reads_take_no_more_than_the_budget() -> None:
         short = httpx.post(f"{url}/front", content=REQUEST, headers=JSON)
         assert short.status_code == 200
         unread.close()
-        deadline = time.monotonic() + 10
+        deadline = time.monotonic() + 60
         while (again := httpx.get(f"{url}/front/long")).status_code == 503:
             assert time.monotonic() < deadline
         assert again.content.endswith(tour + b"]}")

@@ -31,7 +31,7 @@ from tests.helpers.answers import events, progress, status
 from tests.helpers.fleet_requests import fleet_request
 from tests.helpers.serving import LIMITS
 
-COUNT = 2000
+COUNT = 1000
 COMMAND = get_command(app)
 PLANNED = 130  # the exit code of a command that ends before there is a front
 HOSTILE = "\x1b]0;owned\x07\x1b[31mred\x9b2J\u202eabc\u2028[bold]\r\n=end\x00\x7f{}%s$"

@@ -1,5 +1,6 @@
 """Exported files against their actors in torch."""
 
+from functools import cache
 from pathlib import Path
 
 import onnx
@@ -19,15 +20,17 @@ ROOT = Path(__file__).parents[2]
 ACTORS = ROOT / "service/actors"
 
 
-def small(name: str) -> Actor:
+@cache
+def small(name: str) -> tuple[Actor, ModelProto]:
+    """A small actor and its file, whose export takes many seconds."""
     config = NetworkConfig(name=name, width=16, heads=2, layers=1, feedforward=32)
-    return build(config, seed=2).eval()
-
-
-@pytest.fixture(scope="module", params=NAMES)
-def exported(request: pytest.FixtureRequest) -> tuple[Actor, ModelProto]:
-    actor = small(request.param)
+    actor = build(config, seed=2).eval()
     return actor, to_onnx(actor)
+
+
+@pytest.fixture(params=NAMES)
+def exported(request: pytest.FixtureRequest) -> tuple[Actor, ModelProto]:
+    return small(request.param)
 
 
 def test_the_file_builds_the_tours_that_torch_builds(exported: tuple[Actor, ModelProto]) -> None:
@@ -43,13 +46,11 @@ def test_the_released_file_builds_the_tours_of_the_released_checkpoint(path: Pat
 
 
 def test_late_repairs_are_those_of_torch() -> None:
-    actor = small("pa-one")
-    compare(actor, to_onnx(actor), sizes=(9, 30), counts=(3,), repairs=(LATE_FROM + 2,))
+    compare(*small("pa-one"), sizes=(9, 30), counts=(3,), repairs=(LATE_FROM + 2,))
 
 
 def test_the_file_joins_many_cities_as_torch_does() -> None:
-    actor = small("pa-one")
-    compare(actor, to_onnx(actor), sizes=(MANY + 1,), counts=(3,), repairs=(0,))
+    compare(*small("pa-one"), sizes=(MANY + 1,), counts=(3,), repairs=(0,))
 
 
 def test_a_file_with_other_weights_is_refused(exported: tuple[Actor, ModelProto]) -> None:

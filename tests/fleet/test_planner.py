@@ -13,7 +13,7 @@ from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled, Refusal
 from service.fleet.archive import SolutionArchive
 from service.fleet.evaluation import plan_lengths, violations
-from service.fleet.fleet import Fleet, Over, Rules, VehicleType, Visit
+from service.fleet.fleet import Fleet, Over, Rules, Shipment, VehicleType, Visit
 from service.fleet.necessary import least_lengths
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.fleet.plans import FleetFront
@@ -176,6 +176,36 @@ def test_what_was_not_found_in_time_is_said_so() -> None:
     tight = Rules(visits=visits, vehicles=(VehicleType(start=0, capacity=(4,), count=16),))
     with pytest.raises(Refusal, match=r"no plan was found in 0.1 s"):
         plan_fleet(Fleet(rules=tight, costs=fleet.costs), FleetOptions(time_limit=0.1))
+
+
+@pytest.mark.parametrize("time_limit", [1e-300, 1e-3])
+@pytest.mark.parametrize("over", [("sum", "sum"), ("sum", "max")])
+@pytest.mark.parametrize("n", [1, 2, 5, 40])
+def test_where_no_rule_can_be_broken_there_is_a_plan_in_any_time(
+    n: int, over: tuple[Over, Over], time_limit: float
+) -> None:
+    costs = np.random.default_rng(n).random((2, n, n))
+    vans = [
+        tuple(VehicleType(start=i % n, end=end, fixed=i * (over[0] == "sum")) for i in range(40))
+        for end in (None, 0)
+    ]
+    prized = tuple(Visit(prize=5.0 if i % 3 else None) for i in range(n))
+    shipped = Rules(
+        visits=(Visit(),) * n,
+        vehicles=(VehicleType(capacity=(1,)), VehicleType(capacity=(2,))),
+        shipments=tuple(Shipment(i + 1, i) for i in range(0, n - 1, 2)),
+        over=over,
+    )
+    anywhere = VehicleType(count=10**6)
+    for rules in (
+        *(Rules(visits=(Visit(),) * n, vehicles=each, over=over) for each in vans),
+        Rules(visits=prized, vehicles=(anywhere,), over=over),
+        shipped,
+    ):
+        fleet = Fleet(rules=rules, costs=costs)
+        front = plan_fleet(fleet, FleetOptions(time_limit=time_limit))
+        assert len(front.plans) >= 1
+        assert not any(violations(fleet, plan) for plan in front.plans)
 
 
 @pytest.mark.parametrize("units", [(1e-200, 1e-200), (1e-150, 1e-9), (1e9, 1e-9), (1e9, 1e150)])

@@ -212,6 +212,15 @@ def without_ways(places: Array, forgotten: NDArray[np.bool_]) -> Misbehaviour:
     return misbehave
 
 
+def waiting(gate: threading.Event) -> Misbehaviour:
+    """Return a misbehaviour that answers nothing until the gate is set."""
+
+    def misbehave(*_: object) -> None:
+        gate.wait(60)
+
+    return misbehave
+
+
 def sleeping(seconds: float) -> Misbehaviour:
     """Return a misbehaviour that delays each answer."""
 

@@ -4,6 +4,7 @@ import json
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from threading import Event
 from typing import Any
 
 import httpx
@@ -22,6 +23,7 @@ from tests.helpers.fake_router import (
     replying,
     road_costs,
     sleeping,
+    waiting,
     without_ways,
 )
 from tests.helpers.instances import every_tour
@@ -45,16 +47,22 @@ def engine() -> Iterator[FakeOsrm]:
         yield fake
 
 
-@pytest.fixture(scope="module")
-def url(engine: FakeOsrm) -> Iterator[str]:
+@contextmanager
+def service(engine: FakeOsrm, router_seconds: float) -> Iterator[str]:
     settings = Settings(
         workers=1,
         rate=UNLIMITED,
         router_url=engine.url,
         router="osrm",
-        router_seconds=3.0,
+        router_seconds=router_seconds,
     )
     with serving(build(settings, Ending())) as url:
+        yield url
+
+
+@pytest.fixture(scope="module")
+def url(engine: FakeOsrm) -> Iterator[str]:
+    with service(engine, router_seconds=60.0) as url:
         yield url
 
 
@@ -101,29 +109,28 @@ def test_a_repeat_does_not_ask_the_engine_again(url: str, engine: FakeOsrm) -> N
 def test_the_engine_is_asked_by_the_job_and_not_before_the_answer(
     url: str, engine: FakeOsrm
 ) -> None:
-    with misbehaving(engine, sleeping(0.5)):
-        began = time.monotonic()
+    gate = Event()
+    with misbehaving(engine, waiting(gate)):
         headers = {"Prefer": "respond-async"}
-        accepted = httpx.post(f"{url}/front", json=_request(seed=4), headers=headers)
+        accepted = httpx.post(f"{url}/front", json=_request(seed=4), headers=headers, timeout=30)
         assert accepted.status_code == 202
-        assert time.monotonic() - began < 0.5
+        gate.set()
         found = _finished(url, accepted.json()["id"])
     assert found["status"] == "done"
-    assert found["timings_ms"]["roads"] > 900  # of two questions, one after the other
 
 
 def test_jobs_that_wait_for_the_engine_take_no_worker(url: str, engine: FakeOsrm) -> None:
-    with misbehaving(engine, sleeping(1.0)):
+    gate = Event()
+    with misbehaving(engine, waiting(gate)):
         headers = {"Prefer": "respond-async"}
-        waiting = [
+        jobs = [
             httpx.post(f"{url}/front", json=_request(seed=seed), headers=headers).json()["id"]
             for seed in (5, 6, 7)
         ]
-        began = time.monotonic()
         other = {"coordinates": [[0, 0, 1, 3], [2, 5, 0, 0], [4, 1, 2, 2]], "time_limit": 0}
-        assert httpx.post(f"{url}/front", json=other).status_code == 200
-        assert time.monotonic() - began < 1.0
-        assert all(_finished(url, id_)["status"] == "done" for id_ in waiting)
+        assert httpx.post(f"{url}/front", json=other, timeout=30).status_code == 200
+        gate.set()
+        assert all(_finished(url, id_)["status"] == "done" for id_ in jobs)
 
 
 def test_a_cancelled_job_asks_no_more(url: str, engine: FakeOsrm) -> None:
@@ -160,19 +167,30 @@ def test_a_client_that_goes_away_asks_no_more(url: str, engine: FakeOsrm) -> Non
         (replying(0), 503, "router-unavailable"),
         (replying(200, b"<html>"), 502, "router-unusable"),
         (replying(200, b" " * 10_000_000), 502, "router-unusable"),
-        (sleeping(4.0), 504, "router-too-slow"),
     ],
-    ids=["busy", "hanging up", "wrong", "10 MB", "slow"],
+    ids=["busy", "hanging up", "wrong", "10 MB"],
 )
-def test_an_engine_that_fails_is_a_clear_problem_in_time(
+def test_an_engine_that_fails_is_a_clear_problem(
     url: str, engine: FakeOsrm, misbehave: Misbehaviour, status: int, code: str
 ) -> None:
+    _fails(url, engine, misbehave, status, code)
+
+
+def test_an_engine_that_is_slow_is_a_clear_problem_before_it_answers(engine: FakeOsrm) -> None:
+    gate = Event()
+    with service(engine, router_seconds=0.5) as url:
+        try:
+            _fails(url, engine, waiting(gate), 504, "router-too-slow")
+        finally:
+            gate.set()
+
+
+def _fails(url: str, engine: FakeOsrm, misbehave: Misbehaviour, status: int, code: str) -> None:
+    """Check what comes of a request by road while the engine fails, and after that."""
     # Other stops each time, since costs are remembered.
     request = _request(seed=1000 + len(engine.asked))
-    began = time.monotonic()
     with misbehaving(engine, misbehave):
-        problem(httpx.post(f"{url}/front", json=request, timeout=10), status, code)
-        assert time.monotonic() - began < 4.0
+        problem(httpx.post(f"{url}/front", json=request, timeout=30), status, code)
         headers = {"Prefer": "respond-async"}
         accepted = httpx.post(f"{url}/front", json=request, headers=headers).json()
         found = _finished(url, accepted["id"])

@@ -15,7 +15,7 @@ from models.data.instances import tour_lengths, uniform_cities
 from models.data.preferences import fan_of_preferences, turned_outwards, weights
 from models.networks.joining.costs import Planes
 from models.networks.pa_one import OneActor
-from models.rollout_repairs import edge_lengths, repaired_tours
+from models.rollout_repairs import edge_lengths
 from service.pareto import nondominated
 from tests.helpers.small_actors import CPU
 
@@ -46,7 +46,7 @@ def test_repairs_leave_permutations_and_make_no_tour_longer(
     cities: list[tuple[float, ...]], repairs: int
 ) -> None:
     instances, preferences = torch.tensor([cities]), fan_of_preferences(5, CPU)
-    both = repaired_tours(released(), instances, preferences, repairs)
+    both = released().repaired_tours(instances, preferences, repairs)
     for tours in both:
         assert torch.equal(tours.sort(dim=-1).values, torch.arange(len(cities)).expand(1, 5, -1))
     before = costs_of(instances, released().tours(instances, preferences), preferences)
@@ -56,7 +56,7 @@ def test_repairs_leave_permutations_and_make_no_tour_longer(
 def test_more_repairs_make_some_tours_shorter_and_none_longer() -> None:
     instances, preferences = uniform_cities(1, 50, Generator().manual_seed(1), CPU), fan(10)
     costs = [
-        costs_of(instances, repaired_tours(released(), instances, preferences, r)[0], preferences)
+        costs_of(instances, released().repaired_tours(instances, preferences, r)[0], preferences)
         for r in (0, 1, 8)
     ]
     for before, after in itertools.pairwise(costs):
@@ -72,7 +72,7 @@ def fan(k: int) -> Tensor:
 @pytest.mark.parametrize("n", [2, 30])
 def test_no_repairs_are_the_tours_as_built(n: int) -> None:
     instances = uniform_cities(2, n, Generator().manual_seed(2), CPU)
-    tours, visited = repaired_tours(released(), instances, fan(7), 0)
+    tours, visited = released().repaired_tours(instances, fan(7), 0)
     assert torch.equal(tours, released().tours(instances, fan(7)))
     assert torch.equal(visited, tours)
 
@@ -81,7 +81,7 @@ def test_visited_tours_add_points_to_the_front() -> None:
     instances = uniform_cities(1, 30, Generator().manual_seed(3), CPU)
     points = [
         tour_lengths(instances, tours)[0]
-        for tours in repaired_tours(released(), instances, fan(30), 9)
+        for tours in released().repaired_tours(instances, fan(30), 9)
     ]
     alone, together = points[0].double().numpy(), torch.cat(points).double().numpy()
     assert len(nondominated(together)) > len(nondominated(alone))

@@ -1,7 +1,6 @@
 """Replanned fronts against brute force on the remaining problem, over random changes."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,12 +14,11 @@ from service.replanning.insertion import completed
 from service.replanning.kept_legs import kept_shares, with_most_kept_at
 from service.replanning.replan import replan
 from service.requests.limits import Limits
-from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
 from service.requests.stops import Stops
-from service.requests.task import Task, TaskSource
+from service.requests.task import Task
 from tests.helpers.actors import Shuffler, info_of
-from tests.helpers.changes import Change, Found, random_change
+from tests.helpers.changes import Change, random_change
 
 CHANGES, PARTS = 300, 10
 LIMITS = Limits(body_bytes=2**20, cities=50, cells=100, preferences=99, size=9999, seconds=9)
@@ -131,20 +129,6 @@ def test_fewer_tours_are_completed_where_all_would_take_too_long() -> None:
     assert driven.tolist() == earlier.driven.tolist()
 
 
-def test_more_stops_than_the_kind_of_their_costs_allows_are_refused_by_what_makes_them_so() -> None:
-    few = replace(LIMITS, matrix_cities=3)
-    source = TaskSource("front", json.dumps({"coordinates": np.eye(4).tolist()}).encode())
-    front = StoredFront("front", source, Found(np.arange(4)[np.newaxis], np.full((1, 2), 4.0)))
-    entry = {"objective": 0, "from": 1, "to": 2, "cost": 1.0}
-    objectives = [{"name": name, "matrix": [[1] * 4] * 4} for name in "ab"]
-    parse_replan(ReplanSource(b"{}", front), few, INFOS)
-    for change, part in (({"costs": [entry]}, "costs"), ({"objectives": objectives}, "objectives")):
-        with pytest.raises(Refusal) as refused:
-            parse_replan(ReplanSource(json.dumps(change).encode(), front), few, INFOS)
-        assert (refused.value.code, refused.value.limit) == ("too-many-cities", 3)
-        assert refused.value.errors[0].pointer == f"/{part}"
-
-
 def test_cities_that_are_not_touched_have_the_neighbours_and_costs_that_they_had() -> None:
     left_alone = 0
     for seed in range(60):
@@ -179,37 +163,6 @@ def _neighbours(change: Change) -> set[frozenset[int]]:
 
 def _index(change: Change, stop: int | str) -> int:
     return stop if isinstance(stop, int) else change.ids.index(stop)
-
-
-def test_new_objectives_may_have_touched_every_city() -> None:
-    change = random_change(0)
-    first, second = change.costs.tolist()
-    objectives = [{"name": "a", "matrix": first}, {"name": "b", "matrix": second}]
-    places = [{"id": each["id"]} for each in change.request["add"]]
-    task = task_of(change, objectives=objectives, add=places, position=None, costs=[])
-    assert task.earlier is not None
-    assert task.earlier.touched is None
-
-
-def test_the_driven_tour_has_the_balance_that_it_had_in_the_earlier_front() -> None:
-    for seed in range(40):
-        change = random_change(seed)
-        found = change.front.found
-        driven = [change.ids.index(stop) for stop in change.request["tour"]]
-        orders = found.orders.tolist()
-        ways = [np.roll(tour, -tour.index(driven[0])).tolist() for tour in orders]
-        expected = balances(found.lengths)[ways.index(driven)]
-        earlier = task_of(change).earlier
-        assert earlier is not None
-        assert earlier.balance == expected
-
-
-def test_a_driven_tour_that_was_not_in_the_earlier_front_has_no_balance() -> None:
-    change = random_change(1, least=7)
-    swapped = [*change.request["tour"][:-3], *change.request["tour"][:-4:-1]]
-    earlier = task_of(change, tour=swapped).earlier
-    assert earlier is not None
-    assert earlier.balance is None
 
 
 def test_of_tours_about_as_balanced_and_as_short_the_one_that_keeps_most_is_chosen() -> None:

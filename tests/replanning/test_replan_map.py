@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from service.coverage.frame import MapFrame
-from service.errors import Refusal
 from service.jobs.task_runner import TaskRunner
 from service.kinds.front_document import FrontDocument
 from service.kinds.json_parts import joined
@@ -166,54 +165,6 @@ def test_places_of_poses_and_of_a_spacing_are_those_of_the_front() -> None:
     assert len(rest.places) == n - 1
     starts = {item["tour"][0] for item in json.loads(b"[" + rest.tours + b"]")}
     assert [rest.places[start] for start in starts] == [here]
-
-
-@pytest.mark.parametrize(
-    ("second", "request_", "pointer", "detail"),
-    [
-        ("cost_layer", {"blocked": [[9, 0]]}, "/blocked/0", "must be a cell of the grid"),
-        ("cost_layer", {"grid": [[0]]}, "/grid", "as large as that of the front"),
-        ("cost_layer", {"grid": [[2] * COLUMNS] * ROWS}, "/grid/0/0", "must be 0 or 1"),
-        ("cost_layer", {"cost_layer": [[1]]}, "/cost_layer", "must be as large"),
-        ("cost_layer", {"add": [[9, 9]]}, "/add/0", "must be a cell of the grid"),
-        ("cost_layer", {"add": [{"id": "a"}]}, "/add/0", "must be row and column"),
-        ("cost_layer", {"add": [[1, 1]]}, "/add/0", "is an obstacle"),
-        ("cost_layer", {"position": [1, 1]}, "/position", "is an obstacle"),
-        ("cost_layer", {"position": {"id": "a"}}, "/position", "row and column"),
-        ("cost_layer", {"pose": [1e9, 0]}, "/pose", "must be in a cell of the grid"),
-        ("cost_layer", {"pose": [0, 0], "position": 1}, "/pose", "or position"),
-        ("cost_layer", {"costs": []}, "/costs", "must be left out"),
-        ("cost_layer", {"geometry": "straight"}, "/geometry", "must be left out"),
-        ("cost_layer", {"done": ["a"]}, "/done/0", "must be"),
-        ("cost_layer", {"pose": FRAME.points(np.array([[1, 1]]))[0].tolist()}, "/pose", "obstacle"),
-        ("second_matrix", {"add": [[0, 0]]}, "/add/0", "only a cost_layer"),
-    ],
-)
-def test_what_cannot_be_on_a_map_is_refused_at_its_place(
-    second: str, request_: dict[str, Any], pointer: str, detail: str
-) -> None:
-    with pytest.raises(Refusal) as refused:
-        Scene(8, second).rest(**request_)
-    assert refused.value.errors[0].pointer == pointer
-    assert detail in refused.value.detail
-
-
-def test_a_place_that_became_an_obstacle_is_to_be_removed() -> None:
-    scene = Scene(9)
-    with pytest.raises(Refusal, match="must have place 2") as refused:
-        scene.rest(blocked=[scene.places[2]])
-    assert refused.value.errors[0].pointer == "/remove"
-    assert planned(scene.rest(blocked=[scene.places[2]], remove=[2])).cities == 5
-
-
-def test_a_place_that_no_path_leads_to_any_more_is_to_be_removed() -> None:
-    scene = Scene(9)
-    row, column = scene.places[3]
-    around = [[row + r, column + c] for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c]
-    walls = [cell for cell in around if cell not in scene.places]
-    walled = grid([cell for cell in walls if 0 <= cell[0] < ROWS and 0 <= cell[1] < COLUMNS])
-    with pytest.raises(Refusal, match="place 3, as it must be reachable from where the way goes"):
-        scene.rest(grid=walled)
 
 
 def test_the_paths_of_a_front_are_not_parsed() -> None:

@@ -6,6 +6,7 @@ import json
 import logging
 import time
 from collections.abc import Callable
+from threading import Event
 from typing import Any
 from urllib.parse import parse_qs
 
@@ -262,20 +263,23 @@ def test_an_engine_that_stays_busy_is_unavailable(status: int) -> None:
 
 def test_an_engine_that_is_dead_is_unavailable_soon() -> None:
     port = free_port()
-    began = time.monotonic()
     with pytest.raises(RouterUnavailable):
         _asked(FakeOsrm(url=f"http://127.0.0.1:{port}"), _locations(5))
-    assert time.monotonic() - began < 3
 
 
-@pytest.mark.parametrize(
-    "misbehave", [sleeping(1.0), lambda *_: (200, b" ", {"Content-Length": "9"})]
-)
-def test_an_engine_that_is_slow_is_given_up_in_time(misbehave: Any) -> None:
-    began = time.monotonic()
+@pytest.mark.parametrize("stalls", ["before its answer", "within its answer"])
+def test_an_engine_that_is_slow_is_given_up_before_it_answers(stalls: str) -> None:
+    gate = Event()
+
+    def misbehave(*_: object) -> Reply | None:
+        if stalls == "within its answer":
+            return 200, b" ", {"Content-Length": "9"}
+        gate.wait(60)
+        return None
+
     with fake_osrm(misbehave) as fake, pytest.raises(RouterTooSlow) as refused:
         _asked(fake, _locations(5), seconds=0.3)
-    assert time.monotonic() - began < 2.5
+    gate.set()
     assert (refused.value.status, refused.value.limit) == (504, 0.3)
 
 

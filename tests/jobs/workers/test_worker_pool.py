@@ -4,7 +4,6 @@ import asyncio
 import os
 import resource
 import signal
-import time
 from collections.abc import Awaitable, Callable
 from contextlib import nullcontext, suppress
 from functools import partial
@@ -116,11 +115,9 @@ def test_to_stop_work_ends_no_process(deed: str) -> None:
         for _ in range(3):
             submission = workers.submit(task(deed))
             await until(lambda: workers.working == 1)
-            began = time.monotonic()
             workers.stop(submission)
             with suppress(Cancelled):
                 await submission.front()
-            assert time.monotonic() - began < 0.8
             assert workers.working == 0
         assert (await front(workers)).terminated == "converged"
         assert (workers.pids, workers.lost) == (before, 0)

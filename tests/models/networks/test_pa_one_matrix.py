@@ -23,7 +23,6 @@ from models.networks.joining.fragments import NEVER, Fragments, mutual_best
 from models.networks.joining.prices import prices_at_knots, prices_between
 from models.networks.joining.repairs import cut, repair_problem
 from models.networks.pa_one_matrix import OneMatrixActor
-from models.rollout_repairs import repaired_tours
 from tests.helpers.small_actors import CPU, small_actor
 
 Length = Callable[[list[int]], float]
@@ -152,7 +151,7 @@ def test_every_tour_visits_every_city_once_and_repairs_make_none_longer(n: int) 
     every = torch.arange(n).expand(1, 5, -1)
     assert torch.equal(before.sort(dim=-1).values, every)
     if n > 2:
-        after, _ = repaired_tours(actor, instance, preferences, 3)
+        after, _ = actor.repaired_tours(instance, preferences, 3)
         assert torch.equal(after.sort(dim=-1).values, every)
         rows = weights(turned_outwards(preferences))
         shorter, longer = (

@@ -1,0 +1,117 @@
+"""Requests to replan fronts of each kind, and fronts that cannot be replanned."""
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from service.coverage.coverage import Coverage
+from service.errors import Refusal
+from service.replanning.earlier_tours import EarlierTours
+from service.requests.limits import Limits
+from service.requests.parser import parse_task
+from service.requests.replan.earlier_front import StoredFront
+from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.stops import Stops
+from service.requests.stored_task import stored
+from service.requests.task import Task, TaskSource
+from tests.helpers.actors import info_of
+from tests.helpers.changes import Found
+
+LIMITS = Limits(body_bytes=2**20, cities=50, cells=100, preferences=99, size=9999, seconds=9)
+INFOS = {kind: info_of(kind, kind) for kind in ("coordinates", "matrices")}
+CELLS = [[0, 0], [0, 2], [2, 2], [2, 0]]
+MAP = {"grid": [[0] * 3] * 3, "cell_size": 1, "cost_layer": [[1] * 3] * 3, "places": CELLS}
+ROBOTS = {
+    **{name: value for name, value in MAP.items() if name != "cost_layer"},
+    "robots": [{"id": "one", "start": 0}, {"id": "two", "start": 2}],
+}
+FLEET = {
+    "stops": [{"id": f"{i}", "location": [25.0, 60.0 + i / 100]} for i in range(4)],
+    "vehicles": [{"id": "van", "start": "0"}],
+    "objectives": [{"name": "way", "from": "great_circle"}, {"name": "m", "from": "great_circle"}],
+}
+FRONT = {"coordinates": np.eye(4).tolist()}
+TOURS = np.array([[0, 1, 2, 3], [0, 2, 1, 3]])
+FOUND = Found(TOURS, np.array([[1.0, 2.0], [2.0, 1.0]]), CELLS)
+
+
+def source(kind: str, request: dict[str, Any]) -> TaskSource:
+    return TaskSource(kind, json.dumps(request).encode())  # type: ignore[arg-type]
+
+
+def rest(source: TaskSource, found: Found = FOUND, limits: Limits = LIMITS) -> Task:
+    front = StoredFront("the-front", source, found)
+    return parse_replan(ReplanSource(b'{"done": [2]}', front), limits, INFOS)
+
+
+@pytest.mark.parametrize(("kind", "request_"), [("front", FRONT), ("coverage", MAP)])
+def test_fronts_are_replanned_from_their_requests_and_from_stored_tasks(
+    kind: str, request_: dict[str, Any]
+) -> None:
+    came = source(kind, request_)
+    task = parse_task(came, LIMITS, INFOS)
+    for each in (came, stored(task)):
+        replanned = rest(each)
+        assert isinstance(replanned.subject, Stops if kind == "front" else Coverage)
+        assert isinstance(replanned.earlier, EarlierTours)
+        again = rest(stored(replanned), _found_of(replanned))
+        assert type(again.subject) is type(replanned.subject)
+
+
+def _found_of(task: Task) -> Found:
+    """The tours that are left, as if they were found anew."""
+    assert task.earlier is not None
+    tours = task.earlier.tours
+    return Found(tours, np.arange(2.0 * len(tours)).reshape(-1, 2), CELLS)
+
+
+@pytest.mark.parametrize(
+    ("source", "reason"),
+    [
+        (source("fleet", FLEET), "only those of POST /front and /coverage can be"),
+        (source("coverage", ROBOTS), "it is of plans for several robots"),
+        (TaskSource("task", b"{}"), "what it was planned from is damaged"),
+        (TaskSource("task", b"\x80\x00"), "what it was planned from is damaged"),
+        (source("front", {"coordinates": "x"}), "what it was planned from is refused now"),
+        (source("front", {"coordinates": np.eye(4)[:3].tolist()}), "are not of its stops"),
+    ],
+    ids=["fleet", "robots", "no task", "no JSON", "refused", "of others"],
+)
+def test_a_front_that_cannot_be_replanned_is_named_with_the_reason(
+    source: TaskSource, reason: str
+) -> None:
+    with pytest.raises(Refusal) as refused:
+        rest(source)
+    assert refused.value.code == "not-replannable"
+    assert "the-front" in refused.value.detail
+    assert reason in refused.value.detail
+
+
+@pytest.mark.parametrize(("kind", "request_"), [("front", FRONT), ("coverage", MAP)])
+def test_a_front_without_a_tour_cannot_be_replanned(kind: str, request_: dict[str, Any]) -> None:
+    none = Found(np.empty((0, 4), np.int64), np.empty((0, 2)), CELLS)
+    with pytest.raises(Refusal, match="it has no tour") as refused:
+        rest(source(kind, request_), none)
+    assert refused.value.code == "not-replannable"
+
+
+def test_a_front_beyond_the_limits_of_today_is_refused_with_what_is_too_large() -> None:
+    with pytest.raises(Refusal, match="is refused now") as refused:
+        rest(source("front", FRONT), limits=replace(LIMITS, cities=3))
+    assert refused.value.code == "not-replannable"
+    assert "3" in refused.value.detail
+
+
+def test_where_no_actor_reads_what_is_left_the_request_is_refused() -> None:
+    front = StoredFront(
+        "the-front", stored(parse_task(source("front", FRONT), LIMITS, INFOS)), FOUND
+    )
+    body = b'{"costs": [{"objective": 0, "from": 1, "to": 2, "cost": 5}]}'
+    planes = {"coordinates": INFOS["coordinates"]}
+    assert parse_replan(ReplanSource(b"{}", front), LIMITS, planes).actor == "coordinates"
+    with pytest.raises(Refusal) as refused:
+        parse_replan(ReplanSource(body, front), LIMITS, planes)
+    assert refused.value.code == "no-actor"
