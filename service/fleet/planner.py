@@ -78,8 +78,8 @@ def plan_fleet(
             the best front so far of at most n plans.
 
     Raises:
-        Refusal: There is no plan, and why where that is known; or none was found in time. Where no
-            rule can be broken, one is found in any time.
+        Refusal: There is no plan, with the reason if it is known; or none was found in time. If no
+            rule can be broken, a plan is always found.
         Cancelled: It was told to stop before it had a plan.
     """
     began = time.monotonic()
@@ -104,10 +104,10 @@ def _searched(
     options: FleetOptions,
     constructor: Constructor | None,
     stop: Callable[[], bool],
-    report: Report,
+    report: ReportOf[FleetFront],
     began: float,
 ) -> FleetFront:
-    """Return the front that a search finds; where it had no time, that of a plan without one."""
+    """Return the front that a search finds; if it found none, a front of one simple plan."""
     search = _Search(fleet, options, stop, report, began)
     if constructor is not None and not fleet.rules.shipments:
         search.begin_at(constructor)
