@@ -8,6 +8,7 @@ from service.kinds.front.kind import FRONT
 from service.kinds.front_document import FrontDocument, Timings
 from service.kinds.kind import Kind
 from service.kinds.robots.kind import ROBOTS
+from service.requests.stops import Stops
 from service.requests.task import KindName, Task
 
 KINDS: Mapping[KindName, Kind] = {kind.name: kind for kind in (FRONT, COVERAGE, FLEET, ROBOTS)}
@@ -15,10 +16,11 @@ KINDS: Mapping[KindName, Kind] = {kind.name: kind for kind in (FRONT, COVERAGE, 
 
 def empty_document(task: Task) -> FrontDocument:
     """Return the document of a task before anything has been found."""
-    reference_point, scale = task.options.reference_point, None
-    if (instance := task.known_instance) is not None:
-        scale = instance.scale.tolist()
-        reference_point = instance.reference_point if reference_point is None else reference_point
+    known = task.subject.known_scale if isinstance(task.subject, Stops) else None
+    scale, default = (None, None) if known is None else known
+    reference_point = (
+        default if task.options.reference_point is None else task.options.reference_point
+    )
     cities, members = KINDS[task.kind].outline(task)
     return FrontDocument(
         kind=task.kind,
@@ -27,7 +29,7 @@ def empty_document(task: Task) -> FrontDocument:
         hypervolume=0.0,
         hypervolume_bound=None,
         reference_point=None if reference_point is None else reference_point.tolist(),
-        scale=scale,
+        scale=None if scale is None else scale.tolist(),
         timings_ms=Timings({}),
         terminated=None,
         actor=None,

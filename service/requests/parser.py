@@ -74,7 +74,7 @@ def front_task(
         geometry=request.geometry,
         earlier=earlier,
     )
-    if stops.measured:
+    if stops.known_scale is not None:
         check_instance(task, stops.instance)
     return task
 

@@ -145,6 +145,18 @@ class Stops:
             return Instance(coordinates=np.concatenate(planes, axis=1), **ends)
         return Instance(matrices=cost_matrices(self), **ends)
 
+    @cached_property
+    def known_scale(self) -> tuple[Array, Array] | None:
+        """The scale and the default reference point, shape (2,); None before all is measured."""
+        return (self.instance.scale, self.instance.reference_point) if self.measured else None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out the instance: other processes make it of the sources as fast as they read it.
+
+        The scale goes with the stops, once it is known.
+        """
+        return {name: value for name, value in vars(self).items() if name != "instance"}
+
     @property
     def road_measures(self) -> frozenset[RoadMeasure]:
         """The measures that a routing engine has to be asked for."""

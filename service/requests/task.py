@@ -8,7 +8,6 @@ from service.construction.repairs import TOURS_REPAIRED
 from service.coverage.coverage import Coverage
 from service.errors import CityNames
 from service.front import PlanOptions
-from service.instance import Instance
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.maps.robots import SharedCoverage
@@ -67,12 +66,6 @@ class Task:
             case UnmeasuredFleet(stops=stops):
                 return stops
         return None
-
-    @property
-    def known_instance(self) -> Instance | None:
-        """The instance that is planned, where nothing has to be measured or surveyed for it."""
-        stops = self.subject if isinstance(self.subject, Stops) else None
-        return None if stops is None or not stops.measured else stops.instance
 
     @property
     def city_names(self) -> CityNames:
