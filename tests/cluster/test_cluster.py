@@ -176,7 +176,7 @@ def test_where_there_is_no_worker_the_command_says_so(redis: Redis) -> None:
     empty = f"{redis.url.removesuffix('/0')}/15"
     asked = paretour("work", "--alive", PARETOUR_REDIS_URL=empty)
     assert (asked.returncode, asked.stdout) == (1, "")
-    assert "no worker of this machine" in asked.stderr
+    assert "no worker on this machine" in asked.stderr
 
 
 def test_when_redis_is_full_no_more_is_taken_until_there_is_room(

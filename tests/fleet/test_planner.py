@@ -250,7 +250,7 @@ def test_times_that_tiny_costs_leave_no_double_for_are_refused() -> None:
     fleet = deliveries(8)
     visits = (Visit(), *(Visit(window=(1e150, inf)),) * 8)
     rules = replace(fleet.rules, visits=visits, vehicles=(OPEN,))
-    with pytest.raises(Refusal, match="must not be so far apart"):
+    with pytest.raises(Refusal, match="too far apart"):
         plan_fleet(Fleet(rules=rules, costs=fleet.costs * 1e-310), FleetOptions(time_limit=1))
 
 
@@ -287,7 +287,7 @@ def test_what_is_too_large_to_be_cut_is_searched_all_the_same() -> None:
     fleet = plain_deliveries(12)
     types = tuple(replace(fleet.rules.vehicles[0], count=9) for _ in range(100))
     fleet = Fleet(rules=replace(fleet.rules, vehicles=types), costs=fleet.costs)
-    with pytest.raises(Refusal, match="so many types"):
+    with pytest.raises(Refusal, match="this many stops, types"):
         plan_fleet(fleet, FleetOptions(time_limit=0), shuffler())
     front = plan_fleet(fleet, FleetOptions(time_limit=inf, iterations=60), shuffler())
     assert front.plans
