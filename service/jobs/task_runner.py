@@ -4,6 +4,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+# Here, or the first task of each kind would wait until they are loaded.
+import service.kinds.coverage.run
+import service.kinds.front.run
+import service.kinds.robots.run  # noqa: F401  # with that of fleets
 from service.actor import load_actors
 from service.actor_info import ActorInfo
 from service.jobs.compiled_code import warm_up
