@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from service.actor_info import RELEASED, read_actor_info, read_actor_infos
+from service.actor_info import RELEASED, check_names, onnx_files, read_actor_info
 from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled
 from service.instance import PLANE, Instance
@@ -142,12 +142,12 @@ def load_actors(
     Raises:
         ValueError: As of read_actor_infos, or one is no network that ONNX Runtime can run.
     """
-    actors: dict[str, OnnxActor] = {}
-    for path, info in read_actor_infos(directory, own_directory).items():
-        actors[info.name] = OnnxActor(path, threads)
+    actors = {path: OnnxActor(path, threads) for path in onnx_files(directory, own_directory)}
+    check_names({path: actor.info for path, actor in actors.items()})
+    for path, actor in actors.items():
         if path.parent != RELEASED:
-            actors[info.name].load()
-    return actors
+            actor.load()
+    return {actor.info.name: actor for actor in actors.values()}
 
 
 def _places_by_coordinates(cities: NDArray[np.float32]) -> tuple[Indices, Indices]:

@@ -6,6 +6,7 @@ a network for inference takes up to two seconds, in which its nodes are checked 
 
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
@@ -70,26 +71,36 @@ def read_actor_infos(directory: Path, own_directory: Path | None = None) -> dict
     Raises:
         ValueError: There is no file in a directory, one is no actor, or two have the same name.
     """
-    folders = [directory] if own_directory is None else [directory, own_directory]
-    infos: dict[Path, ActorInfo] = {}
-    paths: dict[str, Path] = {}
-    for path in (path for folder in folders for path in _onnx_files(folder)):
-        info = read_actor_info(path.read_bytes(), path)
-        if info.name in paths:
-            both = f"{paths[info.name]} and {path}"
-            raise ValueError(
-                f"ONNX files must hold actors of different names, got {info.name} in {both}"
-            )
-        infos[path], paths[info.name] = info, path
+    files = onnx_files(directory, own_directory)
+    infos = {path: read_actor_info(path.read_bytes(), path) for path in files}
+    check_names(infos)
     return infos
 
 
-def _onnx_files(directory: Path) -> list[Path]:
-    """Return the ONNX files of a directory; raise ValueError where there is none."""
-    found = sorted(directory.glob("*.onnx"))
-    if not found:
-        raise ValueError(f"{directory} must hold ONNX files, got none")
-    return found
+def onnx_files(directory: Path, own_directory: Path | None = None) -> list[Path]:
+    """Return the ONNX files of a directory, and of one of the user's.
+
+    Raises:
+        ValueError: There is none in a directory.
+    """
+    files: list[Path] = []
+    for folder in [directory] if own_directory is None else [directory, own_directory]:
+        found = sorted(folder.glob("*.onnx"))
+        if not found:
+            raise ValueError(f"{folder} must hold ONNX files, got none")
+        files += found
+    return files
+
+
+def check_names(infos: Mapping[Path, ActorInfo]) -> None:
+    """Raise ValueError if two files, with this metadata, hold actors of the same name."""
+    paths: dict[str, Path] = {}
+    for path, info in infos.items():
+        if (other := paths.setdefault(info.name, path)) is not path:
+            both = f"{other} and {path}"
+            raise ValueError(
+                f"ONNX files must hold actors of different names, got {info.name} in {both}"
+            )
 
 
 def read_actor_info(content: bytes, path: Path) -> ActorInfo:
