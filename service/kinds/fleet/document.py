@@ -1,10 +1,8 @@
 """A front of plans as JSON: a FrontDocument that holds plans with routes in place of tours."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from service.fleet.evaluation import route_lengths, schedule, unassigned
@@ -16,6 +14,7 @@ from service.pareto import balances
 from service.preferences import angles
 from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.stops import Labels
+from service.requests.task import KindName
 
 
 def encode_fleet(
@@ -30,16 +29,42 @@ def encode_fleet(
         labels: The names of stops and objectives.
     """
     ids = [stop.id for stop in labels.stops]
-    members = zip(balances(front.points).tolist(), front.points.tolist(), front.plans, strict=True)
-    plans, ends = joined(
-        _encode_plan(
-            front.fleet, plan, {"balance": balance, "lengths": lengths}, subject.vehicles, ids
-        )
-        for balance, lengths, plan in members
-    )
-    return FrontDocument(
+    return document_of_plans(
+        front,
+        lambda plan, members: _encode_plan(front.fleet, plan, members, subject.vehicles, ids),
         kind="fleet",
         cities=front.fleet.rules.n,
+        actor=actor,
+        members=subject.members(labels),
+    )
+
+
+def document_of_plans(
+    front: FleetFront,
+    encode: Callable[[Plan, dict[str, Any]], bytes],
+    *,
+    kind: KindName,
+    cities: int,
+    actor: Mapping[str, str] | None,
+    members: Mapping[str, Any],
+) -> FrontDocument:
+    """Return a front of plans as JSON, whose plans are encoded one after another.
+
+    Args:
+        front: The front.
+        encode: Returns a plan as JSON, which begins with the members that it is given.
+        kind: The kind of the front.
+        cities: The number of stops or places.
+        actor: The name and digest of the network whose tours were cut into the first plans, if any.
+        members: Other members of the document.
+    """
+    columns = zip(front.plans, balances(front.points).tolist(), front.points.tolist(), strict=True)
+    plans, ends = joined(
+        encode(plan, {"balance": balance, "lengths": lengths}) for plan, balance, lengths in columns
+    )
+    return FrontDocument(
+        kind=kind,
+        cities=cities,
         points=front.found,
         hypervolume=front.hypervolume,
         hypervolume_bound=None,
@@ -48,16 +73,11 @@ def encode_fleet(
         timings_ms=Timings(front.timings),
         terminated=front.terminated,
         actor=actor,
-        **subject.members(labels),
+        **members,
         tours=plans,
         ends=ends,
-        angles=directions(front).tobytes(),
+        angles=angles(front.points, front.scale).tobytes(),
     )
-
-
-def directions(front: FleetFront) -> NDArray[np.float64]:
-    """Return the direction of each plan in scaled objectives, in degrees, shape (m,)."""
-    return angles(front.points, front.scale)
 
 
 def _encode_plan(

@@ -11,12 +11,11 @@ from service.coverage.path import CoveragePath
 from service.coverage.survey import Survey
 from service.fleet.evaluation import route_lengths
 from service.fleet.plans import FleetFront, Plan, Route
-from service.kinds.fleet.document import directions
-from service.kinds.front_document import FrontDocument, Timings
-from service.kinds.json_parts import encode_path, joined, with_member
+from service.kinds.fleet.document import document_of_plans
+from service.kinds.front_document import FrontDocument
+from service.kinds.json_parts import encode_path, with_member
 from service.kinds.robots.as_fleet import RobotFleet
 from service.kinds.tour_document import on_map
-from service.pareto import balances
 from service.requests.maps.robots import SharedCoverage
 
 Paths = Iterator[CoveragePath | None]
@@ -45,27 +44,13 @@ class RobotEncoder:
             paths: The path of each route of each plan, if the task asks for them.
         """
         each: Paths = repeat(None) if paths is None else iter(paths)
-        members = zip(balances(front.points).tolist(), front.points.tolist(), strict=True)
-        plans, ends = joined(
-            self._plan(plan, {"balance": balance, "lengths": lengths}, each)
-            for plan, (balance, lengths) in zip(front.plans, members, strict=True)
-        )
-        return FrontDocument(
+        return document_of_plans(
+            front,
+            lambda plan, members: self._plan(plan, members, each),
             kind="robots",
             cities=len(self.surveyed.places),
-            points=front.found,
-            hypervolume=front.hypervolume,
-            hypervolume_bound=None,
-            reference_point=front.reference_point.tolist(),
-            scale=front.scale.tolist(),
-            timings_ms=Timings(front.timings),
-            terminated=front.terminated,
             actor=actor,
-            **on_map(self.surveyed),
-            **self.subject.members,
-            tours=plans,
-            ends=ends,
-            angles=directions(front).tobytes(),
+            members={**on_map(self.surveyed), **self.subject.members},
         )
 
     def _plan(self, plan: Plan, members: Mapping[str, Any], paths: Paths) -> bytes:
