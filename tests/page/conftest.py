@@ -52,3 +52,11 @@ def page(width: int, browser: Browser, link: str) -> Iterator[Page]:
         wait_until_planned(page)
         expect(page.locator("#count")).to_have_text("61 stops")
         yield page
+
+
+@pytest.fixture(scope="module")
+def window(browser: Browser, released: str) -> Iterator[Page]:
+    """A page for all tests of a module, with its first example planned."""
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        yield page

@@ -2,7 +2,6 @@
 
 import csv
 import json
-from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -29,14 +28,6 @@ from tests.helpers.browsing import (
 from tests.helpers.command import paretour
 
 pytestmark = needs_chromium
-
-
-@pytest.fixture(scope="module")
-def window(browser: Browser, released: str) -> Iterator[Page]:
-    """A window for all tests that open files of their own."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
-        yield page
 
 
 @pytest.fixture

@@ -24,14 +24,6 @@ GOOD = "id,lon,lat,x,y\na,24.9,60.1,0,0\nb,24.8,60.2,3,1\nc,24.7,60.1,5,2\n"
 BAD = "id,lon,lat\na,east,60.1\n"
 
 
-@pytest.fixture(scope="module")
-def window(browser: Browser, released: str) -> Iterator[Page]:
-    """A page for all of these tests."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
-        yield page
-
-
 @pytest.fixture
 def opened(window: Page) -> Iterator[Page]:
     """The page with three stops from a file, none of which is planned."""

@@ -4,30 +4,20 @@ import re
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, Page, Request, expect
+from playwright.sync_api import Page, Request, expect
 
 from tests.helpers.browsing import (
     copied,
     curl_body,
     needs_chromium,
     open_files,
-    open_page,
     stops_as_text,
-    wait_until_planned,
 )
 
 pytestmark = needs_chromium
 
 ROWS = [[0, 0, 5, 5], [3.5, 1, 9, 1], [5, 2, 2, 8]]
 TEXT = "0, 0, 5, 5\n3.5, 1, 9, 1\n5, 2, 2, 8"
-
-
-@pytest.fixture(scope="module")
-def window(browser: Browser, released: str) -> Iterator[Page]:
-    """A page for all of these tests."""
-    with open_page(browser, released) as page:
-        wait_until_planned(page)
-        yield page
 
 
 @pytest.fixture
