@@ -132,26 +132,26 @@ def test_the_process_of_the_service_loads_nothing_that_plans(
 ) -> None:
     with served(tmp_path, **quick_actors) as (process, url):
         until_ok(f"{url}/health/ready", process, log_of(tmp_path))
-        client = httpx.Client(base_url=url, timeout=60)
-        layer, robots = {"cost_layer": [[1] * 4] * 3}, {"robots": [{"id": "r"}]}
-        ids = []
-        for path, body in (
-            ("/front", {"coordinates": CITIES}),
-            ("/coverage", {**MAP, **layer}),
-            ("/coverage", {**MAP, **robots}),
-            ("/fleet", FLEET),
-        ):
-            # A long body is parsed in a process of its own.
-            for more in (0, 2**18):
-                content = json.dumps({**body, "time_limit": 0.1}).encode() + b" " * more
-                headers = {"Content-Type": "application/json"}
-                answer = client.post(path, content=content, headers=headers)
-                assert answer.status_code == 200, answer.text
-                ids.append(answer.json()["id"])
-        for front in ids[:4]:
-            body = {"done": [0], "time_limit": 0.1}
-            assert client.post(f"/front/{front}/replan", json=body).status_code == 200
-        assert client.get("/tour", params={"front": ids[0], "knee": True}).status_code == 200
+        with httpx.Client(base_url=url, timeout=60) as client:
+            layer, robots = {"cost_layer": [[1] * 4] * 3}, {"robots": [{"id": "r"}]}
+            ids = []
+            for path, body in (
+                ("/front", {"coordinates": CITIES}),
+                ("/coverage", {**MAP, **layer}),
+                ("/coverage", {**MAP, **robots}),
+                ("/fleet", FLEET),
+            ):
+                # A long body is parsed in a process of its own.
+                for more in (0, 2**18):
+                    content = json.dumps({**body, "time_limit": 0.1}).encode() + b" " * more
+                    headers = {"Content-Type": "application/json"}
+                    answer = client.post(path, content=content, headers=headers)
+                    assert answer.status_code == 200, answer.text
+                    ids.append(answer.json()["id"])
+            for front in ids[:4]:
+                body = {"done": [0], "time_limit": 0.1}
+                assert client.post(f"/front/{front}/replan", json=body).status_code == 200
+            assert client.get("/tour", params={"front": ids[0], "knee": True}).status_code == 200
         assert engines(process.pid) == set()
 
 
