@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from functools import partial
+from socket import socket
 from types import FrameType
 from typing import NoReturn
 
@@ -24,7 +25,6 @@ from service.api.body_budget import BodyBounds
 from service.api.metrics import Metrics
 from service.api.site.tiles import Tiles
 from service.api.task_parser import ParserBounds
-from service.api.transport.acceptor import FairServer
 from service.api.transport.connections import ConnectionLimits, Connections
 from service.api.transport.listener import bound_sockets, most_connections
 from service.api.transport.protocol import Connection
@@ -40,6 +40,9 @@ from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 from service.settings import Settings
 from service.telemetry import configure_logging, log_loading, logged, logging_every, trace
+
+_ACCEPTED_AT_ONCE = 32  # more would hold up all others, and take descriptors before one is refused
+_IN_KERNEL = 1024  # connections that wait until they are accepted
 
 
 class Ending:
@@ -129,7 +132,17 @@ def serve(app: FastAPI, settings: Settings, ending: Ending) -> None:
         server.run(sockets)
 
 
-def make_server(app: FastAPI, connections: Connections, drain_seconds: int) -> FairServer:
+class _Server(uvicorn.Server):
+    """A server whose kernel holds more connections than it accepts in a turn of its event loop."""
+
+    async def startup(self, sockets: list[socket] | None = None) -> None:
+        """Start the application, then accept the connections of these sockets."""
+        await super().startup(sockets)
+        for listening in sockets or []:
+            listening.listen(_IN_KERNEL)
+
+
+def make_server(app: FastAPI, connections: Connections, drain_seconds: int) -> uvicorn.Server:
     """Return a server of HTTP/1.1 alone, over these connections."""
     config = uvicorn.Config(
         app,
@@ -142,8 +155,9 @@ def make_server(app: FastAPI, connections: Connections, drain_seconds: int) -> F
         log_config=None,
         access_log=False,
         timeout_graceful_shutdown=drain_seconds,
+        backlog=_ACCEPTED_AT_ONCE,
     )
-    return FairServer(config, connections)
+    return _Server(config)
 
 
 def build_worker(settings: Settings) -> Callable[[], int]:

@@ -27,7 +27,7 @@ from limits.errors import StorageError
 from starlette.requests import Request
 
 from service.api.middleware import ANONYMOUS
-from service.api.transport.addresses import network_of
+from service.api.transport.connections import network_of
 from service.errors import Refusal
 
 _REDIS_SECONDS = 0.5  # the longest that a request waits for Redis

@@ -14,7 +14,7 @@ from service.api.app import Edge
 from service.api.auth import Access, Rates
 from service.settings import Settings
 from tests.api.transport.test_connections import connected, received
-from tests.api.transport.test_turns import GONE, Waiting, serving_asgi
+from tests.api.transport.test_protocol import GONE, Waiting, serving_asgi
 from tests.helpers.nginx import CONFIGURATION, nginx_before
 from tests.helpers.ports import free_port
 from tests.helpers.serving import app_of, problem, serving

@@ -1,6 +1,5 @@
 """The application with stand-ins for its actors, and live servers in a thread of the test."""
 
-import socket
 import threading
 import time
 from collections.abc import Iterator
@@ -15,6 +14,7 @@ from fastapi import FastAPI
 
 from service.api.app import Edge, create_app
 from service.api.transport.connections import ConnectionLimits, Connections
+from service.api.transport.listener import bound_sockets
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
 from service.jobs.runner import MakeRunner
@@ -111,7 +111,7 @@ def serving(
         warm: whether to wait until its workers are warm.
         connections: the limits of its connections.
     """
-    listening = socket.create_server(("127.0.0.1", 0))
+    [listening] = bound_sockets("127.0.0.1", 0)
     server = make_server(app, Connections(connections), drain)
     thread = threading.Thread(target=server.run, args=[[listening]])
     thread.start()

@@ -5,15 +5,34 @@ import math
 import time
 from collections import Counter
 from dataclasses import dataclass
+from functools import lru_cache
+from ipaddress import IPv6Address, ip_address, ip_network
 from typing import Protocol
 
-from service.api.transport.addresses import network_of, proxies_of
-from service.api.transport.turns import Turns
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
-_REFUSED_AT_ONCE = 32  # the most refused connections that are being told so
+_REFUSED_AT_ONCE = 32  # the most refused connections that are still open, to read the refusal
 _LOG_EVERY = 1.0  # seconds between two lines about connections that make way
-PROXY = ""  # in place of the network of connections that count for no address
+_PROXY = ""  # in place of the network of connections that count for no address
 _LOG = logging.getLogger("paretour")
+
+
+@lru_cache(maxsize=1024)  # each request calls it several times
+def network_of(address: str) -> str:
+    """Return an IPv4 address as it is, and for IPv6 the /64 network, which one client has.
+
+    >>> network_of("192.0.2.7"), network_of("2001:db8:1:2:3:4:5:6")
+    ('192.0.2.7', '2001:db8:1:2::/64')
+    """
+    try:
+        parsed = ip_address(address)
+    except ValueError:  # text of a proxy, which need not be an address
+        return address[:64]
+    if not isinstance(parsed, IPv6Address):
+        return address
+    if parsed.ipv4_mapped is not None:
+        return str(parsed.ipv4_mapped)
+    return str(ip_network((parsed.packed, 64), strict=False))
 
 
 class OpenConnection(Protocol):
@@ -51,24 +70,23 @@ class Connections:
 
     When there are too many, in all or from one address, the one of these that has been idle longest
     is closed to make way for a new one. If none is idle, the new one is refused.
-
-    Attributes:
-        turns: The turns in which these connections parse much that came at once.
     """
 
     def __init__(self, limits: ConnectionLimits) -> None:
         self.limits = limits
-        self._is_proxy = proxies_of(limits.proxies)
+        # uvicorn tells proxies from clients; the middleware itself is not used.
+        trusted = ProxyHeadersMiddleware(None, limits.proxies)  # type: ignore[arg-type]
+        self._proxies = trusted.trusted_hosts
         self._open: dict[OpenConnection, str] = {}  # the network that each counts for
         self._held: Counter[str] = Counter()  # by network
         self._idle: dict[OpenConnection, None] = {}  # the first has been idle longest
         self._refused: dict[OpenConnection, None] = {}
         self._next_line = 0.0
-        self.turns = Turns()
 
-    def admit(self, connection: OpenConnection, network: str) -> bool:
-        """Take in a new connection of a network, and return whether there is room for it."""
-        if self._has_place(network) and self._has_room():
+    def admit(self, connection: OpenConnection, peer: str) -> bool:
+        """Take in a new connection from an address, and return whether there is room for it."""
+        network = _PROXY if peer in self._proxies else network_of(peer)
+        if self._has_room(network):
             self._open[connection] = network
             self._held[network] += 1
             return True
@@ -76,18 +94,6 @@ class Connections:
             next(iter(self._refused)).abort()
         self._refused[connection] = None
         return False
-
-    def network_of_peer(self, peer: str) -> str:
-        """Return the network that a peer's connection counts for, or PROXY for a proxy."""
-        return PROXY if self._is_proxy(peer) else network_of(peer)
-
-    def make_room(self) -> bool:
-        """Close the connection that has been idle longest, and return whether there was one."""
-        oldest = next(iter(self._idle), None)
-        if oldest is not None:
-            self._log("idle connections make way for new ones: %d are open", len(self._open))
-            oldest.abort()
-        return oldest is not None
 
     def set_idle(self, connection: OpenConnection, idle: bool) -> None:
         """Remember whether a connection waits for a request."""
@@ -106,27 +112,24 @@ class Connections:
         self._idle.pop(connection, None)
         self._refused.pop(connection, None)
 
-    def _has_room(self) -> bool:
+    def _has_room(self, network: str) -> bool:
         """Return whether there is room for one more, if necessary by closing an idle one."""
-        if len(self._open) < self.limits.connections or self.make_room():
+        crowded = network != _PROXY and self._held[network] >= self.limits.of_address
+        if not crowded and len(self._open) < self.limits.connections:
             return True
-        self._log("a connection was refused: %d are busy", len(self._open))
-        return False
-
-    def _has_place(self, network: str) -> bool:
-        """Return the same for one network, if necessary by closing one of its own."""
-        if network == PROXY or self._held[network] < self.limits.of_address:
-            return True
-        oldest = next((each for each in self._idle if self._open[each] == network), None)
+        own = (each for each in self._idle if not crowded or self._open[each] == network)
+        oldest = next(own, None)
         if oldest is None:
-            self._log("a connection was refused: %s has %d", network, self._held[network])
+            reason = f"{network} has {self._held[network]}" if crowded else "all are busy"
+            self._log(f"a connection was refused: {reason}")
             return False
+        self._log(f"idle connections make way for new ones: {len(self._open)} are open")
         oldest.abort()
         return True
 
-    def _log(self, sentence: str, *values: object) -> None:
+    def _log(self, sentence: str) -> None:
         """Write a line, unless one was written just now: clients could fill the disk."""
         now = time.monotonic()
         if now >= self._next_line:
             self._next_line = now + _LOG_EVERY
-            _LOG.warning(sentence, *values)
+            _LOG.warning(sentence)

@@ -3,11 +3,11 @@
 import logging
 import resource
 import socket
+from contextlib import ExitStack
 
-MOST_WAITING = 128  # accepted connections that wait to be served
-
-# Files, libraries, the store, the log, connections to Redis, and those that wait or are refused.
-_RESERVE = 128 + MOST_WAITING
+# Files, libraries, the store, the log, connections to Redis, and those that are not yet admitted
+# or are refused.
+_RESERVE = 256
 _RESERVE_PER_WORKER = 8  # its two sockets, and pipes during its start
 _FEWEST = 8
 
@@ -19,19 +19,17 @@ def bound_sockets(host: str, port: int) -> list[socket.socket]:
         OSError: An address is unknown, not of this machine, or in use.
     """
     found = socket.getaddrinfo(host or None, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
-    sockets: list[socket.socket] = []
-    try:
+    with ExitStack() as opened:
+        sockets: list[socket.socket] = []
         for family, kind, protocol, _, address in dict.fromkeys(found):
-            listening = socket.socket(family, kind, protocol)
-            sockets.append(listening)
+            # With its protocol, for which asyncio sends an answer's parts without delay.
+            listening = opened.enter_context(socket.socket(family, kind, protocol))
             listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             if family == socket.AF_INET6:
                 listening.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
             listening.bind(address)
-    except OSError:
-        for listening in sockets:
-            listening.close()
-        raise
+            sockets.append(listening)
+        opened.pop_all()
     for listening in sockets:
         name, number = listening.getsockname()[:2]
         shown = f"[{name}]" if ":" in name else name

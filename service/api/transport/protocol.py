@@ -1,10 +1,10 @@
 """The protocol of a connection: its deadlines for silent or slow clients, and its orderly end."""
 
-import asyncio
-import socket
 import uuid
 from asyncio import TimerHandle, Transport
+from collections.abc import Callable
 from http import HTTPStatus
+from socket import IPPROTO_TCP, SO_ERROR, SOL_SOCKET, TCP_USER_TIMEOUT
 from typing import Any, cast
 
 import h11
@@ -18,7 +18,7 @@ from service.errors import Refusal
 _LINGER_SECONDS = 10.0  # for which the rest of a refused body is read and dropped
 _LINGER_BYTES = 2**26  # bytes of that rest: four times the longest body
 _STALL_SECONDS = 30.0  # within which a client must read some of its answer
-_READ_AT_ONCE = 2**16  # bytes
+_READ_AT_ONCE = 2**14  # bytes: to parse them as tiny chunks takes 30 ms
 _HALF_CLOSED_SECONDS = 0.1  # between checks whether a client that sends no more still reads
 _EVERY_ANSWER = b"HTTP/1.1 "
 _NO_MORE_BODY = (h11.IDLE, h11.DONE, h11.MUST_CLOSE, h11.CLOSED)
@@ -31,9 +31,6 @@ class Connection(H11Protocol):
     the client would lose the answer. So the rest of the body is read and dropped first, up to a
     limit of bytes and seconds.
 
-    A client may send many requests, or many chunks of a body, at once. Each turn of the event loop
-    parses a few of them, and no more is read meanwhile.
-
     A client that has closed its side of the connection may still read, so it is answered. Only
     sending something shows whether it has gone altogether. Every answer begins with `HTTP/1.1 `,
     so letters of that are sent early, one at a time.
@@ -45,26 +42,22 @@ class Connection(H11Protocol):
         self._connections = connections
         self._socket: Transport
         self._output: _Output
-        self._head_timer: TimerHandle | None = None
-        self._linger_timer: TimerHandle | None = None
-        self._stall_timer: TimerHandle | None = None
-        self._half_closed_timer: TimerHandle | None = None
+        # A connection waits for a head, or lingers, or is half closed: never two of these.
+        self._timer: TimerHandle | None = None
         self._dropped = 0
-        self._network = ""
-        self._waits_for_turn = False
-        self.half_closed = False
+        self._half_closed = False
         self.lingering = False
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         """Begin to wait for a request, or refuse the connection if there are too many."""
         self._socket = transport
         transport.max_size = _READ_AT_ONCE  # type: ignore[attr-defined]  # asyncio's is 256 KiB
+        opened = transport.get_extra_info("socket")
+        opened.setsockopt(IPPROTO_TCP, TCP_USER_TIMEOUT, int(1000 * _STALL_SECONDS))
         self._output = _Output(transport, self)
         super().connection_made(cast(Transport, self._output))
-        peer = self.client[0] if self.client else ""
-        self._network = self._connections.network_of_peer(peer)
-        if self._connections.admit(self, self._network):
-            self._note_idle()
+        if self._connections.admit(self, self.client[0] if self.client else ""):
+            self._note_state()
         else:
             self._send_problem(Refusal("too-many-connections"))
             self._linger()
@@ -72,11 +65,7 @@ class Connection(H11Protocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """Forget the connection."""
         self._connections.remove(self)
-        timers = (self._head_timer, self._linger_timer, self._stall_timer, self._half_closed_timer)
-        for timer in timers:
-            if timer is not None:
-                timer.cancel()
-        self._unset_keepalive_if_required()
+        self._cancel_timer()
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
@@ -85,38 +74,23 @@ class Connection(H11Protocol):
             self._dropped += len(data)
             if self._dropped > _LINGER_BYTES:
                 self.abort()
-        if not self.lingering and not self._socket.is_closing():
+        if not self._output.is_closing():
             super().data_received(data)
-            self._note_idle()
+            self._note_state()
 
     def eof_received(self) -> bool:  # type: ignore[override]
         """Keep the connection for a client that sends no more, but waits for an answer."""
         if self.lingering or not self._owes_answer:
             return False
-        if not self.half_closed:
-            self.half_closed = True
-            self._half_closed_timer = self.loop.call_later(
-                _HALF_CLOSED_SECONDS, self._check_half_closed
-            )
+        if not self._half_closed:
+            self._half_closed = True
+            self._set_timer(_HALF_CLOSED_SECONDS, self._check_half_closed, 1)
         return True
 
-    def handle_events(self) -> None:
-        """Parse a little of what came: at once, or if more waits, in its network's turn."""
-        if self._waits_for_turn:
-            return
-        self.conn.begin_turn()
-        super().handle_events()
-        if self.conn.cut_off:
-            self._wait_for_turn()
-        self._output.update_reading()
-
     def on_response_complete(self) -> None:
-        """Begin to wait for the next request; one that is already here waits for its turn."""
-        if self.conn.has_more:
-            self._wait_for_turn()
+        """Begin to wait for the next request."""
         super().on_response_complete()
-        self._note_idle()
-        self._close_if_answered()
+        self._note_state()
 
     def send_400_response(self, msg: str) -> None:
         """Refuse a request that is not HTTP."""
@@ -130,27 +104,12 @@ class Connection(H11Protocol):
         if not self.lingering:
             super().shutdown()
 
-    def pause_writing(self) -> None:
-        """Give the client a while to read some of its answer."""
-        super().pause_writing()
-        self._expect_reading()
-
-    def resume_writing(self) -> None:
-        """Go on: the client has read most of its answer."""
-        super().resume_writing()
-        if self._stall_timer is not None and not self._socket.is_closing():
-            self._stall_timer.cancel()
-            self._stall_timer = None
-
     def close(self) -> None:
         """Close the connection; if the client is still sending, read that first."""
-        if self.lingering or self._socket.is_closing():
-            return
-        if self.conn.their_state in _NO_MORE_BODY:
-            self._socket.close()
-            self._expect_reading()
-        else:
+        if self.conn.their_state not in _NO_MORE_BODY:
             self._linger()
+        elif not self.lingering:
+            self._socket.close()
 
     def abort(self) -> None:
         """Close the connection at once, even during a request."""
@@ -159,61 +118,58 @@ class Connection(H11Protocol):
 
     @property
     def _owes_answer(self) -> bool:
-        """Whether a whole request is unanswered, or may be among the bytes not parsed yet."""
-        answering = self.cycle is not None and not self.cycle.response_complete
-        return self._waits_for_turn or (answering and not self.cycle.more_body)
+        """Whether a whole request is unanswered."""
+        return not (self._idle or self.cycle.more_body)
 
-    def _wait_for_turn(self) -> None:
-        if not self._waits_for_turn:
-            self._waits_for_turn = True
-            self._connections.turns.wait(self._network, self._take_turn)
+    @property
+    def _idle(self) -> bool:
+        """Whether all requests are answered whose heads have come."""
+        return self.cycle is None or self.cycle.response_complete
 
-    def _take_turn(self) -> None:
-        self._waits_for_turn = False
-        if not self.lingering and not self._socket.is_closing():
-            self.handle_events()
-            self._note_idle()
-            self._close_if_answered()
+    @property
+    def _rest_follows(self) -> bool:
+        """Whether a request was answered before its body has ended."""
+        return self.conn.our_state is h11.DONE and self.conn.their_state is h11.SEND_BODY
 
-    def _close_if_answered(self) -> None:
-        """Close the connection of a client that sends no more, once it has all its answers."""
-        if self.half_closed and not self._owes_answer:
-            self._socket.close()
+    def _set_timer(self, seconds: float, callback: Callable[..., None], *arguments: Any) -> None:
+        """Call back after these seconds, in place of any earlier callback."""
+        self._cancel_timer()
+        self._timer = self.loop.call_later(seconds, callback, *arguments)
 
-    def _check_half_closed(self, count: int = 1) -> None:
+    def _cancel_timer(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+    def _check_half_closed(self, count: int) -> None:
         """Close the connection if the client's machine has said that the client has gone.
 
         A letter is sent early at the 1st, 2nd, 4th, 8th check and so on: nine last 26 seconds.
         """
-        if self._socket.get_extra_info("socket").getsockopt(socket.SOL_SOCKET, socket.SO_ERROR):
+        if self._socket.get_extra_info("socket").getsockopt(SOL_SOCKET, SO_ERROR):
             self.abort()
             return
         if count.bit_count() == 1 and not self.cycle.response_started:
             self._output.send_ahead()
-        self._half_closed_timer = self.loop.call_later(
-            _HALF_CLOSED_SECONDS, self._check_half_closed, count + 1
-        )
-
-    @property
-    def _rest_follows(self) -> bool:
-        """Whether a request is being answered before its body has ended."""
-        return self.conn.our_state is h11.DONE and self.conn.their_state is h11.SEND_BODY
+        self._set_timer(_HALF_CLOSED_SECONDS, self._check_half_closed, count + 1)
 
     def _unsupported_upgrade_warning(self) -> None:
         """Do not log that an upgrade is not supported: a client could fill the log."""
 
-    def _note_idle(self) -> None:
+    def _note_state(self) -> None:
         """Start the deadline for a request's head, or end it once the head has come."""
-        idle = self.cycle is None or self.cycle.response_complete
-        self._connections.set_idle(self, idle)
-        if not idle:
+        if self._output.is_closing():
+            return
+        self._output.update_reading()
+        self._connections.set_idle(self, self._idle)
+        if self._half_closed:
+            if not self._owes_answer:
+                self._socket.close()
+        elif not self._idle:
             self._dropped = 0
-            if self._head_timer is not None:
-                self._head_timer.cancel()
-                self._head_timer = None
-        elif self._head_timer is None and not self._socket.is_closing():
-            seconds = self._connections.limits.head_seconds
-            self._head_timer = self.loop.call_later(seconds, self._head_too_slow)
+            self._cancel_timer()
+        elif self._timer is None:
+            self._set_timer(self._connections.limits.head_seconds, self._head_too_slow)
 
     def _head_too_slow(self) -> None:
         if self.conn.their_state is h11.IDLE and self.conn.trailing_data[0]:
@@ -223,7 +179,7 @@ class Connection(H11Protocol):
 
     def _refuse(self, refusal: Refusal) -> None:
         """Send a problem document, unless an answer has begun, and close the connection."""
-        if self.cycle is not None and not self.cycle.response_complete:
+        if not self._idle:
             self.cycle.disconnected = True
             self.cycle.message_event.set()
         if self.conn.our_state in (h11.IDLE, h11.SEND_RESPONSE):
@@ -245,37 +201,23 @@ class Connection(H11Protocol):
 
     def _linger(self) -> None:
         """Send no more, and drop what comes until the client closes."""
-        if self.lingering or self._socket.is_closing():
+        if self._output.is_closing():
             return
         self.lingering = True
-        self._unset_keepalive_if_required()
         try:
             self._socket.write_eof()
         except OSError:  # the client reset the connection after its answer was written
             self.abort()
             return
-        self.flow.resume_reading()
+        self._output.resume_reading()
         self._connections.set_idle(self, True)
-        self._linger_timer = self.loop.call_later(_LINGER_SECONDS, self.abort)
-
-    def _expect_reading(self) -> None:
-        """Close the connection if the client has read nothing of its answer for a while."""
-        if self._stall_timer is None:
-            unsent = self._socket.get_write_buffer_size()
-            self._stall_timer = self.loop.call_later(_STALL_SECONDS, self._check_reading, unsent)
-
-    def _check_reading(self, unsent: int) -> None:
-        self._stall_timer = None
-        if self._socket.get_write_buffer_size() < unsent:
-            self._expect_reading()
-        else:
-            self.abort()
+        self._set_timer(_LINGER_SECONDS, self.abort)
 
 
 class _Output:
     """The transport of a connection, which lets the connection decide when to read and close."""
 
-    def __init__(self, transport: asyncio.Transport, connection: Connection) -> None:
+    def __init__(self, transport: Transport, connection: Connection) -> None:
         self._transport = transport
         self._connection = connection
         self._reading = True
@@ -290,16 +232,16 @@ class _Output:
         self.update_reading()
 
     def resume_reading(self) -> None:
-        """Read more, once the received bytes are parsed."""
+        """Read more, unless the parser holds enough."""
         self._reading = True
         self.update_reading()
 
     def update_reading(self) -> None:
         """Read or pause, as was asked last, unless the parser holds enough."""
-        if not self._reading or self._connection.conn.has_enough:
-            self._transport.pause_reading()
-        elif not self._connection.half_closed:
+        if self._reading and not self._connection.conn.has_enough:
             self._transport.resume_reading()
+        else:
+            self._transport.pause_reading()
 
     def write(self, data: bytes) -> None:
         """Send bytes of an answer, without those that were sent early."""

@@ -1,4 +1,4 @@
-"""Turns of the event loop, and what a connection that sends much at once may hold and hold up."""
+"""Connections that send much at once, or no more at all, against live servers and raw sockets."""
 
 import asyncio
 import json
@@ -8,17 +8,15 @@ import threading
 import time
 from collections.abc import Callable, Iterator, MutableMapping
 from contextlib import ExitStack, contextmanager
-from functools import partial
 from typing import Any
 
-import h11
 import httpx
 import pytest
 
 from service.api.transport import protocol
 from service.api.transport.connections import ConnectionLimits, Connections
 from service.api.transport.http_parser import StrictParser
-from service.api.transport.turns import Turns
+from service.api.transport.listener import bound_sockets
 from service.server import make_server
 from tests.api.transport.test_connections import connected, read_to_the_end, sent_until_closed
 from tests.helpers.serving import app_of, serving
@@ -45,38 +43,6 @@ def read_until(connection: socket.socket, end: bytes) -> None:
         chunk = connection.recv(2**16)
         assert chunk
         content += chunk
-
-
-def test_a_network_takes_one_step_between_two_of_another() -> None:
-    taken: list[str] = []
-
-    def be_honest(turns: Turns) -> None:
-        taken.append("honest")
-        turns.wait("honest", partial(taken.append, "honest again"))
-
-    async def main() -> None:
-        turns = Turns()
-        for number in range(3):
-            turns.wait("crowd", partial(taken.append, f"crowd {number}"))
-        turns.wait("honest", lambda: be_honest(turns))
-        while len(taken) < 5:
-            await asyncio.sleep(0)
-
-    asyncio.run(main())
-    assert taken == ["crowd 0", "honest", "crowd 1", "honest again", "crowd 2"]
-
-
-def test_the_parser_makes_a_pause_among_many_chunks() -> None:
-    parser = StrictParser(h11.SERVER)
-    parser.receive_data(POST + b"Transfer-Encoding: chunked\r\n\r\n" + 1000 * TINY_CHUNK)
-    body, turns = b"", 0
-    while len(body) < 1000:
-        parser.begin_turn()
-        events = list(iter(parser.next_event, h11.NEED_DATA))
-        assert len(events) <= 32
-        body += b"".join(event.data for event in events if isinstance(event, h11.Data))
-        turns += 1
-    assert turns > 30
 
 
 def test_others_are_answered_before_a_crowd_of_tiny_chunks_is_parsed(url: str) -> None:
@@ -135,13 +101,13 @@ def test_no_more_is_read_than_a_little_of_the_requests_that_wait(
             answers += connection.recv(2**16).count(b"HTTP/1.1 204")
         connection.shutdown(socket.SHUT_RDWR)
         sending.join()
-    assert max(held) < 2**17
+    assert max(held) < 2**15
 
 
 @contextmanager
 def serving_asgi(app: Callable[..., Any]) -> Iterator[str]:
     """Serve an ASGI application in a thread until the block ends, and yield its address."""
-    listening = socket.create_server(("127.0.0.1", 0))
+    [listening] = bound_sockets("127.0.0.1", 0)
     server = make_server(app, Connections(ConnectionLimits()), 5)  # type: ignore[arg-type]
     server.config.lifespan = "off"
     thread = threading.Thread(target=server.run, args=[[listening]])
