@@ -20,8 +20,7 @@ from service.api.metrics import Metrics
 from service.api.middleware import (
     BodyTimeoutMiddleware,
     ProblemMiddleware,
-    RequestIdMiddleware,
-    RequestLogMiddleware,
+    RequestMiddleware,
     SecurityHeadersMiddleware,
     log_request,
 )
@@ -74,8 +73,7 @@ class Edge:
         cors = [Middleware(CORSMiddleware, **self._cors)] if self.origins else []
         return [
             Middleware(SecurityHeadersMiddleware, self.tiles.source),
-            Middleware(RequestIdMiddleware),
-            Middleware(RequestLogMiddleware, observers),
+            Middleware(RequestMiddleware, observers),
             Middleware(ProblemMiddleware),
             *cors,
             Middleware(BodyTimeoutMiddleware, self.body_seconds),

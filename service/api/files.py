@@ -9,8 +9,7 @@ from starlette.responses import Response
 from service.api.auth import client_of
 from service.api.body import receive_files
 from service.api.body_budget import BodyBudget
-from service.api.compression import compressed
-from service.api.responses import FileAnswer, json_bytes, problem_responses
+from service.api.responses import FileAnswer, compressed, json_bytes, problem_responses
 from service.api.task_parser import TaskParser
 from service.files.reading import NamedFile
 

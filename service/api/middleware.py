@@ -38,7 +38,21 @@ def _set_headers(start: Message, headers: RawHeaders) -> None:
     start["headers"] = [*others, *headers]
 
 
-class SecurityHeadersMiddleware:
+class _Middleware:
+    """The base of middleware for requests; other messages, as of the start, pass untouched."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on one request."""
+        await (self._pass_on if scope["type"] == "http" else self._app)(scope, receive, send)
+
+    async def _pass_on(self, scope: Scope, receive: Receive, send: Send) -> None:
+        raise NotImplementedError
+
+
+class SecurityHeadersMiddleware(_Middleware):
     """Tells browsers to load only files of the service, and to embed the page nowhere.
 
     Args:
@@ -47,14 +61,12 @@ class SecurityHeadersMiddleware:
     """
 
     def __init__(self, app: ASGIApp, images: str = "") -> None:
-        self._app = app
+        super().__init__(app)
         policy = _CONTENT_POLICY.format(images=f"{_IMAGES} {images}".strip())
         headers = {"Content-Security-Policy": policy, **_SECURITY_HEADERS}
         self._headers = Headers(headers).raw
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on one request."""
-
+    async def _pass_on(self, scope: Scope, receive: Receive, send: Send) -> None:
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 _set_headers(message, self._headers)
@@ -64,54 +76,8 @@ class SecurityHeadersMiddleware:
 
 
 ANONYMOUS = "anonymous"
-_SAFE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
-
-
-class RequestIdMiddleware:
-    """Gives each request an id, and answers an unhandled exception with a problem document.
-
-    The caller's own X-Request-ID is taken where it is short and plain enough to log. Until the
-    caller is authenticated, it is anonymous.
-    """
-
-    def __init__(self, app: ASGIApp) -> None:
-        self._app = app
-        self._log = logging.getLogger("paretour")
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on one request."""
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
-        own_id = Headers(scope=scope).get("x-request-id", "")
-        request_id = own_id if _SAFE_ID.fullmatch(own_id) else uuid.uuid4().hex
-        scope["request_id"] = request_id
-        scope["caller"] = ANONYMOUS
-        started = False
-
-        async def send_with_id(message: Message) -> None:
-            nonlocal started
-            if message["type"] == "http.response.start":
-                started = True
-                _set_headers(message, [(b"x-request-id", request_id.encode())])
-            await send(message)
-
-        try:
-            await self._app(scope, receive, send_with_id)
-        except asyncio.CancelledError:
-            # Only a server that shuts down cancels this task.
-            if not started:
-                await problem_response(ShuttingDown(), request_id)(scope, receive, send_with_id)
-        except Exception:
-            self._log.exception("request %s failed", request_id)
-            if started:
-                raise
-            await problem_response(Refusal("internal-error"), request_id)(
-                scope, receive, send_with_id
-            )
-
-
 UNMATCHED = "unmatched"
+_SAFE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 # Only in the log and the metrics, as in nginx: the client went away before its body had ended.
 _CLIENT_CLOSED_REQUEST = 499
 
@@ -133,45 +99,69 @@ class AnsweredRequest:
 
 
 Observer = Callable[[AnsweredRequest], None]
+_LOG = logging.getLogger("paretour")
 _REQUESTS = logging.getLogger("paretour.requests")
 
 
-class RequestLogMiddleware:
-    """Reports every request to observers, such as the log and the metrics, once it is answered."""
+class RequestMiddleware(_Middleware):
+    """Gives each request an id, and reports it to observers once it is answered.
+
+    The caller's own X-Request-ID is taken where it is short and plain enough to log. Until the
+    caller is authenticated, it is anonymous. An unhandled exception is answered with a problem
+    document.
+
+    Args:
+        app: The application.
+        observers: What requests are reported to, such as the log and the metrics.
+    """
 
     def __init__(self, app: ASGIApp, observers: Iterable[Observer]) -> None:
-        self._app = app
+        super().__init__(app)
         self._observers = tuple(observers)
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on one request."""
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
+    async def _pass_on(self, scope: Scope, receive: Receive, send: Send) -> None:
         began = time.perf_counter()
-        status = 500  # unless an answer begins
+        own_id = Headers(scope=scope).get("x-request-id", "")
+        request_id = own_id if _SAFE_ID.fullmatch(own_id) else uuid.uuid4().hex
+        scope["request_id"] = request_id
+        scope["caller"] = ANONYMOUS
+        status = None  # until an answer begins
 
-        async def send_and_note_status(message: Message) -> None:
+        async def send_with_id(message: Message) -> None:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
+                _set_headers(message, [(b"x-request-id", request_id.encode())])
             await send(message)
 
         try:
-            await self._app(scope, receive, send_and_note_status)
+            await self._app(scope, receive, send_with_id)
         except ClientDisconnect:
             status = _CLIENT_CLOSED_REQUEST  # there is nobody left to answer
+        except (Exception, asyncio.CancelledError) as error:
+            refusal = _refusal_of(error, request_id)
+            if status is None:
+                await problem_response(refusal, request_id)(scope, receive, send_with_id)
+            elif isinstance(error, Exception):
+                raise
         finally:
             answered = AnsweredRequest(
-                request_id=scope["request_id"],
+                request_id=request_id,
                 caller=scope["caller"],
                 method=scope["method"],
                 path=getattr(scope.get("route"), "path", UNMATCHED),
-                status=status,
+                status=status or HTTPStatus.INTERNAL_SERVER_ERROR,
                 seconds=time.perf_counter() - began,
             )
             for observer in self._observers:
                 observer(answered)
+
+
+def _refusal_of(error: BaseException, request_id: str) -> Refusal:
+    if isinstance(error, asyncio.CancelledError):  # only a server that shuts down cancels
+        return ShuttingDown()
+    _LOG.exception("request %s failed", request_id)
+    return Refusal("internal-error")
 
 
 def log_request(answered: AnsweredRequest) -> None:
@@ -179,20 +169,13 @@ def log_request(answered: AnsweredRequest) -> None:
     _REQUESTS.info("request", extra=vars(answered))
 
 
-class ProblemMiddleware:
+class ProblemMiddleware(_Middleware):
     """Turns the framework's errors in plain text into problem documents.
 
     They are refused preflights (CORS), and ranges outside a file.
     """
 
-    def __init__(self, app: ASGIApp) -> None:
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on one request."""
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
+    async def _pass_on(self, scope: Scope, receive: Receive, send: Send) -> None:
         start: Message | None = None
         text = b""
 
@@ -234,18 +217,14 @@ def _framework_refusal(method: str, start: Message, text: str) -> Refusal:
     return refusal
 
 
-class BodyTimeoutMiddleware:
+class BodyTimeoutMiddleware(_Middleware):
     """Refuses a body whose last byte comes too late, measured from the start of the request."""
 
     def __init__(self, app: ASGIApp, seconds: float) -> None:
-        self._app = app
+        super().__init__(app)
         self._seconds = seconds
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on one request."""
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
+    async def _pass_on(self, scope: Scope, receive: Receive, send: Send) -> None:
         deadline = asyncio.get_running_loop().time() + self._seconds
         whole = False
 
@@ -257,11 +236,9 @@ class BodyTimeoutMiddleware:
                 async with asyncio.timeout_at(deadline):
                     message = await receive()
             except TimeoutError:
-                raise self._too_slow() from None
+                headers = {"Connection": "close"}
+                raise Refusal("body-too-slow", limit=self._seconds, headers=headers) from None
             whole = not message.get("more_body", False)
             return message
 
         await self._app(scope, receive_in_time, send)
-
-    def _too_slow(self) -> Refusal:
-        return Refusal("body-too-slow", limit=self._seconds, headers={"Connection": "close"})

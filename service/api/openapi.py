@@ -8,6 +8,7 @@ where one operation needs an example of its own.
 
 import json
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -36,16 +37,14 @@ def complete(document: dict[str, Any], schemas: Mapping[str, Any]) -> None:
 
 def example_refusal(code: str, operation: str = "") -> Refusal:
     """Return the example of a refusal, for an operation such as "POST /front" or for all."""
-    return _example_refusal(_examples()["refusals"], code, operation)
+    refusals = _examples()["refusals"]
+    return Refusal(code, **refusals.get(f"{code} of {operation}", refusals.get(code, {})))
 
 
+@cache
 def _examples() -> dict[str, Any]:
     examples: dict[str, Any] = json.loads(_EXAMPLES.read_text())
     return examples
-
-
-def _example_refusal(refusals: dict[str, Any], code: str, operation: str) -> Refusal:
-    return Refusal(code, **refusals.get(f"{code} of {operation}", refusals.get(code, {})))
 
 
 def _problem_schema() -> dict[str, Any]:
@@ -84,14 +83,13 @@ def _add_examples(document: dict[str, Any]) -> None:
                 for media in content.values():
                     media["example"] = examples["answers"][name]
             if PROBLEM_JSON in content:
-                refusals = _refusals(examples["refusals"], name, int(status))
-                content[PROBLEM_JSON]["examples"] = refusals
+                content[PROBLEM_JSON]["examples"] = _refusals(name, int(status))
 
 
-def _refusals(examples: dict[str, Any], operation: str, status: int) -> dict[str, Any]:
+def _refusals(operation: str, status: int) -> dict[str, Any]:
     """Return an example of each refusal of an operation with a status, by code."""
     found = {
-        code: _example_refusal(examples, code, operation).document(_REQUEST_ID)
+        code: example_refusal(code, operation).document(_REQUEST_ID)
         for code, problem in PROBLEMS.items()
         if problem.status == status and problem.concerns(operation)
     }

@@ -1,4 +1,4 @@
-"""The request headers that change how a front is planned: `Prefer` and `Idempotency-Key`."""
+"""Read the request headers that say how to plan and to answer, such as `Prefer` and `Accept`."""
 
 import re
 from typing import Any
@@ -7,6 +7,7 @@ from starlette.requests import Request
 
 from service.errors import Fault, Refusal
 
+GEOJSON = "application/geo+json"
 _LONGEST_KEY = 255
 _KEY = rf"^[!-~]([ -~]{{0,{_LONGEST_KEY - 2}}}[!-~])?$"
 # For the OpenAPI document.
@@ -52,3 +53,32 @@ def idempotency_key(request: Request) -> str | None:
         )
         raise Refusal("invalid-request", detail=sentence, errors=[Fault(sentence)])
     return key
+
+
+def accepts_geojson(request: Request) -> bool:
+    """Return whether the caller accepts GeoJSON, and prefers it to JSON or has no preference."""
+    weights = _weights(request, "accept")
+    quality = weights.get(GEOJSON, 0.0)
+    return quality > 0 and quality >= weights.get("application/json", 0.0)
+
+
+def accepts_gzip(request: Request) -> bool:
+    """Return whether a request names gzip, or all, in `Accept-Encoding`, with a weight above 0."""
+    weights = _weights(request, "accept-encoding")
+    return weights.get("gzip", weights.get("*", 0.0)) > 0
+
+
+def _weights(request: Request, header: str) -> dict[str, float]:
+    """Return the items of a header in lower case, each with its weight (RFC 9110, section 12.4.2).
+
+    The weight is 0 where it is not a number.
+    """
+    weights = {}
+    for item in ",".join(request.headers.getlist(header)).lower().split(","):
+        name, *parameters = (part.strip() for part in item.split(";"))
+        quality = next((each[2:] for each in parameters if each.startswith("q=")), "1")
+        try:
+            weights[name] = float(quality)
+        except ValueError:
+            weights[name] = 0.0
+    return weights

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, NamedTuple, TypeVar
 
-from anyio import BrokenWorkerProcess, CapacityLimiter, to_process
+from anyio import BrokenWorkerProcess, CapacityLimiter, Lock, to_process
 
 from service.actor_info import ActorInfo
 from service.errors import QueueFull, Refusal
@@ -59,35 +59,6 @@ class _Outcome(NamedTuple, Generic[T]):
     warnings: list[str]
 
 
-class _Lane:
-    """A process that parses one body at a time, and the bodies that wait for it."""
-
-    def __init__(self) -> None:
-        self._turn = asyncio.Lock()
-        self._waiting = 0
-
-    async def enter(self, seconds: float) -> None:
-        """Wait for a turn.
-
-        Raises:
-            QueueFull: Too many bodies wait, or they take too long.
-        """
-        if self._waiting >= _MOST_WAITING:
-            raise QueueFull
-        self._waiting += 1
-        try:
-            async with asyncio.timeout(seconds):
-                await self._turn.acquire()
-        except TimeoutError:
-            raise QueueFull from None
-        finally:
-            self._waiting -= 1
-
-    def leave(self) -> None:
-        """Give the turn to the next body."""
-        self._turn.release()
-
-
 class TaskParser:
     """Parses bodies under these limits, for these actors: short ones itself, others in a process.
 
@@ -105,7 +76,7 @@ class TaskParser:
         self._limits = limits
         self._actors = dict(actors)
         self._bounds = bounds or ParserBounds()
-        self._medium, self._long = _Lane(), _Lane()
+        self._medium, self._long = Lock(), Lock()
         self._processes = CapacityLimiter(2)
 
     async def parse(self, source: TaskSource) -> Task:
@@ -159,12 +130,23 @@ class TaskParser:
         return await self._in_turn(read_upload, files, sum(len(file.data) for file in files))
 
     async def _in_turn(self, parse: _Parse[S, T], source: S, length: int) -> T:
-        lane = self._medium if length <= _MEDIUM else self._long
-        await lane.enter(self._bounds.seconds)
+        """Parse a body in the process for its length, once those that came before it are parsed.
+
+        Raises:
+            QueueFull: Too many bodies wait, or they take too long.
+        """
+        turn = self._medium if length <= _MEDIUM else self._long
+        if turn.statistics().tasks_waiting >= _MOST_WAITING:
+            raise QueueFull
+        try:
+            async with asyncio.timeout(self._bounds.seconds):
+                await turn.acquire()
+        except TimeoutError:
+            raise QueueFull from None
         try:
             return await self._parse_in_process(parse, source)
         finally:
-            lane.leave()
+            turn.release()
 
     async def _parse_in_process(self, parse: _Parse[S, T], source: S) -> T:
         seconds = self._bounds.seconds

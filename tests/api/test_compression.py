@@ -7,7 +7,9 @@ import pytest
 from starlette.requests import Request
 from starlette.responses import Response
 
-from service.api.compression import LEAST, accepts_gzip, compressed
+from service.api.request_headers import accepts_gzip
+from service.api.responses import LEAST_COMPRESSED as LEAST
+from service.api.responses import compressed
 
 LONG = b"[" + b"17," * LEAST + b"17]"
 

@@ -16,12 +16,10 @@ from starlette.responses import Response
 
 from service.api.auth import client_of
 from service.api.body_budget import BodyBudget
-from service.api.compression import compressed
 from service.api.disconnect import unless_disconnected
-from service.api.geojson.accept import GEOJSON, accepts_geojson
-from service.api.geojson.features import Drawing
-from service.api.geojson.lines import Line
-from service.api.responses import json_bytes
+from service.api.geojson.features import Drawing, Line
+from service.api.request_headers import GEOJSON, accepts_geojson
+from service.api.responses import compressed, json_bytes
 from service.errors import Fault, Refusal
 from service.jobs.record import Record
 from service.kinds.table import KINDS

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic_core import from_json
 
-from service.api.geojson.lines import encode_line
+from service.api.geojson.features import encode_line
 
 LONGITUDES = st.one_of(st.floats(-180, 180), st.sampled_from([-180.0, 179.5, -179.5, 180.0, 0.0]))
 WAYS = st.lists(st.tuples(LONGITUDES, st.floats(-90, 90)), min_size=2, max_size=8)
