@@ -14,7 +14,7 @@ from service.actor_info import ActorInfo
 from service.api.auth import Access
 from service.api.body_budget import BodyBounds, BodyBudget
 from service.api.exception_handlers import HANDLED, answer_refusal
-from service.api.files import FileRoutes
+from service.api.files import file_router
 from service.api.geojson.answers import FrontAnswers, Streets
 from service.api.metrics import Metrics
 from service.api.middleware import (
@@ -125,8 +125,8 @@ def create_app(
     )
     plans = PlanRoutes(actors, engine, store, limits, edge.bodies, edge.request_seconds, answers)
     app.include_router(plans.router(), **edge.guard)
-    files = FileRoutes(plans.parser, plans.budget, limits.body_bytes, answers.budget)
-    app.include_router(files.router(), **edge.guard)
+    files = file_router(plans.parser, plans.budget, limits.body_bytes, answers.budget)
+    app.include_router(files, **edge.guard)
     app.include_router(StoredFrontRoutes(store, engine, answers).router(), **edge.guard)
     app.include_router(_actor_router(actors), **edge.guard)
     app.include_router(edge.metrics.router(), **edge.guard)

@@ -6,7 +6,6 @@ read it. Each address then has its own rate and its own latest front.
 """
 
 import hashlib
-import hmac
 import logging
 import math
 import re
@@ -14,6 +13,7 @@ import secrets
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass
+from hmac import compare_digest
 from importlib.util import find_spec
 from typing import Self
 
@@ -82,29 +82,17 @@ class Rates:
         # It keeps two numbers for each address: there may be very many addresses.
         self._addresses = SlidingWindowCounterRateLimiter(storage)
 
-    async def check(self, caller: str) -> None:
-        """Count a request of a caller with a key, and raise a refusal where there were too many.
+    async def check(self, client: str, *, keyed: bool) -> None:
+        """Count a request of a caller with a key, or of an address without one.
 
         Raises:
-            Refusal: The caller is over its rate.
+            Refusal: The client is over its rate.
         """
-        await self._check(self._callers, caller)
-
-    async def check_address(self, address: str) -> None:
-        """Count a request from an address, and raise a refusal where there were too many.
-
-        Raises:
-            Refusal: The address is over its rate.
-        """
-        await self._check(self._addresses, network_of(address))
-
-    async def _check(
-        self, limiter: MovingWindowRateLimiter | SlidingWindowCounterRateLimiter, caller: str
-    ) -> None:
+        limiter = self._callers if keyed else self._addresses
         try:
-            if await limiter.hit(self._rate, caller):
+            if await limiter.hit(self._rate, client):
                 return
-            window = await limiter.get_window_stats(self._rate, caller)
+            window = await limiter.get_window_stats(self._rate, client)
         except StorageError:
             _LOG.warning("rates are not counted: Redis does not answer")
             return
@@ -112,7 +100,7 @@ class Rates:
         raise Refusal(
             "rate-limited",
             rate=self._rate,
-            caller=caller,
+            caller=client,
             wait=wait,
             limit=self._rate.amount,
             headers={"Retry-After": str(wait)},
@@ -145,28 +133,19 @@ class Access:
     @property
     def dependencies(self) -> list[Dependency]:
         """The dependencies of a guarded router; with keys, its OpenAPI document asks for one."""
+        admitted = [Depends(self.admit)] if self._keys or self._rates is not None else []
+        return [*admitted, *([Security(_BEARER)] if self._keys else [])]
+
+    async def admit(self, request: Request) -> None:
+        """Write the caller into the request's scope, and count its request.
+
+        Raises:
+            Refusal: The key is unknown, or the caller or the address is over the rate.
+        """
         if self._keys:
-            return [Depends(self.authenticate), Security(_BEARER)]
-        return [Depends(self.count_address)] if self._rates is not None else []
-
-    async def count_address(self, request: Request) -> None:
-        """Count a request of the client's address; behind a proxy, of the address that it names.
-
-        Raises:
-            Refusal: The address is over the rate.
-        """
+            request.scope["caller"] = self._caller(request)
         if self._rates is not None:
-            await self._rates.check_address(request.client.host if request.client else "unknown")
-
-    async def authenticate(self, request: Request) -> None:
-        """Write the caller into the request's scope.
-
-        Raises:
-            Refusal: The key is unknown, or its caller is over the rate.
-        """
-        request.scope["caller"] = caller = self._caller(request)
-        if self._rates is not None:
-            await self._rates.check(caller)
+            await self._rates.check(client_of(request), keyed=bool(self._keys))
 
     def _caller(self, request: Request) -> str:
         scheme, _, key = request.headers.get("authorization", "").partition(" ")
@@ -174,7 +153,7 @@ class Access:
             raise _unauthorized("Bearer and an API key, and it was missing")
         digest = _digest(key.strip())
         # All hashes are compared, so that the time taken does not tell how near a guess was.
-        matches = [hash_.caller for hash_ in self._keys if _same(hash_.digest, digest)]
+        matches = [hash_.caller for hash_ in self._keys if compare_digest(hash_.digest, digest)]
         if not matches:
             raise _unauthorized("an API key of this service; this one is unknown")
         return matches[0]
@@ -196,10 +175,6 @@ def _storage(redis_url: str | None) -> MemoryStorage | RedisStorage:
 
 def _digest(key: str) -> str:
     return hashlib.sha256(key.encode()).hexdigest()
-
-
-def _same(one: str, other: str) -> bool:
-    return hmac.compare_digest(one, other)
 
 
 def _unauthorized(demand: str) -> Refusal:

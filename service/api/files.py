@@ -1,7 +1,5 @@
 """The route that reads files: `POST /files`."""
 
-from typing import Any
-
 from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
@@ -23,8 +21,10 @@ _FORM = {
 _BODY = {"required": True, "content": {"multipart/form-data": {"schema": _FORM}}}
 
 
-class FileRoutes:
-    """Reads files in the processes that parse bodies, within the same bounds.
+def file_router(
+    parser: TaskParser, budget: BodyBudget, most_bytes: int, answers: BodyBudget
+) -> APIRouter:
+    """Return the route that reads files in the processes that parse bodies.
 
     Args:
         parser: What parses bodies.
@@ -32,28 +32,15 @@ class FileRoutes:
         most_bytes: Of one body.
         answers: The budget of all answers.
     """
+    router = APIRouter(tags=["files"])
 
-    def __init__(
-        self, parser: TaskParser, budget: BodyBudget, most_bytes: int, answers: BodyBudget
-    ) -> None:
-        self._parser = parser
-        self._budget = budget
-        self._most_bytes = most_bytes
-        self._answers = answers
-
-    def router(self) -> APIRouter:
-        """Return the route with its entry in the OpenAPI document."""
-        router = APIRouter(tags=["files"])
-        extra: dict[str, Any] = {"requestBody": _BODY}
-        router.post(
-            "/files",
-            response_model=FileAnswer,
-            responses=problem_responses(400, 408, 413, 415, 422, 503),
-            openapi_extra=extra,
-        )(self.read_files)
-        return router
-
-    async def read_files(self, request: Request) -> Response:
+    @router.post(
+        "/files",
+        response_model=FileAnswer,
+        responses=problem_responses(400, 408, 413, 415, 422, 503),
+        openapi_extra={"requestBody": _BODY},
+    )
+    async def read_files(request: Request) -> Response:
         """Read files of stops, fleets or maps, and return the request that they describe.
 
         A file is CSV with any separator, XLSX, GeoJSON, JSON, TSPLIB, CVRPLIB, in the format of
@@ -63,9 +50,10 @@ class FileRoutes:
         answer is for `POST /front`, `/fleet` or `/coverage`, as its `kind` says.
         """
         client = client_of(request)
-        with self._budget.open(client) as allowance:
-            received = await receive_files(request, self._most_bytes, allowance)
-            files = [NamedFile(name, content) for name, content in received]
-            answer = await self._parser.read_files(files)
-            with self._answers.open(client, len(answer), always=True) as sent:
+        with budget.open(client) as allowance:
+            received = await receive_files(request, most_bytes, allowance)
+            answer = await parser.read_files([NamedFile(*each) for each in received])
+            with answers.open(client, len(answer), always=True) as sent:
                 return sent.until_sent(await compressed(request, json_bytes(answer)))
+
+    return router

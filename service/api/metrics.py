@@ -1,8 +1,8 @@
 """Metrics for Prometheus: requests, planning, and the workers of the engine."""
 
 from collections.abc import Callable, Iterator
-from functools import cache
-from typing import Protocol, TypeVar
+from functools import cache, partial
+from typing import TypeVar
 
 from fastapi import APIRouter
 from prometheus_client import (
@@ -20,7 +20,7 @@ from prometheus_client.registry import Collector
 from starlette.responses import Response
 
 from service.api.middleware import AnsweredRequest
-from service.jobs.engine import EngineStats
+from service.jobs.engine import Engine, EngineStats
 from service.kinds.front_document import FrontDocument
 from service.kinds.table import KINDS
 
@@ -31,13 +31,6 @@ _SECONDS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 _SHARES = (0.0, 0.0001, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
 
 
-class StatsSource(Protocol):
-    """An engine whose workers are counted."""
-
-    async def stats(self) -> EngineStats:
-        """Return how many fronts wait, how many are being planned, and how many workers died."""
-
-
 class Metrics:
     """Counters and histograms of one service, in a registry of their own."""
 
@@ -46,60 +39,47 @@ class Metrics:
         ProcessCollector(registry=registry)
         PlatformCollector(registry=registry)
         GCCollector(registry=registry)
+        counter = partial(Counter, registry=registry)
+        histogram = partial(Histogram, registry=registry, buckets=_SECONDS)
         self._requests = _children(
-            Counter(
-                "paretour_requests",
-                "requests answered",
-                ["method", "path", "status"],
-                registry=registry,
-            )
+            counter("paretour_requests", "requests answered", ["method", "path", "status"])
         )
         self._request_seconds = _children(
-            Histogram(
+            histogram(
                 "paretour_request_seconds",
                 "from a request to the end of its answer",
                 ["method", "path"],
-                registry=registry,
-                buckets=_SECONDS,
             )
         )
         self._fronts = _children(
-            Counter(
+            counter(
                 "paretour_fronts",
                 "fronts planned, by what they are of and why the search ended",
                 ["of", "terminated"],
-                registry=registry,
             )
         )
         self._planning = _children(
-            Histogram(
+            histogram(
                 "paretour_planning_seconds",
                 "planning, by its phase and the most cities of the class",
                 ["phase", "cities"],
-                registry=registry,
-                buckets=_SECONDS,
             )
         )
-        self._gained = Histogram(
+        self._gained = histogram(
             "paretour_hypervolume_gained",
             "share of the reference box that the search added to what it was given",
             ["cities"],
-            registry=registry,
             buckets=_SHARES,
         )
-        self._router_requests = Counter(
+        self._router_requests = counter(
             "paretour_router_requests",
             "questions to the routing engine, by what came of them",
             ["outcome"],
-            registry=registry,
         )
-        self._router_seconds = Histogram(
-            "paretour_router_seconds",
-            "one question to the routing engine",
-            registry=registry,
-            buckets=_SECONDS,
+        self._router_seconds = histogram(
+            "paretour_router_seconds", "one question to the routing engine"
         )
-        self._engine: StatsSource | None = None
+        self._engine: Engine | None = None
         self._workers = _WorkerCollector()
         registry.register(self._workers)
 
@@ -124,7 +104,7 @@ class Metrics:
         self._requests(method, answered.path, answered.status).inc()
         self._request_seconds(method, answered.path).observe(answered.seconds)
 
-    def watch(self, engine: StatsSource) -> None:
+    def watch(self, engine: Engine) -> None:
         """Report the workers of an engine at each scrape."""
         self._engine = engine
 

@@ -92,31 +92,21 @@ class PlanRoutes:
             202: {"model": AcceptedAnswer, "description": "Accepted", "content": _ACCEPTED},
             **problem_responses(400, 406, 408, 413, 415, 422, 503, 504),
         }
-        router.post(
-            "/front",
-            response_model=FrontAnswer,
-            responses={200: CONTENT, **responses, **problem_responses(502)},
-            openapi_extra=_openapi_request(FRONT_BODY),
-        )(self.plan_front)
-        router.post(
-            "/coverage",
-            response_model=CoverageAnswer | RobotsAnswer,
-            responses=responses,
-            openapi_extra=_openapi_request(COVERAGE_BODY),
-        )(self.plan_coverage)
-        router.post(
-            "/front/{id}/replan",
-            operation_id="replan_front",
-            response_model=FrontAnswer | CoverageAnswer,
-            responses={200: CONTENT, **responses, **problem_responses(404, 409, 410, 502)},
-            openapi_extra=_openapi_request(REPLAN_BODY),
-        )(self.replan_front)
-        router.post(
-            "/fleet",
-            response_model=FleetAnswer,
-            responses={200: CONTENT, **responses, **problem_responses(502)},
-            openapi_extra=_openapi_request(FLEET_BODY),
-        )(self.plan_fleet)
+        with_roads = {200: CONTENT, **problem_responses(502)}
+        of_earlier = {**with_roads, **problem_responses(404, 409, 410)}
+        rest = FrontAnswer | CoverageAnswer
+        for path, endpoint, answer, body, more in (
+            ("/front", self.plan_front, FrontAnswer, FRONT_BODY, with_roads),
+            ("/coverage", self.plan_coverage, CoverageAnswer | RobotsAnswer, COVERAGE_BODY, {}),
+            ("/front/{id}/replan", self.replan_front, rest, REPLAN_BODY, of_earlier),
+            ("/fleet", self.plan_fleet, FleetAnswer, FLEET_BODY, with_roads),
+        ):
+            router.post(
+                path,
+                response_model=answer,
+                responses={**responses, **more},
+                openapi_extra={"parameters": list(PARAMETERS), "requestBody": body},
+            )(endpoint)
         return router
 
     async def plan_front(self, request: Request) -> Response:
@@ -281,7 +271,3 @@ def _digest(body: _Body) -> str:
         digest.update(b"%d:" % len(part))
         digest.update(part)
     return digest.hexdigest()
-
-
-def _openapi_request(body: Mapping[str, Any]) -> dict[str, Any]:
-    return {"parameters": list(PARAMETERS), "requestBody": body}

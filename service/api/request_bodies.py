@@ -31,10 +31,13 @@ def request_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, Schema]:
     }
 
 
-def _body(request: Schema, form: str) -> Schema:
-    """Return the entry of a body with one schema as JSON and another as a form."""
-    parts = {"schema": reference_to(form), "encoding": {"request": {"contentType": _JSON}}}
-    return {"required": True, "content": {_JSON: {"schema": request}, "multipart/form-data": parts}}
+def _body(request: Schema, form: str | None = None) -> Schema:
+    """Return the entry of a body with one schema as JSON and, maybe, another as a form."""
+    content: Schema = {_JSON: {"schema": request}}
+    if form is not None:
+        encoding = {"request": {"contentType": _JSON}}
+        content["multipart/form-data"] = {"schema": reference_to(form), "encoding": encoding}
+    return {"required": True, "content": content}
 
 
 def _form_schema(request: Schema, file: str, description: str) -> Schema:
@@ -50,12 +53,6 @@ def _form_schema(request: Schema, file: str, description: str) -> Schema:
 
 _JSON = "application/json"
 FRONT_BODY = _body(one_of(JSON_FORMS), "FrontForm")
-REPLAN_BODY = {
-    "required": True,
-    "content": {_JSON: {"schema": reference_to("ReplanRequest")}},
-}
+REPLAN_BODY = _body(reference_to("ReplanRequest"))
 COVERAGE_BODY = _body(reference_to("CoverageRequest"), "CoverageForm")
-FLEET_BODY = {
-    "required": True,
-    "content": {_JSON: {"schema": reference_to("FleetRequest")}},
-}
+FLEET_BODY = _body(reference_to("FleetRequest"))

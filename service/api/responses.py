@@ -30,6 +30,9 @@ PROBLEM_JSON = "application/problem+json"
 LEAST_COMPRESSED = 2**16  # bytes; shorter answers are sent as they are
 _GZIP_LEVEL = 1  # 6 MB of tours in a tenth of a second, to two fifths; 6 takes four times as long
 Lengths = Annotated[list[float], Field(min_length=OBJECTIVES, max_length=OBJECTIVES)]
+Balance = Annotated[
+    float, Field(description="0 at the front's least first length, 1 at its least second")
+]
 
 
 class FaultItem(BaseModel):
@@ -58,7 +61,7 @@ class TourItem(BaseModel):
     """A tour and where it stands."""
 
     angle: float = Field(description="direction of the scaled lengths, in degrees")
-    balance: float = Field(description="0 at the front's least first length, 1 at its least second")
+    balance: Balance
     kept: float | SkipJsonSchema[None] = Field(
         default=None,
         description="of a front that was replanned: the share of the remaining legs of the tour"
@@ -180,14 +183,19 @@ class CoverageItem(TourItem):
     path: PathItem | SkipJsonSchema[None] = Field(default=None, description="if `paths` asked")
 
 
-class CoverageAnswer(FrontAnswer):
-    """A front of tours through places on a map, by ascending length."""
+class MapAnswer(FrontAnswer):
+    """A front of anything on a map."""
 
-    front: list[CoverageItem]  # type: ignore[assignment]  # a list for reading only
     places: list[list[int]] = Field(description="row and column of each")
     uncovered: UncoveredItem | SkipJsonSchema[None] = Field(
         default=None, description="what no path leads to, once the map is surveyed"
     )
+
+
+class CoverageAnswer(MapAnswer):
+    """A front of tours through places on a map, by ascending length."""
+
+    front: list[CoverageItem]  # type: ignore[assignment]  # a list for reading only
 
 
 class RouteItem(BaseModel):
@@ -206,7 +214,7 @@ class RouteItem(BaseModel):
 class PlanItem(BaseModel):
     """A plan of a fleet and where it stands."""
 
-    balance: float = Field(description="0 at the front's least first length, 1 at its least second")
+    balance: Balance
     lengths: Lengths
     routes: list[RouteItem] = Field(description="of the vehicles that leave")
     unassigned: list[str] = Field(description="the ids of stops that are left out for their prize")
@@ -238,20 +246,16 @@ class RobotRouteItem(BaseModel):
 class RobotPlanItem(BaseModel):
     """A plan of several robots and where it stands."""
 
-    balance: float = Field(description="0 at the front's least first length, 1 at its least second")
+    balance: Balance
     lengths: Lengths
     routes: list[RobotRouteItem] = Field(description="of the robots that leave")
 
 
-class RobotsAnswer(FrontAnswer):
+class RobotsAnswer(MapAnswer):
     """A front of plans for several robots on a map, by ascending first length."""
 
     front: list[RobotPlanItem]  # type: ignore[assignment]  # a list for reading only
     objectives: list[FleetObjectiveName]  # type: ignore[assignment]
-    places: list[list[int]] = Field(description="row and column of each")
-    uncovered: UncoveredItem | SkipJsonSchema[None] = Field(
-        default=None, description="what no path leads to, once the map is surveyed"
-    )
 
 
 class ActorItem(ActorName):

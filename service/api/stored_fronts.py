@@ -23,7 +23,6 @@ from service.api.responses import (
     problem_responses,
 )
 from service.errors import Expired, NotFound, Refusal
-from service.front import Progress
 from service.jobs.engine import Engine, JobState
 from service.jobs.record import Record
 from service.jobs.store import Store
@@ -35,7 +34,7 @@ PLAN = (
     "of a fleet's front in GeoJSON, the one plan whose routes are drawn, by its place from 0; by"
     " default all are"
 )
-HEARTBEAT = 15.0  # seconds without an event, after which a comment shows that the stream is alive
+_HEARTBEAT = 15.0  # seconds without an event, after which a comment shows that the stream is alive
 
 
 class StoredFrontRoutes:
@@ -53,31 +52,27 @@ class StoredFrontRoutes:
         stream: dict[str, Any] = {"description": "The events", "content": {"text/event-stream": {}}}
         router.get(
             "/front/{id}",
-            operation_id="get_front",
             response_model=FrontAnswer | FleetAnswer | RobotsAnswer,
             responses={200: CONTENT, **problem_responses(404, 406, 410, 422, 502, 503, 504)},
-        )(self.front)
+        )(self.get_front)
         router.delete(
             "/front/{id}",
-            operation_id="forget_front",
             response_model=FrontAnswer | FleetAnswer | RobotsAnswer,
             responses={204: {"description": "Forgotten"}, **missing},
-        )(self.forget)
+        )(self.forget_front)
         router.get(
             "/front/{id}/events",
-            operation_id="follow_front",
             response_class=StreamingResponse,
             responses={200: stream, **missing},
-        )(self.events)
+        )(self.follow_front)
         router.get(
             "/tour",
-            operation_id="get_tour",
             response_model=TourAnswer,
             responses={200: CONTENT, **problem_responses(404, 406, 410, 422, 502, 503, 504)},
-        )(self.tour)
+        )(self.get_tour)
         return router
 
-    async def front(
+    async def get_front(
         self,
         request: Request,
         id: str,  # noqa: A002
@@ -88,7 +83,7 @@ class StoredFrontRoutes:
         record = await self._record(request, id)
         return await self._answers.front(request, record, geometry, plan=plan)
 
-    async def forget(self, request: Request, id: str) -> Response:  # noqa: A002
+    async def forget_front(self, request: Request, id: str) -> Response:  # noqa: A002
         """Delete a front. One that is being planned is stopped, and kept with what it has found."""
         record = await self._record(request, id)
         if record.finished:
@@ -96,11 +91,13 @@ class StoredFrontRoutes:
             return Response(status_code=204)
         return json_bytes((await self._engine.cancel(record)).json())
 
-    async def events(self, request: Request, id: str) -> Response:  # noqa: A002
+    async def follow_front(self, request: Request, id: str) -> Response:  # noqa: A002
         """Send the progress of a front as events, until it is finished."""
-        return event_stream(self._engine.watch(await self._record(request, id)))
+        states = self._engine.watch(await self._record(request, id))
+        headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
+        return StreamingResponse(_events(states), media_type="text/event-stream", headers=headers)
 
-    async def tour(self, request: Request, query: Annotated[TourQuery, Query()]) -> Response:
+    async def get_tour(self, request: Request, query: Annotated[TourQuery, Query()]) -> Response:
         """Return one tour of a front: at an angle, at a balance, within a budget, or the knee."""
         query.check()
         record = await self._record(request, query.front)
@@ -139,13 +136,8 @@ async def find_record(store: Store, request: Request, id: str | None) -> Record:
         raise Refusal("front-expired", front=name) from None
 
 
-def event_stream(states: AsyncIterator[JobState]) -> StreamingResponse:
-    """Return the states of a job as server-sent events, until it is finished."""
-    headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
-    return StreamingResponse(_events(states), media_type="text/event-stream", headers=headers)
-
-
 async def _events(states: AsyncIterator[JobState]) -> AsyncIterator[bytes]:
+    """Yield the states of a job as server-sent events, until it is finished."""
     status, progress = None, None
     async for state in _with_heartbeats(states):
         if state is None:
@@ -154,7 +146,7 @@ async def _events(states: AsyncIterator[JobState]) -> AsyncIterator[bytes]:
         # Progress first: the status may end the stream.
         if state.progress is not None and state.progress is not progress:
             progress = state.progress
-            yield _progress_event(progress)
+            yield _event("progress", asdict(progress))
         if state.record.status != status:
             status = state.record.status
             yield _event("status", {"id": state.record.id, "status": status})
@@ -165,7 +157,7 @@ async def _with_heartbeats(states: AsyncIterator[JobState]) -> AsyncIterator[Job
     coming = asyncio.ensure_future(anext(states, None))
     try:
         while True:
-            done, _ = await asyncio.wait([coming], timeout=HEARTBEAT)
+            done, _ = await asyncio.wait([coming], timeout=_HEARTBEAT)
             if not done:
                 yield None
                 continue
@@ -176,10 +168,6 @@ async def _with_heartbeats(states: AsyncIterator[JobState]) -> AsyncIterator[Job
             yield state
     finally:
         coming.cancel()
-
-
-def _progress_event(progress: Progress) -> bytes:
-    return _event("progress", asdict(progress))
 
 
 def _event(name: str, data: Mapping[str, object]) -> bytes:
