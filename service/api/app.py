@@ -69,24 +69,20 @@ class Edge:
     @property
     def middleware(self) -> list[Middleware]:
         """The middleware that each request passes, outermost first."""
-        observers = (self.metrics.answered, log_request)
-        cors = [Middleware(CORSMiddleware, **self._cors)] if self.origins else []
+        cors = Middleware(
+            CORSMiddleware,
+            allow_origins=self.origins,
+            allow_methods=["GET", "POST", "DELETE"],
+            allow_headers=["Authorization", "Content-Type", "Idempotency-Key", "Prefer"],
+            expose_headers=["Location", "Preference-Applied", "Retry-After", "X-Request-ID"],
+        )
         return [
             Middleware(SecurityHeadersMiddleware, self.tiles.source),
-            Middleware(RequestMiddleware, observers),
+            Middleware(RequestMiddleware, (self.metrics.answered, log_request)),
             Middleware(ProblemMiddleware),
-            *cors,
+            *([cors] if self.origins else []),
             Middleware(BodyTimeoutMiddleware, self.body_seconds),
         ]
-
-    @property
-    def _cors(self) -> dict[str, Any]:
-        return {
-            "allow_origins": self.origins,
-            "allow_methods": ["GET", "POST", "DELETE"],
-            "allow_headers": ["Authorization", "Content-Type", "Idempotency-Key", "Prefer"],
-            "expose_headers": ["Location", "Preference-Applied", "Retry-After", "X-Request-ID"],
-        }
 
 
 def create_app(

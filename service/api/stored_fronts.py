@@ -139,33 +139,23 @@ async def find_record(store: Store, request: Request, id: str | None) -> Record:
 async def _events(states: AsyncIterator[JobState]) -> AsyncIterator[bytes]:
     """Yield the states of a job as server-sent events, until it is finished."""
     status, progress = None, None
-    async for state in _with_heartbeats(states):
-        if state is None:
-            yield KEEPALIVE_COMMENT
-            continue
-        # Progress first: the status may end the stream.
-        if state.progress is not None and state.progress is not progress:
-            progress = state.progress
-            yield _event("progress", asdict(progress))
-        if state.record.status != status:
-            status = state.record.status
-            yield _event("status", {"id": state.record.id, "status": status})
-
-
-async def _with_heartbeats(states: AsyncIterator[JobState]) -> AsyncIterator[JobState | None]:
-    """Yield the states, and None whenever a while passes without one."""
     coming = asyncio.ensure_future(anext(states, None))
     try:
         while True:
             done, _ = await asyncio.wait([coming], timeout=_HEARTBEAT)
             if not done:
-                yield None
+                yield KEEPALIVE_COMMENT
                 continue
-            state = coming.result()
-            if state is None:
+            if (state := coming.result()) is None:
                 return
             coming = asyncio.ensure_future(anext(states, None))
-            yield state
+            # Progress first: the status may end the stream.
+            if state.progress is not None and state.progress is not progress:
+                progress = state.progress
+                yield _event("progress", asdict(progress))
+            if state.record.status != status:
+                status = state.record.status
+                yield _event("status", {"id": state.record.id, "status": status})
     finally:
         coming.cancel()
 

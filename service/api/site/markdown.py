@@ -1,6 +1,7 @@
 """Pages of Markdown as HTML, with anchors at headings, and the sections that a search finds."""
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -50,10 +51,12 @@ def render(text: str, resolve: Resolve) -> Page:
             a target is replaced by its text.
     """
     tokens = _RENDERER.parse(text)
-    anchors = _Anchors()
+    uses = Counter[str]()  # of each anchor: a repeated heading gets a number
     for at, token in enumerate(tokens):
         if token.type == "heading_open":
-            token.attrSet("id", anchors.of(_text(tokens[at + 1])))
+            anchor = slug(_text(tokens[at + 1]))
+            token.attrSet("id", f"{anchor}-{uses[anchor]}" if uses[anchor] else anchor)
+            uses[anchor] += 1
         elif token.type == "inline" and token.children:
             token.children = list(_resolved(token.children, resolve))
         elif token.type in ("th_open", "td_open") and "style" in token.attrs:
@@ -82,19 +85,6 @@ def _with_scrolling_tables(html: str) -> str:
     html = html.replace("<th></th>", "<td></td>")
     html = html.replace("<table>", '<div class="wide" tabindex="0"><table>')
     return html.replace("</table>", "</table></div>").replace("<pre>", '<pre tabindex="0">')
-
-
-class _Anchors:
-    """The anchors of one page; a repeated heading gets a number."""
-
-    def __init__(self) -> None:
-        self._counts: dict[str, int] = {}
-
-    def of(self, heading: str) -> str:
-        anchor = slug(heading)
-        count = self._counts.get(anchor, 0)
-        self._counts[anchor] = count + 1
-        return f"{anchor}-{count}" if count else anchor
 
 
 def _resolved(tokens: list[Token], resolve: Resolve) -> Iterator[Token]:

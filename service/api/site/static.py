@@ -6,7 +6,7 @@ from pathlib import Path
 from starlette.middleware import Middleware
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import Request
-from starlette.responses import FileResponse, Response
+from starlette.responses import Response
 from starlette.routing import BaseRoute, Route
 from starlette.staticfiles import StaticFiles
 
@@ -23,27 +23,24 @@ _Endpoint = Callable[[Request], Awaitable[Response]]
 def static_routes() -> list[BaseRoute]:
     """Return the routes of the page, the HTTP reference, and the files that they load."""
     return [
-        Route("/", _index(_PAGE), middleware=_COMPRESSED),
-        Route("/docs", _index(_REFERENCE), middleware=_COMPRESSED),
+        Route("/", files(_PAGE), middleware=_COMPRESSED),
+        Route("/docs", files(_REFERENCE), middleware=_COMPRESSED),
         Route("/page/{path:path}", files(_PAGE), middleware=_COMPRESSED),
         Route("/docs/{path:path}", files(_REFERENCE), middleware=_COMPRESSED),
         Route("/examples/{path}.json", files(_EXAMPLES, ".json"), middleware=_COMPRESSED),
     ]
 
 
-def _index(folder: Path) -> _Endpoint:
-    async def answer(_: Request) -> Response:
-        return FileResponse(folder / "index.html", headers=REVALIDATE)
-
-    return answer
-
-
 def files(folder: Path, suffix: str = "") -> _Endpoint:
-    """Return an endpoint that serves the file of a folder named by `path` and the suffix."""
+    """Return an endpoint that serves the file of a folder named by `path` and the suffix.
+
+    Without `path` it serves `index.html`.
+    """
     static = StaticFiles(directory=folder)
 
     async def answer(request: Request) -> Response:
-        response = await static.get_response(request.path_params["path"] + suffix, request.scope)
+        path = request.path_params.get("path", "index.html") + suffix
+        response = await static.get_response(path, request.scope)
         response.headers.update(REVALIDATE)
         return response
 
