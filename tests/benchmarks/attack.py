@@ -1,13 +1,14 @@
 """`python -m tests.benchmarks attack`: honest requests beside crowds that attack the service.
 
-For five minutes, at the deployed limits: two workers, 1,024 descriptors, 2 GiB. Memory is counted
-in pages of the server and its processes; what they share counts once. 160 uploads of 16 MB come
-over a link of a gigabit and stall, 1,100 connections are idle or drip, two clients hang up while
-their fronts are planned, one repeats a key on a full queue, and two send hostile bodies as fast as
-they are answered. Each crowd has an address of its own, idle connections five, and none a rate.
-Honest requests come at a steady rate from fifty other addresses, first alone and then beside the
-crowds. Server, crowds and honest clients share the cores: on a machine that does anything else the
-waiting says little. Stores `results/attack.json`, and says what does not hold.
+For five minutes, at the deployed limits: two workers, 1,024 descriptors, 2 GiB, behind nginx with
+the configuration of service/deploy. Memory is counted in pages of the server and its processes;
+what they share counts once. 160 uploads of 16 MB come over a link of a gigabit and stall, 1,100
+connections are idle or drip, two clients hang up while their fronts are planned, one repeats a key
+on a full queue, and two send hostile bodies as fast as they are answered. Each crowd has an address
+of its own, idle connections five. Honest requests come at a steady rate from fifty other addresses,
+first alone and then beside the crowds. Server, crowds and honest clients share the cores: on a
+machine that does anything else the waiting says little.
+Stores `results/attack.json`, and says what does not hold.
 """
 
 import argparse
@@ -19,6 +20,7 @@ import threading
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -31,6 +33,7 @@ from tests.benchmarks.instances import paper_instances
 from tests.benchmarks.provenance import provenance, store
 from tests.benchmarks.traffic import Asked, Client, evenly, quantiles
 from tests.benchmarks.under_load import attack_table
+from tests.helpers.nginx import nginx_before
 from tests.helpers.processes import ServeProcess, serve_process
 
 SECONDS = 300
@@ -59,9 +62,11 @@ def attacked(seconds: float) -> dict[str, Any]:
     settings = {"PARETOUR_WORKERS": str(WORKERS)}
     with (
         serve_process(settings, ready=True, descriptors=DESCRIPTORS) as service,
+        TemporaryDirectory() as folder,
+        nginx_before(service.url, Path(folder)) as url,
         ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool,
     ):
-        address = _address(service)
+        address = _address(url)
         quiet = honest(address, QUIET_SHARE * seconds)
         pool.submit(crowds.attack, address, 0).result()  # it imports much
         memory = Memory(psutil.Process(service.process.pid))
@@ -184,6 +189,6 @@ def _metric(service: ServeProcess, name: str) -> float:
     return float(re.findall(rf"^paretour_{name} (\S+)", exposition, re.M)[0])
 
 
-def _address(service: ServeProcess) -> tuple[str, int]:
-    parts = urlsplit(service.url)
+def _address(url: str) -> tuple[str, int]:
+    parts = urlsplit(url)
     return str(parts.hostname), int(parts.port or 0)
