@@ -41,7 +41,7 @@ from service.roads.router import RouterSettings
 from service.settings import Settings
 from service.telemetry import configure_logging, log_loading, logged, logging_every, trace
 
-_ACCEPTED_AT_ONCE = 32  # more would hold up all others, and take descriptors before one is refused
+_ACCEPTED_AT_ONCE = 32  # in a turn of the event loop: more would delay all other connections
 _IN_KERNEL = 1024  # connections that wait until they are accepted
 
 
@@ -52,7 +52,7 @@ class Ending:
         self._status = 0
 
     def exit(self, _signal: int, _frame: FrameType | None) -> NoReturn:
-        """Exit: as the handler of a signal."""
+        """Exit. This is the handler of a signal."""
         sys.exit(self._status)
 
     def fail(self, reason: str) -> None:
@@ -263,13 +263,13 @@ def _redis_url(settings: Settings) -> str:
 
 
 def _checked_actors(settings: Settings) -> Mapping[str, ActorInfo]:
-    """Return the metadata of the actors by name, once those not released were seen to load.
+    """Return the metadata of the actors by name, after a check that the operator's own ones load.
 
     They are loaded in another process: with ONNX Runtime this one would take 20 MB more, and
     could not be forked.
 
     Raises:
-        ValueError: A file is no actor, or no network that ONNX Runtime can run.
+        ValueError: A file is not an actor, or ONNX Runtime cannot run its network.
     """
     infos = read_actor_infos(settings.actors, settings.own_actors)
     if any(path.parent != RELEASED for path in infos):

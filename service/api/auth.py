@@ -1,8 +1,8 @@
 """Authentication by API keys, and a rate limit for each caller.
 
-A key is 256 random bits. The settings hold its SHA-256 alone, which needs no salt: nobody guesses
-256 bits. Without keys everybody may call, as one caller: anybody who knows the id of a front can
-read it. Each address then has its own rate and its own latest front.
+A key is 256 random bits. The settings hold only its SHA-256, which needs no salt because 256 random
+bits cannot be guessed. Without keys everybody may call, and all are one caller: whoever knows the
+id of a front can read it. Each address then has its own rate and its own latest front.
 """
 
 import hashlib
@@ -60,7 +60,7 @@ class KeyHash:
 
 
 def new_key() -> tuple[str, str]:
-    """Return a new key, for its caller alone, and its hash, for the settings."""
+    """Return a new key, which the caller gets, and its hash, which the settings get."""
     key = secrets.token_urlsafe(32)
     return key, _digest(key)
 
@@ -79,7 +79,7 @@ class Rates:
         self._rate: RateLimitItem = parse(rate)
         storage = _storage(redis_url)
         self._callers = MovingWindowRateLimiter(storage)
-        # It keeps two numbers for each address: there may be very many addresses.
+        # Keeps only two numbers for each address, because there may be very many.
         self._addresses = SlidingWindowCounterRateLimiter(storage)
 
     async def check(self, client: str, *, keyed: bool) -> None:
@@ -113,10 +113,10 @@ def caller_of(request: Request) -> str:
 
 
 def client_of(request: Request) -> str:
-    """Return the client that places in the queue are counted for.
+    """Return the client whose places in the queue are counted.
 
-    It is the caller, or without keys the address: of IPv6 the network of 64 bits, all of whose
-    addresses one client may have.
+    It is the caller or, without keys, the address. An IPv6 address counts as its network of
+    64 bits, because one client may have all of it.
     """
     if request.scope["caller"] != ANONYMOUS:
         return caller_of(request)

@@ -45,7 +45,7 @@ async def receive_files(
     """Receive the files of a request, each with its name: the parts `file` of a form.
 
     Raises:
-        Refusal: As of receive_source.
+        Refusal: As in receive_source.
     """
     content_type = _checked_content_type(request)
     if not content_type.lower().startswith(_MULTIPART):
@@ -77,7 +77,7 @@ async def _receive(request: Request, most_bytes: int, allowance: BodyAllowance) 
         if length > most_bytes:
             raise _too_long(most_bytes)
         allowance.add(chunk)
-    # A long body in a thread: join releases the interpreter's lock.
+    # A long body is joined in a thread: join releases the interpreter's lock.
     if length < _LONG_TO_JOIN:
         return b"".join(chunks)
     return await asyncio.to_thread(b"".join, chunks)

@@ -1,4 +1,4 @@
-"""Budgets of bytes for the bodies of requests and answers, so that stalled ones fill no memory."""
+"""Budgets of bytes for the bodies of requests and answers: stalled ones must not fill memory."""
 
 import sys
 from collections import Counter
@@ -33,14 +33,14 @@ class BodyBounds:
 class BodyBudget:
     """A number of bytes for all requests' bodies in progress, or for all answers.
 
-    Bodies of at most 128 KiB are small. Of the bodies of requests a part is left to small ones, so
-    that long ones do not keep them out. Small answers are not counted, and a long one may exceed
+    Bodies of at most 128 KiB are small. A part of the budget of requests is kept for small bodies,
+    so that long ones cannot keep them out. Small answers are not counted. A long answer may exceed
     the budget if it is the only one.
 
     Args:
         limit: Bytes of all bodies.
-        share: The share of them that the long bodies of one client may take. One alone may take
-            more.
+        share: The share of them that the long bodies of one client may take together. A single
+            body may take more.
         answers: Whether the bodies are answers.
     """
 
@@ -131,7 +131,7 @@ class BodyAllowance:
         self._held = self._budget.take(self._client, self._held, declared)
 
     def add(self, chunk: bytes) -> None:
-        """Take the bytes of a chunk that has come, as far as they go beyond those reserved.
+        """Take the bytes of a chunk that has come, unless they are reserved already.
 
         Raises:
             Refusal: The budget has fewer left.

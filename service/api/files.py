@@ -27,10 +27,10 @@ def file_router(
     """Return the route that reads files in the processes that parse bodies.
 
     Args:
-        parser: What parses bodies.
-        budget: Of the bodies of all requests.
-        most_bytes: Of one body.
-        answers: The budget of all answers.
+        parser: The parser of bodies.
+        budget: The budget for the bodies of all requests.
+        most_bytes: The most bytes of one body.
+        answers: The budget for all answers.
     """
     router = APIRouter(tags=["files"])
 

@@ -54,7 +54,7 @@ class Metrics:
         self._fronts = _children(
             counter(
                 "paretour_fronts",
-                "fronts planned, by what they are of and why the search ended",
+                "fronts planned, by their kind and by why the search ended",
                 ["of", "terminated"],
             )
         )
@@ -67,13 +67,13 @@ class Metrics:
         )
         self._gained = histogram(
             "paretour_hypervolume_gained",
-            "share of the reference box that the search added to what it was given",
+            "share of the reference box that the search added to its initial tours",
             ["cities"],
             buckets=_SHARES,
         )
         self._router_requests = counter(
             "paretour_router_requests",
-            "questions to the routing engine, by what came of them",
+            "questions to the routing engine, by their outcome",
             ["outcome"],
         )
         self._router_seconds = histogram(

@@ -17,7 +17,7 @@ from service.api.responses import PROBLEM_JSON, problem_response
 from service.errors import Refusal, ShuttingDown
 
 RawHeaders = list[tuple[bytes, bytes]]  # with names in lower case
-# Everything comes from the service itself; maps of robots are drawn into images (data:).
+# The page loads only files of the service, and draws maps of robots into images (data:).
 _CONTENT_POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src {images}; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -32,14 +32,14 @@ _SECURITY_HEADERS = {
 
 
 def _set_headers(start: Message, headers: RawHeaders) -> None:
-    """Set headers of an answer that begins, in place of any with the same names."""
+    """Set headers of an answer that begins, and replace any with the same names."""
     names = [name for name, _ in headers]
     others = [each for each in start.get("headers", ()) if each[0] not in names]
     start["headers"] = [*others, *headers]
 
 
 class _Middleware:
-    """The base of middleware for requests; other messages, as of the start, pass untouched."""
+    """The base of middleware for requests; the start and end of the application pass unchanged."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
@@ -172,7 +172,7 @@ def log_request(answered: AnsweredRequest) -> None:
 class ProblemMiddleware(_Middleware):
     """Turns the framework's errors in plain text into problem documents.
 
-    They are refused preflights (CORS), and ranges outside a file.
+    These are refused preflights (CORS), and ranges outside a file.
     """
 
     async def _pass_on(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -230,7 +230,7 @@ class BodyTimeoutMiddleware(_Middleware):
 
         async def receive_in_time() -> Message:
             nonlocal whole
-            if whole:  # the only message left, that the client has gone, has no deadline
+            if whole:  # the one message that may follow, that the client has gone, has no deadline
                 return await receive()
             try:
                 async with asyncio.timeout_at(deadline):

@@ -43,15 +43,15 @@ from service.requests.schemas import Geometry
 from service.requests.stored_task import stored
 from service.requests.task import Task, TaskKind, TaskSource
 
-_QUICK = 8  # bytes of stored tours are read in the time of one of a request
-_LONG = 2**20  # bytes of a body, whose task takes a while to write
+_QUICK = 8  # times as fast as a request stored tours are read
+_LONG = 2**20  # bytes of a body; the task of a longer one takes a while to write
 _EXAMPLE = {"id": "07787526fece4cbebaab8053b07b26f3", "status": "queued"}
 _ACCEPTED = {"application/json": {"example": _EXAMPLE}}
 
 
 @dataclass(frozen=True)
 class _Body:
-    """A body as it came, the id of a front to replan, if any, and when to answer at the latest."""
+    """A received body, the id of the front to replan, if any, and the deadline of the answer."""
 
     source: TaskSource
     front: str | None
@@ -158,7 +158,7 @@ class PlanRoutes:
 
     async def _plan(self, request: Request, kind: TaskKind, front: str | None = None) -> Response:
         await self._check_place(request)
-        # Until there is an answer: a task that waits or is being planned still holds its body.
+        # Counted until there is an answer: a task that waits or is being planned holds its body.
         with self.budget.open(client_of(request)) as allowance:
             received = await receive_source(request, kind, self._limits.body_bytes, allowance)
             body = _Body(received, front, Deadline.after(self._seconds))
@@ -172,7 +172,7 @@ class PlanRoutes:
         """Return the rest of the way of a stored front.
 
         Raises:
-            Refusal: The front does not exist, or cannot be replanned, or not as the body asks.
+            Refusal: The front does not exist, or cannot be replanned as the body asks.
         """
         self.parser.check_replan(body.body)
         record = await find_record(self._store, request, front)
@@ -207,7 +207,7 @@ class PlanRoutes:
         return problem_bytes({**record.problem, "request_id": request.scope["request_id"]})
 
     async def _submit(self, record: Record, task: Task, allowance: BodyAllowance) -> Record:
-        """Submit a job, whose body counts until the engine holds it no more."""
+        """Submit a job. Its body counts against the budget until the engine releases it."""
         first = await self._engine.submit(record, task)
         if first.id == record.id:
             holding = asyncio.create_task(self._hold(record, allowance.hand_over()))

@@ -21,7 +21,7 @@ PARAMETERS: tuple[dict[str, Any], ...] = (
     {
         "name": "Idempotency-Key",
         "in": "header",
-        "description": "what repeats of this request have in common, so that it is done once",
+        "description": "the same for all repeats of a request, so that it is planned once",
         "schema": {
             "type": "string",
             "minLength": 1,
@@ -46,7 +46,7 @@ def idempotency_key(request: Request) -> str | None:
     """
     key = request.headers.get("idempotency-key")
     if key is not None and re.fullmatch(_KEY, key) is None:
-        such = "" if key.isascii() and key.isprintable() else ", some of them others"
+        such = "" if key.isascii() and key.isprintable() else ", including other characters"
         sentence = (
             f"Idempotency-Key must have 1 to {_LONGEST_KEY} characters of printable ASCII, "
             f"got {len(key)}{such}"

@@ -64,18 +64,18 @@ class TourItem(BaseModel):
     balance: Balance
     kept: float | SkipJsonSchema[None] = Field(
         default=None,
-        description="of a front that was replanned: the share of the remaining legs of the tour"
-        " being driven that this one keeps, in either direction where costs are symmetric",
+        description="only in a front that was replanned: the share of the driven tour's remaining"
+        " legs that this tour keeps, in either direction if costs are symmetric",
     )
     lengths: Lengths
     tour: list[int]
     arrivals: list[Lengths] | SkipJsonSchema[None] = Field(
         default=None,
-        description="if `arrivals` asked: both lengths up to each stop, the return of closed tours"
-        " included",
+        description="only if `arrivals` is true: both lengths up to each stop, and up to the return"
+        " of a closed tour",
     )
     stops: list[str] | SkipJsonSchema[None] = Field(
-        default=None, description="the ids of its stops, where the request has ids"
+        default=None, description="the ids of its stops, if the request has ids"
     )
 
 
@@ -111,10 +111,10 @@ class FrontAnswer(BaseModel):
     points: int = Field(description="nondominated points found; front holds at most `size`")
     hypervolume: float = Field(description="of the front returned, 0 to 1")
     hypervolume_bound: float | None = Field(
-        description="what no front of this instance exceeds, where `bound` asked for it"
+        description="an upper bound for every front of this instance, if `bound` is true"
     )
     reference_point: Lengths | None = Field(
-        description="null while costs are still to be measured, as is the scale"
+        description="null, like the scale, until the costs are measured"
     )
     scale: Lengths | None
     actor: ActorName | None = Field(description="null where no network built tours, or none yet")
@@ -147,12 +147,12 @@ class PathItem(BaseModel):
     """A way over the map, through all places in the order of a tour."""
 
     cells: list[list[int]] = Field(
-        description="row and column of each; of a closed tour the first is also the last"
+        description="row and column of each; a closed tour ends with its first cell"
     )
     metres: float
     points: list[list[float]] | SkipJsonSchema[None] = Field(
         default=None,
-        description="x and y of each cell's middle in the frame of the map, in metres, where the"
+        description="x and y of each cell's middle in the frame of the map, in metres, if its"
         " origin is known",
     )
 
@@ -180,7 +180,7 @@ class UncoveredItem(BaseModel):
 class CoverageItem(TourItem):
     """A tour through places on a map."""
 
-    path: PathItem | SkipJsonSchema[None] = Field(default=None, description="if `paths` asked")
+    path: PathItem | SkipJsonSchema[None] = Field(default=None, description="if `paths` is true")
 
 
 class MapAnswer(FrontAnswer):
@@ -188,7 +188,7 @@ class MapAnswer(FrontAnswer):
 
     places: list[list[int]] = Field(description="row and column of each")
     uncovered: UncoveredItem | SkipJsonSchema[None] = Field(
-        default=None, description="what no path leads to, once the map is surveyed"
+        default=None, description="the free cells that no path leads to, once the map is surveyed"
     )
 
 
@@ -206,8 +206,8 @@ class RouteItem(BaseModel):
     lengths: Lengths
     arrivals: list[float] | SkipJsonSchema[None] = Field(
         default=None,
-        description="if there is a clock: when it reaches each stop; at the first, when it leaves,"
-        " as late as it can without being done later",
+        description="if there is a clock: when it reaches each stop. At the first stop: when it"
+        " leaves, as late as possible without finishing later",
     )
 
 
@@ -216,14 +216,14 @@ class PlanItem(BaseModel):
 
     balance: Balance
     lengths: Lengths
-    routes: list[RouteItem] = Field(description="of the vehicles that leave")
-    unassigned: list[str] = Field(description="the ids of stops that are left out for their prize")
+    routes: list[RouteItem] = Field(description="one for each vehicle that leaves")
+    unassigned: list[str] = Field(description="the ids of stops with a prize that are left out")
 
 
 class FleetObjectiveName(ObjectiveName):
     """An objective of a fleet's front."""
 
-    over: Over = Field(description="of a plan's routes the sum, or the longest")
+    over: Over = Field(description="whether the routes of a plan are added, or the longest counts")
 
 
 class FleetAnswer(FrontAnswer):
@@ -240,7 +240,7 @@ class RobotRouteItem(BaseModel):
     robot: str = Field(description="its id")
     tour: list[int] = Field(description="its places in order, from its start to its end")
     lengths: Lengths
-    path: PathItem | SkipJsonSchema[None] = Field(default=None, description="if `paths` asked")
+    path: PathItem | SkipJsonSchema[None] = Field(default=None, description="if `paths` is true")
 
 
 class RobotPlanItem(BaseModel):
@@ -248,7 +248,7 @@ class RobotPlanItem(BaseModel):
 
     balance: Balance
     lengths: Lengths
-    routes: list[RobotRouteItem] = Field(description="of the robots that leave")
+    routes: list[RobotRouteItem] = Field(description="one for each robot that leaves")
 
 
 class RobotsAnswer(MapAnswer):
@@ -302,8 +302,8 @@ class FileAnswer(BaseModel):
     )
     planes: list[list[float]] | SkipJsonSchema[None] = Field(
         default=None,
-        description="of two files EUC_2D: x and y of each city in both planes, of whose distances"
-        " the matrices in the request are the rounded ones",
+        description="for two EUC_2D files: x and y of each city in both planes. The matrices in the"
+        " request are the rounded distances",
     )
     name: str
 

@@ -31,14 +31,14 @@ from service.requests.schemas import GEOMETRY, Geometry, NonNegativeInteger
 from service.requests.tour import TourQuery
 
 PLAN = (
-    "of a fleet's front in GeoJSON, the one plan whose routes are drawn, by its place from 0; by"
-    " default all are"
+    "for a fleet's front in GeoJSON: the number of the plan whose routes are drawn, from 0; by"
+    " default all plans are drawn"
 )
 _HEARTBEAT = 15.0  # seconds without an event, after which a comment shows that the stream is alive
 
 
 class StoredFrontRoutes:
-    """Answers each caller, about its own fronts only."""
+    """Answers requests about stored fronts. Each caller sees only its own."""
 
     def __init__(self, store: Store, engine: Engine, answers: FrontAnswers) -> None:
         self._store = store
@@ -109,15 +109,14 @@ class StoredFrontRoutes:
         return await self._answers.tour(request, record, index, query.geometry)
 
     async def _record(self, request: Request, id: str | None) -> Record:  # noqa: A002
-        """Return the caller's record with an id, as of now; without an id its latest."""
+        """Return the present state of the caller's record with an id, or of its latest record."""
         return self._engine.state(await find_record(self._store, request, id)).record
 
 
 async def find_record(store: Store, request: Request, id: str | None) -> Record:  # noqa: A002
     """Return the caller's record with an id, as it is stored; without an id its latest.
 
-    All callers without a key share their fronts, but the latest one is that of the request's
-    address.
+    Callers without a key share their fronts, but each address has its own latest front.
 
     Raises:
         Refusal: The front does not exist, or no longer.

@@ -24,7 +24,7 @@ from service.requests.task import Task, TaskSource
 from service.requests.validation import check_depth, parse_json
 
 _SHORT = 2**17  # bytes that this process parses, in a few milliseconds
-_FEW_QUOTES = 2000  # as 300 stops have; so many faults take a few milliseconds to describe
+_FEW_QUOTES = 2000  # as 300 stops have, whose faults take a few milliseconds to describe
 _MEDIUM = 2**20  # bytes that take a tenth of a second or two
 _ATTEMPTS = 2
 _MOST_WAITING = 16  # bodies for each process
@@ -103,9 +103,9 @@ class TaskParser:
             self._check(body)
 
     async def replan(self, source: ReplanSource, length: int) -> Task:
-        """Return the rest of the way of a checked request, with so much to parse."""
+        """Return the rest of the way of a checked request; `length` is the bytes to parse."""
         quotes = source.body.count(b'"') + source.front.source.body.count(b'"')
-        # To check places on a map needs SciPy, which is to be loaded by a process that parses.
+        # Checking places on a map needs SciPy, which only a process that parses should load.
         on_map = source.front.found.places is not None
         if length <= _SHORT and quotes <= _FEW_QUOTES and not on_map:
             return parse_replan(source, self._limits, self._actors)

@@ -78,7 +78,7 @@ class FrontAnswers:
         """Raise a refusal where a request accepts GeoJSON that cannot be made.
 
         Raises:
-            Refusal: There are no stops with ids, or some have no location; or the lines shall
+            Refusal: There are no stops with ids, or some have no location; or the lines are to
                 follow streets, but the answer is not GeoJSON or there is no routing engine.
         """
         if geometry == "roads":
@@ -141,7 +141,7 @@ class FrontAnswers:
 
     def _check_roads(self, request: Request) -> None:
         if not accepts_geojson(request):
-            sentence = f"geometry roads is of answers in GeoJSON: send Accept: {GEOJSON}"
+            sentence = f"geometry roads needs an answer in GeoJSON: send Accept: {GEOJSON}"
             raise Refusal("invalid-request", detail=sentence, errors=[_fault(request, sentence)])
         if self._streets is None:
             refusal = Refusal("no-router", name="geometry", measure="roads")
@@ -164,7 +164,7 @@ class FrontAnswers:
 
 
 def _fault(request: Request, sentence: str) -> Fault:
-    """Return a refusal of the geometry that the body or the query asks for."""
+    """Return what is wrong with the geometry, which is in the body or in the query."""
     if request.method == "POST":
         return Fault(sentence, pointer="/geometry")
     return Fault(sentence, parameter="geometry")
@@ -174,9 +174,9 @@ def _check_plan(request: Request, record: Record, plan: int) -> None:
     """Raise a refusal unless the front has a plan of this number, if one is asked for."""
     plans = len(record.front.split())
     if not accepts_geojson(request):
-        sentence = f"plan is of answers in GeoJSON: send Accept: {GEOJSON}"
+        sentence = f"plan needs an answer in GeoJSON: send Accept: {GEOJSON}"
     elif not KINDS[record.front.kind].of_plans:
-        sentence = f"plan is of a fleet's front, and front {record.id} is of tours: ask GET /tour"
+        sentence = f"plan is for fronts of fleets, and front {record.id} has tours: ask GET /tour"
     elif plan >= plans:
         sentence = f"plan must be less than {plans}, the number of plans, got {plan}"
     else:

@@ -80,7 +80,7 @@ class Drawing:
     def encode(self, lines: Sequence[Line]) -> bytes:
         """Return the FeatureCollection of the tours along these lines, and of all stops.
 
-        The front's id and status, and the problem of a failed one, are members of its own.
+        It also has the front's id and status, and the problem of a failed front.
         """
         record = self.record
         foreign: dict[str, Any] = {"id": record.id, "status": record.status}
@@ -139,7 +139,7 @@ def cut(way: Line) -> Iterator[Line]:
 def _crossing(
     from_x: float, from_y: float, x: float, y: float
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return where a step crosses longitude 180, by the longitude before it and that behind it."""
+    """Return where a step crosses longitude 180: the end of one part, and the start of the next."""
     edge = _HALF_WAY_ROUND if from_x > x else -_HALF_WAY_ROUND
     rest = x + 2 * edge - from_x
     latitude = from_y + (y - from_y) * ((edge - from_x) / rest if rest else 0.0)

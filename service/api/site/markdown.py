@@ -17,9 +17,9 @@ class Section:
     """A heading and the text below it, down to the next heading.
 
     Attributes:
-        anchor: Of the heading, as code hosts make them.
-        heading: Its text.
-        text: Everything below it, without marks.
+        anchor: The anchor of the heading, as code hosts make it.
+        heading: The text of the heading.
+        text: Everything below the heading, without marks.
     """
 
     anchor: str
@@ -33,8 +33,8 @@ class Page:
 
     Attributes:
         title: Its first heading.
-        html: The page as HTML, with that heading.
-        sections: In their order.
+        html: The page as HTML, with its title.
+        sections: The sections in order.
     """
 
     title: str

@@ -35,7 +35,7 @@ class Tiles:
         return f"{scheme}://{server.replace('{s}', '*')}"
 
     def route(self, roads: bool) -> Route:
-        """Return the route by which the page learns what it may draw on its map.
+        """Return the route that tells the page what it may draw on its map.
 
         Args:
             roads: Whether tours can be drawn along streets, which a routing engine knows.

@@ -11,7 +11,7 @@ from typing import Protocol
 
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
-_REFUSED_AT_ONCE = 32  # the most refused connections that are still open, to read the refusal
+_REFUSED_AT_ONCE = 32  # the most refused connections whose clients still read the refusal
 _LOG_EVERY = 1.0  # seconds between two lines about connections that make way
 _PROXY = ""  # in place of the network of connections that count for no address
 _LOG = logging.getLogger("paretour")
