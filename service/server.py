@@ -21,7 +21,6 @@ from service import installed_version
 from service.actor_info import RELEASED, ActorInfo, read_actor_infos
 from service.api.app import Edge, create_app
 from service.api.auth import Access, Rates
-from service.api.body_budget import BodyBounds
 from service.api.metrics import Metrics
 from service.api.site.tiles import Tiles
 from service.api.task_parser import ParserBounds
@@ -88,11 +87,9 @@ def build(settings: Settings, ending: Ending) -> FastAPI:
             origins=settings.origins,
             body_seconds=settings.body_seconds,
             request_seconds=settings.request_seconds,
-            bodies=BodyBounds(
-                under_way=settings.bodies_bytes,
-                share=settings.caller_share,
-                parser=ParserBounds(seconds=settings.parse_seconds, memory=settings.parse_bytes),
-            ),
+            bodies_bytes=settings.bodies_bytes,
+            share=settings.caller_share,
+            parser=ParserBounds(seconds=settings.parse_seconds, memory=settings.parse_bytes),
             streets=roads,
             tiles=Tiles(settings.tiles, settings.tiles_credit),
         ),

@@ -12,7 +12,7 @@ from starlette.responses import Response
 
 from service.actor_info import ActorInfo
 from service.api.auth import Access
-from service.api.body_budget import BodyBounds, BodyBudget
+from service.api.body_budget import BodyBudget
 from service.api.exception_handlers import HANDLED, answer_refusal
 from service.api.files import file_router
 from service.api.geojson.answers import FrontAnswers, Streets
@@ -32,6 +32,7 @@ from service.api.site.guide import guide_routes
 from service.api.site.static import static_routes
 from service.api.site.tiles import Tiles
 from service.api.stored_fronts import StoredFrontRoutes
+from service.api.task_parser import ParserBounds, TaskParser
 from service.jobs.engine import Engine
 from service.jobs.store import Store
 from service.requests.limits import Limits
@@ -47,7 +48,9 @@ class Edge:
         origins: Other origins whose pages may call (CORS); by default none.
         body_seconds: The time that a body may take to arrive.
         request_seconds: The time after which a request is answered with the best front so far.
-        bodies: What the bodies of all requests may take together.
+        bodies_bytes: The most bytes of all request bodies in progress; as many for answers.
+        share: The share of these that the long bodies of one client may take.
+        parser: The bounds of a process that parses bodies.
         streets: The streets that lines of GeoJSON may follow; by default there are none.
         tiles: The map tiles that the page draws under stops; by default there are none.
     """
@@ -57,7 +60,9 @@ class Edge:
     origins: Sequence[str] = ()
     body_seconds: float = 30.0
     request_seconds: float = 90.0
-    bodies: BodyBounds = field(default_factory=BodyBounds)
+    bodies_bytes: int = 2**27
+    share: float = 0.5
+    parser: ParserBounds = field(default_factory=ParserBounds)
     streets: Streets | None = None
     tiles: Tiles = field(default_factory=Tiles)
 
@@ -95,8 +100,11 @@ def create_app(
 ) -> FastAPI:
     """Return the application, which starts the engine and closes engine and store at its end."""
     edge = edge or Edge()
-    budget = BodyBudget(edge.bodies.under_way, edge.bodies.share, answers=True)
-    answers = FrontAnswers(edge.streets, budget)
+    parser = TaskParser(limits, actors, edge.parser)
+    budget = BodyBudget(edge.bodies_bytes, edge.share)
+    answers_budget = BodyBudget(edge.bodies_bytes, edge.share, answers=True)
+    answers = FrontAnswers(edge.streets, answers_budget)
+    most_bytes, seconds = limits.body_bytes, edge.request_seconds
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -119,9 +127,9 @@ def create_app(
         docs_url=None,
         redoc_url=None,
     )
-    plans = PlanRoutes(actors, engine, store, limits, edge.bodies, edge.request_seconds, answers)
+    plans = PlanRoutes(parser, budget, most_bytes, engine, store, seconds, answers)
     app.include_router(plans.router(), **edge.guard)
-    files = file_router(plans.parser, plans.budget, limits.body_bytes, answers.budget)
+    files = file_router(parser, budget, most_bytes, answers_budget)
     app.include_router(files, **edge.guard)
     app.include_router(StoredFrontRoutes(store, engine, answers).router(), **edge.guard)
     app.include_router(_actor_router(actors), **edge.guard)

@@ -2,32 +2,15 @@
 
 import sys
 from collections import Counter
-from dataclasses import dataclass, field
 
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
-from service.api.task_parser import ParserBounds
 from service.errors import Refusal
 
 _SMALL_SHARE = 8  # an eighth of the budget is left to small bodies
 _SMALL = 2**17  # bytes
 _PART = 2**18  # bytes of an answer that are sent at once
-
-
-@dataclass(frozen=True, kw_only=True)
-class BodyBounds:
-    """The bytes that the bodies of all requests may take together, and those of all answers.
-
-    Args:
-        under_way: Bytes of all bodies of requests in progress; as many for answers.
-        share: The share of these that the long bodies of one client may take.
-        parser: The bounds of a process that parses.
-    """
-
-    under_way: int = 2**27
-    share: float = 0.5
-    parser: ParserBounds = field(default_factory=ParserBounds)
 
 
 class BodyBudget:

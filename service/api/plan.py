@@ -3,7 +3,6 @@
 import asyncio
 import hashlib
 import uuid
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,10 +10,9 @@ from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
-from service.actor_info import ActorInfo
 from service.api.auth import caller_of, client_of
 from service.api.body import receive_source
-from service.api.body_budget import BodyAllowance, BodyBounds, BodyBudget
+from service.api.body_budget import BodyAllowance, BodyBudget
 from service.api.disconnect import disconnected
 from service.api.geojson.answers import CONTENT, FrontAnswers
 from service.api.request_bodies import COVERAGE_BODY, FLEET_BODY, FRONT_BODY, REPLAN_BODY
@@ -36,7 +34,6 @@ from service.jobs.engine import Engine, record_in_time
 from service.jobs.record import Record
 from service.jobs.store import Store
 from service.kinds.table import empty_document
-from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront, not_replannable
 from service.requests.replan.parser import ReplanSource
 from service.requests.schemas import Geometry
@@ -68,21 +65,21 @@ class PlanRoutes:
 
     def __init__(  # noqa: PLR0913  what the routes are made of
         self,
-        actors: Mapping[str, ActorInfo],
+        parser: TaskParser,
+        budget: BodyBudget,
+        most_bytes: int,
         engine: Engine,
         store: Store,
-        limits: Limits,
-        bodies: BodyBounds,
         seconds: float,
         answers: FrontAnswers,
     ) -> None:
+        self._parser = parser
+        self._budget = budget
+        self._most_bytes = most_bytes
         self._engine = engine
         self._store = store
-        self._limits = limits
         self._seconds = seconds
-        self.budget = BodyBudget(bodies.under_way, bodies.share)
         self._answers = answers
-        self.parser = TaskParser(limits, actors, bodies.parser)
         self._held: set[asyncio.Task[None]] = set()
 
     def router(self) -> APIRouter:
@@ -159,11 +156,11 @@ class PlanRoutes:
     async def _plan(self, request: Request, kind: TaskKind, front: str | None = None) -> Response:
         await self._check_place(request)
         # Counted until there is an answer: a task that waits or is being planned holds its body.
-        with self.budget.open(client_of(request)) as allowance:
-            received = await receive_source(request, kind, self._limits.body_bytes, allowance)
+        with self._budget.open(client_of(request)) as allowance:
+            received = await receive_source(request, kind, self._most_bytes, allowance)
             body = _Body(received, front, Deadline.after(self._seconds))
             if front is None:
-                task = await self.parser.parse(received)
+                task = await self._parser.parse(received)
             else:
                 task = await self._rest(request, received, front)
             return await self._planned(request, task, body, allowance)
@@ -174,7 +171,7 @@ class PlanRoutes:
         Raises:
             Refusal: The front does not exist, or cannot be replanned as the body asks.
         """
-        self.parser.check_replan(body.body)
+        self._parser.check_replan(body.body)
         record = await find_record(self._store, request, front)
         if not record.finished:
             raise not_replannable(record.id, "it is still being planned")
@@ -184,7 +181,7 @@ class PlanRoutes:
             raise not_replannable(record.id, reason)
         stored = StoredFront(record.id, source, record.front)
         length = body.length + source.length + len(record.front.tours) // _QUICK
-        return await self.parser.replan(ReplanSource(body.body, stored), length)
+        return await self._parser.replan(ReplanSource(body.body, stored), length)
 
     async def _planned(
         self, request: Request, task: Task, body: _Body, allowance: BodyAllowance

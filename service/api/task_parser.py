@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Generic, NamedTuple, TypeVar
+from typing import TypeVar
 
 from anyio import BrokenWorkerProcess, CapacityLimiter, Lock, to_process
 
@@ -52,13 +52,6 @@ T = TypeVar("T")
 _Parse = Callable[[S, Limits, Mapping[str, ActorInfo]], T]
 
 
-class _Outcome(NamedTuple, Generic[T]):
-    """The result of parsing a body in a process, and Python's warnings meanwhile."""
-
-    result: T | Refusal
-    warnings: list[str]
-
-
 class TaskParser:
     """Parses bodies under these limits, for these actors: short ones itself, others in a process.
 
@@ -71,11 +64,11 @@ class TaskParser:
         self,
         limits: Limits,
         actors: Mapping[str, ActorInfo],
-        bounds: ParserBounds | None = None,
+        bounds: ParserBounds,
     ) -> None:
         self._limits = limits
         self._actors = dict(actors)
-        self._bounds = bounds or ParserBounds()
+        self._bounds = bounds
         self._medium, self._long = Lock(), Lock()
         self._processes = CapacityLimiter(2)
 
@@ -156,7 +149,7 @@ class TaskParser:
             try:
                 # After that time the call is cancelled, which kills the process.
                 async with asyncio.timeout(seconds):
-                    outcome = await to_process.run_sync(
+                    result, caught = await to_process.run_sync(
                         _parse_bounded,
                         parse,
                         source,
@@ -166,7 +159,11 @@ class TaskParser:
                         cancellable=True,
                         limiter=self._processes,
                     )
-                return _checked(outcome)
+                for warning in caught:  # the process cannot log
+                    _LOG.warning("%s", warning)
+                if isinstance(result, Refusal):
+                    raise result
+                return result
             except BrokenWorkerProcess:
                 continue
             except TimeoutError:
@@ -174,19 +171,13 @@ class TaskParser:
         raise _too_complex("without the loss of its process, and two were lost")
 
 
-def _checked(outcome: _Outcome[T]) -> T:
-    """Log the warnings, as the process cannot, and return the result or raise the refusal."""
-    for warning in outcome.warnings:
-        _LOG.warning("%s", warning)
-    if isinstance(outcome.result, Refusal):
-        raise outcome.result
-    return outcome.result
-
-
 def _parse_bounded(
     parse: _Parse[S, T], source: S, limits: Limits, actors: Mapping[str, ActorInfo], memory: int
-) -> _Outcome[T]:
-    """Parse a body in this process, which may take `memory` bytes more than when idle."""
+) -> tuple[T | Refusal, list[str]]:
+    """Parse a body in this process, which may take `memory` bytes more than when idle.
+
+    Return the result and Python's warnings.
+    """
     _bound_process(memory)
     with warnings.catch_warnings(record=True) as caught:
         result: T | Refusal
@@ -196,7 +187,7 @@ def _parse_bounded(
             result = _too_complex(f"in {memory} bytes of memory, and was not")
         except Refusal as refusal:
             result = refusal
-    return _Outcome(result, [_warning_text(each) for each in caught[:_MOST_WARNINGS]])
+    return result, [_warning_text(each) for each in caught[:_MOST_WARNINGS]]
 
 
 def _warning_text(caught: warnings.WarningMessage) -> str:

@@ -15,7 +15,7 @@ from starlette.responses import Response
 from starlette.types import Message
 
 from service.api.app import Edge
-from service.api.body_budget import BodyBounds, BodyBudget
+from service.api.body_budget import BodyBudget
 from service.errors import Refusal
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.kinds.json_parts import joined
@@ -83,7 +83,7 @@ def test_many_small_chunks_are_counted_as_what_they_take() -> None:
 
 @pytest.fixture(scope="module")
 def url() -> Iterator[str]:
-    edge = Edge(bodies=BodyBounds(under_way=BUDGET), body_seconds=60)
+    edge = Edge(bodies_bytes=BUDGET, body_seconds=60)
     with serving(app_of(edge=edge)) as address:
         yield address
 
@@ -128,7 +128,7 @@ def test_the_body_of_a_job_counts_until_the_job_has_ended(
     headers: dict[str, str], tmp_path: Path
 ) -> None:
     actor = Shuffler(gate=tmp_path / "gate")
-    edge = Edge(bodies=BodyBounds(under_way=150_000))
+    edge = Edge(bodies_bytes=150_000)
     long = 90_000 * b" " + REQUEST
     with serving(app_of(actor, edge=edge)) as url, httpx.Client(base_url=url, timeout=30) as client:
         later = {**JSON, "Prefer": "respond-async", **headers}
@@ -207,7 +207,7 @@ def test_answers_that_nobody_reads_take_no_more_than_the_budget() -> None:
     front = replace(document("converged"), tours=tours, ends=ends)
     store = SqliteStore(IN_MEMORY, entries=9, max_age=60)
     asyncio.run(store.put(record("long", caller="anonymous", front=front)))
-    edge = Edge(bodies=BodyBounds(under_way=30_000_000))
+    edge = Edge(bodies_bytes=30_000_000)
     with serving(app_of(store=store, edge=edge)) as url, closing(socket.socket()) as unread:
         unread.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         unread.connect(("127.0.0.1", int(url.rpartition(":")[2])))

@@ -188,7 +188,7 @@ def test_json_that_is_too_deep_is_refused_before_a_process_is_started(
         raise AssertionError("a process was asked for")
 
     monkeypatch.setattr("service.api.task_parser.to_process.run_sync", start)
-    task_parser = TaskParser(replace(LARGE, cities=200_000), INFO)
+    task_parser = TaskParser(replace(LARGE, cities=200_000), INFO, BOUNDS)
 
     async def parse() -> None:
         if replanned:

@@ -72,7 +72,7 @@ class FrontAnswers:
 
     def __init__(self, streets: Streets | None, budget: BodyBudget) -> None:
         self._streets = streets
-        self.budget = budget
+        self._budget = budget
 
     def check(self, request: Request, stops: Stops | None, geometry: Geometry) -> None:
         """Raise a refusal where a request accepts GeoJSON that cannot be made.
@@ -114,7 +114,7 @@ class FrontAnswers:
             _check_plan(request, record, plan)
         items = record.front.tours if plan is None else record.front.tour(plan)
         alone = request.method == "POST" and "idempotency-key" not in request.headers
-        with self.budget.open(client_of(request), len(items), always=alone) as allowance:
+        with self._budget.open(client_of(request), len(items), always=alone) as allowance:
             if accepts_geojson(request):
                 drawing = await asyncio.to_thread(Drawing.of, record, b"[%b]" % items, plan or 0)
                 response = await self._drawn(request, drawing, geometry, seconds)

@@ -158,10 +158,12 @@ class Connection(H11Protocol):
 
     def _note_state(self) -> None:
         """Start the deadline for a request's head, or end it once the head has come."""
-        if self._output.is_closing():
+        if self.lingering:
+            return
+        self._connections.set_idle(self, self._idle)
+        if self._socket.is_closing():
             return
         self._output.update_reading()
-        self._connections.set_idle(self, self._idle)
         if self._half_closed:
             if not self._owes_answer:
                 self._socket.close()
