@@ -63,7 +63,7 @@ def test_a_key_lets_its_caller_in(url: str, key: str) -> None:
         {"X-API-Key": DISPATCH},
     ],
 )
-def test_whoever_has_no_key_is_refused(url: str, headers: dict[str, str]) -> None:
+def test_a_caller_without_a_key_is_refused(url: str, headers: dict[str, str]) -> None:
     answer = httpx.post(f"{url}/front", json=FRONT, headers=headers)
     problem(answer, 401, "unauthorized")
     assert answer.headers["www-authenticate"] == "Bearer"
@@ -161,7 +161,7 @@ def test_the_header_of_a_proxy_that_is_not_trusted_counts_for_nothing() -> None:
     ],
     ids=["no hash", "the key itself", "65 digits", "a name with a space", "no name"],
 )
-def test_what_is_no_hash_is_refused(text: str, sentence: str) -> None:
+def test_an_entry_without_a_hash_is_refused(text: str, sentence: str) -> None:
     with pytest.raises(ValueError, match=sentence):
         KeyHash.read(text)
 

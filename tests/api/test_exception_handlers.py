@@ -26,7 +26,7 @@ def test_a_long_path_is_shown_shortened(client: httpx.Client) -> None:
 @pytest.mark.parametrize(
     ("path", "method", "allowed"), [("/front", "PUT", "POST"), ("/front/x", "POST", "DELETE, GET")]
 )
-def test_a_method_that_a_path_has_not_is_405_and_names_all_it_has(
+def test_a_method_that_a_path_lacks_is_405_and_names_all_others(
     client: httpx.Client, path: str, method: str, allowed: str
 ) -> None:
     answer = client.request(method, path)

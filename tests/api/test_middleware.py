@@ -84,7 +84,7 @@ class Observed(Metrics):
         self.requests.append(answered)
 
 
-def test_a_client_that_goes_away_before_its_body_has_ended_is_no_fault(
+def test_a_client_that_goes_away_before_its_body_has_ended_is_not_a_fault(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     observed = Observed()

@@ -60,5 +60,5 @@ def test_a_search_finds_sections_by_an_address_that_leads_to_them(client: httpx.
 
 
 @pytest.mark.parametrize("path", ["none", "INDEX", "index.md", "../settings", "site/none.js"])
-def test_what_is_no_page_is_404(client: httpx.Client, path: str) -> None:
+def test_a_path_without_a_page_is_404(client: httpx.Client, path: str) -> None:
     problem(client.get(f"/guide/{path}"), 404, "no-such-path")

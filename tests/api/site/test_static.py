@@ -36,7 +36,7 @@ def test_files_are_served_and_asked_for_anew_each_time(
 
 
 @pytest.mark.parametrize("path", ["/page/none.js", "/page/../settings.py", "/examples/none.json"])
-def test_what_is_no_file_of_the_page_is_404(client: httpx.Client, path: str) -> None:
+def test_a_path_without_a_file_is_404(client: httpx.Client, path: str) -> None:
     problem(client.get(path), 404, "no-such-path")
 
 

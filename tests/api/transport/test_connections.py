@@ -241,7 +241,7 @@ def test_httpx_gets_the_refusal_of_a_body_of_twenty_megabytes(url: str, chunked:
         assert (answer.status_code, answer.json()["code"]) == (413, "body-too-long")
 
 
-def test_a_client_that_resets_a_refused_connection_is_no_error_in_the_log(
+def test_a_client_that_resets_a_refused_connection_leaves_no_error_in_the_log(
     url: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def find_it_gone(_: object) -> None:
@@ -340,7 +340,9 @@ def test_a_client_that_does_not_read_its_answer_is_cut_off(
         assert read_to_the_end(connection) < 15 * 2**20
 
 
-def test_an_upgrade_is_no_reason_to_warn(url: str, caplog: pytest.LogCaptureFixture) -> None:
+def test_an_upgrade_leaves_no_warning_in_the_log(
+    url: str, caplog: pytest.LogCaptureFixture
+) -> None:
     headers = {"Connection": "Upgrade", "Upgrade": "websocket"}
     assert httpx.get(f"{url}/actors", headers=headers).status_code == 200
     assert "pgrade" not in caplog.text
