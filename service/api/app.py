@@ -67,11 +67,6 @@ class Edge:
     tiles: Tiles = field(default_factory=Tiles)
 
     @property
-    def guard(self) -> dict[str, Any]:
-        """The arguments with which a guarded router is included."""
-        return {"dependencies": self.access.dependencies, "responses": problem_responses(401, 429)}
-
-    @property
     def middleware(self) -> list[Middleware]:
         """The middleware that each request passes, outermost first."""
         cors = Middleware(
@@ -127,13 +122,15 @@ def create_app(
         docs_url=None,
         redoc_url=None,
     )
-    plans = PlanRoutes(parser, budget, most_bytes, engine, store, seconds, answers)
-    app.include_router(plans.router(), **edge.guard)
-    files = file_router(parser, budget, most_bytes, answers_budget)
-    app.include_router(files, **edge.guard)
-    app.include_router(StoredFrontRoutes(store, engine, answers).router(), **edge.guard)
-    app.include_router(_actor_router(actors), **edge.guard)
-    app.include_router(edge.metrics.router(), **edge.guard)
+    refusals = problem_responses(401, 429)
+    for guarded in (
+        PlanRoutes(parser, budget, most_bytes, engine, store, seconds, answers).router(),
+        file_router(parser, budget, most_bytes, answers_budget),
+        StoredFrontRoutes(store, engine, answers).router(),
+        _actor_router(actors),
+        edge.metrics.router(),
+    ):
+        app.include_router(guarded, dependencies=edge.access.dependencies, responses=refusals)
     app.include_router(_health_router(engine))
     # Last, because routes are tried in order and these are many.
     app.routes.extend(

@@ -31,7 +31,7 @@ _SECONDS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 _SHARES = (0.0, 0.0001, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
 
 
-class Metrics:
+class Metrics(Collector):
     """Counters and histograms of one service, in a registry of their own."""
 
     def __init__(self) -> None:
@@ -80,8 +80,8 @@ class Metrics:
             "paretour_router_seconds", "one question to the routing engine"
         )
         self._engine: Engine | None = None
-        self._workers = _WorkerCollector()
-        registry.register(self._workers)
+        self._stats: EngineStats | None = None  # at the last scrape
+        registry.register(self)
 
     def router(self) -> APIRouter:
         """Return the route that Prometheus scrapes."""
@@ -94,8 +94,20 @@ class Metrics:
     async def exposition(self) -> Response:
         """Return all metrics in the text format of Prometheus."""
         if self._engine is not None:
-            self._workers.stats = await self._engine.stats()
+            self._stats = await self._engine.stats()
         return _Exposition(generate_latest(self._registry))
+
+    def collect(self) -> Iterator[Metric]:
+        """Yield the gauges and the counter of the engine's workers."""
+        if (stats := self._stats) is None:
+            return
+        yield GaugeMetricFamily(
+            "paretour_queue_depth", "fronts that wait for a worker", stats.waiting
+        )
+        yield GaugeMetricFamily("paretour_workers_busy", "workers that plan a front", stats.working)
+        yield CounterMetricFamily(
+            "paretour_worker_restarts", "workers that were lost and replaced", stats.lost
+        )
 
     def answered(self, answered: AnsweredRequest) -> None:
         """Count a request that was answered."""
@@ -129,27 +141,6 @@ def _children(metric: AnyMetric) -> Callable[..., AnyMetric]:
     It remembers the children: to look one up takes longer than to count in it.
     """
     return cache(metric.labels)
-
-
-class _WorkerCollector(Collector):
-    """The workers of the engine at the last scrape."""
-
-    def __init__(self) -> None:
-        self.stats: EngineStats | None = None
-
-    def collect(self) -> Iterator[Metric]:
-        """Yield the gauges and the counter of the workers."""
-        if (workers := self.stats) is None:
-            return
-        yield GaugeMetricFamily(
-            "paretour_queue_depth", "fronts that wait for a worker", workers.waiting
-        )
-        yield GaugeMetricFamily(
-            "paretour_workers_busy", "workers that plan a front", workers.working
-        )
-        yield CounterMetricFamily(
-            "paretour_worker_restarts", "workers that were lost and replaced", workers.lost
-        )
 
 
 class _Exposition(Response):
