@@ -184,7 +184,7 @@ async def _post_job(crowd: Crowd, client: httpx.AsyncClient, headers: dict[str, 
         crowd.faults.append(f"a front without a tour: {answer.text[:300]}")
     if answer.status_code == 202:
         found = await client.get(f"/front/{front['id']}")
-        if found.status_code not in (200, 410):
+        if found.status_code not in (200, 410, 429, 503):  # the proxy may refuse to ask for it
             crowd.faults.append(f"job {front['id']} is lost: {found.status_code}")
 
 
