@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails, from_json, to_json
 
 from service.errors import MOST_FAULTS, Fault, Refusal
+from service.errors.exceptions import summary
 
 Model = TypeVar("Model", bound=BaseModel)
 _ANYTHING: Mapping[str, Any] = {}
@@ -61,8 +62,7 @@ def refusal_of(
 ) -> Refusal:
     """Return pydantic's errors in a body of this JSON schema, or in query parameters."""
     faults = [_fault(error, parameters, schema) for error in errors[:MOST_FAULTS]]
-    more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
-    return Refusal("invalid-request", detail=faults[0].detail + more, errors=faults)
+    return Refusal("invalid-request", errors=faults, detail=summary(faults[0], len(errors)))
 
 
 def too_many_cities(part: str, limit: int, actual: int, condition: str = "") -> Refusal:
