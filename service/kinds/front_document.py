@@ -1,9 +1,9 @@
 """A front as JSON: the one form in which it is sent between processes, stored and answered.
 
 To add a member to the answer, add a field to `FrontDocument` and fill it in where documents are
-written: `empty_document` in `table`, `tour_document`, and `document` in `fleet` and in `robots`.
-Stores, engines and routes pass on all members without knowing them. A field that earlier releases
-did not store needs a default.
+written: `empty_document` in `table`, `tour_document`, `fleet` and `robots`. Stores, engines and
+routes pass on all members without knowing them. A field that earlier releases did not store needs a
+default.
 """
 
 from collections.abc import Mapping
@@ -14,10 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from service.front import Termination
+from service.fleet.plans import FleetFront
+from service.front import Front, Termination
 from service.instance import OBJECTIVES
 from service.kinds.json_parts import joined, split
 from service.pareto import balances
+from service.preferences import angles
 from service.requests.task import KindName
 
 _HEAD = 100  # the first bytes of a tour, which contain its first members
@@ -88,6 +90,20 @@ class FrontDocument:
     ends: bytes = b""
     angles: bytes = b""
     gained: float | None = None
+
+    @classmethod
+    def of(cls, front: Front | FleetFront, **members: Any) -> Self:
+        """Return the document of a front that was found, with these other members."""
+        return cls(
+            points=front.found,
+            hypervolume=front.hypervolume,
+            reference_point=front.reference_point.tolist(),
+            scale=front.scale.tolist(),
+            timings_ms=Timings(front.timings),
+            terminated=front.terminated,
+            angles=angles(front.points, front.scale).tobytes(),
+            **members,
+        )
 
     @classmethod
     def from_members(cls, members: Mapping[str, Any], **encoded: Any) -> Self:

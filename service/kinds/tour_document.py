@@ -11,7 +11,7 @@ from pydantic_core import to_json
 from service.coverage.path import CoveragePath
 from service.coverage.survey import Survey
 from service.front import Front
-from service.kinds.front_document import FrontDocument, Timings
+from service.kinds.front_document import FrontDocument
 from service.kinds.json_parts import encode_path, encode_tours, joined, split, with_member
 from service.pareto import balances
 from service.requests.stops import Labels
@@ -25,11 +25,15 @@ def encode_front(
     labels: Labels | None = None,
     arrivals: NDArray[np.float64] | None = None,
 ) -> FrontDocument:
-    """Return a front as JSON, with the ids of stops, the arrivals and the paths that are given.
+    """Return a front as JSON.
 
-    With a survey it has the places on the map, and the cells that are uncovered.
-
-    The actor is left out if it built no tours. Arrivals have shape (m, stops, 2).
+    Args:
+        front: The front.
+        actor: The name and digest of the network, which is left out if it built no tours.
+        surveyed: The map, whose places and uncovered cells are members of the document.
+        paths: The path of each tour.
+        labels: The names of stops and objectives.
+        arrivals: Both lengths of each tour up to each of its stops, shape (m, stops, 2).
     """
     tours, ends = encode_tours(_rows(front, arrivals))
     if labels is not None:
@@ -39,23 +43,17 @@ def encode_front(
             with_member(tour, b"path", encode_path(path))
             for tour, path in zip(split(tours, ends), paths, strict=True)
         )
-    return FrontDocument(
+    return FrontDocument.of(
+        front,
         kind="front" if surveyed is None else "coverage",
         cities=front.n,
-        points=front.found,
-        hypervolume=front.hypervolume,
         hypervolume_bound=front.bound,
-        reference_point=front.reference_point.tolist(),
-        scale=front.scale.tolist(),
-        timings_ms=Timings(front.timings),
-        terminated=front.terminated,
         actor=actor if front.constructed else None,
         **on_map(surveyed),
         closed=None if front.closed else False,
         **({} if labels is None else labels.members),
         tours=tours,
         ends=ends,
-        angles=front.angles.tobytes(),
         gained=front.gained,
     )
 

@@ -23,7 +23,7 @@ from service.examples.warehouse import DOCKS
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.front import PlanOptions
 from service.instance import Instance
-from service.kinds.robots.as_fleet import robot_fleet
+from service.kinds.robots import robot_fleet
 from service.planner import plan
 from service.requests.coverage import parse_coverage_request
 from service.requests.fleets.request import parse_fleet_request
