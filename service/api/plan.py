@@ -36,10 +36,10 @@ from service.jobs.engine import Engine, record_in_time
 from service.jobs.record import Record
 from service.jobs.store import Store
 from service.kinds.table import empty_document
+from service.requests.fields import Geometry
 from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront, not_replannable
 from service.requests.replan.parser import ReplanSource
-from service.requests.schemas import Geometry
 from service.requests.stored_task import stored
 from service.requests.task import Task, TaskKind, TaskSource
 

@@ -18,9 +18,8 @@ from service.kinds.front_document import FrontDocument
 from service.kinds.json_parts import joined
 from service.kinds.kind import NamedActor, Report, Tools
 from service.pareto import balances
-from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import check_reference_point
-from service.requests.task import Task
+from service.requests.task import Task, UnmeasuredFleet
 
 
 def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report) -> FrontDocument:

@@ -29,8 +29,7 @@ from service.kinds.json_parts import encode_path, with_member
 from service.kinds.kind import Report, Tools
 from service.kinds.tour_document import on_map
 from service.kinds.tours import unless_cancelled
-from service.requests.maps.robots import SharedCoverage
-from service.requests.task import Task
+from service.requests.task import SharedCoverage, Task
 
 Indices = NDArray[np.int64]
 

@@ -6,10 +6,8 @@ from typing import Any
 from service.coverage.coverage import Coverage
 from service.kinds.front_document import FrontDocument, Timings
 from service.kinds.kind import Kind
-from service.requests.fleets.subject import UnmeasuredFleet
-from service.requests.maps.robots import SharedCoverage
 from service.requests.stops import Stops
-from service.requests.task import KindName, Task
+from service.requests.task import KindName, SharedCoverage, Task, UnmeasuredFleet
 
 
 def _outline_of_front(task: Task) -> tuple[int, dict[str, Any]]:

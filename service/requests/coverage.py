@@ -1,7 +1,6 @@
-"""Requests of `POST /coverage`: their fields, their JSON schema and their parser."""
+"""Requests of `POST /coverage`: their fields, and their parser."""
 
-from collections.abc import Iterable
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,20 +10,7 @@ from service.coverage.coverage import Coverage
 from service.errors import invalid
 from service.instance import CLOSED, Kind, RouteEnds
 from service.requests.arrays import array_field, check_costs, cost_matrix
-from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
-from service.requests.maps.fields import ABSENT, Layer, MapRequest, describe_map, empty_array
-from service.requests.maps.robots import (
-    DEFAULT_OVER,
-    MOST_ROBOTS,
-    OverBoth,
-    RobotItem,
-    RobotPose,
-    SharedCoverage,
-    check_robots,
-    describe_robots,
-    rules_of_robots,
-)
-from service.requests.schemas import (
+from service.requests.fields import (
     LARGEST,
     NO_WAY,
     CostRows,
@@ -32,11 +18,21 @@ from service.requests.schemas import (
     PlanePoint,
     PositiveNumber,
 )
+from service.requests.limits import Limits, check_limits, lower_defaults
+from service.requests.maps.fields import Layer, MapRequest, empty_array
+from service.requests.maps.robots import (
+    DEFAULT_OVER,
+    MOST_ROBOTS,
+    OverBoth,
+    RobotItem,
+    RobotPose,
+    check_robots,
+)
+from service.requests.task import SharedCoverage
 from service.requests.validation import parse_json, too_many_cities
 
 Matrix = Annotated[NDArray[np.float64], array_field(cost_matrix, CostRows)]
 Cell = Annotated[list[NonNegativeInteger], Field(min_length=2, max_length=2, fail_fast=True)]
-_SECOND = ("second_matrix", "cost_layer", "second_coordinates")
 
 
 class CoverageRequest(MapRequest):
@@ -131,56 +127,6 @@ class CoverageRequest(MapRequest):
 
 
 AnyCoverageRequest = TypeVar("AnyCoverageRequest", bound=CoverageRequest)
-
-
-def coverage_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str, Any]]:
-    """Return the JSON schemas of a request, without and with a file of the map, by name."""
-    whole = _coverage_schema(limits, actors)
-    maps = ("grid", "occupancy_grid")
-    _, *others = whole["allOf"]
-    file = {
-        **whole,
-        "title": "CoverageFileRequest",
-        "description": "Places on a map that is a file, and the options of their front.",
-        "properties": {k: v for k, v in whole["properties"].items() if k not in maps},
-        "required": ["cell_size"],
-        "allOf": others,
-    }
-    return {"CoverageRequest": whole, "CoverageFileRequest": file}
-
-
-def _coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
-    """Return the JSON schema of a request under these limits, with these actors to choose from."""
-    schema = limited_schema(CoverageRequest, limits, actors)
-    fields = schema["properties"]
-    describe_robots(schema, limits.most_places(shared=False))
-    forms = describe_map(schema, limits.cells)
-    del fields["spacing"]["default"]
-    fields["places"]["maxItems"] = limits.most_places(shared=False)
-    in_a_frame = [{"required": ["origin"]}, {"required": ["occupancy_grid"]}]
-    schema["dependentSchemas"] = {
-        **rules_of_robots(),
-        "start_pose": {
-            "anyOf": in_a_frame,
-            "properties": {"start": ABSENT, "initial_tours": ABSENT},
-        },
-        "end_pose": {
-            "anyOf": in_a_frame,
-            "required": ["closed"],
-            "properties": {"closed": {"const": False}, "end": ABSENT, "initial_tours": ABSENT},
-        },
-    }
-    schema["allOf"] = [
-        {"oneOf": forms},
-        {"oneOf": [{"required": ["places"]}, {"required": ["spacing"]}]},
-        {
-            "oneOf": [
-                *({"required": [name]} for name in _SECOND),
-                {"required": ["robots"], "properties": dict.fromkeys(_SECOND, ABSENT)},
-            ]
-        },
-    ]
-    return schema
 
 
 def parse_coverage_request(

@@ -15,8 +15,7 @@ from service.instance import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.arrays import costs_array
 from service.requests.coverage import CoverageRequest, parse_coverage_as
-from service.requests.front import FrontRequest
-from service.requests.front_parser import parse_front_as
+from service.requests.front import FrontRequest, parse_front_as
 from service.requests.limits import Limits
 from service.requests.parser import coverage_task, front_task
 from service.requests.replan.fields import Cost

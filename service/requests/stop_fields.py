@@ -1,6 +1,6 @@
 """The fields of stops and objectives in requests, and their conversion to stops and sources."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import takewhile
 from typing import Annotated
 
@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from service.errors import invalid
 from service.requests.arrays import check_costs, cost_matrix
-from service.requests.schemas import (
+from service.requests.fields import (
     LARGEST,
     NO_WAY,
     CostRows,
@@ -114,11 +114,7 @@ def read_stops(items: Sequence[StopItem]) -> tuple[Stop, ...]:
     Raises:
         Refusal: Two have the same id.
     """
-    first: dict[str, int] = {}
-    for index, item in enumerate(items):
-        if (other := first.setdefault(item.id, index)) != index:
-            demand = f"must not be that of stops/{other}, got {show(item.id)} twice"
-            raise invalid(f"stops/{index}/id", demand)
+    check_unique([item.id for item in items], "stops")
     return tuple(Stop(item.id, item.location) for item in items)
 
 
@@ -128,25 +124,41 @@ def read_objectives(items: Sequence[ObjectiveItem]) -> tuple[Objective, ...]:
     Raises:
         Refusal: Both have the same name, or one has a unit other than its measure's.
     """
-    first, second = items
-    if first.name == second.name:
-        demand = f"must not be that of objectives/0, got {show(second.name)} twice"
-        raise invalid("objectives/1/name", demand)
+    check_unique([item.name for item in items], "objectives", "name")
     return tuple(item.objective(f"objectives/{m}") for m, item in enumerate(items))
 
 
-def find_index(reference: int | str, ids: Mapping[str, int], part: str) -> int:
+def check_unique(names: Iterable[str], items: str, member: str = "id") -> None:
+    """Raise a refusal where two items of a list, as stops, have the same id or name."""
+    first: dict[str, int] = {}
+    for index, name in enumerate(names):
+        if (other := first.setdefault(name, index)) != index:
+            demand = f"must not be that of {items}/{other}, got {show(name)} twice"
+            raise invalid(f"{items}/{index}/{member}", demand)
+
+
+def find_index(
+    reference: int | str,
+    ids: Mapping[str, int],
+    part: str,
+    n: int | None = None,
+    noun: str = "a stop",
+) -> int:
     """Return the index of a stop that is named by its id or its index.
 
     Args:
-        reference: The id or the index, which is not checked.
+        reference: The id or the index.
         ids: The index of each stop by its id; empty where the cities have no ids.
         part: Its place in the request, such as initial_tours/0/2.
+        n: The number of stops that an index may be of; without it, an index is not checked.
+        noun: What these stops are, for the sentence.
 
     Raises:
-        Refusal: No stop has this id.
+        Refusal: No stop has this id or index.
     """
     if isinstance(reference, int):
+        if n is not None and reference >= n:
+            raise invalid(part, f"must be {noun}, 0 to {n - 1}, got {reference}")
         return reference
     if reference in ids:
         return ids[reference]

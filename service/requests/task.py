@@ -1,21 +1,75 @@
-"""Tasks: what is planned, as a request says it once it is checked."""
+"""Tasks: what a request asks for, checked and ready to be planned."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 from service.construction.repairs import TOURS_REPAIRED
 from service.coverage.coverage import Coverage
 from service.errors import CityNames
+from service.fleet.fleet import Fleet, Over, Rules
 from service.front import PlanOptions
 from service.replanning.earlier_tours import EarlierTours
-from service.requests.fleets.subject import UnmeasuredFleet
-from service.requests.maps.robots import SharedCoverage
-from service.requests.schemas import Geometry
-from service.requests.stops import Labels, Stops
+from service.requests.fields import Geometry
+from service.requests.stops import Array, Labels, RoadMeasure, Stops, cost_matrices
 
 KindName = Literal["front", "coverage", "fleet", "robots"]
 _BRIEF = 5000  # preferences times cities
+_METRES = {"sum": "total distance", "max": "longest route"}
+_COSTS = {"sum": "total cost", "max": "greatest cost"}
+
+
+@dataclass(frozen=True, eq=False)
+class UnmeasuredFleet:
+    """The rules of a fleet, the names of its types of vehicles, and the sources of its costs."""
+
+    rules: Rules
+    vehicles: tuple[str, ...]
+    stops: Stops
+
+    @property
+    def n(self) -> int:
+        """The number of stops."""
+        return self.rules.n
+
+    def members(self, labels: Labels) -> dict[str, Any]:
+        """Return the members of an answer that name the stops and objectives, ready for JSON."""
+        members = labels.members
+        objectives = zip(members["objectives"], self.rules.over, strict=True)
+        return {**members, "objectives": [{**each, "over": over} for each, over in objectives]}
+
+    def measured_by_road(self, costs: Mapping[RoadMeasure, Array]) -> "UnmeasuredFleet":
+        """Return this fleet with a matrix, shape (n, n), in place of each measure by road."""
+        return replace(self, stops=self.stops.measured_by_road(costs))
+
+    def fleet(self) -> Fleet:
+        """Return the fleet with its costs. O(n^2)."""
+        return Fleet(rules=self.rules, costs=cost_matrices(self.stops))
+
+
+@dataclass(frozen=True, eq=False)
+class SharedCoverage:
+    """A coverage task that robots share, and how the lengths of their routes are a plan's."""
+
+    coverage: Coverage
+    over: tuple[Over, Over]
+
+    @property
+    def members(self) -> dict[str, Any]:
+        """The members of an answer that tell plans from tours: objectives, and open routes."""
+        first, second = self.over
+        closed = all(robot.closed for robot in self.coverage.robots)
+        costs = {"name": _COSTS[second], "unit": None}
+        metres = {"name": _METRES[second], "unit": "m"}
+        return {
+            "closed": None if closed else False,
+            "objectives": [
+                {"name": _METRES[first], "unit": "m", "over": first},
+                {**(costs if self.coverage.has_costs else metres), "over": second},
+            ],
+        }
+
+
 _KINDS: Mapping[type, KindName] = {
     Stops: "front",
     Coverage: "coverage",

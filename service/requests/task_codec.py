@@ -21,8 +21,6 @@ from service.fleet.fleet import Rules, Shipment, VehicleType, Visit
 from service.front import PlanOptions
 from service.instance import RouteEnds
 from service.replanning.earlier_tours import EarlierTours
-from service.requests.fleets.subject import UnmeasuredFleet
-from service.requests.maps.robots import SharedCoverage
 from service.requests.stops import (
     Changed,
     Labels,
@@ -33,7 +31,7 @@ from service.requests.stops import (
     Stop,
     Stops,
 )
-from service.requests.task import Task
+from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
 
 _FIRST_LINE = b"paretour task 1\n"
 _LENGTH = struct.Struct("!Q")

@@ -9,7 +9,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from service.errors import Refusal
 from service.pareto import balances, knee
-from service.requests.schemas import GEOMETRY, Angle, Geometry
+from service.requests.fields import GEOMETRY, Angle, Geometry
 
 Array = NDArray[np.float64]
 _BUDGETS = ("first_at_most", "second_at_most")  # of objectives 0 and 1

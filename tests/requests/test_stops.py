@@ -10,8 +10,7 @@ import pytest
 from pydantic_core import to_json
 
 from service.errors import Refusal
-from service.requests.front import FrontRequest
-from service.requests.front_parser import parse_front_request
+from service.requests.front import FrontRequest, parse_front_request
 from service.requests.stops import (
     Measured,
     Objective,

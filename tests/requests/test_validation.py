@@ -3,8 +3,8 @@
 import pytest
 
 from service.errors import MOST_FAULTS, Refusal
+from service.requests.fields import PlanRequest
 from service.requests.front import FrontRequest
-from service.requests.schemas import PlanRequest
 from service.requests.validation import check_depth, parse_json, shorten
 
 

@@ -4,7 +4,6 @@ A map is the rows of `grid`, a picture beside the JSON, or an occupancy grid of 
 picture go by the names of the keys of a map.yaml, so that one becomes a request by copying them.
 """
 
-from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -13,6 +12,7 @@ from pydantic import Field
 
 from service.errors import invalid
 from service.requests.arrays import Array, array_field, rectangular_array
+from service.requests.fields import ArrayRows, AsInteger, Number, PlanRequest, PositiveNumber
 from service.requests.maps.occupancy_grid import OccupancyGrid
 from service.requests.maps.pictures import (
     UNKNOWN,
@@ -22,7 +22,6 @@ from service.requests.maps.pictures import (
     occupancy,
     read_picture,
 )
-from service.requests.schemas import ArrayRows, AsInteger, Number, PlanRequest, PositiveNumber
 from service.requests.validation import too_many_cells
 
 Layer = Annotated[NDArray[np.float64], array_field(rectangular_array, ArrayRows)]
@@ -31,7 +30,7 @@ _Pose = Annotated[list[Number], Field(min_length=3, max_length=3, fail_fast=True
 
 _OF_PICTURE = ("mode", "negate", "occupied_thresh", "free_thresh")
 # The forms of a map in the JSON, and the fields that have nothing to say about them.
-_USELESS = {
+USELESS = {
     "grid": (*_OF_PICTURE, "obstacle_from", "unknown"),
     "occupancy_grid": (*_OF_PICTURE, "cell_size", "origin"),
 }
@@ -119,14 +118,14 @@ class MapRequest(PlanRequest):
 
     def _check_forms(self, picture: bytes | None) -> None:
         given = self.model_fields_set
-        forms = [form for form in _USELESS if form in given]
+        forms = [form for form in USELESS if form in given]
         if picture is not None:
             forms.append("the part map")
         if not forms:
             raise invalid("grid", "is required, as rows, as occupancy_grid or as the part map")
         if len(forms) > 1:
             raise invalid("grid", f"must come once, got it as {' and as '.join(forms)}")
-        for name in _USELESS.get(forms[0], ()):
+        for name in USELESS.get(forms[0], ()):
             if name in given:
                 raise invalid(name, f"must be left out where the map comes as {forms[0]}")
         if forms != ["occupancy_grid"] and "cell_size" not in given:
@@ -157,42 +156,6 @@ class MapRequest(PlanRequest):
         if self.unknown == "blocked":
             blocked |= values == UNKNOWN
         return blocked.astype(np.float64)
-
-
-# Of a member that must not be there: as false, which generators of clients do not read.
-ABSENT: dict[str, Any] = {"not": {}}
-
-
-def describe_map(schema: dict[str, Any], most_cells: int) -> list[dict[str, Any]]:
-    """Refine the fields of a map in a JSON schema, and return a schema for each form of a map.
-
-    Definitions are put where they are referred to, as the schema is part of a larger document.
-    """
-    fields, definitions = schema["properties"], schema.pop("$defs")
-    fields["grid"]["items"]["items"] = {"enum": [0, 1]}
-    for name in ("cell_size", "mode", "free_thresh"):
-        del fields[name]["default"]
-    fields["occupancy_grid"] = _inlined(fields["occupancy_grid"], definitions)
-    data = fields["occupancy_grid"]["properties"]["data"]
-    data["items"], data["maxItems"] = {"type": "integer", "minimum": -1, "maximum": 100}, most_cells
-    required = {"grid": ["grid", "cell_size"], "occupancy_grid": ["occupancy_grid"]}
-    return [
-        {"required": required[form], "properties": dict.fromkeys((*useless, *others), ABSENT)}
-        for form, useless in _USELESS.items()
-        if (others := _USELESS.keys() - {form})
-    ]
-
-
-def _inlined(schema: Any, definitions: Mapping[str, Any]) -> Any:
-    """Return a JSON schema with definitions in the place of the references to them."""
-    if isinstance(schema, list):
-        return [_inlined(each, definitions) for each in schema]
-    if not isinstance(schema, dict):
-        return schema
-    beside = {name: _inlined(each, definitions) for name, each in schema.items() if name != "$ref"}
-    if "$ref" not in schema:
-        return beside
-    return {**_inlined(definitions[schema["$ref"].rsplit("/", 1)[1]], definitions), **beside}
 
 
 def _check_grid(grid: Array, most: int) -> None:

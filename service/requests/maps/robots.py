@@ -1,23 +1,18 @@
-"""The fields of a coverage request about several robots, and the task that they share."""
+"""The fields of a coverage request about several robots, and their checks."""
 
-from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass
-from typing import Annotated, Any
+from collections.abc import Sequence, Set
+from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.coverage.coverage import Coverage
 from service.coverage.robots import Robot
 from service.errors import invalid
 from service.fleet.fleet import Over
 from service.instance import OBJECTIVES
-from service.requests.maps.fields import ABSENT
-from service.requests.schemas import NonNegativeInteger, Number, Text
-from service.requests.validation import show
+from service.requests.fields import NonNegativeInteger, Number, Text
+from service.requests.stop_fields import check_unique
 
 MOST_ROBOTS = 100
-_METRES = {"sum": "total distance", "max": "longest route"}
-_COSTS = {"sum": "total cost", "max": "greatest cost"}
 DEFAULT_OVER: tuple[Over, Over] = ("sum", "max")
 RobotPose = Annotated[list[Number], Field(min_length=2, max_length=3, fail_fast=True)]
 OverBoth = Annotated[
@@ -36,7 +31,7 @@ OF_ONE_ROBOT = (
     "bound",
     "actor",
 )
-_ENDS = (("start", "start_pose"), ("end", "end_pose"))
+ENDS = (("start", "start_pose"), ("end", "end_pose"))
 
 
 class RobotItem(BaseModel):
@@ -72,29 +67,6 @@ class RobotItem(BaseModel):
         )
 
 
-@dataclass(frozen=True, eq=False)
-class SharedCoverage:
-    """A coverage task that robots share, and how the lengths of their routes are a plan's."""
-
-    coverage: Coverage
-    over: tuple[Over, Over]
-
-    @property
-    def members(self) -> dict[str, Any]:
-        """The members of an answer that tell plans from tours: objectives, and open routes."""
-        first, second = self.over
-        closed = all(robot.closed for robot in self.coverage.robots)
-        costs = {"name": _COSTS[second], "unit": None}
-        metres = {"name": _METRES[second], "unit": "m"}
-        return {
-            "closed": None if closed else False,
-            "objectives": [
-                {"name": _METRES[first], "unit": "m", "over": first},
-                {**(costs if self.coverage.has_costs else metres), "over": second},
-            ],
-        }
-
-
 def check_robots(
     robots: Sequence[RobotItem], over: Sequence[Over], given: Set[str], closed: bool
 ) -> None:
@@ -113,37 +85,16 @@ def check_robots(
             raise invalid(name, "must be left out with robots, whose routes are planned together")
     if list(over) == ["max", "max"]:
         raise invalid("over/1", "must be sum, as over/0 is max, got max")
-    first: dict[str, int] = {}
+    check_unique([robot.id for robot in robots], "robots")
     for index, robot in enumerate(robots):
-        if (other := first.setdefault(robot.id, index)) != index:
-            demand = f"must not be that of robots/{other}, got {show(robot.id)} twice"
-            raise invalid(f"robots/{index}/id", demand)
         _check_ends(robot, f"robots/{index}", closed)
 
 
 def _check_ends(robot: RobotItem, part: str, closed: bool) -> None:
     given = robot.model_fields_set
-    for place, pose in _ENDS:
+    for place, pose in ENDS:
         if place in given and pose in given:
             raise invalid(f"{part}/{pose}", f"or {place} must be left out")
     for name in ("end", "end_pose"):
         if closed and name in given:
             raise invalid(f"{part}/{name}", "is for open routes, with closed false")
-
-
-def describe_robots(schema: Mapping[str, Any], most_places: int) -> None:
-    """Refine the field of robots in the JSON schema of a request, and put their own in it."""
-    robot: dict[str, Any] = schema["$defs"][RobotItem.__name__]
-    for name in ("start", "end"):
-        robot["properties"][name]["maximum"] = most_places - 1
-    del robot["properties"]["end"]["default"]
-    robot["dependentSchemas"] = {place: {"properties": {pose: ABSENT}} for place, pose in _ENDS}
-    schema["properties"]["robots"]["items"] = robot
-
-
-def rules_of_robots() -> dict[str, Any]:
-    """Return the rules of a request with robots, as dependentSchemas."""
-    return {
-        "robots": {"properties": dict.fromkeys(OF_ONE_ROBOT, ABSENT)},
-        "over": {"required": ["robots"]},
-    }

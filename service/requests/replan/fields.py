@@ -1,17 +1,15 @@
-"""Requests to replan a front: their fields, their JSON schemas, and what belongs to which kind."""
+"""Requests to replan a front: their fields, and which of them a kind of front has."""
 
-from collections.abc import Iterable
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from service.errors import invalid
 from service.instance import OBJECTIVES
 from service.requests.coverage import Cell
-from service.requests.limits import Limits, limited_schema
+from service.requests.fields import GEOMETRY, LARGEST, Geometry, PlanePoint, PlanFields, Text
 from service.requests.maps.fields import Layer, empty_array
 from service.requests.maps.robots import RobotPose
-from service.requests.schemas import GEOMETRY, LARGEST, Geometry, PlanePoint, PlanFields, Text
 from service.requests.stop_fields import Latitude, Longitude, ObjectiveItem, StopReference
 
 Cost = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
@@ -179,11 +177,6 @@ class ReplanRequest(MapChanges):
         description="return only tours that keep this share of the driven tour's remaining legs",
     )
 
-    @property
-    def options_given(self) -> frozenset[str]:
-        """The names of the options that the request has, as those of a new request."""
-        return frozenset({*PlanFields.model_fields, "geometry"} & self.model_fields_set)
-
 
 OF_MAPS = tuple(name for name in MapChanges.model_fields if name not in PlanFields.model_fields)
 _OF_STOPS = ("costs", "objectives", "geometry")
@@ -203,42 +196,3 @@ def _refuse(request: MapChanges, names: tuple[str, ...], kind: str) -> None:
     for name in names:
         if name in request.model_fields_set:
             raise invalid(name, f"must be left out: it is for fronts of {kind}")
-
-
-_SHARED = "ObjectiveItem"  # of which each form has a name of its own, as in `front_schemas`
-_OBJECTIVES = ("MatrixObjective", "PlaneObjective", "MeasuredObjective")
-
-
-def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str, Any]]:
-    """Return the schema of a request to replan, and of what is in it, by name.
-
-    Its objectives are of the kinds that `front_schemas` has.
-    """
-    schema = limited_schema(ReplanRequest, limits, actors)
-    parts = schema.pop("$defs")
-    fields = schema["properties"]
-    if not limits.roads:
-        fields["geometry"]["enum"].remove("roads")
-    kinds = [{"$ref": f"#/components/schemas/{name}"} for name in _OBJECTIVES]
-    fields["objectives"] = {**fields["objectives"], "items": {"oneOf": kinds}}
-    _describe_map_changes(fields, limits.cells)
-    for name in ("done", "remove", "tour", "add"):
-        fields[name]["maxItems"] = limits.cities
-    named = {name: part for name, part in parts.items() if name != _SHARED}
-    return {**{name: _without_null(part) for name, part in named.items()}, "ReplanRequest": schema}
-
-
-def _without_null(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return a schema without defaults of null, from which generators conclude too much."""
-    fields = {
-        name: {k: v for k, v in field.items() if k != "default" or v is not None}
-        for name, field in schema["properties"].items()
-    }
-    return {**schema, "properties": fields}
-
-
-def _describe_map_changes(fields: dict[str, Any], most_cells: int) -> None:
-    """Refine the fields of a map in the JSON schema of a request."""
-    fields["grid"]["items"]["items"] = {"enum": [0, 1]}
-    for name in ("blocked", "freed"):
-        fields[name]["maxItems"] = most_cells

@@ -1,4 +1,4 @@
-"""The types of fields in requests, and the fields that all requests for a front share."""
+"""The types of fields in requests, and the fields that all requests share."""
 
 from dataclasses import replace
 from typing import Annotated, Literal
@@ -55,10 +55,40 @@ CostRows = Annotated[
 NO_WAY = "null where there is no way; the diagonal is disregarded"
 
 
-class PlanFields(BaseModel):
-    """The fields of every request for a front: how to plan it, and which parts of it to return."""
+class SearchFields(BaseModel):
+    """The fields of every request: how long to plan, and how much to return."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+    time_limit: float = Field(
+        default=1.0,
+        ge=0,
+        allow_inf_nan=False,
+        description="seconds of all planning, at most; 0 asks for what the network builds alone",
+    )
+    size: PositiveInteger = Field(default=100, description="the most tours, or plans, to return")
+    reference_point: list[PositiveNumber] = Field(
+        default_factory=list,
+        min_length=OBJECTIVES,
+        max_length=OBJECTIVES,
+        description="of the hypervolume; by default of tours the number of cities times the scale,"
+        " of plans lengths above those of all sensible plans",
+    )
+    seed: NonNegativeInteger = Field(default=0, description="of everything random in the search")
+
+    def options(self) -> PlanOptions:
+        """Return the options for the planner."""
+        return PlanOptions(
+            angles=np.empty(0),
+            size=self.size,
+            time_limit=self.time_limit,
+            reference_point=np.array(self.reference_point) if self.reference_point else None,
+            seed=self.seed,
+        )
+
+
+class PlanFields(SearchFields):
+    """The fields of every request for a front of tours."""
 
     preferences: Annotated[
         Annotated[PositiveInteger, Tag("[count]")]
@@ -68,19 +98,6 @@ class PlanFields(BaseModel):
         default=100,
         description="angles in degrees to look along, or how many, evenly spread; by default 100"
         " with time_limit 0, else as many as fit into a tenth of it, maybe none",
-    )
-    time_limit: float = Field(
-        default=1.0,
-        ge=0,
-        allow_inf_nan=False,
-        description="seconds of all planning, at most; 0 asks for the network's tours alone",
-    )
-    size: PositiveInteger = Field(default=100, description="the most tours to return")
-    reference_point: list[PositiveNumber] = Field(
-        default_factory=list,
-        min_length=OBJECTIVES,
-        max_length=OBJECTIVES,
-        description="of the hypervolume; by default the number of cities times the scale",
     )
     repairs: NonNegativeInteger = Field(
         default=_MOST_INTEGER,
@@ -102,34 +119,23 @@ class PlanFields(BaseModel):
         description="the network that builds the tours; by default pa-one for coordinates and"
         " pa-one-matrix for matrices",
     )
-    seed: NonNegativeInteger = Field(
-        default=0, description="of everything random in the improvement"
-    )
 
     @property
     def requested_actor(self) -> str | None:
-        """The name of the actor, None where the request leaves it to the service."""
+        """The name of the actor; None where the request leaves the choice to the service."""
         return self.actor if "actor" in self.model_fields_set else None
-
-    @property
-    def preference_count(self) -> int:
-        """The number of preferences, given as such or as angles."""
-        return self.preferences if isinstance(self.preferences, int) else len(self.preferences)
 
     def options(self) -> PlanOptions:
         """Return the options for the planner."""
         angles = self.preferences
         given = "repairs" in self.model_fields_set
-        return PlanOptions(
+        return replace(
+            super().options(),
             angles=fan(angles) if isinstance(angles, int) else np.array(angles),
             fewer="preferences" not in self.model_fields_set,
-            size=self.size,
-            reference_point=np.array(self.reference_point) if self.reference_point else None,
-            time_limit=self.time_limit,
             repairs=self.repairs if given or self.time_limit == 0 else 0,
             fewer_repairs=not given,
             bound=self.bound,
-            seed=self.seed,
         )
 
 

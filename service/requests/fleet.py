@@ -1,0 +1,233 @@
+"""Requests of `POST /fleet`: their fields, and their parser."""
+
+from collections.abc import Mapping
+from math import inf
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic_core import to_json
+
+from service.errors import invalid
+from service.fleet.fleet import ALWAYS, Over, Rules, Shipment, Span, VehicleType, Visit
+from service.instance import OBJECTIVES
+from service.requests.fields import (
+    GEOMETRY,
+    LARGEST,
+    AsInteger,
+    Geometry,
+    PositiveNumber,
+    SearchFields,
+    Text,
+)
+from service.requests.limits import Limits, check_amounts, check_limit, lower_defaults
+from service.requests.stop_fields import (
+    ObjectiveItem,
+    StopItem,
+    StopReference,
+    check_unique,
+    find_index,
+    read_objectives,
+    read_stops,
+)
+from service.requests.stops import Labels, Stops, locations_of
+from service.requests.task import UnmeasuredFleet
+from service.requests.validation import parse_json, show, too_many_cities
+
+_MOST_VEHICLE_TYPES = 100
+_MOST_LOAD = 10**9
+_MOST_DIMENSIONS = 8
+_MOST_COUNT = 10**6
+Load = Annotated[int, Field(ge=0, le=_MOST_LOAD), AsInteger]
+Loads = Annotated[list[Load], Field(max_length=_MOST_DIMENSIONS, fail_fast=True)]
+Cost = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
+# A pair in JSON, and a list so that OpenAPI has its length.
+TimeSpan = Annotated[list[Cost], Field(min_length=2, max_length=2, fail_fast=True)]
+
+
+def _optional(description: str) -> Any:
+    """Return a field that is None where it was not given."""
+    return Field(default=None, description=description)
+
+
+class FleetStopItem(StopItem):
+    """A stop, and what it asks of the vehicle that visits it."""
+
+    demand: Loads = Field(
+        default_factory=list,
+        description="whole numbers that the vehicle brings, one for each dimension of its capacity;"
+        " of a shipment's pick-up what it takes on",
+    )
+    service: Cost = Field(default=0.0, description="how long a visit takes, in the clock's unit")
+    window: TimeSpan | None = _optional("when a visit may begin, from and to")
+    prize: Cost | None = _optional(
+        "what the first length grows by if the stop is left out; without it the stop is visited"
+    )
+
+    def visit(self) -> Visit:
+        """Return what the stop asks for."""
+        return Visit(
+            demand=tuple(self.demand),
+            service=self.service,
+            window=_span(self.window),
+            prize=self.prize,
+        )
+
+
+class ShipmentItem(BaseModel):
+    """Two stops that one vehicle visits: the pick-up, and later the delivery."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+    pickup: StopReference = Field(description="by index or id; its demand and prize are of both")
+    delivery: StopReference = Field(description="by index or id")
+
+
+class VehicleItem(BaseModel):
+    """A type of vehicle, and how many of it there are."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+    id: Text = Field(description="comes back with every route; no two types share one")
+    count: Annotated[int, Field(ge=1, le=_MOST_COUNT), AsInteger] = Field(
+        default=1, description="how many there are"
+    )
+    start: StopReference | None = _optional(
+        "the stop at which they start, by index or id; null: each at its first visit"
+    )
+    end: StopReference | None = _optional(
+        "the stop at which they end, by index or id; null: each at its last visit"
+    )
+    capacity: Loads = Field(
+        default_factory=list, description="the most that one holds, in up to 8 dimensions"
+    )
+    shift: TimeSpan | None = _optional("when one may leave, and must be back")
+    longest: PositiveNumber | None = _optional(
+        "the longest route: its time where there is a clock, else its length in the objective that"
+        " is a maximum"
+    )
+    fixed: Cost = Field(default=0.0, description="what the first length grows by if one is used")
+
+    def vehicle_type(self, start: int | None, end: int | None) -> VehicleType:
+        """Return the type of vehicles, with its ends as indexes."""
+        return VehicleType(
+            start=start,
+            end=end,
+            count=self.count,
+            capacity=tuple(self.capacity),
+            shift=_span(self.shift),
+            longest=inf if self.longest is None else self.longest,
+            fixed=self.fixed,
+        )
+
+
+class FleetObjectiveItem(ObjectiveItem):
+    """An objective by its name, the source of its costs, and how routes make a plan's length."""
+
+    over: Over = Field(
+        default="sum",
+        description="of a plan's routes the sum, or the longest; max for one objective at most",
+    )
+
+
+def _span(bounds: list[float] | None) -> Span:
+    return ALWAYS if bounds is None else (bounds[0], bounds[1])
+
+
+class FleetRequest(SearchFields):
+    """Stops, vehicles and two objectives, and the options of their front of plans."""
+
+    stops: Annotated[list[FleetStopItem], Field(min_length=1, fail_fast=True)] = Field(
+        description="by ids that come back with every plan"
+    )
+    vehicles: Annotated[
+        list[VehicleItem], Field(min_length=1, max_length=_MOST_VEHICLE_TYPES, fail_fast=True)
+    ] = Field(description="the types of vehicles")
+    objectives: Annotated[
+        list[FleetObjectiveItem],
+        Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
+    ] = Field(description="both, each with the costs between the stops")
+    shipments: Annotated[list[ShipmentItem], Field(fail_fast=True)] = Field(
+        default_factory=list, description="pairs of stops that one vehicle visits, in order"
+    )
+    clock: Text | None = Field(
+        default=None,
+        description="the name of the objective that is time; in its unit are windows, shifts,"
+        " service and longest, and a route's length in it is its time with service and waiting",
+    )
+    geometry: Geometry = Field(default="straight", description=GEOMETRY)
+
+    @property
+    def labels(self) -> Labels:
+        """The names of stops and objectives."""
+        return Labels(read_stops(self.stops), read_objectives(self.objectives))
+
+    @property
+    def id_bytes(self) -> int:
+        """The bytes of all ids in one plan of the answer, at most."""
+        stops = [len(to_json(stop.id)) for stop in self.stops]
+        routes = min(sum(vehicle.count for vehicle in self.vehicles), len(stops))
+        of_route = max(len(to_json(vehicle.id)) for vehicle in self.vehicles) + 2 * max(stops)
+        return sum(stops) + routes * of_route
+
+    def subject(self) -> UnmeasuredFleet:
+        """Return the fleet, whose costs are still to be measured.
+
+        Raises:
+            Refusal: An id is unknown, or the rules contradict each other.
+        """
+        labels = self.labels
+        ids = {stop.id: index for index, stop in enumerate(labels.stops)}
+        items = enumerate(self.objectives)
+        sources = [item.source(f"objectives/{m}", labels.stops) for m, item in items]
+        rules = Rules(
+            visits=tuple(item.visit() for item in self.stops),
+            vehicles=tuple(_vehicle(item, i, ids) for i, item in enumerate(self.vehicles)),
+            shipments=tuple(_shipment(item, i, ids) for i, item in enumerate(self.shipments)),
+            over=(self.objectives[0].over, self.objectives[1].over),
+            clock=self._clock(),
+        )
+        names = tuple(item.id for item in self.vehicles)
+        check_unique(names, "vehicles")
+        return UnmeasuredFleet(rules, names, Stops(locations_of(labels.stops), sources))
+
+    def _clock(self) -> int | None:
+        names = [item.name for item in self.objectives]
+        if self.clock is None:
+            return None
+        if self.clock not in names:
+            demand = f"must be {show(names[0])} or {show(names[1])}, an objective's name"
+            raise invalid("clock", f"{demand}, got {show(self.clock)}")
+        return names.index(self.clock)
+
+
+def parse_fleet_request(body: bytes, limits: Limits) -> FleetRequest:
+    """Return the request in a JSON body, with defaults that are over a limit lowered to it.
+
+    Raises:
+        Refusal: The body is not JSON, misses the schema or is over a limit.
+    """
+    request = parse_json(FleetRequest, body)
+    if len(request.stops) > limits.fleet_stops:
+        raise too_many_cities("stops", limits.fleet_stops, len(request.stops))
+    check_limit("shipments", limits.fleet_stops, len(request.shipments))
+    n, id_bytes = len(request.stops), request.id_bytes
+    check_amounts(request, n, limits, id_bytes)
+    return lower_defaults(request, n, limits, id_bytes)
+
+
+def _vehicle(item: VehicleItem, index: int, ids: Mapping[str, int]) -> VehicleType:
+    start, end = (
+        None
+        if reference is None
+        else find_index(reference, ids, f"vehicles/{index}/{name}", len(ids))
+        for name, reference in (("start", item.start), ("end", item.end))
+    )
+    return item.vehicle_type(start, end)
+
+
+def _shipment(item: ShipmentItem, index: int, ids: Mapping[str, int]) -> Shipment:
+    pickup, delivery = (
+        find_index(reference, ids, f"shipments/{index}/{name}", len(ids))
+        for name, reference in (("pickup", item.pickup), ("delivery", item.delivery))
+    )
+    return Shipment(pickup, delivery)
