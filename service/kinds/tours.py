@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from service.coverage.coverage import Coverage
 from service.coverage.path import CoveragePath
 from service.coverage.survey import Survey, survey
-from service.errors import Cancelled, NoTour
+from service.errors import Cancelled, InvalidCoverage, NoTour
 from service.front import Front, reporting
 from service.instance import Instance, cumulated_lengths
 from service.kinds.front_document import FrontDocument
@@ -18,8 +18,9 @@ from service.kinds.kind import Report, Tools
 from service.kinds.tour_document import encode_front
 from service.planner import plan
 from service.replanning.replan import replan
-from service.requests.limits import within_network
+from service.requests.limits import Limits, within_network
 from service.requests.parser import check_instance
+from service.requests.replan.rest_of_map import about_request
 from service.requests.stops import Stops
 from service.requests.task import Task
 
@@ -48,10 +49,9 @@ def run_coverage(
     task: Task, tools: Tools, stop: Callable[[], bool], report: Report
 ) -> FrontDocument:
     """Return the front of a task; see `Run`."""
-    assert isinstance(task.subject, Coverage)
     limits = tools.limits
     began = time.perf_counter()
-    surveyed = survey(task.subject, limits.most_places(shared=False), stop)
+    surveyed = survey_map(task, limits, stop)
     check_instance(task, surveyed.instance)
     surveyed_at = time.perf_counter()
     options = within_network(task.options, surveyed.instance.n, limits)
@@ -73,6 +73,22 @@ def run_coverage(
         paths,
         arrivals=_arrivals(task, surveyed.instance, front),
     )
+
+
+def survey_map(task: Task, limits: Limits, stop: Callable[[], bool]) -> Survey:
+    """Return the survey of the map of a task.
+
+    Raises:
+        InvalidCoverage: A place cannot be visited, or there are too many.
+        Cancelled: `stop` returned True.
+    """
+    assert isinstance(task.subject, Coverage)
+    try:
+        return survey(task.subject, limits.most_places(shared=False), stop)
+    except InvalidCoverage as refusal:
+        if not task.parts:
+            raise
+        raise about_request(refusal, task.parts) from None
 
 
 def _plan(

@@ -12,7 +12,7 @@ from pydantic import GetPydanticSchema, ValidationInfo
 from pydantic_core.core_schema import with_info_after_validator_function
 
 from service.errors import invalid
-from service.requests.validation import show
+from service.requests.validation import show, too_many_cells
 
 Array = NDArray[np.float64]
 Rows = list[list[float]]
@@ -91,6 +91,22 @@ def rectangular_array(rows: AnyRows, name: str) -> Array:
         if len(row) != width:
             raise invalid(f"{name}/{i}", f"must have {width} numbers, as the first, got {len(row)}")
     return np.array(rows, dtype=np.float64)
+
+
+def check_grid(grid: Array) -> None:
+    """Raise a refusal unless all cells of a map, shape (rows, columns), are 0 or 1."""
+    binary = (grid == 0) | (grid == 1)
+    if not binary.all():
+        row, column = np.unravel_index(binary.argmin(), binary.shape)
+        raise invalid(f"grid/{row}/{column}", f"must be 0 or 1, got {grid[row, column]:g}")
+
+
+def check_size(columns: int, rows: int, most: int) -> None:
+    """Raise a refusal unless a map has a cell or more and at most `most`, before it is read."""
+    if columns * rows > most:
+        raise too_many_cells(most, columns * rows, f"{rows} x {columns}")
+    if columns * rows == 0:
+        raise invalid("grid", f"must have a cell or more, got {rows} x {columns}")
 
 
 def check_costs(matrix: Array, name: str, largest: float) -> None:

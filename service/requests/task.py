@@ -94,6 +94,8 @@ class Task:
         labels: The caller's names of stops and objectives.
         timings: Milliseconds of what was done for it since it was parsed, by name.
         earlier: What is left of the tours of the front that is replanned, if one is.
+        parts: Of a map that is replanned, the part of the request that names each place; places/2
+            is place 2 of the earlier front.
     """
 
     subject: Stops | Coverage | SharedCoverage | UnmeasuredFleet
@@ -105,6 +107,7 @@ class Task:
     labels: Labels | None = None
     timings: Mapping[str, float] = field(default_factory=dict)
     earlier: EarlierTours | None = None
+    parts: tuple[str, ...] = ()
 
     @property
     def kind(self) -> KindName:

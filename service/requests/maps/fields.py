@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from service.errors import invalid
-from service.requests.arrays import Array, array_field, rectangular_array
+from service.requests.arrays import Array, array_field, check_grid, rectangular_array
 from service.requests.fields import ArrayRows, AsInteger, Number, PlanRequest, PositiveNumber
 from service.requests.maps.occupancy_grid import OccupancyGrid
 from service.requests.maps.pictures import (
@@ -103,7 +103,9 @@ class MapRequest(PlanRequest):
             return self.model_copy(update={"grid": self._blocked(values)})
         if "occupancy_grid" in self.model_fields_set:
             return self._with_occupancy_grid(most_cells)
-        _check_grid(self.grid, most_cells)
+        if self.grid.size > most_cells:
+            raise too_many_cells(most_cells, self.grid.size, self.grid.size)
+        check_grid(self.grid)
         return self
 
     def _with_occupancy_grid(self, most_cells: int) -> Self:
@@ -156,12 +158,3 @@ class MapRequest(PlanRequest):
         if self.unknown == "blocked":
             blocked |= values == UNKNOWN
         return blocked.astype(np.float64)
-
-
-def _check_grid(grid: Array, most: int) -> None:
-    if grid.size > most:
-        raise too_many_cells(most, grid.size, grid.size)
-    binary = (grid == 0) | (grid == 1)
-    if not binary.all():
-        row, column = np.unravel_index(binary.argmin(), binary.shape)
-        raise invalid(f"grid/{row}/{column}", f"must be 0 or 1, got {grid[row, column]:g}")

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.errors import invalid
+from service.requests.arrays import check_size
 from service.requests.fields import Number, PositiveInteger, PositiveNumber
 from service.requests.maps.pictures import UNKNOWN, Occupancy
-from service.requests.maps.size import check_size
 
 _OCCUPIED = 100
 _TILT = 1e-3  # at most, of a quaternion about the z axis; and how far it may be from a unit one

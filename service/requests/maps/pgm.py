@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import Refusal, invalid
-from service.requests.maps.size import check_size
+from service.requests.arrays import check_size
 
 SIGNATURES = (b"P5", b"P2")
 _LONGEST_HEADER = 4096  # bytes, with its comments

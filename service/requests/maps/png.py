@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from service.errors import Refusal, invalid
-from service.requests.maps.size import check_size
+from service.requests.arrays import check_size
 from service.requests.validation import shorten
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"

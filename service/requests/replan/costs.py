@@ -40,11 +40,6 @@ class AllStops:
     n: int
     new: Mapping[str, NewStop]
 
-    @property
-    def ids(self) -> dict[str, int]:
-        """The index of each stop by its id."""
-        return {stop.id: index for index, stop in enumerate(self.stops)}
-
 
 def all_stops(front: EarlierFront, request: ReplanRequest) -> AllStops:
     """Return the stops of a front, and those that a request brings.
@@ -52,32 +47,29 @@ def all_stops(front: EarlierFront, request: ReplanRequest) -> AllStops:
     Raises:
         Refusal: Two have the same id.
     """
+    items = {f"add/{index}": item for index, item in enumerate(request.add)}
+    if isinstance(request.position, NewStop | list):
+        items["position"] = request.position
     new: dict[str, NewStop] = {}
-    for index, item in enumerate(request.add):
-        new[f"add/{index}"] = _new_stop(item, f"add/{index}")
-    if isinstance(request.position, list):
-        _new_stop(request.position, "position")
-    if isinstance(request.position, NewStop):
-        new["position"] = request.position
     seen = {stop.id for stop in front.labels.stops}
-    for part, item in new.items():
+    for part, item in items.items():
+        if isinstance(item, list):
+            demand = "must be a stop with an id: row and column are of a place on a map"
+            raise invalid(part, demand)
         if item.id in seen:
             raise invalid(f"{part}/id", f"must be that of no other stop, got {show(item.id)}")
         seen.add(item.id)
+        new[part] = item
     stops = (*front.labels.stops, *(Stop(item.id, item.location) for item in new.values()))
     return AllStops(stops, front.n, new)
 
 
-def _new_stop(item: NewStop | list[int], part: str) -> NewStop:
-    if isinstance(item, list):
-        raise invalid(part, "must be a stop with an id: row and column are of a place on a map")
-    return item
-
-
 def all_costs(
     front: EarlierFront, request: ReplanRequest, stops: AllStops
-) -> tuple[tuple[Objective, ...], list[Source]]:
-    """Return the objectives, and the source of the costs of each between all stops.
+) -> tuple[tuple[Objective, ...], list[Source], NDArray[np.int64]]:
+    """Return the objectives, the source of the costs of each between all stops, and changed stops.
+
+    Those are the stops to or from which single costs are changed.
 
     Raises:
         Refusal: Costs of a new stop are missing, or are given where they are not asked for; or a
@@ -96,7 +88,13 @@ def all_costs(
             _extended(source, m, objective.name, stops)
             for m, (source, objective) in enumerate(zip(front.sources, objectives, strict=True))
         ]
-    return objectives, _with_entries(sources, objectives, request.costs, stops)
+    changed = _changes(request.costs, [objective.name for objective in objectives], stops)
+    steps = [stop for entries in changed for step in entries for stop in step]
+    sources = [
+        _changed(source, entries) if entries else source
+        for source, entries in zip(sources, changed, strict=True)
+    ]
+    return objectives, sources, np.array(steps, np.int64)
 
 
 def between(source: Source, chosen: NDArray[np.int64]) -> Source:
@@ -174,43 +172,29 @@ def _row(costs: Sequence[float | None], part: str, own: int, size: int) -> Array
     return row
 
 
-def _with_entries(
-    sources: list[Source],
-    objectives: Sequence[Objective],
-    entries: Sequence[CostEntry],
-    stops: AllStops,
-) -> list[Source]:
-    """Return the sources with single costs changed; of changes of one step the last counts."""
-    changed: list[dict[tuple[int, int], float]] = [{} for _ in sources]
-    names = [objective.name for objective in objectives]
-    ids = stops.ids
+def _changes(
+    entries: Sequence[CostEntry], names: Sequence[str], stops: AllStops
+) -> list[dict[tuple[int, int], float]]:
+    """Return the changed costs of each objective by step; of changes of one step the last counts.
+
+    Args:
+        entries: The changes.
+        names: The names of the objectives.
+        stops: All stops.
+    """
+    changed: list[dict[tuple[int, int], float]] = [{} for _ in names]
+    ids = {stop.id: index for index, stop in enumerate(stops.stops)}
     for index, entry in enumerate(entries):
         part = f"costs/{index}"
-        origin = _stop(entry.origin, ids, stops, f"{part}/from")
-        destination = _stop(entry.destination, ids, stops, f"{part}/to")
+        origin, destination = (
+            find_index(reference, ids, f"{part}/{name}", stops.n, "a stop of the front")
+            for name, reference in (("from", entry.origin), ("to", entry.destination))
+        )
         if origin == destination:
             raise invalid(f"{part}/to", "must not be the stop that the step leads from")
         cost = np.inf if entry.cost is None else entry.cost
         changed[_objective(entry.objective, names, part)][origin, destination] = cost
-    return [
-        _changed(source, steps) if steps else source
-        for source, steps in zip(sources, changed, strict=True)
-    ]
-
-
-def changed_stops(request: ReplanRequest, stops: AllStops) -> NDArray[np.int64]:
-    """Return the stops to or from which a request changes single costs, as `all_costs` finds them.
-
-    Raises:
-        Refusal: One is not a stop.
-    """
-    ids = stops.ids
-    found = [
-        _stop(reference, ids, stops, f"costs/{index}/{name}")
-        for index, entry in enumerate(request.costs)
-        for name, reference in (("from", entry.origin), ("to", entry.destination))
-    ]
-    return np.array(found, np.int64)
+    return changed
 
 
 def _changed(source: Source, entries: Mapping[tuple[int, int], float]) -> Source:
@@ -230,10 +214,3 @@ def _objective(objective: int | str, names: Sequence[str], part: str) -> int:
         demand = f"must be 0, 1 or {' or '.join(map(show, names))}"
         raise invalid(f"{part}/objective", f"{demand}, got {show(objective)}")
     return names.index(objective)
-
-
-def _stop(reference: int | str, ids: Mapping[str, int], stops: AllStops, part: str) -> int:
-    index = find_index(reference, ids, part)
-    if isinstance(reference, int) and index >= stops.n:
-        raise invalid(part, f"must be a stop of the front, 0 to {stops.n - 1}, got {index}")
-    return index

@@ -16,7 +16,6 @@ from service.requests.task import Task, TaskSource
 from service.search.open_routes import rotated
 
 Array = NDArray[np.float64]
-MOST_TOURS = 50  # of an earlier front to start the search from: the search has as many weights
 _NAMES = ("first", "second")  # of objectives that the front's request did not name
 
 
@@ -50,15 +49,12 @@ class EarlierFront:
     """A front that is replanned.
 
     Args:
-        labels: The names of its stops and objectives; of a front without, their numbers.
+        labels: The names of its stops and objectives; their numbers, if it has no names.
         sources: The source of the costs of each objective; none of a front of a map.
         ends: Whether its tours are closed, and the ends of open routes.
         start: The stop that closed tours are reported from.
-        tours: The stops of each tour in order, shape (m, n), evenly spread over the front where
-            it has more than MOST_TOURS.
-        knee: The tour with the least sum of lengths, each in the front's own box, shape (n,).
-        known: All tours of the front, shape (k, n).
-        balances: Their balances, shape (k,).
+        tours: The stops of each tour in order, shape (m, n).
+        lengths: The lengths of each tour, shape (m, 2).
     """
 
     labels: Labels
@@ -66,9 +62,12 @@ class EarlierFront:
     ends: RouteEnds
     start: int
     tours: NDArray[np.int64]
-    knee: NDArray[np.int64]
-    known: NDArray[np.int64]
-    balances: Array
+    lengths: Array
+
+    @property
+    def knee(self) -> NDArray[np.int64]:
+        """The tour with the least sum of lengths, each in the front's own box, shape (n,)."""
+        return self.tours[knee(self.lengths)]
 
     @property
     def n(self) -> int:
@@ -77,8 +76,8 @@ class EarlierFront:
 
     def balance_of(self, tour: NDArray[np.int64]) -> float | None:
         """Return the balance of a tour in the front; None if the front does not have it."""
-        same = (self.from_start(self.known) == self.from_start(tour[np.newaxis])).all(axis=1)
-        return float(self.balances[same.argmax()]) if same.any() else None
+        same = (self.from_start(self.tours) == self.from_start(tour[np.newaxis])).all(axis=1)
+        return float(balances(self.lengths)[same.argmax()]) if same.any() else None
 
     def from_start(self, tours: NDArray[np.int64]) -> NDArray[np.int64]:
         """Return tours of the front's stops, shape (m, n); closed ones begin at their start."""
@@ -91,18 +90,18 @@ def earlier_front(stored: StoredFront, task: Task, stops: Stops) -> EarlierFront
     """Return the front of a task of stops.
 
     Raises:
-        Refusal: It has no tours, or such as are not of its stops.
+        Refusal: It has no tours, or its tours are not of its stops.
     """
-    tours = _tours(stored, stops.n)
+    tours, lengths = _tours(stored, stops.n), stored.found.lengths
     labels = task.labels or _numbered(stops.n)
-    return _front(stored, tours, labels, stops.sources, stops.ends, task.options.start)
+    return EarlierFront(labels, stops.sources, stops.ends, task.options.start, tours, lengths)
 
 
 def earlier_front_of_map(stored: StoredFront, coverage: Coverage) -> EarlierFront:
     """Return the front of a coverage task, whose places are named by their indexes.
 
     Raises:
-        Refusal: It has no tours, or such as are not of its places.
+        Refusal: It has no tours, or its tours are not of its places.
     """
     n = len(stored.found.places or ())
     tours = _tours(stored, n)
@@ -112,34 +111,12 @@ def earlier_front_of_map(stored: StoredFront, coverage: Coverage) -> EarlierFron
         ends_there = coverage.end_pose is not None or coverage.ends.end is not None
         last = int(tours[0, -1])
         ends = RouteEnds(False, start if starts else None, last if ends_there else None)
-    return _front(stored, tours, _numbered(n), (), ends, start)
+    return EarlierFront(_numbered(n), (), ends, start, tours, stored.found.lengths)
 
 
 def not_replannable(front: str, reason: str) -> Refusal:
     """Return the refusal of a front that cannot be replanned."""
     return Refusal("not-replannable", front=front, reason=reason)
-
-
-def _front(
-    stored: StoredFront,
-    tours: NDArray[np.int64],
-    labels: Labels,
-    sources: Sequence[Source],
-    ends: RouteEnds,
-    start: int,
-) -> EarlierFront:
-    lengths = stored.found.lengths
-    chosen = np.linspace(0, len(tours) - 1, min(len(tours), MOST_TOURS)).astype(np.intp)
-    return EarlierFront(
-        labels=labels,
-        sources=sources,
-        ends=ends,
-        start=start,
-        tours=tours[chosen],
-        knee=tours[knee(lengths)],
-        known=tours,
-        balances=balances(lengths),
-    )
 
 
 def _tours(stored: StoredFront, n: int) -> NDArray[np.int64]:

@@ -178,21 +178,15 @@ class ReplanRequest(MapChanges):
     )
 
 
-OF_MAPS = tuple(name for name in MapChanges.model_fields if name not in PlanFields.model_fields)
+_OF_MAPS = tuple(name for name in MapChanges.model_fields if name not in PlanFields.model_fields)
 _OF_STOPS = ("costs", "objectives", "geometry")
 
 
-def check_of_stops(request: MapChanges) -> None:
-    """Raise a refusal where a request about a front of stops has what only those of maps have."""
-    _refuse(request, OF_MAPS, "a map, by POST /coverage")
-
-
-def check_of_map(request: MapChanges) -> None:
-    """Raise a refusal where a request about a front of a map has what only those of stops have."""
-    _refuse(request, _OF_STOPS, "stops or cities, by POST /front")
-
-
-def _refuse(request: MapChanges, names: tuple[str, ...], kind: str) -> None:
-    for name in names:
+def check_fields(request: ReplanRequest, *, on_map: bool) -> None:
+    """Raise a refusal where a request has a field that only fronts of the other kind have."""
+    others, kind = _OF_MAPS, "a map, by POST /coverage"
+    if on_map:
+        others, kind = _OF_STOPS, "stops or cities, by POST /front"
+    for name in others:
         if name in request.model_fields_set:
             raise invalid(name, f"must be left out: it is for fronts of {kind}")

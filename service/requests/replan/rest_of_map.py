@@ -1,7 +1,7 @@
 """The rest of a way over a map: from the task of an earlier front and what has changed."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,27 +9,18 @@ from numpy.typing import NDArray
 
 from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage, size_of
-from service.coverage.grid import free_cells
-from service.coverage.places import find_places
 from service.errors import InvalidCoverage, invalid
-from service.replanning.earlier_tours import EarlierTours
+from service.requests.arrays import check_grid
 from service.requests.limits import Limits, check_amounts, lower_defaults
 from service.requests.parser import coverage_task
 from service.requests.replan.costs import AllStops
 from service.requests.replan.earlier_front import StoredFront, earlier_front_of_map
-from service.requests.replan.fields import ReplanRequest, check_of_map
-from service.requests.replan.way import (
-    RestOfWay,
-    driven_tour,
-    indexes_in_rest,
-    left_of_tours,
-    rest_of_way,
-)
+from service.requests.replan.fields import ReplanRequest, check_fields
+from service.requests.replan.way import RestOfWay, rest_of_way
 from service.requests.stops import Stop
 from service.requests.task import Task
 from service.requests.validation import too_many_cities
 
-Array = NDArray[np.float64]
 Cells = NDArray[np.int64]
 
 
@@ -43,11 +34,11 @@ def rest_of_map(
     """Return the rest of the way over a map.
 
     Raises:
-        Refusal: The request has what only a front of stops has, its map does not fit, a place is
-            not free or cannot be reached any more, no actor serves it, or the way cannot be that
-            of the front.
+        Refusal: The request has what only a front of stops has, its map does not fit, no actor
+            serves it, or the way cannot be that of the front. A worker surveys the map, and
+            refuses places that are not free or cannot be reached any more.
     """
-    check_of_map(request)
+    check_fields(request, on_map=True)
     front = earlier_front_of_map(stored, coverage)
     coverage = _changed_map(coverage, request)
     known = np.array(stored.found.places, np.int64).reshape(-1, 2)
@@ -58,19 +49,14 @@ def rest_of_map(
     if n > most:
         raise too_many_cities("add", most, n)
     check_amounts(request, n, limits)
-    place = np.full(len(cells), -1)
-    place[rest.stops] = np.arange(n)
-    driven = driven_tour(front, request)
-    left, moved = left_of_tours(front, driven, rest)
-    of_rest = _of_rest(coverage, cells, rest, place)
-    _check_places(of_rest, rest, front.n, request, limits)
-    earlier = EarlierTours(
-        tours=place[left],
-        min_kept=request.min_kept,
-        touched=None if request.map_changed else indexes_in_rest(place, moved),
-        balance=front.balance_of(driven),
+    nothing = np.empty(0, np.int64)
+    task = coverage_task(
+        lower_defaults(request, n, limits),
+        _of_rest(coverage, cells, rest),
+        actors,
+        earlier=rest.earlier_tours(front, request, None if request.map_changed else nothing),
     )
-    return coverage_task(lower_defaults(request, n, limits), of_rest, actors, earlier)
+    return replace(task, parts=tuple(_parts(request, rest, front.n)))
 
 
 def _all_places(
@@ -138,7 +124,12 @@ def _changed_map(coverage: Coverage, request: ReplanRequest) -> Coverage:
     """Return the task on the map as it is now, with its second objective as it is now."""
     blocked = coverage.blocked.copy()
     if request.grid.size:
-        blocked = _whole_map(request.grid, coverage)
+        if request.grid.shape != blocked.shape:
+            came = size_of(request.grid)
+            demand = f"must be as large as that of the front, {coverage.size}, got {came}"
+            raise invalid("grid", demand)
+        check_grid(request.grid)
+        blocked = request.grid > 0
     for name, cells, now in (("blocked", request.blocked, True), ("freed", request.freed, False)):
         for index, (row, column) in enumerate(cells):
             if row >= blocked.shape[0] or column >= blocked.shape[1]:
@@ -156,63 +147,49 @@ def _changed_map(coverage: Coverage, request: ReplanRequest) -> Coverage:
     )
 
 
-def _whole_map(grid: Array, coverage: Coverage) -> NDArray[np.bool_]:
-    if grid.shape != coverage.blocked.shape:
-        demand = f"must be as large as that of the front, {coverage.size}, got {size_of(grid)}"
-        raise invalid("grid", demand)
-    binary = (grid == 0) | (grid == 1)
-    if not binary.all():
-        row, column = np.unravel_index(binary.argmin(), binary.shape)
-        raise invalid(f"grid/{row}/{column}", f"must be 0 or 1, got {grid[row, column]:g}")
-    return grid > 0
-
-
-def _of_rest(
-    coverage: Coverage, cells: Cells, rest: RestOfWay, place: NDArray[np.int64]
-) -> Coverage:
+def _of_rest(coverage: Coverage, cells: Cells, rest: RestOfWay) -> Coverage:
     """Return the task of the rest: its places, and the second objective between them."""
     matrix, points = coverage.second_matrix, coverage.second_coordinates
-    ends = rest.end_members(place)
     return replace(
         coverage,
         places=cells[rest.stops],
         spacing=None,
         start_pose=None,
         end_pose=None,
-        start=ends["start"] or 0,
-        ends=rest.ends_at(place),
+        start=rest.place(rest.start) or 0,
+        ends=rest.ends_in_rest,
         second_matrix=None if matrix is None else matrix[np.ix_(rest.stops, rest.stops)],
         second_coordinates=None if points is None else points[rest.stops],
     )
 
 
-def _check_places(
-    task: Coverage, rest: RestOfWay, n: int, request: ReplanRequest, limits: Limits
-) -> None:
-    """Raise a refusal, about the parts of the request, where a place cannot be visited."""
-    free = free_cells(task.blocked, task.cell_size, task.robot_radius)
-    try:
-        find_places(task, free, limits.most_places(shared=False))
-    except InvalidCoverage as refusal:
-        position = "pose" if request.pose else "position"
-        raise InvalidCoverage(*_about_request(refusal.faults, rest, n, position)) from None
+def _parts(request: ReplanRequest, rest: RestOfWay, n: int) -> Iterator[str]:
+    """Yield the part of a request that names each place of the rest; n places are the front's."""
+    for stop in rest.stops.tolist():
+        if stop == rest.start:
+            yield "pose" if request.pose else "position"
+        else:
+            yield f"places/{stop}" if stop < n else f"add/{stop - n}"
 
 
-def _about_request(
-    faults: tuple[tuple[str, str], ...], rest: RestOfWay, n: int, position: str
-) -> Iterator[tuple[str, str]]:
-    """Yield the faults of places of the rest as faults of parts of the request."""
-    for part, demand in faults:
+def about_request(refusal: InvalidCoverage, parts: Sequence[str]) -> InvalidCoverage:
+    """Return the refusal of places of the rest as one of the parts that name them.
+
+    Args:
+        refusal: The refusal, about the places in the order of the rest.
+        parts: The part for each place; places/2 is a place of the front, not in the request.
+    """
+    faults = []
+    for part, demand in refusal.faults:
         name, _, index = part.partition("/")
         if name != "places":
-            yield part, demand
+            faults.append((part, demand))
             continue
-        stop = int(rest.stops[int(index)])
+        named = parts[int(index)]
         # The request does not name places of the rest.
         demand = re.sub(r"from places/\d+", "from where the way goes on", demand)
-        if stop == rest.start:
-            yield position, demand
-        elif stop < n:
-            yield "remove", f"must have place {stop}, as it {demand}"
-        else:
-            yield f"add/{stop - n}", demand
+        if named.startswith("places/"):
+            demand = f"must have place {named.removeprefix('places/')}, as it {demand}"
+            named = "remove"
+        faults.append((named, demand))
+    return InvalidCoverage(*faults)

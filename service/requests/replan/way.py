@@ -1,14 +1,14 @@
-"""The rest of a way: where it goes on, through which stops, and where it ends."""
+"""The rest of a way: where it continues, through which stops, and where it ends."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import invalid
 from service.instance import CLOSED, RouteEnds
+from service.replanning.earlier_tours import EarlierTours
 from service.requests.replan.costs import AllStops
 from service.requests.replan.earlier_front import EarlierFront
 from service.requests.replan.fields import ReplanRequest
@@ -16,18 +16,20 @@ from service.requests.stop_fields import find_index
 from service.requests.validation import show
 
 Tours = NDArray[np.int64]
+MOST_TOURS = 50  # of an earlier front to start the search from: the search has as many weights
+_OF_FRONT = "a stop of the front"
 
 
 @dataclass(frozen=True, eq=False)
 class RestOfWay:
-    """The rest of a way, in indexes of all stops: those of a front and new ones.
+    """The rest of a way, in indexes of all stops: those of a front, then new ones.
 
     Args:
-        stops: Those that it has, ascending, shape (k,).
+        stops: Its stops, ascending, shape (k,).
         ends: Whether it leads back to its beginning, and its ends if it does not.
-        start: The stop at which it goes on; None where any may be the first.
+        start: The stop at which it continues; None where any may be the first.
         done: The stops visited, in order.
-        left: The front's stops that it has, without the ends, as a set.
+        left: Those of its stops that are the front's, without the ends.
     """
 
     stops: NDArray[np.int64]
@@ -36,25 +38,41 @@ class RestOfWay:
     done: tuple[int, ...]
     left: frozenset[int]
 
-    def ends_at(self, place: NDArray[np.int64]) -> RouteEnds:
-        """Return the ends as indexes in the rest; `place` has those of all stops."""
-        if self.ends.closed:
-            return CLOSED
-        start, end = (
-            None if stop is None else int(place[stop]) for stop in (self.ends.start, self.ends.end)
+    def place(self, stop: int | None) -> int | None:
+        """Return the index in the rest of one of its stops."""
+        return None if stop is None else int(np.searchsorted(self.stops, stop))
+
+    @property
+    def ends_in_rest(self) -> RouteEnds:
+        """The ends as indexes in the rest."""
+        closed, start, end = self.ends
+        return RouteEnds(closed, self.place(start), self.place(end))
+
+    def earlier_tours(
+        self, front: EarlierFront, request: ReplanRequest, changed: NDArray[np.int64] | None
+    ) -> EarlierTours:
+        """Return what is left of a front's tours, in indexes of the rest.
+
+        Args:
+            front: The front.
+            request: The request, which may name the tour that is being driven.
+            changed: The stops to or from which costs have changed; None where that may be any.
+
+        Raises:
+            Refusal: The tour that is being driven does not have each stop of the front once.
+        """
+        driven = _driven_tour(front, request)
+        tours, moved = _left_of_tours(front, driven, self)
+        touched = None
+        if changed is not None:
+            stops = np.intersect1d(np.union1d(moved, changed), self.stops)
+            touched = np.searchsorted(self.stops, stops)
+        return EarlierTours(
+            tours=np.searchsorted(self.stops, tours),
+            min_kept=request.min_kept,
+            touched=touched,
+            balance=front.balance_of(driven),
         )
-        return RouteEnds(False, start, end)
-
-    def begin_at(self, place: NDArray[np.int64]) -> int | None:
-        """Return the stop at which it goes on as an index in the rest."""
-        return None if self.start is None else int(place[self.start])
-
-    def end_members(self, place: NDArray[np.int64]) -> dict[str, Any]:
-        """Return the members of a request with the beginning and the end of the rest."""
-        begin = self.begin_at(place)
-        if self.ends.closed:
-            return {"closed": True, "start": begin}
-        return {"closed": False, "start": begin, "end": self.ends_at(place).end}
 
 
 def rest_of_way(front: EarlierFront, request: ReplanRequest, stops: AllStops) -> RestOfWay:
@@ -96,33 +114,29 @@ def rest_of_way(front: EarlierFront, request: ReplanRequest, stops: AllStops) ->
     return RestOfWay(np.array(sorted(chosen), np.int64), ends, start, done, left)
 
 
-def left_of_tours(
+def _left_of_tours(
     front: EarlierFront, driven: NDArray[np.int64], rest: RestOfWay
 ) -> tuple[Tours, NDArray[np.int64]]:
     """Return what is left of the earlier tours, shape (m, k), and the stops with new neighbours.
 
-    In indexes of all stops. The first row is what is left of the driven tour. If more of its last
-    stops than of its first are done, it is driven the other way round. New neighbours are possible
-    at the ends, and for stops beside one that is no longer in a tour.
+    In indexes of all stops. The first row is what is left of the driven tour; of a large front's
+    others there are MOST_TOURS, evenly spread. If more of the driven tour's last stops than of its
+    first are done, it is driven the other way round. New neighbours are possible at the ends, and
+    for stops beside one that is no longer in a tour.
     """
     [driven] = front.from_start(driven[np.newaxis])
     driven = _as_driven(front, driven, rest.done)
-    tours = np.concatenate((driven[np.newaxis], front.from_start(front.tours)))
+    m = len(front.tours)
+    spread = np.linspace(0, m - 1, min(m, MOST_TOURS)).astype(np.intp)
+    tours = np.concatenate((driven[np.newaxis], front.from_start(front.tours[spread])))
     is_left = np.zeros(front.n, np.bool_)
     is_left[list(rest.left)] = True
     kept = tours[is_left[tours]].reshape(len(tours), -1)
     first = [] if rest.start is None else [rest.start]
-    last = [] if rest.ends.closed or rest.ends.end is None else [rest.ends.end]
-    sides = (np.tile(np.array(side, np.int64), (len(tours), 1)) for side in (first, last))
-    before, after = sides
+    last = [] if rest.ends.end is None else [rest.ends.end]
+    before, after = (np.tile(np.array(side, np.int64), (len(tours), 1)) for side in (first, last))
     beside = np.union1d(_beside_gone(tours, is_left), np.array([*first, *last], np.int64))
     return np.concatenate((before, kept, after), axis=1), beside
-
-
-def indexes_in_rest(place: NDArray[np.int64], stops: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the indexes in the rest of those stops that it has; `place` has the index of each."""
-    indexes = place[stops]
-    return indexes[indexes >= 0]
 
 
 def _beside_gone(tours: Tours, is_left: NDArray[np.bool_]) -> NDArray[np.int64]:
@@ -147,10 +161,10 @@ def _start(
         return default
     if not isinstance(request.position, int | str):
         return len(stops.stops) - 1
-    return _index(request.position, ids, "position")
+    return find_index(request.position, ids, "position", len(ids), _OF_FRONT)
 
 
-def driven_tour(front: EarlierFront, request: ReplanRequest) -> NDArray[np.int64]:
+def _driven_tour(front: EarlierFront, request: ReplanRequest) -> NDArray[np.int64]:
     """Return the tour being driven, shape (n,): by default the front's knee.
 
     Raises:
@@ -182,18 +196,11 @@ def _indexes(references: Sequence[int | str], ids: Mapping[str, int], part: str)
     """Return the stops of a front that are named, each once."""
     found: dict[int, int] = {}
     for index, reference in enumerate(references):
-        stop = _index(reference, ids, f"{part}/{index}")
+        stop = find_index(reference, ids, f"{part}/{index}", len(ids), _OF_FRONT)
         if (other := found.setdefault(stop, index)) != index:
             demand = f"must not be {part}/{other} again, got {show(reference)}"
             raise invalid(f"{part}/{index}", demand)
     return tuple(found)
-
-
-def _index(reference: int | str, ids: Mapping[str, int], part: str) -> int:
-    index = find_index(reference, ids, part)
-    if index >= len(ids):
-        raise invalid(part, f"must be a stop of the front, 0 to {len(ids) - 1}, got {index}")
-    return index
 
 
 def _name(front: EarlierFront, stop: int) -> str:
