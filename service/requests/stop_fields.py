@@ -1,7 +1,6 @@
 """The fields of stops and objectives in requests, and their conversion to stops and sources."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import takewhile
 from typing import Annotated
 
 import numpy as np
@@ -18,9 +17,8 @@ from service.requests.fields import (
     Text,
 )
 from service.requests.stops import UNITS, Matrix, Measure, Measured, Objective, Plane, Source, Stop
-from service.requests.validation import show
+from service.requests.validation import nearest, show
 
-_TYPO = 2  # neighbouring characters that are wrong, left out or added
 StopReference = Annotated[
     Annotated[NonNegativeInteger, Tag("[index]")] | Annotated[Text, Tag("[id]")],
     Discriminator(lambda value: "[id]" if isinstance(value, str) else "[index]"),
@@ -165,23 +163,9 @@ def find_index(
     if not ids:
         demand = "must be the index of a city, as there are no stops with ids"
         raise invalid(part, f"{demand}, got {show(reference)}")
-    near = next((each for each in ids if _is_near(reference, each)), None)
+    near = nearest(reference, ids)
     hint = f"; did you mean {show(near)}?" if near else ""
     raise invalid(part, f"must be the id of a stop, got {show(reference)}{hint}")
-
-
-def _is_near(text: str, other: str) -> bool:
-    """Return whether texts differ by one typing error. O(length): difflib takes its square."""
-    text, other = text.casefold(), other.casefold()
-    begin = _shared(text, other)
-    shared = begin + _shared(text[begin:][::-1], other[begin:][::-1])
-    return max(len(text), len(other)) - shared <= min(_TYPO, shared)
-
-
-def _shared(text: str, other: str) -> int:
-    """Return the number of characters that texts have in common at their beginning."""
-    pairs = zip(text, other, strict=False)
-    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
 
 
 def _check_rows(part: str, n: int, rows: int) -> None:
