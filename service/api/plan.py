@@ -40,8 +40,8 @@ from service.requests.fields import Geometry
 from service.requests.limits import Limits
 from service.requests.replan.earlier_front import StoredFront, not_replannable
 from service.requests.replan.parser import ReplanSource
-from service.requests.stored_task import stored
 from service.requests.task import Task, TaskKind, TaskSource
+from service.requests.task_codec import stored
 
 _QUICK = 8  # bytes of stored tours are read in the time of one of a request
 _LONG = 2**20  # bytes of a body, whose task takes a while to write

@@ -12,8 +12,8 @@ from service.kinds.kind import NamedActor, Report, Tools
 from service.kinds.run import RUNS
 from service.requests.limits import Limits
 from service.requests.road_measurer import BlockingMeasurer, needs_roads
-from service.requests.stored_task import read_task
 from service.requests.task import Task, TaskSource
+from service.requests.task_codec import read_task
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 

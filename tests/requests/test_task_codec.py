@@ -11,9 +11,8 @@ from service.requests.limits import Limits
 from service.requests.parser import parse_task
 from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.stored_task import read_task
 from service.requests.task import Task, TaskKind, TaskSource
-from service.requests.task_codec import decode_task, encode_task
+from service.requests.task_codec import decode_task, encode_task, read_task
 from tests.helpers.actors import info_of
 from tests.helpers.changes import Found, random_change
 

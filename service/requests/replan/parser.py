@@ -12,8 +12,8 @@ from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.rest_of_map import rest_of_map
 from service.requests.replan.rest_of_stops import rest_of_stops
 from service.requests.stops import Stops
-from service.requests.stored_task import read_task
 from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
+from service.requests.task_codec import read_task
 from service.requests.validation import parse_json
 
 
