@@ -38,8 +38,8 @@ from service.jobs.store import Store
 from service.kinds.table import empty_document
 from service.requests.fields import Geometry
 from service.requests.limits import Limits
-from service.requests.replan.earlier_front import StoredFront, not_replannable
 from service.requests.replan.parser import ReplanSource
+from service.requests.replan.way import StoredFront, not_replannable
 from service.requests.task import Task, TaskKind, TaskSource
 from service.requests.task_codec import stored
 

@@ -14,8 +14,8 @@ from service.kinds.front_document import FrontDocument
 from service.kinds.json_parts import joined
 from service.requests.limits import Limits
 from service.requests.parser import parse_task
-from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.replan.way import StoredFront
 from service.requests.task import Task, TaskSource
 from service.requests.task_codec import encode_task, stored
 from tests.helpers.actors import Shuffler, info_of

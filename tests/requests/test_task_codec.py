@@ -9,8 +9,8 @@ import pytest
 
 from service.requests.limits import Limits
 from service.requests.parser import parse_task
-from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.replan.way import StoredFront
 from service.requests.task import Task, TaskKind, TaskSource
 from service.requests.task_codec import decode_task, encode_task, read_task
 from tests.helpers.actors import info_of

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from service.errors import invalid
 from service.requests.arrays import costs_array
-from service.requests.replan.earlier_front import EarlierFront
 from service.requests.replan.fields import CostEntry, NewStop, ReplanRequest
+from service.requests.replan.way import EarlierFront
 from service.requests.stop_fields import find_index, read_objectives
 from service.requests.stops import (
     Changed,

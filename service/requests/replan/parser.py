@@ -7,10 +7,10 @@ from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage
 from service.errors import Refusal
 from service.requests.limits import Limits
-from service.requests.replan.earlier_front import StoredFront, earlier_front, not_replannable
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.rest_of_map import rest_of_map
 from service.requests.replan.rest_of_stops import rest_of_stops
+from service.requests.replan.way import StoredFront, earlier_front, not_replannable
 from service.requests.stops import Stops
 from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
 from service.requests.task_codec import read_task

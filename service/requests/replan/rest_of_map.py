@@ -13,11 +13,8 @@ from service.errors import InvalidCoverage, invalid
 from service.requests.arrays import check_grid
 from service.requests.limits import Limits, check_amounts, lower_defaults
 from service.requests.parser import coverage_task
-from service.requests.replan.costs import AllStops
-from service.requests.replan.earlier_front import StoredFront, earlier_front_of_map
 from service.requests.replan.fields import ReplanRequest, check_fields
-from service.requests.replan.way import RestOfWay, rest_of_way
-from service.requests.stops import Stop
+from service.requests.replan.way import RestOfWay, StoredFront, earlier_front_of_map, rest_of_way
 from service.requests.task import Task
 from service.requests.validation import too_many_cities
 
@@ -43,8 +40,7 @@ def rest_of_map(
     coverage = _changed_map(coverage, request)
     known = np.array(stored.found.places, np.int64).reshape(-1, 2)
     cells, request = _all_places(known, coverage, request)
-    stops = AllStops(tuple(Stop(str(index)) for index in range(len(cells))), front.n, {})
-    rest = rest_of_way(front, request, stops)
+    rest = rest_of_way(front, request)
     n, most = len(rest.stops), limits.most_places(shared=False)
     if n > most:
         raise too_many_cities("add", most, n)

@@ -7,9 +7,8 @@ from service.actor_info import ActorInfo
 from service.requests.limits import Limits, check_amounts, check_router, lower_defaults
 from service.requests.parser import front_task
 from service.requests.replan.costs import all_costs, all_stops, between
-from service.requests.replan.earlier_front import EarlierFront
 from service.requests.replan.fields import ReplanRequest, check_fields
-from service.requests.replan.way import RestOfWay, rest_of_way
+from service.requests.replan.way import EarlierFront, RestOfWay, rest_of_way
 from service.requests.stops import Labels, Source, Stops, kind_of, locations_of
 from service.requests.task import Task
 from service.requests.validation import too_many_stops
@@ -27,7 +26,7 @@ def rest_of_stops(
     """
     check_fields(request, on_map=False)
     stops = all_stops(front, request)
-    rest = rest_of_way(front, request, stops)
+    rest = rest_of_way(front, request)
     if not request.objectives:
         # Before matrices grow by the added stops.
         _check_cities("add", rest, front.sources, limits)

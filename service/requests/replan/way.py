@@ -1,23 +1,159 @@
-"""The rest of a way: where it continues, through which stops, and where it ends."""
+"""The front that is replanned, and the rest of the way through its stops or places."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.errors import invalid
+from service.coverage.coverage import Coverage
+from service.errors import Refusal, invalid
 from service.instance import CLOSED, RouteEnds
+from service.pareto import balances, knee
 from service.replanning.earlier_tours import EarlierTours
-from service.requests.replan.costs import AllStops
-from service.requests.replan.earlier_front import EarlierFront
 from service.requests.replan.fields import ReplanRequest
 from service.requests.stop_fields import find_index
+from service.requests.stops import Labels, Objective, Source, Stop, Stops
+from service.requests.task import Task, TaskSource
 from service.requests.validation import show
+from service.search.open_routes import rotated
 
-Tours = NDArray[np.int64]
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 MOST_TOURS = 50  # of an earlier front to start the search from: the search has as many weights
+_NAMES = ("first", "second")  # of objectives that the front's request did not name
 _OF_FRONT = "a stop of the front"
+
+
+class FoundTours(Protocol):
+    """The tours of a front, as they are stored."""
+
+    @property
+    def orders(self) -> Indices:
+        """The stops or places of each tour in order, shape (m, n)."""
+
+    @property
+    def lengths(self) -> Array:
+        """The lengths of each tour, shape (m, 2)."""
+
+    @property
+    def places(self) -> Sequence[Sequence[int]] | None:
+        """Of a front of a map, row and column of each place."""
+
+
+@dataclass(frozen=True, eq=False)
+class StoredFront:
+    """A front as it is stored: its id, what it was planned from, and its tours."""
+
+    id: str
+    source: TaskSource
+    found: FoundTours
+
+
+@dataclass(frozen=True, eq=False)
+class EarlierFront:
+    """A front that is replanned.
+
+    Args:
+        labels: The names of its stops and objectives; their numbers, if it has no names.
+        sources: The source of the costs of each objective; none of a front of a map.
+        ends: Whether its tours are closed, and the ends of open routes.
+        start: The stop that closed tours are reported from.
+        tours: The stops of each tour in order, shape (m, n); closed tours begin at `start`.
+        lengths: The lengths of each tour, shape (m, 2).
+    """
+
+    labels: Labels
+    sources: Sequence[Source]
+    ends: RouteEnds
+    start: int
+    tours: Indices
+    lengths: Array
+
+    @property
+    def knee(self) -> Indices:
+        """The tour with the least sum of lengths, each in the front's own box, shape (n,)."""
+        return self.tours[knee(self.lengths)]
+
+    @property
+    def n(self) -> int:
+        """The number of stops."""
+        return len(self.labels.stops)
+
+    @cached_property
+    def ids(self) -> dict[str, int]:
+        """The index of each stop by its id."""
+        return {stop.id: index for index, stop in enumerate(self.labels.stops)}
+
+    @property
+    def first_and_last(self) -> tuple[int | None, int | None]:
+        """The first stop of its tours, and the last one; None where it may be any."""
+        return (self.start, self.start) if self.ends.closed else (self.ends.start, self.ends.end)
+
+    def balance_of(self, tour: Indices) -> float | None:
+        """Return the balance of a tour in the front; None if the front does not have it."""
+        same = (self.tours == tour).all(axis=1)
+        return float(balances(self.lengths)[same.argmax()]) if same.any() else None
+
+
+def earlier_front(stored: StoredFront, task: Task, stops: Stops) -> EarlierFront:
+    """Return the front of a task of stops.
+
+    Raises:
+        Refusal: It has no tours, or its tours are not of its stops.
+    """
+    tours, lengths = _tours(stored, stops.n), stored.found.lengths
+    labels, start = task.labels or _numbered(stops.n), task.options.start
+    if stops.ends.closed:
+        tours = _from_stop(start, tours)
+    return EarlierFront(labels, stops.sources, stops.ends, start, tours, lengths)
+
+
+def earlier_front_of_map(stored: StoredFront, coverage: Coverage) -> EarlierFront:
+    """Return the front of a coverage task, whose places are named by their indexes.
+
+    Raises:
+        Refusal: It has no tours, or its tours are not of its places.
+    """
+    n = len(stored.found.places or ())
+    tours = _tours(stored, n)
+    ends, start = CLOSED, int(tours[0, 0])
+    if coverage.ends.closed:
+        tours = _from_stop(start, tours)
+    else:
+        starts = coverage.start_pose is not None or coverage.ends.start is not None
+        ends_there = coverage.end_pose is not None or coverage.ends.end is not None
+        last = int(tours[0, -1])
+        ends = RouteEnds(False, start if starts else None, last if ends_there else None)
+    return EarlierFront(_numbered(n), (), ends, start, tours, stored.found.lengths)
+
+
+def not_replannable(front: str, reason: str) -> Refusal:
+    """Return the refusal of a front that cannot be replanned."""
+    return Refusal("not-replannable", front=front, reason=reason)
+
+
+def _tours(stored: StoredFront, n: int) -> Indices:
+    """Return the tours of a front of n stops, shape (m, n)."""
+    tours = stored.found.orders
+    if not len(tours):
+        raise not_replannable(stored.id, "it has no tour")
+    if tours.shape[1] != n:
+        raise not_replannable(stored.id, "its tours are not of its stops")
+    return tours
+
+
+def _from_stop(stop: int, tours: Indices) -> Indices:
+    """Return closed tours, shape (m, n), each from the same stop on."""
+    return rotated(tours, (tours == stop).argmax(axis=1))
+
+
+def _numbered(n: int) -> Labels:
+    """Return labels for stops and objectives without names."""
+    stops = tuple(Stop(str(index)) for index in range(n))
+    return Labels(stops, tuple(Objective(name) for name in _NAMES))
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +168,7 @@ class RestOfWay:
         left: Those of its stops that are the front's, without the ends.
     """
 
-    stops: NDArray[np.int64]
+    stops: Indices
     ends: RouteEnds
     start: int | None
     done: tuple[int, ...]
@@ -49,7 +185,7 @@ class RestOfWay:
         return RouteEnds(closed, self.place(start), self.place(end))
 
     def earlier_tours(
-        self, front: EarlierFront, request: ReplanRequest, changed: NDArray[np.int64] | None
+        self, front: EarlierFront, request: ReplanRequest, changed: Indices | None
     ) -> EarlierTours:
         """Return what is left of a front's tours, in indexes of the rest.
 
@@ -75,7 +211,7 @@ class RestOfWay:
         )
 
 
-def rest_of_way(front: EarlierFront, request: ReplanRequest, stops: AllStops) -> RestOfWay:
+def rest_of_way(front: EarlierFront, request: ReplanRequest) -> RestOfWay:
     """Return what is left of the way through a front's stops.
 
     A closed tour leads back to its start, and an open route to its end if that is fixed. A fixed
@@ -85,11 +221,10 @@ def rest_of_way(front: EarlierFront, request: ReplanRequest, stops: AllStops) ->
         Refusal: A stop is not known, named twice, done and removed, or needed as an end and done
             or removed; or no stop is left.
     """
-    ids = {stop.id: index for index, stop in enumerate(front.labels.stops)}
-    done = _indexes(request.done, ids, "done")
-    removed = _indexes(request.remove, ids, "remove")
-    begin, end = _ends(front)
-    start = _start(request, ids, stops, done[-1] if done else begin)
+    done = _indexes(request.done, front.ids, "done")
+    removed = _indexes(request.remove, front.ids, "remove")
+    begin, end = front.first_and_last
+    start = _start(front, request, done[-1] if done else begin)
     for index, stop in enumerate(removed):
         if stop in done:
             raise invalid(f"remove/{index}", f"must not be done, got {show(_name(front, stop))}")
@@ -114,9 +249,18 @@ def rest_of_way(front: EarlierFront, request: ReplanRequest, stops: AllStops) ->
     return RestOfWay(np.array(sorted(chosen), np.int64), ends, start, done, left)
 
 
+def _start(front: EarlierFront, request: ReplanRequest, default: int | None) -> int | None:
+    """Return the stop at which the way goes on, None where any may be the first."""
+    if request.position is None:
+        return default
+    if isinstance(request.position, int | str):
+        return find_index(request.position, front.ids, "position", front.n, _OF_FRONT)
+    return front.n + len(request.add)  # a place of its own, after the added stops
+
+
 def _left_of_tours(
-    front: EarlierFront, driven: NDArray[np.int64], rest: RestOfWay
-) -> tuple[Tours, NDArray[np.int64]]:
+    front: EarlierFront, driven: Indices, rest: RestOfWay
+) -> tuple[Indices, Indices]:
     """Return what is left of the earlier tours, shape (m, k), and the stops with new neighbours.
 
     In indexes of all stops. The first row is what is left of the driven tour; of a large front's
@@ -124,11 +268,10 @@ def _left_of_tours(
     first are done, it is driven the other way round. New neighbours are possible at the ends, and
     for stops beside one that is no longer in a tour.
     """
-    [driven] = front.from_start(driven[np.newaxis])
     driven = _as_driven(front, driven, rest.done)
     m = len(front.tours)
     spread = np.linspace(0, m - 1, min(m, MOST_TOURS)).astype(np.intp)
-    tours = np.concatenate((driven[np.newaxis], front.from_start(front.tours[spread])))
+    tours = np.concatenate((driven[np.newaxis], front.tours[spread]))
     is_left = np.zeros(front.n, np.bool_)
     is_left[list(rest.left)] = True
     kept = tours[is_left[tours]].reshape(len(tours), -1)
@@ -139,32 +282,14 @@ def _left_of_tours(
     return np.concatenate((before, kept, after), axis=1), beside
 
 
-def _beside_gone(tours: Tours, is_left: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _beside_gone(tours: Indices, is_left: NDArray[np.bool_]) -> Indices:
     """Return the remaining stops that are beside a gone one in some tour, ascending."""
     gone = ~is_left[tours]
     beside = np.roll(gone, 1, axis=1) | np.roll(gone, -1, axis=1)
     return np.unique(tours[beside & ~gone])
 
 
-def _ends(front: EarlierFront) -> tuple[int | None, int | None]:
-    """Return the first and the last stop of a front's tours; None where it may be any."""
-    if front.ends.closed:
-        return front.start, front.start
-    return front.ends.start, front.ends.end
-
-
-def _start(
-    request: ReplanRequest, ids: Mapping[str, int], stops: AllStops, default: int | None
-) -> int | None:
-    """Return the stop at which the way goes on, None where any may be the first."""
-    if request.position is None:
-        return default
-    if not isinstance(request.position, int | str):
-        return len(stops.stops) - 1
-    return find_index(request.position, ids, "position", len(ids), _OF_FRONT)
-
-
-def _driven_tour(front: EarlierFront, request: ReplanRequest) -> NDArray[np.int64]:
+def _driven_tour(front: EarlierFront, request: ReplanRequest) -> Indices:
     """Return the tour being driven, shape (n,): by default the front's knee.
 
     Raises:
@@ -172,16 +297,14 @@ def _driven_tour(front: EarlierFront, request: ReplanRequest) -> NDArray[np.int6
     """
     if not request.tour:
         return front.knee
-    ids = {stop.id: index for index, stop in enumerate(front.labels.stops)}
-    tour = _indexes(request.tour, ids, "tour")
-    if len(tour) != front.n:
-        raise invalid("tour", f"must have all {front.n} stops of the front, got {len(tour)}")
-    return np.array(tour, np.int64)
+    stops = _indexes(request.tour, front.ids, "tour")
+    if len(stops) != front.n:
+        raise invalid("tour", f"must have all {front.n} stops of the front, got {len(stops)}")
+    tour = np.array(stops, np.int64)
+    return _from_stop(front.start, tour[np.newaxis])[0] if front.ends.closed else tour
 
 
-def _as_driven(
-    front: EarlierFront, tour: NDArray[np.int64], done: Sequence[int]
-) -> NDArray[np.int64]:
+def _as_driven(front: EarlierFront, tour: Indices, done: Sequence[int]) -> Indices:
     """Return a tour in the direction in which it is driven, which the stops that are done show."""
     around = tour[::-1]
     if front.ends.closed:

@@ -11,8 +11,8 @@ from service.coverage.frame import MapFrame
 from service.errors import Refusal
 from service.kinds.tours import survey_map
 from service.requests.limits import Limits
-from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.replan.way import StoredFront
 from service.requests.task import Task, TaskSource
 from tests.helpers.actors import info_of
 from tests.helpers.changes import Found

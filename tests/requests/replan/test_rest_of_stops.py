@@ -10,9 +10,8 @@ import pytest
 from service.errors import Refusal
 from service.pareto import balances
 from service.requests.limits import Limits
-from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.replan.way import MOST_TOURS
+from service.requests.replan.way import MOST_TOURS, StoredFront
 from service.requests.stops import Stops, cost_matrices
 from service.requests.task import Task, TaskSource
 from tests.helpers.actors import info_of
