@@ -25,30 +25,6 @@ from service.requests.task import KindName
 _HEAD = 100  # the first bytes of a tour, which contain its first members
 
 
-@dataclass(frozen=True)
-class Timings:
-    """Milliseconds of each phase of planning, and once it has ended the total since the request.
-
-    Their JSON form is one object: the time in the queue, the phases, the total.
-    """
-
-    phases: Mapping[str, float]
-    total: float | None = None
-
-    @classmethod
-    def from_json(cls, members: Mapping[str, float]) -> Self:
-        """Return the timings of a parsed JSON object."""
-        phases = {name: ms for name, ms in members.items() if name not in ("queue", "total")}
-        return cls(phases, members.get("total"))
-
-    def as_json(self) -> dict[str, float]:
-        """Return the members of the JSON object."""
-        if self.total is None:
-            return dict(self.phases)
-        queue = self.total - sum(self.phases.values())
-        return {"queue": queue, **self.phases, "total": self.total}
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FrontDocument:
     """A front of m tours as JSON.
@@ -59,6 +35,8 @@ class FrontDocument:
     Attributes:
         reference_point: One number for each objective; None while the places are not known.
         scale: One number for each objective; None while the places are not known.
+        timings_ms: Milliseconds of each phase of planning; once it has ended, first those in the
+            queue, and last all since the request.
         actor: Name and digest of the network; None where it built no tours.
         places: Row and column of each place of a coverage task.
         closed: False where tours are open routes; None where they are closed.
@@ -78,7 +56,7 @@ class FrontDocument:
     hypervolume_bound: float | None
     reference_point: list[float] | None
     scale: list[float] | None
-    timings_ms: Timings
+    timings_ms: Mapping[str, float]
     terminated: Termination | None
     actor: Mapping[str, str] | None
     places: list[list[int]] | None = None
@@ -99,7 +77,7 @@ class FrontDocument:
             hypervolume=front.hypervolume,
             reference_point=front.reference_point.tolist(),
             scale=front.scale.tolist(),
-            timings_ms=Timings(front.timings),
+            timings_ms=front.timings,
             terminated=front.terminated,
             angles=angles(front.points, front.scale).tobytes(),
             **members,
@@ -114,8 +92,7 @@ class FrontDocument:
         """
         known = {name: members[name] for name in _MEMBERS if name in members}
         known.setdefault("kind", _kind_of_earlier_version(members))
-        timings = Timings.from_json(known.pop("timings_ms"))
-        return cls(**known, timings_ms=timings, **encoded).with_balances()
+        return cls(**known, **encoded).with_balances()
 
     def with_balances(self) -> Self:
         """Return the front with the balance of each tour, computed where it is missing."""
@@ -130,13 +107,18 @@ class FrontDocument:
     def members(self) -> dict[str, Any]:
         """Return the members of the answer but the tours, ready for JSON."""
         values = {name: getattr(self, name) for name in _MEMBERS}
-        given = {k: v for k, v in values.items() if v is not None or k not in _OPTIONAL}
-        return {**given, "timings_ms": self.timings_ms.as_json()}
+        return {k: v for k, v in values.items() if v is not None or k not in _OPTIONAL}
 
     def json(self, **more: Any) -> bytes:
         """Return the answer as JSON, beginning with these other members."""
         members = to_json({**more, **self.members()})
         return b"".join((members[:-1], b',"front":[', self.tours, b"]}"))
+
+    @property
+    def phases(self) -> dict[str, float]:
+        """The milliseconds of each phase of planning."""
+        timings = self.timings_ms.items()
+        return {name: ms for name, ms in timings if name not in ("queue", "total")}
 
     @property
     def directions(self) -> NDArray[np.float64]:
@@ -184,7 +166,8 @@ class FrontDocument:
         terminated = self.terminated
         if terminated in (None, "cancelled"):
             terminated = "time_limit" if late else "cancelled"
-        timings = replace(self.timings_ms, total=1000 * seconds)
+        phases, total = self.phases, 1000 * seconds
+        timings = {"queue": total - sum(phases.values()), **phases, "total": total}
         return replace(self, timings_ms=timings, terminated=terminated)
 
 

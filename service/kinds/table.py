@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from service.coverage.coverage import Coverage
-from service.kinds.front_document import FrontDocument, Timings
+from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Kind
 from service.requests.stops import Stops
 from service.requests.task import KindName, SharedCoverage, Task, UnmeasuredFleet
@@ -67,7 +67,7 @@ def empty_document(task: Task) -> FrontDocument:
         hypervolume_bound=None,
         reference_point=None if reference_point is None else reference_point.tolist(),
         scale=None if scale is None else scale.tolist(),
-        timings_ms=Timings({}),
+        timings_ms={},
         terminated=None,
         actor=None,
         **members,

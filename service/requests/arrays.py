@@ -20,10 +20,10 @@ CostRows = list[list[float | None]]
 AnyRows = TypeVar("AnyRows", Rows, CostRows)
 
 
-def array_field(parse: Callable[[AnyRows, str], Array], rows_type: Any) -> GetPydanticSchema:
+def array_field(parse: Callable[[Any, str], Array], rows_type: Any) -> GetPydanticSchema:
     """Return the schema of a field of rows of a type, parsed with its name into an array."""
 
-    def parse_named(rows: AnyRows, info: ValidationInfo) -> Array:
+    def parse_named(rows: Any, info: ValidationInfo) -> Array:
         return parse(rows, str(info.field_name))
 
     return GetPydanticSchema(
@@ -31,18 +31,18 @@ def array_field(parse: Callable[[AnyRows, str], Array], rows_type: Any) -> GetPy
     )
 
 
-def stack_matrices(matrices: list[CostRows]) -> Array:
+def stack_matrices(matrices: list[CostRows], name: str = "matrices") -> Array:
     """Return the costs of each objective as one array, shape (2, n, n), as `cost_matrix` does.
 
     Raises:
         Refusal: A matrix is not square, or they differ in size, or an entry is not finite.
     """
-    arrays = [cost_matrix(rows, f"matrices/{m}") for m, rows in enumerate(matrices)]
+    arrays = [cost_matrix(rows, f"{name}/{m}") for m, rows in enumerate(matrices)]
     n = len(arrays[0])
     for m, array in enumerate(arrays):
         if len(array) != n:
-            demand = f"must have {n} rows, as many as matrices/0, got {len(array)}"
-            raise invalid(f"matrices/{m}", demand)
+            demand = f"must have {n} rows, as many as {name}/0, got {len(array)}"
+            raise invalid(f"{name}/{m}", demand)
     return np.stack(arrays)
 
 

@@ -27,6 +27,7 @@ from service.requests.stop_fields import (
     check_unique,
     find_index,
     read_objectives,
+    read_sources,
     read_stops,
 )
 from service.requests.stops import Labels, Stops, locations_of
@@ -81,6 +82,15 @@ class ShipmentItem(BaseModel):
     pickup: StopReference = Field(description="by index or id; its demand and prize are of both")
     delivery: StopReference = Field(description="by index or id")
 
+    def shipment(self, part: str, ids: Mapping[str, int]) -> Shipment:
+        """Return the shipment, whose part of the request is `part`, as shipments/0.
+
+        Raises:
+            Refusal: One of both is not a stop.
+        """
+        pickup = find_index(self.pickup, ids, f"{part}/pickup", len(ids))
+        return Shipment(pickup, find_index(self.delivery, ids, f"{part}/delivery", len(ids)))
+
 
 class VehicleItem(BaseModel):
     """A type of vehicle, and how many of it there are."""
@@ -107,8 +117,16 @@ class VehicleItem(BaseModel):
     )
     fixed: Cost = Field(default=0.0, description="what the first length grows by if one is used")
 
-    def vehicle_type(self, start: int | None, end: int | None) -> VehicleType:
-        """Return the type of vehicles, with its ends as indexes."""
+    def vehicle_type(self, part: str, ids: Mapping[str, int]) -> VehicleType:
+        """Return the type of vehicles, whose part of the request is `part`, as vehicles/0.
+
+        Raises:
+            Refusal: Its start or its end is not a stop.
+        """
+        start, end = (
+            None if stop is None else find_index(stop, ids, f"{part}/{name}", len(ids))
+            for name, stop in (("start", self.start), ("end", self.end))
+        )
         return VehicleType(
             start=start,
             end=end,
@@ -177,18 +195,26 @@ class FleetRequest(SearchFields):
         """
         labels = self.labels
         ids = {stop.id: index for index, stop in enumerate(labels.stops)}
-        items = enumerate(self.objectives)
-        sources = [item.source(f"objectives/{m}", labels.stops) for m, item in items]
+        sources = read_sources(self.objectives, labels.stops)
+        stops = Stops(locations_of(labels.stops), sources)
         rules = Rules(
             visits=tuple(item.visit() for item in self.stops),
-            vehicles=tuple(_vehicle(item, i, ids) for i, item in enumerate(self.vehicles)),
-            shipments=tuple(_shipment(item, i, ids) for i, item in enumerate(self.shipments)),
+            vehicles=tuple(
+                item.vehicle_type(f"vehicles/{i}", ids) for i, item in enumerate(self.vehicles)
+            ),
+            shipments=tuple(
+                item.shipment(f"shipments/{i}", ids) for i, item in enumerate(self.shipments)
+            ),
             over=(self.objectives[0].over, self.objectives[1].over),
             clock=self._clock(),
         )
         names = tuple(item.id for item in self.vehicles)
         check_unique(names, "vehicles")
-        return UnmeasuredFleet(rules, names, Stops(locations_of(labels.stops), sources))
+        return UnmeasuredFleet(
+            rules,
+            names,
+            stops,
+        )
 
     def _clock(self) -> int | None:
         names = [item.name for item in self.objectives]
@@ -213,21 +239,3 @@ def parse_fleet_request(body: bytes, limits: Limits) -> FleetRequest:
     n, id_bytes = len(request.stops), request.id_bytes
     check_amounts(request, n, limits, id_bytes)
     return lower_defaults(request, n, limits, id_bytes)
-
-
-def _vehicle(item: VehicleItem, index: int, ids: Mapping[str, int]) -> VehicleType:
-    start, end = (
-        None
-        if reference is None
-        else find_index(reference, ids, f"vehicles/{index}/{name}", len(ids))
-        for name, reference in (("start", item.start), ("end", item.end))
-    )
-    return item.vehicle_type(start, end)
-
-
-def _shipment(item: ShipmentItem, index: int, ids: Mapping[str, int]) -> Shipment:
-    pickup, delivery = (
-        find_index(reference, ids, f"shipments/{index}/{name}", len(ids))
-        for name, reference in (("pickup", item.pickup), ("delivery", item.delivery))
-    )
-    return Shipment(pickup, delivery)

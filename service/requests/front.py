@@ -6,12 +6,11 @@ from typing import Annotated, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, GetPydanticSchema
-from pydantic_core.core_schema import no_info_after_validator_function
+from pydantic import Field
 
 from service.errors import Refusal, invalid
 from service.instance import OBJECTIVES, PLANE, Kind
-from service.requests.arrays import check_costs, stack_matrices
+from service.requests.arrays import array_field, check_costs, stack_matrices
 from service.requests.fields import (
     END,
     GEOMETRY,
@@ -32,6 +31,7 @@ from service.requests.stop_fields import (
     StopReference,
     find_index,
     read_objectives,
+    read_sources,
     read_stops,
 )
 from service.requests.stops import (
@@ -54,12 +54,7 @@ City = Annotated[list[Number], Field(min_length=_COLUMNS, max_length=_COLUMNS, f
 _MatrixRows = Annotated[
     list[CostRows], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
 ]
-Matrices = Annotated[
-    NDArray[np.float64],
-    GetPydanticSchema(
-        lambda _, handler: no_info_after_validator_function(stack_matrices, handler(_MatrixRows))
-    ),
-]
+Matrices = Annotated[NDArray[np.float64], array_field(stack_matrices, _MatrixRows)]
 
 
 class FrontRequest(PlanRequest):
@@ -145,8 +140,7 @@ class FrontRequest(PlanRequest):
     def _sources(self, stops: tuple[Stop, ...]) -> tuple[Source, ...]:
         """Return the source of each objective; with a file, its matrices are the sources."""
         if not self.matrices.size:
-            items = enumerate(self.objectives)
-            return tuple(item.source(f"objectives/{m}", stops) for m, item in items)
+            return tuple(read_sources(self.objectives, stops))
         for m, item in enumerate(self.objectives):
             if item.sources:
                 demand = "must have no source where the part matrices holds both, got"

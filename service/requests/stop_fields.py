@@ -126,6 +126,11 @@ def read_objectives(items: Sequence[ObjectiveItem]) -> tuple[Objective, ...]:
     return tuple(item.objective(f"objectives/{m}") for m, item in enumerate(items))
 
 
+def read_sources(items: Sequence[ObjectiveItem], stops: Sequence[Stop]) -> list[Source]:
+    """Return the source of the costs of each objective between these stops; errors as of one."""
+    return [item.source(f"objectives/{m}", stops) for m, item in enumerate(items)]
+
+
 def check_unique(names: Iterable[str], items: str, member: str = "id") -> None:
     """Raise a refusal where two items of a list, as stops, have the same id or name."""
     first: dict[str, int] = {}

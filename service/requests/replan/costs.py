@@ -10,7 +10,7 @@ from service.errors import invalid
 from service.requests.arrays import costs_array
 from service.requests.replan.fields import CostEntry, NewStop, ReplanRequest
 from service.requests.replan.way import EarlierFront
-from service.requests.stop_fields import find_index, read_objectives
+from service.requests.stop_fields import find_index, read_objectives, read_sources
 from service.requests.stops import (
     Changed,
     Matrix,
@@ -80,8 +80,7 @@ def all_costs(
         for part, item in stops.new.items():
             for name in {"coordinates", "costs"} & item.model_fields_set:
                 raise invalid(f"{part}/{name}", "must not be given beside objectives")
-        items = enumerate(request.objectives)
-        sources = [item.source(f"objectives/{m}", stops.stops) for m, item in items]
+        sources = read_sources(request.objectives, stops.stops)
     else:
         objectives = front.labels.objectives
         sources = [

@@ -126,11 +126,6 @@ class MapChanges(PlanFields):
         default=False, description="of a front of a map: whether each tour comes with its path"
     )
 
-    @property
-    def map_changed(self) -> bool:
-        """Whether a path between two places may have become another."""
-        return bool(self.grid.size or self.blocked or self.freed or self.cost_layer.size)
-
 
 class ReplanRequest(MapChanges):
     """What has changed since a front was planned, and the options of the front of the rest.

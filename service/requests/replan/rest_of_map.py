@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,54 +38,99 @@ def rest_of_map(
     """
     check_fields(request, on_map=True)
     front = earlier_front_of_map(stored, coverage)
-    coverage = _changed_map(coverage, request)
+    changes = _changes(coverage, request)
     known = np.array(stored.found.places, np.int64).reshape(-1, 2)
-    cells, request = _all_places(known, coverage, request)
+    anywhere = request.cost_layer.size > 0 or coverage.cost_layer is not None
+    cells, request = _all_places(known, coverage, request, anywhere)
     rest = rest_of_way(front, request)
     n, most = len(rest.stops), limits.most_places(shared=False)
     if n > most:
         raise too_many_cities("add", most, n)
     check_amounts(request, n, limits)
-    nothing = np.empty(0, np.int64)
+    matrix, points = coverage.second_matrix, coverage.second_coordinates
+    if request.cost_layer.size:  # it replaces both
+        matrix = points = None
+    members = {
+        "places": cells[rest.stops],
+        "second_matrix": None if matrix is None else matrix[np.ix_(rest.stops, rest.stops)],
+        "second_coordinates": None if points is None else points[rest.stops],
+        "start": rest.begin or 0,
+        "ends": rest.ends_in_rest,
+        **dict.fromkeys(("spacing", "start_pose", "end_pose")),
+        **changes,
+    }
+    changed = None if changes else np.empty(0, np.int64)
     task = coverage_task(
         lower_defaults(request, n, limits),
-        _of_rest(coverage, cells, rest),
+        replace(coverage, **members),
         actors,
-        earlier=rest.earlier_tours(front, request, None if request.map_changed else nothing),
+        earlier=rest.earlier_tours(front, request, changed),
     )
-    return replace(task, parts=tuple(_parts(request, rest, front.n)))
+    return replace(task, parts=tuple(_parts(request, rest, len(known))))
+
+
+def _changes(coverage: Coverage, request: ReplanRequest) -> dict[str, Any]:
+    """Return the members of the task that are about the map, as far as they have changed."""
+    changes: dict[str, Any] = {}
+    if request.grid.size or request.blocked or request.freed:
+        changes["blocked"] = _blocked(coverage, request)
+    if request.cost_layer.size:
+        changes["cost_layer"] = request.cost_layer
+    return changes
+
+
+def _blocked(coverage: Coverage, request: ReplanRequest) -> NDArray[np.bool_]:
+    """Return the obstacles of the map as it is now."""
+    blocked = coverage.blocked.copy()
+    if request.grid.size:
+        if request.grid.shape != blocked.shape:
+            came = size_of(request.grid)
+            demand = f"must be as large as that of the front, {coverage.size}, got {came}"
+            raise invalid("grid", demand)
+        check_grid(request.grid)
+        blocked = request.grid > 0
+    for name, cells, now in (("blocked", request.blocked, True), ("freed", request.freed, False)):
+        for index, (row, column) in enumerate(cells):
+            if row >= blocked.shape[0] or column >= blocked.shape[1]:
+                demand = f"must be a cell of the grid of {coverage.size}, got [{row}, {column}]"
+                raise invalid(f"{name}/{index}", demand)
+            blocked[row, column] = now
+    return blocked
 
 
 def _all_places(
-    known: Cells, coverage: Coverage, request: ReplanRequest
+    known: Cells, coverage: Coverage, request: ReplanRequest, anywhere: bool
 ) -> tuple[Cells, ReplanRequest]:
     """Return the known places, those added, and maybe one where the way goes on, in this order.
 
     In the request that is returned, the position is a known place or the last of all.
 
+    Args:
+        known: The places of the front, shape (n, 2).
+        coverage: The task of the front.
+        request: The request to replan.
+        anywhere: Whether there are costs from and to any cell, not only those of known places.
+
     Raises:
-        Refusal: A new one is no cell of the grid, or has no costs.
+        Refusal: A new place is not a cell of the grid, or has no costs.
     """
     new = []
     for index, item in enumerate(request.add):
         if not isinstance(item, list):
             raise invalid(f"add/{index}", "must be row and column of a place on the map")
-        _check_costs(coverage, f"add/{index}")
+        _check_costs(anywhere, f"add/{index}")
         new.append(item)
     name, cell = _position_cell(coverage, request)
-    if cell is None:
-        return (np.concatenate((known, _cells(new))), request)
-    there = np.flatnonzero((known == cell).all(axis=1))
-    if coverage.cost_layer is None and len(there):
-        request = request.model_copy(update={"position": int(there[0])})
-        return (np.concatenate((known, _cells(new))), request)
-    _check_costs(coverage, name)
-    request = request.model_copy(update={"position": cell})
-    return (np.concatenate((known, _cells([*new, cell]))), request)
-
-
-def _cells(cells: list[list[int]]) -> Cells:
-    return np.array(cells, np.int64).reshape(-1, 2)
+    if cell is not None:
+        position: list[int] | int = cell
+        there = np.flatnonzero((known == cell).all(axis=1))
+        if not anywhere and len(there):
+            position = int(there[0])
+        else:
+            _check_costs(anywhere, name)
+            new.append(cell)
+        request = request.model_copy(update={"position": position})
+    return np.concatenate((known, np.array(new, np.int64).reshape(-1, 2))), request
 
 
 def _position_cell(coverage: Coverage, request: ReplanRequest) -> tuple[str, list[int] | None]:
@@ -110,53 +156,10 @@ def _position_cell(coverage: Coverage, request: ReplanRequest) -> tuple[str, lis
     return "pose", [row, column]
 
 
-def _check_costs(coverage: Coverage, part: str) -> None:
-    if coverage.cost_layer is None:
+def _check_costs(anywhere: bool, part: str) -> None:
+    if not anywhere:
         demand = "must be in the cell of a place, as only a cost_layer has costs of other cells"
         raise invalid(part, demand)
-
-
-def _changed_map(coverage: Coverage, request: ReplanRequest) -> Coverage:
-    """Return the task on the map as it is now, with its second objective as it is now."""
-    blocked = coverage.blocked.copy()
-    if request.grid.size:
-        if request.grid.shape != blocked.shape:
-            came = size_of(request.grid)
-            demand = f"must be as large as that of the front, {coverage.size}, got {came}"
-            raise invalid("grid", demand)
-        check_grid(request.grid)
-        blocked = request.grid > 0
-    for name, cells, now in (("blocked", request.blocked, True), ("freed", request.freed, False)):
-        for index, (row, column) in enumerate(cells):
-            if row >= blocked.shape[0] or column >= blocked.shape[1]:
-                demand = f"must be a cell of the grid of {coverage.size}, got [{row}, {column}]"
-                raise invalid(f"{name}/{index}", demand)
-            blocked[row, column] = now
-    if not request.cost_layer.size:
-        return replace(coverage, blocked=blocked)
-    return replace(
-        coverage,
-        blocked=blocked,
-        cost_layer=request.cost_layer,
-        second_matrix=None,
-        second_coordinates=None,
-    )
-
-
-def _of_rest(coverage: Coverage, cells: Cells, rest: RestOfWay) -> Coverage:
-    """Return the task of the rest: its places, and the second objective between them."""
-    matrix, points = coverage.second_matrix, coverage.second_coordinates
-    return replace(
-        coverage,
-        places=cells[rest.stops],
-        spacing=None,
-        start_pose=None,
-        end_pose=None,
-        start=rest.place(rest.start) or 0,
-        ends=rest.ends_in_rest,
-        second_matrix=None if matrix is None else matrix[np.ix_(rest.stops, rest.stops)],
-        second_coordinates=None if points is None else points[rest.stops],
-    )
 
 
 def _parts(request: ReplanRequest, rest: RestOfWay, n: int) -> Iterator[str]:

@@ -45,7 +45,7 @@ def rest_of_stops(
         labels=labels,
         earlier=rest.earlier_tours(front, request, None if request.objectives else changed),
     )
-    return replace(task, options=replace(task.options, start=rest.place(rest.start) or 0))
+    return replace(task, options=replace(task.options, start=rest.begin or 0))
 
 
 def _check_cities(part: str, rest: RestOfWay, sources: Sequence[Source], limits: Limits) -> None:

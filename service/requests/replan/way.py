@@ -163,7 +163,9 @@ class RestOfWay:
     Args:
         stops: Its stops, ascending, shape (k,).
         ends: Whether it leads back to its beginning, and its ends if it does not.
-        start: The stop at which it continues; None where any may be the first.
+        start: The stop at which it goes on; None where any may be the first.
+        begin: The index of that stop in the rest.
+        ends_in_rest: The ends as indexes in the rest.
         done: The stops visited, in order.
         left: Those of its stops that are the front's, without the ends.
     """
@@ -171,18 +173,10 @@ class RestOfWay:
     stops: Indices
     ends: RouteEnds
     start: int | None
+    begin: int | None
+    ends_in_rest: RouteEnds
     done: tuple[int, ...]
     left: frozenset[int]
-
-    def place(self, stop: int | None) -> int | None:
-        """Return the index in the rest of one of its stops."""
-        return None if stop is None else int(np.searchsorted(self.stops, stop))
-
-    @property
-    def ends_in_rest(self) -> RouteEnds:
-        """The ends as indexes in the rest."""
-        closed, start, end = self.ends
-        return RouteEnds(closed, self.place(start), self.place(end))
 
     def earlier_tours(
         self, front: EarlierFront, request: ReplanRequest, changed: Indices | None
@@ -246,7 +240,19 @@ def rest_of_way(front: EarlierFront, request: ReplanRequest) -> RestOfWay:
         raise invalid("remove", "must leave a stop to visit, and leaves none")
     back = front.ends.closed and start == front.start
     ends = CLOSED if back else RouteEnds(False, start, end if end != start else None)
-    return RestOfWay(np.array(sorted(chosen), np.int64), ends, start, done, left)
+    stops = sorted(chosen)
+    begin, *in_rest = (
+        None if stop is None else stops.index(stop) for stop in (start, ends.start, ends.end)
+    )
+    return RestOfWay(
+        stops=np.array(stops, np.int64),
+        ends=ends,
+        start=start,
+        begin=begin,
+        ends_in_rest=RouteEnds(back, *in_rest),
+        done=done,
+        left=left,
+    )
 
 
 def _start(front: EarlierFront, request: ReplanRequest, default: int | None) -> int | None:
