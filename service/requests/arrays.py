@@ -12,6 +12,7 @@ from pydantic import GetPydanticSchema, ValidationInfo
 from pydantic_core.core_schema import with_info_after_validator_function
 
 from service.errors import invalid
+from service.requests.fields import LARGEST
 from service.requests.validation import show, too_many_cells
 
 Array = NDArray[np.float64]
@@ -109,7 +110,7 @@ def check_size(columns: int, rows: int, most: int) -> None:
         raise invalid("grid", f"must have a cell or more, got {rows} x {columns}")
 
 
-def check_costs(matrix: Array, name: str, largest: float) -> None:
+def check_costs(matrix: Array, name: str) -> None:
     """Raise a refusal unless all entries of a matrix, shape (n, n), off its diagonal are costs.
 
     An infinite entry means that there is no way.
@@ -119,7 +120,7 @@ def check_costs(matrix: Array, name: str, largest: float) -> None:
     """
     # A comparison with NaN is false, so NaN is found as well.
     with np.errstate(invalid="ignore"):
-        is_cost = (matrix >= 0) & ((matrix <= largest) | (matrix == np.inf))
+        is_cost = (matrix >= 0) & ((matrix <= LARGEST) | (matrix == np.inf))
     is_cost |= np.eye(len(matrix), dtype=np.bool_)
     if is_cost.all():
         return
@@ -128,5 +129,5 @@ def check_costs(matrix: Array, name: str, largest: float) -> None:
     if np.isnan(entry):
         demand = "must be a number, or infinity where there is no way"
     else:
-        demand = "must not be negative" if entry < 0 else f"must be at most {largest:g}"
+        demand = "must not be negative" if entry < 0 else f"must be at most {LARGEST:g}"
     raise invalid(f"{name}/{i}/{j}", f"{demand}, got {show(entry)}")

@@ -11,12 +11,14 @@ from service.errors import invalid
 from service.instance import CLOSED, Kind, RouteEnds
 from service.requests.arrays import array_field, check_costs, cost_matrix
 from service.requests.fields import (
-    LARGEST,
     NO_WAY,
+    Cost,
     CostRows,
     NonNegativeInteger,
+    Pair,
     PlanePoint,
     PositiveNumber,
+    SomeItems,
 )
 from service.requests.limits import Limits, check_limits, lower_defaults
 from service.requests.maps.fields import Layer, MapRequest, empty_array
@@ -32,20 +34,17 @@ from service.requests.task import SharedCoverage
 from service.requests.validation import parse_json, too_many_cities
 
 Matrix = Annotated[NDArray[np.float64], array_field(cost_matrix, CostRows)]
-Cell = Annotated[list[NonNegativeInteger], Field(min_length=2, max_length=2, fail_fast=True)]
+Cell = Pair[NonNegativeInteger]
 
 
 class CoverageRequest(MapRequest):
     """Places on a map, a second objective between them, and the options of their front."""
 
-    robot_radius: float = Field(
+    robot_radius: Cost = Field(
         default=0.0,
-        ge=0,
-        le=LARGEST,
-        allow_inf_nan=False,
         description="in metres; the robot's middle stays farther than this from an obstacle's",
     )
-    places: Annotated[list[Cell], Field(min_length=1, fail_fast=True)] = Field(
+    places: SomeItems[Cell] = Field(
         default_factory=list, description="row and column of each place to visit"
     )
     spacing: PositiveNumber = Field(
@@ -70,7 +69,7 @@ class CoverageRequest(MapRequest):
         default_factory=empty_array,
         description="or: on each cell of the grid, what a metre costs; added up along the paths",
     )
-    second_coordinates: Annotated[list[PlanePoint], Field(min_length=1, fail_fast=True)] = Field(
+    second_coordinates: SomeItems[PlanePoint] = Field(
         default_factory=list, description="or: x and y of each place in a plane; its distances"
     )
     paths: bool = Field(
@@ -150,7 +149,7 @@ def parse_coverage_as(
         raise too_many_cities("places", most, len(request.places))
     _check_poses(request)
     check_robots(request.robots, request.over, request.model_fields_set, request.closed)
-    check_costs(request.second_matrix, "second_matrix", LARGEST)
+    check_costs(request.second_matrix, "second_matrix")
     # With a spacing, the number of places is not known before the survey.
     n = len(request.places) or most
     check_limits(request, n, limits)

@@ -1,7 +1,7 @@
 """The types of fields in requests, and the fields that all requests share."""
 
 from dataclasses import replace
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
@@ -36,10 +36,20 @@ def _integer(value: object) -> object:
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
+Each = TypeVar("Each")
+# Lists whose validation ends at the first item that is wrong.
+Items = Annotated[list[Each], Field(fail_fast=True)]
+SomeItems = Annotated[list[Each], Field(min_length=1, fail_fast=True)]
+Pair = Annotated[list[Each], Field(min_length=2, max_length=2, fail_fast=True)]
+OneEach = Annotated[  # for each objective
+    list[Each], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
+]
 Angle = Annotated[float, Field(ge=0, le=90, allow_inf_nan=False)]
+Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
+Cost = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
 PositiveNumber = Annotated[float, Field(ge=SMALLEST, le=LARGEST, allow_inf_nan=False)]
-PlanePoint = Annotated[list[Number], Field(min_length=2, max_length=2, fail_fast=True)]
+PlanePoint = Pair[Number]
 AsInteger = BeforeValidator(_integer)
 # AsInteger comes last: before them, the bounds would be lost to the OpenAPI document.
 PositiveInteger = Annotated[int, Field(ge=1, le=_MOST_INTEGER), AsInteger]
@@ -47,18 +57,25 @@ NonNegativeInteger = Annotated[int, Field(ge=0, le=_MOST_INTEGER), AsInteger]
 Text = Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT, pattern=PRINTABLE)]
 # Only the type of the numbers is checked here, and the rest once they are an array: half a million
 # are too many to check one by one.
-ArrayRows = Annotated[list[Annotated[list[float], Field(fail_fast=True)]], Field(fail_fast=True)]
+ArrayRows = Items[Items[float]]
 # Of costs from each city to each; null where there is no way.
-CostRows = Annotated[
-    list[Annotated[list[float | None], Field(fail_fast=True)]], Field(fail_fast=True)
-]
+CostRows = Items[Items[float | None]]
 NO_WAY = "null where there is no way; the diagonal is disregarded"
 
 
-class SearchFields(BaseModel):
-    """The fields of every request: how long to plan, and how much to return."""
+def optional(description: str) -> Any:
+    """Return a field that is None where it was not given."""
+    return Field(default=None, description=description)
+
+
+class StrictModel(BaseModel):
+    """A part of a request, which has no other fields and takes no value for one of another type."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+
+class SearchFields(StrictModel):
+    """The fields of every request: how long to plan, and how much to return."""
 
     time_limit: float = Field(
         default=1.0,
@@ -148,10 +165,9 @@ class PlanRequest(PlanFields):
     )
     start: NonNegativeInteger | None = Field(default=0, description=START)
     end: NonNegativeInteger | None = Field(default=None, description=END)
-    initial_tours: Annotated[
-        list[Annotated[list[NonNegativeInteger], Field(fail_fast=True)]],
-        Field(min_length=1, fail_fast=True),
-    ] = Field(default_factory=list, description="tours that the front shall dominate or equal")
+    initial_tours: SomeItems[Items[NonNegativeInteger]] = Field(
+        default_factory=list, description="tours that the front shall dominate or equal"
+    )
 
     @property
     def ends(self) -> RouteEnds:

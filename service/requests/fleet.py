@@ -2,22 +2,27 @@
 
 from collections.abc import Mapping
 from math import inf
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from pydantic_core import to_json
 
 from service.errors import invalid
 from service.fleet.fleet import ALWAYS, Over, Rules, Shipment, Span, VehicleType, Visit
-from service.instance import OBJECTIVES
 from service.requests.fields import (
     GEOMETRY,
-    LARGEST,
     AsInteger,
+    Cost,
     Geometry,
+    Items,
+    OneEach,
+    Pair,
     PositiveNumber,
     SearchFields,
+    SomeItems,
+    StrictModel,
     Text,
+    optional,
 )
 from service.requests.limits import Limits, check_amounts, check_limit, lower_defaults
 from service.requests.stop_fields import (
@@ -40,14 +45,8 @@ _MOST_DIMENSIONS = 8
 _MOST_COUNT = 10**6
 Load = Annotated[int, Field(ge=0, le=_MOST_LOAD), AsInteger]
 Loads = Annotated[list[Load], Field(max_length=_MOST_DIMENSIONS, fail_fast=True)]
-Cost = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
 # A pair in JSON, and a list so that OpenAPI has its length.
-TimeSpan = Annotated[list[Cost], Field(min_length=2, max_length=2, fail_fast=True)]
-
-
-def _optional(description: str) -> Any:
-    """Return a field that is None where it was not given."""
-    return Field(default=None, description=description)
+TimeSpan = Pair[Cost]
 
 
 class FleetStopItem(StopItem):
@@ -59,8 +58,8 @@ class FleetStopItem(StopItem):
         " of a shipment's pick-up what it takes on",
     )
     service: Cost = Field(default=0.0, description="how long a visit takes, in the clock's unit")
-    window: TimeSpan | None = _optional("when a visit may begin, from and to")
-    prize: Cost | None = _optional(
+    window: TimeSpan | None = optional("when a visit may begin, from and to")
+    prize: Cost | None = optional(
         "what the first length grows by if the stop is left out; without it the stop is visited"
     )
 
@@ -74,10 +73,8 @@ class FleetStopItem(StopItem):
         )
 
 
-class ShipmentItem(BaseModel):
+class ShipmentItem(StrictModel):
     """Two stops that one vehicle visits: the pick-up, and later the delivery."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     pickup: StopReference = Field(description="by index or id; its demand and prize are of both")
     delivery: StopReference = Field(description="by index or id")
@@ -92,26 +89,24 @@ class ShipmentItem(BaseModel):
         return Shipment(pickup, find_index(self.delivery, ids, f"{part}/delivery", len(ids)))
 
 
-class VehicleItem(BaseModel):
+class VehicleItem(StrictModel):
     """A type of vehicle, and how many of it there are."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     id: Text = Field(description="comes back with every route; no two types share one")
     count: Annotated[int, Field(ge=1, le=_MOST_COUNT), AsInteger] = Field(
         default=1, description="how many there are"
     )
-    start: StopReference | None = _optional(
+    start: StopReference | None = optional(
         "the stop at which they start, by index or id; null: each at its first visit"
     )
-    end: StopReference | None = _optional(
+    end: StopReference | None = optional(
         "the stop at which they end, by index or id; null: each at its last visit"
     )
     capacity: Loads = Field(
         default_factory=list, description="the most that one holds, in up to 8 dimensions"
     )
-    shift: TimeSpan | None = _optional("when one may leave, and must be back")
-    longest: PositiveNumber | None = _optional(
+    shift: TimeSpan | None = optional("when one may leave, and must be back")
+    longest: PositiveNumber | None = optional(
         "the longest route: its time where there is a clock, else its length in the objective that"
         " is a maximum"
     )
@@ -154,17 +149,14 @@ def _span(bounds: list[float] | None) -> Span:
 class FleetRequest(SearchFields):
     """Stops, vehicles and two objectives, and the options of their front of plans."""
 
-    stops: Annotated[list[FleetStopItem], Field(min_length=1, fail_fast=True)] = Field(
-        description="by ids that come back with every plan"
-    )
+    stops: SomeItems[FleetStopItem] = Field(description="by ids that come back with every plan")
     vehicles: Annotated[
         list[VehicleItem], Field(min_length=1, max_length=_MOST_VEHICLE_TYPES, fail_fast=True)
     ] = Field(description="the types of vehicles")
-    objectives: Annotated[
-        list[FleetObjectiveItem],
-        Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
-    ] = Field(description="both, each with the costs between the stops")
-    shipments: Annotated[list[ShipmentItem], Field(fail_fast=True)] = Field(
+    objectives: OneEach[FleetObjectiveItem] = Field(
+        description="both, each with the costs between the stops"
+    )
+    shipments: Items[ShipmentItem] = Field(
         default_factory=list, description="pairs of stops that one vehicle visits, in order"
     )
     clock: Text | None = Field(

@@ -14,14 +14,16 @@ from service.requests.arrays import array_field, check_costs, stack_matrices
 from service.requests.fields import (
     END,
     GEOMETRY,
-    LARGEST,
     NO_WAY,
     START,
     AsInteger,
     CostRows,
     Geometry,
+    Items,
     Number,
+    OneEach,
     PlanRequest,
+    SomeItems,
 )
 from service.requests.limits import Limits, check_limits, check_router, lower_defaults
 from service.requests.npy import read_npy
@@ -51,9 +53,7 @@ _MOST_SYMMETRIES = 8  # that earlier versions showed the network
 FORMS = ("coordinates", "matrices", "stops")  # of a request, each named by its member
 _REFERENCES = {"start", "end", "initial_tours"}  # the fields that may name stops by their ids
 City = Annotated[list[Number], Field(min_length=_COLUMNS, max_length=_COLUMNS, fail_fast=True)]
-_MatrixRows = Annotated[
-    list[CostRows], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
-]
+_MatrixRows = OneEach[CostRows]
 Matrices = Annotated[NDArray[np.float64], array_field(stack_matrices, _MatrixRows)]
 
 
@@ -64,7 +64,7 @@ class FrontRequest(PlanRequest):
     """
 
     # An empty default means that the field was not given: no caller can give an empty array.
-    coordinates: Annotated[list[City], Field(min_length=1, fail_fast=True)] = Field(
+    coordinates: SomeItems[City] = Field(
         default_factory=list,
         description="a row for each city: x and y in plane 1, x and y in plane 2",
     )
@@ -73,13 +73,12 @@ class FrontRequest(PlanRequest):
         description="instead of coordinates, for each objective the costs from each city (row) to"
         f" each (column), {NO_WAY}",
     )
-    stops: Annotated[list[StopItem], Field(min_length=1, fail_fast=True)] = Field(
+    stops: SomeItems[StopItem] = Field(
         default_factory=list, description="the cities, by ids that come back with every tour"
     )
-    objectives: Annotated[
-        list[ObjectiveItem],
-        Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
-    ] = Field(default_factory=list, description="both, each with the costs between the stops")
+    objectives: OneEach[ObjectiveItem] = Field(
+        default_factory=list, description="both, each with the costs between the stops"
+    )
     # In a checked request these hold only indexes, as in every PlanRequest.
     start: StopReference | None = Field(  # type: ignore[assignment]
         default=0, description=f"{START}; by index or id"
@@ -87,10 +86,7 @@ class FrontRequest(PlanRequest):
     end: StopReference | None = Field(  # type: ignore[assignment]
         default=None, description=f"{END}; by index or id"
     )
-    initial_tours: Annotated[
-        list[Annotated[list[StopReference], Field(fail_fast=True)]],
-        Field(min_length=1, fail_fast=True),
-    ] = Field(  # type: ignore[assignment]
+    initial_tours: SomeItems[Items[StopReference]] = Field(  # type: ignore[assignment]
         default_factory=list,
         description="tours that the front shall dominate or equal, of indexes or ids",
     )
@@ -214,7 +210,7 @@ def _check_matrices(request: FrontRequest) -> None:
     if request.stops and rows != request.n:
         raise invalid("matrices", f"must have {request.n} rows, one for each stop, got {rows}")
     for m, matrix in enumerate(request.matrices):
-        check_costs(matrix, f"matrices/{m}", LARGEST)
+        check_costs(matrix, f"matrices/{m}")
 
 
 def _by_index(request: AnyFrontRequest) -> AnyFrontRequest:

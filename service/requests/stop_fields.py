@@ -4,16 +4,17 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
 from service.requests.arrays import check_costs, cost_matrix
 from service.requests.fields import (
-    LARGEST,
     NO_WAY,
     CostRows,
     NonNegativeInteger,
     PlanePoint,
+    SomeItems,
+    StrictModel,
     Text,
 )
 from service.requests.stops import UNITS, Matrix, Measure, Measured, Objective, Plane, Source, Stop
@@ -27,10 +28,8 @@ Longitude = Annotated[float, Field(ge=-180, le=180, allow_inf_nan=False)]
 Latitude = Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)]
 
 
-class StopItem(BaseModel):
+class StopItem(StrictModel):
     """A stop by its id, and where it is on the earth."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     id: Text = Field(description="comes back in every answer; no two stops share one")
     location: tuple[Longitude, Latitude] | None = Field(
@@ -38,10 +37,8 @@ class StopItem(BaseModel):
     )
 
 
-class ObjectiveItem(BaseModel):
+class ObjectiveItem(StrictModel):
     """An objective by its name, and the source of its costs."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     name: Text = Field(description="of the objective, in answers and charts")
     unit: Text | None = Field(default=None, description="of its costs, in answers and charts")
@@ -50,7 +47,7 @@ class ObjectiveItem(BaseModel):
         default_factory=list,
         description=f"the costs from each stop (row) to each (column), {NO_WAY}",
     )
-    coordinates: Annotated[list[PlanePoint], Field(min_length=1, fail_fast=True)] = Field(
+    coordinates: SomeItems[PlanePoint] = Field(
         default_factory=list, description="x and y of each stop in a plane; its distances"
     )
     measure: Measure = Field(
@@ -102,7 +99,7 @@ class ObjectiveItem(BaseModel):
     def _matrix(self, part: str, n: int) -> Matrix:
         _check_rows(part, n, len(self.matrix))
         matrix = cost_matrix(self.matrix, part)
-        check_costs(matrix, part, LARGEST)
+        check_costs(matrix, part)
         return Matrix(matrix)
 
 

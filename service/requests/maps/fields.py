@@ -12,7 +12,7 @@ from pydantic import Field
 
 from service.errors import invalid
 from service.requests.arrays import Array, array_field, check_grid, rectangular_array
-from service.requests.fields import ArrayRows, AsInteger, Number, PlanRequest, PositiveNumber
+from service.requests.fields import ArrayRows, AsInteger, Number, PlanRequest, PositiveNumber, Share
 from service.requests.maps.occupancy_grid import OccupancyGrid
 from service.requests.maps.pictures import (
     UNKNOWN,
@@ -25,7 +25,6 @@ from service.requests.maps.pictures import (
 from service.requests.validation import too_many_cells
 
 Layer = Annotated[NDArray[np.float64], array_field(rectangular_array, ArrayRows)]
-_Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 _Pose = Annotated[list[Number], Field(min_length=3, max_length=3, fail_fast=True)]
 
 _OF_PICTURE = ("mode", "negate", "occupied_thresh", "free_thresh")
@@ -68,10 +67,10 @@ class MapRequest(PlanRequest):
         default="trinary", description="how map_server reads a picture; needs both thresholds"
     )
     negate: bool = Field(default=False, description="whether in a picture black is free")
-    occupied_thresh: _Share = Field(
+    occupied_thresh: Share = Field(
         default=0.5, description="a pixel darker than this, 0 white to 1 black, is an obstacle"
     )
-    free_thresh: _Share = Field(
+    free_thresh: Share = Field(
         default=0.0,
         description="a pixel lighter than this is free, those between are unknown; without it"
         " every pixel that is not an obstacle is free, except grey 205, which is unknown",

@@ -4,7 +4,6 @@ Members that say nothing about the cells, as header and map_load_time, are disre
 """
 
 import math
-from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.errors import invalid
 from service.requests.arrays import check_size
-from service.requests.fields import Number, PositiveInteger, PositiveNumber
+from service.requests.fields import Items, Number, PositiveInteger, PositiveNumber
 from service.requests.maps.pictures import UNKNOWN, Occupancy
 
 _OCCUPIED = 100
@@ -60,7 +59,7 @@ class OccupancyGrid(_Message):
     """A message nav_msgs/OccupancyGrid."""
 
     info: MapMetaData
-    data: Annotated[list[float], Field(fail_fast=True)] = Field(
+    data: Items[float] = Field(
         description="row by row from the lower left cell: occupancy 0 to 100, or -1 for unknown"
     )
 

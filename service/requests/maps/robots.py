@@ -3,21 +3,18 @@
 from collections.abc import Sequence, Set
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from service.coverage.robots import Robot
 from service.errors import invalid
 from service.fleet.fleet import Over
-from service.instance import OBJECTIVES
-from service.requests.fields import NonNegativeInteger, Number, Text
+from service.requests.fields import NonNegativeInteger, Number, OneEach, StrictModel, Text
 from service.requests.stop_fields import check_unique
 
 MOST_ROBOTS = 100
 DEFAULT_OVER: tuple[Over, Over] = ("sum", "max")
 RobotPose = Annotated[list[Number], Field(min_length=2, max_length=3, fail_fast=True)]
-OverBoth = Annotated[
-    list[Over], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
-]
+OverBoth = OneEach[Over]
 # The fields that are about the tours of one robot, or about the network that builds them.
 OF_ONE_ROBOT = (
     "start",
@@ -34,10 +31,8 @@ OF_ONE_ROBOT = (
 ENDS = (("start", "start_pose"), ("end", "end_pose"))
 
 
-class RobotItem(BaseModel):
+class RobotItem(StrictModel):
     """A robot: where it starts and, where robots do not return, maybe where it ends."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     id: Text = Field(description="comes back with its routes; no two robots share one")
     start: NonNegativeInteger = Field(

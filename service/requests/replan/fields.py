@@ -2,25 +2,34 @@
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
 from service.instance import OBJECTIVES
 from service.requests.coverage import Cell
-from service.requests.fields import GEOMETRY, LARGEST, Geometry, PlanePoint, PlanFields, Text
+from service.requests.fields import (
+    GEOMETRY,
+    Cost,
+    Geometry,
+    Items,
+    OneEach,
+    PlanePoint,
+    PlanFields,
+    Share,
+    SomeItems,
+    StrictModel,
+    Text,
+)
 from service.requests.maps.fields import Layer, empty_array
 from service.requests.maps.robots import RobotPose
 from service.requests.stop_fields import Latitude, Longitude, ObjectiveItem, StopReference
 
-Cost = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
-_Row = Annotated[list[Cost | None], Field(min_length=1, fail_fast=True)]
-_References = Annotated[list[StopReference], Field(fail_fast=True)]
+_Row = SomeItems[Cost | None]
+_References = Items[StopReference]
 
 
-class StopCosts(BaseModel):
+class StopCosts(StrictModel):
     """The costs of one objective between a new stop and all others."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     to: _Row = Field(
         description="from the new stop to each stop of the front, then to each of `add`, then to"
@@ -35,36 +44,26 @@ class StopCosts(BaseModel):
     )
 
 
-class NewStop(BaseModel):
+class NewStop(StrictModel):
     """A stop that the front does not have, and how to reach it under each objective."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     id: Text = Field(description="one that no stop of the front has")
     location: tuple[Longitude, Latitude] | None = Field(
         default=None,
         description="longitude and latitude in degrees, where an objective is measured",
     )
-    coordinates: Annotated[
-        list[PlanePoint | None],
-        Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
-    ] = Field(
+    coordinates: OneEach[PlanePoint | None] = Field(
         default_factory=list,
         description="for each objective x and y in its plane, null where it has none",
     )
-    costs: Annotated[
-        list[StopCosts | None],
-        Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
-    ] = Field(
+    costs: OneEach[StopCosts | None] = Field(
         default_factory=list,
         description="for each objective the costs to and from all stops, null if not a matrix",
     )
 
 
-class CostEntry(BaseModel):
+class CostEntry(StrictModel):
     """One cost that has changed, in one direction."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     objective: Annotated[
         Annotated[int, Field(ge=0, lt=OBJECTIVES), Tag("[index]")] | Annotated[Text, Tag("[name]")],
@@ -95,12 +94,47 @@ _Added = Annotated[
 ]
 
 
-_Cells = Annotated[list[Cell], Field(fail_fast=True)]
+_Cells = Items[Cell]
 
 
-class MapChanges(PlanFields):
-    """What has changed on the map of a front of `POST /coverage`."""
+class ReplanRequest(PlanFields):
+    """What has changed since a front was planned, and the options of the front of the rest.
 
+    Stops are named by their ids, or by their indexes in the front. Stops of a front without ids
+    are named by their indexes, which are their ids from then on.
+    """
+
+    done: _References = Field(
+        default_factory=list, description="the stops that were visited, in order"
+    )
+    position: Position | None = Field(
+        default=None,
+        description="where the way goes on: a stop, or a place, which is given as an added stop is;"
+        " by default the last that is done",
+    )
+    add: Items[_Added] = Field(
+        default_factory=list,
+        description="stops to visit as well; of a front of a map row and column of each place",
+    )
+    remove: _References = Field(default_factory=list, description="stops not to visit any more")
+    costs: Items[CostEntry] = Field(
+        default_factory=list, description="single costs that have changed"
+    )
+    objectives: OneEach[ObjectiveItem] = Field(
+        default_factory=list,
+        description="both objectives anew, where more has changed: with the costs between the"
+        " stops of the front, then those of `add`, then `position` where that is a place",
+    )
+    tour: _References = Field(
+        default_factory=list,
+        description="the tour that is being driven, with all stops of the front; by default the"
+        " front's knee",
+    )
+    geometry: Geometry = Field(default="straight", description=GEOMETRY)
+    min_kept: Share = Field(
+        default=0.0,
+        description="return only tours that keep this share of the driven tour's remaining legs",
+    )
     pose: RobotPose = Field(
         default_factory=list,
         description="instead of position, on a map with an origin: x and y, and maybe yaw, of the"
@@ -127,61 +161,13 @@ class MapChanges(PlanFields):
     )
 
 
-class ReplanRequest(MapChanges):
-    """What has changed since a front was planned, and the options of the front of the rest.
-
-    Stops are named by their ids, or by their indexes in the front. Stops of a front without ids
-    are named by their indexes, which are their ids from then on.
-    """
-
-    done: _References = Field(
-        default_factory=list, description="the stops that were visited, in order"
-    )
-    position: Position | None = Field(
-        default=None,
-        description="where the way goes on: a stop, or a place, which is given as an added stop is;"
-        " by default the last that is done",
-    )
-    add: Annotated[list[_Added], Field(fail_fast=True)] = Field(
-        default_factory=list,
-        description="stops to visit as well; of a front of a map row and column of each place",
-    )
-    remove: _References = Field(default_factory=list, description="stops not to visit any more")
-    costs: Annotated[list[CostEntry], Field(fail_fast=True)] = Field(
-        default_factory=list, description="single costs that have changed"
-    )
-    objectives: Annotated[
-        list[ObjectiveItem],
-        Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
-    ] = Field(
-        default_factory=list,
-        description="both objectives anew, where more has changed: with the costs between the"
-        " stops of the front, then those of `add`, then `position` where that is a place",
-    )
-    tour: _References = Field(
-        default_factory=list,
-        description="the tour that is being driven, with all stops of the front; by default the"
-        " front's knee",
-    )
-    geometry: Geometry = Field(default="straight", description=GEOMETRY)
-    min_kept: float = Field(
-        default=0.0,
-        ge=0,
-        le=1,
-        allow_inf_nan=False,
-        description="return only tours that keep this share of the driven tour's remaining legs",
-    )
-
-
-_OF_MAPS = tuple(name for name in MapChanges.model_fields if name not in PlanFields.model_fields)
+_OF_MAPS = ("pose", "grid", "blocked", "freed", "cost_layer", "paths")
 _OF_STOPS = ("costs", "objectives", "geometry")
 
 
 def check_fields(request: ReplanRequest, *, on_map: bool) -> None:
     """Raise a refusal where a request has a field that only fronts of the other kind have."""
-    others, kind = _OF_MAPS, "a map, by POST /coverage"
-    if on_map:
-        others, kind = _OF_STOPS, "stops or cities, by POST /front"
-    for name in others:
+    kind = "stops or cities, by POST /front" if on_map else "a map, by POST /coverage"
+    for name in _OF_STOPS if on_map else _OF_MAPS:
         if name in request.model_fields_set:
             raise invalid(name, f"must be left out: it is for fronts of {kind}")
