@@ -46,8 +46,8 @@ class Obstacle:
 
     Args:
         sentence: A template with the fields `{cities}`, `{noun}` and optionally `{others}`.
-        cities: Those to look at first.
-        others: Those that the sentence names beside them.
+        cities: The cities at fault.
+        others: Further cities that the sentence names.
     """
 
     sentence: str

@@ -53,7 +53,7 @@ def cost_matrix(rows: CostRows, name: str) -> Array:
     The diagonal becomes 0; its values are ignored.
 
     Raises:
-        Refusal: A row is not as long as there are rows, or an entry is not finite.
+        Refusal: The rows are not those of a square matrix, or an entry is not finite.
     """
     matrix = rectangular_array(rows, name)
     n, width = matrix.shape

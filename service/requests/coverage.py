@@ -42,15 +42,16 @@ class CoverageRequest(MapRequest):
 
     robot_radius: Cost = Field(
         default=0.0,
-        description="in metres; the robot's middle stays farther than this from an obstacle's",
+        description="in metres; the centre of the robot stays farther than this from the centre of"
+        " every obstacle cell",
     )
     places: SomeItems[Cell] = Field(
         default_factory=list, description="row and column of each place to visit"
     )
     spacing: PositiveNumber = Field(
         default=0.0,
-        description="instead of places, in metres: one is laid in each square of this side over"
-        " the region of the start pose, or the largest free region",
+        description="instead of places, in metres: places are laid out, one in each square of this"
+        " side, over the region of the start pose or the largest free region",
     )
     start_pose: RobotPose = Field(
         default_factory=list,
@@ -58,7 +59,8 @@ class CoverageRequest(MapRequest):
         " map; the tours begin in this cell, which is a place of its own if none is there",
     )
     end_pose: RobotPose = Field(
-        default_factory=list, description="instead of end, of open routes: where they end, likewise"
+        default_factory=list,
+        description="instead of end, where routes are open: the pose at which they end",
     )
     second_matrix: Matrix = Field(
         default_factory=empty_array,
@@ -67,7 +69,8 @@ class CoverageRequest(MapRequest):
     )
     cost_layer: Layer = Field(
         default_factory=empty_array,
-        description="or: on each cell of the grid, what a metre costs; added up along the paths",
+        description="or: the cost of a metre on each cell of the grid; costs are added up along the"
+        " paths",
     )
     second_coordinates: SomeItems[PlanePoint] = Field(
         default_factory=list, description="or: x and y of each place in a plane; its distances"
@@ -84,8 +87,9 @@ class CoverageRequest(MapRequest):
     )
     over: OverBoth = Field(
         default_factory=lambda: list(DEFAULT_OVER),
-        description="of robots, whether a plan's length in each objective is the sum over their"
-        " routes, or the longest; max for one objective at most; by default sum and max",
+        description="for robots: whether the length of a plan in each objective is the sum over its"
+        " routes or the longest route; max for one objective at most; by default sum and"
+        " max",
     )
 
     @property

@@ -20,14 +20,14 @@ PRINTABLE = r"^[^\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069\ufeff]+$"
 
 
 START = (
-    "the city that every tour is reported from; of open routes the one at which they start, or null"
-    " where that may be any"
+    "the city at which every tour begins in the answer; open routes start there, or anywhere if it"
+    " is null"
 )
-END = "of open routes, the city at which they end; null where that may be any"
+END = "the city at which open routes end; null for any city"
 Geometry = Literal["straight", "roads"]
 GEOMETRY = (
-    "of answers in GeoJSON, what the lines of tours follow: nothing, straight from stop to stop, or"
-    " the streets that a routing engine knows"
+    "in GeoJSON, whether the lines of tours lead straight from stop to stop, or along the streets"
+    " that a routing engine knows"
 )
 
 
@@ -51,16 +51,16 @@ Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
 PositiveNumber = Annotated[float, Field(ge=SMALLEST, le=LARGEST, allow_inf_nan=False)]
 PlanePoint = Pair[Number]
 AsInteger = BeforeValidator(_integer)
-# AsInteger comes last: before them, the bounds would be lost to the OpenAPI document.
+# AsInteger comes last: in front of the bounds it would hide them from the OpenAPI document.
 PositiveInteger = Annotated[int, Field(ge=1, le=_MOST_INTEGER), AsInteger]
 NonNegativeInteger = Annotated[int, Field(ge=0, le=_MOST_INTEGER), AsInteger]
 Text = Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT, pattern=PRINTABLE)]
 # Only the type of the numbers is checked here, and the rest once they are an array: half a million
 # are too many to check one by one.
 ArrayRows = Items[Items[float]]
-# Of costs from each city to each; null where there is no way.
+# Costs from each city to each; null where there is no way.
 CostRows = Items[Items[float | None]]
-NO_WAY = "null where there is no way; the diagonal is disregarded"
+NO_WAY = "null where there is no way; the diagonal is ignored"
 
 
 def optional(description: str) -> Any:
@@ -88,10 +88,12 @@ class SearchFields(StrictModel):
         default_factory=list,
         min_length=OBJECTIVES,
         max_length=OBJECTIVES,
-        description="of the hypervolume; by default of tours the number of cities times the scale,"
-        " of plans lengths above those of all sensible plans",
+        description="the reference point of the hypervolume; by default, for tours the number of"
+        " cities times the scale, for plans lengths above those of all sensible plans",
     )
-    seed: NonNegativeInteger = Field(default=0, description="of everything random in the search")
+    seed: NonNegativeInteger = Field(
+        default=0, description="the seed of everything random in the search"
+    )
 
     def options(self) -> PlanOptions:
         """Return the options for the planner."""
@@ -113,23 +115,24 @@ class PlanFields(SearchFields):
         Discriminator(lambda value: "[angles]" if isinstance(value, list) else "[count]"),
     ] = Field(
         default=100,
-        description="angles in degrees to look along, or how many, evenly spread; by default 100"
-        " with time_limit 0, else as many as fit into a tenth of it, maybe none",
+        description="the angles in degrees along which the network builds tours, or the number of"
+        " evenly spread ones; by default 100 if time_limit is 0, else as many as fit into"
+        " a tenth of it, maybe none",
     )
     repairs: NonNegativeInteger = Field(
         default=_MOST_INTEGER,
-        description="how often the network cuts each of its tours open somewhere and joins it"
-        " again, which never makes it worse; the other tours that it meets on the way count for the"
-        " front, too. By default 0 with a time limit, else as many as are worth their time: an"
-        " eighth of the number of cities with coordinates, a third with matrices, at least 3"
-        " or 2",
+        description="how often the network cuts each of its tours open and joins it again, which"
+        " never makes the tour worse; tours found on the way count for the front, too. By"
+        " default 0 with a time limit, else as many as are worth their time: with"
+        " coordinates an eighth of the number of cities and at least 3, with matrices a"
+        " third and at least 2",
     )
     arrivals: bool = Field(
         default=False, description="whether each tour comes with both its lengths up to each stop"
     )
     bound: bool = Field(
         default=False,
-        description="whether to prove, in up to 5 s, how large any front's hypervolume can be",
+        description="whether to compute, in up to 5 s, a bound that no hypervolume exceeds",
     )
     actor: str = Field(
         default="",
@@ -166,7 +169,7 @@ class PlanRequest(PlanFields):
     start: NonNegativeInteger | None = Field(default=0, description=START)
     end: NonNegativeInteger | None = Field(default=None, description=END)
     initial_tours: SomeItems[Items[NonNegativeInteger]] = Field(
-        default_factory=list, description="tours that the front shall dominate or equal"
+        default_factory=list, description="tours that the front must dominate or equal"
     )
 
     @property

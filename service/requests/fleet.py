@@ -50,21 +50,22 @@ TimeSpan = Pair[Cost]
 
 
 class FleetStopItem(StopItem):
-    """A stop, and what it asks of the vehicle that visits it."""
+    """A stop, and its demands on the vehicle that visits it."""
 
     demand: Loads = Field(
         default_factory=list,
-        description="whole numbers that the vehicle brings, one for each dimension of its capacity;"
-        " of a shipment's pick-up what it takes on",
+        description="whole numbers, one for each dimension of the vehicle's capacity: what it"
+        " delivers, or what it takes on where the stop is the pick-up of a shipment",
     )
     service: Cost = Field(default=0.0, description="how long a visit takes, in the clock's unit")
     window: TimeSpan | None = optional("when a visit may begin, from and to")
     prize: Cost | None = optional(
-        "what the first length grows by if the stop is left out; without it the stop is visited"
+        "added to the first length if the stop is left out; a stop without a prize is"
+        " always visited"
     )
 
     def visit(self) -> Visit:
-        """Return what the stop asks for."""
+        """Return the stop as a visit of a vehicle."""
         return Visit(
             demand=tuple(self.demand),
             service=self.service,
@@ -76,7 +77,9 @@ class FleetStopItem(StopItem):
 class ShipmentItem(StrictModel):
     """Two stops that one vehicle visits: the pick-up, and later the delivery."""
 
-    pickup: StopReference = Field(description="by index or id; its demand and prize are of both")
+    pickup: StopReference = Field(
+        description="by index or id; its demand and prize count for both stops"
+    )
     delivery: StopReference = Field(description="by index or id")
 
     def shipment(self, part: str, ids: Mapping[str, int]) -> Shipment:
@@ -107,10 +110,10 @@ class VehicleItem(StrictModel):
     )
     shift: TimeSpan | None = optional("when one may leave, and must be back")
     longest: PositiveNumber | None = optional(
-        "the longest route: its time where there is a clock, else its length in the objective that"
-        " is a maximum"
+        "the limit on each route: on its time if there is a clock, else on its length in"
+        " the objective whose `over` is max"
     )
-    fixed: Cost = Field(default=0.0, description="what the first length grows by if one is used")
+    fixed: Cost = Field(default=0.0, description="added to the first length if one is used")
 
     def vehicle_type(self, part: str, ids: Mapping[str, int]) -> VehicleType:
         """Return the type of vehicles, whose part of the request is `part`, as vehicles/0.
@@ -138,7 +141,8 @@ class FleetObjectiveItem(ObjectiveItem):
 
     over: Over = Field(
         default="sum",
-        description="of a plan's routes the sum, or the longest; max for one objective at most",
+        description="whether the length of a plan is the sum over its routes or the longest route;"
+        " max for one objective at most",
     )
 
 
@@ -161,8 +165,8 @@ class FleetRequest(SearchFields):
     )
     clock: Text | None = Field(
         default=None,
-        description="the name of the objective that is time; in its unit are windows, shifts,"
-        " service and longest, and a route's length in it is its time with service and waiting",
+        description="the name of the objective that is time. Windows, shifts, service and longest"
+        " are in its unit; the length of a route in it includes service and waiting",
     )
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
 

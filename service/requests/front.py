@@ -49,7 +49,7 @@ from service.requests.stops import (
 from service.requests.validation import parse_json, too_many_cities
 
 _COLUMNS = 2 * OBJECTIVES  # x and y in the plane of each objective
-_MOST_SYMMETRIES = 8  # that earlier versions showed the network
+_MOST_SYMMETRIES = 8  # the most that earlier versions allowed
 FORMS = ("coordinates", "matrices", "stops")  # of a request, each named by its member
 _REFERENCES = {"start", "end", "initial_tours"}  # the fields that may name stops by their ids
 City = Annotated[list[Number], Field(min_length=_COLUMNS, max_length=_COLUMNS, fail_fast=True)]
@@ -88,7 +88,7 @@ class FrontRequest(PlanRequest):
     )
     initial_tours: SomeItems[Items[StopReference]] = Field(  # type: ignore[assignment]
         default_factory=list,
-        description="tours that the front shall dominate or equal, of indexes or ids",
+        description="tours that the front must dominate or equal, by indexes or ids",
     )
     augment: Annotated[int, Field(ge=1, le=_MOST_SYMMETRIES), AsInteger] = Field(
         default=1,
@@ -128,7 +128,7 @@ class FrontRequest(PlanRequest):
 
     @property
     def subject(self) -> Stops:
-        """The stops to plan; those of a checked request have the indexes of their ends."""
+        """The stops of a checked request, in which the ends of tours are indexes."""
         stops = () if self.labels is None else self.labels.stops
         locations = locations_of(stops) if stops else np.full((self.n, 2), np.nan)
         return Stops(locations, self.sources, self.ends)

@@ -11,7 +11,7 @@ from service.requests.fields import PlanFields, PlanRequest, SearchFields
 from service.requests.stops import ROAD_MEASURES, Measured, Source, base_of
 
 _TOURS_BY_ID = 100  # initial tours that may name every stop by its id
-_ID_BYTES = 40  # of an id in an answer that count as one cell: a UUID with its quotation marks
+_ID_BYTES = 40  # of ids that count as one cell of an answer: a UUID in quotation marks
 AnyRequest = TypeVar("AnyRequest", bound=SearchFields)
 
 
@@ -24,7 +24,7 @@ class Limits:
         cities: Stops in two planes.
         matrix_cities: Stops whose costs are matrices: as they come, as they are measured, or over
             a map.
-        network_cities: Stops of which a network builds tours.
+        network_cities: Stops for which a network builds tours.
         fleet_stops: Stops of a fleet, and places that several robots share.
         cells: Cells of a map.
         path_cells: Cells of all paths of an answer, and stops of all its tours; long ids of stops
@@ -33,7 +33,7 @@ class Limits:
         repairs: Repairs of the network's tours.
         size: Tours to return, or initial tours in a request.
         seconds: The time limit of planning.
-        roads: Whether a routing engine is configured, so that costs may be those of roads.
+        roads: Whether a routing engine is configured, so that costs may be by road.
     """
 
     body_bytes: int
@@ -155,9 +155,9 @@ def _check_ends(request: PlanRequest, n: int) -> None:
 def check_reference_point(
     options: PlanOptions, least: Callable[[], Array], noun: str = "tour"
 ) -> None:
-    """Raise a refusal if clearly no tour, or plan, lies below the reference point.
+    """Raise a refusal if it is clear that no tour or plan lies below the reference point.
 
-    Every hypervolume would be 0. That may still happen where it is not clear beforehand.
+    Every hypervolume would be 0.
 
     Args:
         options: The options, with the reference point if one was given.
@@ -165,7 +165,7 @@ def check_reference_point(
         noun: What the front consists of, for the sentence.
 
     Raises:
-        Refusal: In one objective, every tour or plan is as long or longer.
+        Refusal: In one objective, no tour or plan can be shorter.
     """
     if options.reference_point is None:
         return
@@ -177,11 +177,11 @@ def check_reference_point(
 
 
 def within_network(options: PlanOptions, n: int, limits: Limits) -> PlanOptions:
-    """Return the options for n cities; for more than a network serves, without its tours.
+    """Return the options for n cities, without tours of a network if n is too many for it.
 
     Raises:
-        Refusal: There are more, and the request needs its tours: it has preferences, or no time
-            for a search.
+        Refusal: They are too many, and the request needs tours of a network: it has preferences, or
+            no time for a search.
     """
     if n <= limits.network_cities:
         return options

@@ -60,8 +60,8 @@ def front_task(
     """Return the task of a checked request about stops; keyword arguments are those of Task.
 
     Raises:
-        Refusal: No actor serves it, the actor cannot do what it asks for, or clearly every tour has
-            a forbidden leg.
+        Refusal: No actor serves it, the actor cannot do what it asks for, or it is clear that
+            every tour has a forbidden leg.
         InvalidInstance: The costs cannot be planned.
     """
     name = choose_actor(actors, stops.kind, request.requested_actor)

@@ -51,7 +51,7 @@ class BlockingMeasurer:
         """Return the task with its costs by road.
 
         Raises:
-            Cancelled: It was told to stop before.
+            Cancelled: `stop` returned True before.
             Refusal: The costs cannot be found; see RoadClient.costs.
         """
         return self._runner.run(self._until_stopped(task, stop))

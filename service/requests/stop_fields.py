@@ -53,8 +53,8 @@ class ObjectiveItem(StrictModel):
     measure: Measure = Field(
         default="great_circle",
         alias="from",
-        description="what is measured between the locations of stops: metres along a great circle,"
-        " or seconds or metres by road",
+        description="the measure between the locations of stops: metres along a great circle, or"
+        " seconds or metres by road",
     )
 
     @property
@@ -124,7 +124,11 @@ def read_objectives(items: Sequence[ObjectiveItem]) -> tuple[Objective, ...]:
 
 
 def read_sources(items: Sequence[ObjectiveItem], stops: Sequence[Stop]) -> list[Source]:
-    """Return the source of the costs of each objective between these stops; errors as of one."""
+    """Return the source of the costs of each objective between these stops.
+
+    Raises:
+        Refusal: An objective does not have exactly one source, or it does not fit the stops.
+    """
     return [item.source(f"objectives/{m}", stops) for m, item in enumerate(items)]
 
 

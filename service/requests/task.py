@@ -49,14 +49,14 @@ class UnmeasuredFleet:
 
 @dataclass(frozen=True, eq=False)
 class SharedCoverage:
-    """A coverage task that robots share, and how the lengths of their routes are a plan's."""
+    """A coverage task that robots share, and how a plan's lengths are made of their routes'."""
 
     coverage: Coverage
     over: tuple[Over, Over]
 
     @property
     def members(self) -> dict[str, Any]:
-        """The members of an answer that tell plans from tours: objectives, and open routes."""
+        """The members of an answer about its objectives, and about open routes."""
         first, second = self.over
         closed = all(robot.closed for robot in self.coverage.robots)
         costs = {"name": _COSTS[second], "unit": None}
@@ -83,16 +83,16 @@ class Task:
     """A front to plan, checked and ready for the planner.
 
     Args:
-        subject: What tours go through: stops; the places of a map, for one robot or several; or
+        subject: The stops that tours go through; the places of a map, for one robot or several; or
             the stops of a fleet.
         options: The options for the planner.
-        actor: The name of the actor that builds the first tours; empty for a fleet, or several
-            robots, where none is loaded that reads matrices.
+        actor: The name of the actor that builds the first tours; empty for a fleet or several
+            robots, if no actor that is loaded reads matrices.
         paths: Whether each tour comes with its path over the map.
         arrivals: Whether each tour comes with both lengths up to each stop.
-        geometry: What the lines of the answer follow, where that is GeoJSON.
+        geometry: Whether lines in GeoJSON are straight or follow the streets.
         labels: The caller's names of stops and objectives.
-        timings: Milliseconds of what was done for it since it was parsed, by name.
+        timings: Milliseconds of each step that was done for it after parsing, by name.
         earlier: What is left of the tours of the front that is replanned, if one is.
         parts: Of a map that is replanned, the part of the request that names each place; places/2
             is place 2 of the earlier front.
@@ -126,7 +126,7 @@ class Task:
 
     @property
     def city_names(self) -> CityNames:
-        """The names of its cities in refusals; the request to replan has none of the rest."""
+        """The names of its cities in refusals; a request to replan has no part that lists them."""
         names = CityNames()
         if self.labels is not None:
             names = self.labels.city_names
@@ -146,7 +146,7 @@ class Task:
 
     @property
     def is_brief(self) -> bool:
-        """Whether planning is one short call of a network: by pa-one, of 50 ms or less."""
+        """Whether planning is one short call of a network: 50 ms or less with pa-one."""
         if not isinstance(self.subject, Stops) or self.needs_compiled_code:
             return False
         short = len(self.options.angles) * self.subject.n <= _BRIEF

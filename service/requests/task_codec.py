@@ -1,8 +1,8 @@
 """Tasks as bytes: the one form in which they are stored, queued and sent to other machines.
 
 The bytes are a line with the version, the length of the header, the header, and the arrays one
-after another as .npy. The header is JSON: the members of the task. It has the number of an array in
-place of the array, and the name of its type beside each value of one of `_TYPES`.
+after another as .npy. The header is JSON: the members of the task. In it the number of an array
+stands for the array, and a value of one of `_TYPES` comes with the name of its type.
 """
 
 import struct

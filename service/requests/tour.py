@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 _BUDGETS = ("first_at_most", "second_at_most")  # of objectives 0 and 1
 _WAYS = ("angle", "balance", *_BUDGETS, "knee")
 _Length = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-# `?knee` says as much as `?knee=true`.
+# `?knee` means `?knee=true`.
 _Flag = Annotated[bool, BeforeValidator(lambda value: value if value != "" else True)]
 
 
@@ -36,7 +36,8 @@ class TourQuery(BaseModel):
         "the tour with the least first length whose second length is at most this"
     )
     knee: _Flag = Field(
-        default=False, description="the least sum of both lengths, each in the front's own box"
+        default=False,
+        description="the tour with the least sum of both lengths, each in the front's own box",
     )
     front: str | SkipJsonSchema[None] = Field(
         default=None, description="the front's id; by default the latest"

@@ -138,7 +138,7 @@ def changed(**entry: Any) -> dict[str, Any]:
         ({"done": [1], "remove": [0]}, "/remove/0", "must not be where the way ends"),
         ({"position": 99}, "/position", "must be a stop of the front"),
         ({"position": 1, "remove": [1]}, "/remove/0", "must not be where the way goes on"),
-        ({"add": [{"id": "3"}]}, "/add/0/id", "must be that of no other stop"),
+        ({"add": [{"id": "3"}]}, "/add/0/id", "must differ from the ids of all other stops"),
         ({"add": [{"id": "new"}]}, "/add/0/coordinates", 'is required, with an entry for "first"'),
         ({"position": {"id": "here"}}, "/position/coordinates", "is required"),
         (

@@ -28,7 +28,7 @@ Layer = Annotated[NDArray[np.float64], array_field(rectangular_array, ArrayRows)
 _Pose = Annotated[list[Number], Field(min_length=3, max_length=3, fail_fast=True)]
 
 _OF_PICTURE = ("mode", "negate", "occupied_thresh", "free_thresh")
-# The forms of a map in the JSON, and the fields that have nothing to say about them.
+# The forms of a map in JSON, and the fields that do not apply to each.
 USELESS = {
     "grid": (*_OF_PICTURE, "obstacle_from", "unknown"),
     "occupancy_grid": (*_OF_PICTURE, "cell_size", "origin"),
@@ -81,11 +81,11 @@ class MapRequest(PlanRequest):
         " and of a picture in mode scale or raw",
     )
     unknown: Literal["blocked", "free"] = Field(
-        default="blocked", description="what unknown cells are for the robot"
+        default="blocked", description="whether unknown cells are free for the robot, or blocked"
     )
 
     def with_map(self, picture: bytes | None, most_cells: int) -> Self:
-        """Return the request with grid, cell_size and origin of the map, whichever its form.
+        """Return the request with the grid, the cell_size and the origin of its map in any form.
 
         Args:
             picture: The PNG or PGM file that came with the request.
@@ -93,7 +93,7 @@ class MapRequest(PlanRequest):
 
         Raises:
             Refusal: There is no map, or more than one, or it cannot be read, or is too large; or a
-                field is given that such a map has no use for.
+                field is given that does not apply to this form.
         """
         self._check_forms(picture)
         if picture is not None:

@@ -1,6 +1,6 @@
 """Occupancy grids as the message nav_msgs/OccupancyGrid of ROS has them, in JSON.
 
-Members that say nothing about the cells, as header and map_load_time, are disregarded.
+Other members of the message, such as header and map_load_time, are ignored.
 """
 
 import math

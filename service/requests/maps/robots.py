@@ -65,11 +65,11 @@ class RobotItem(StrictModel):
 def check_robots(
     robots: Sequence[RobotItem], over: Sequence[Over], given: Set[str], closed: bool
 ) -> None:
-    """Raise a refusal where robots, of a request with these fields, contradict it or each other.
+    """Raise a refusal where the robots of a request contradict its other fields, or each other.
 
     Raises:
-        Refusal: A field is about one robot, two robots share an id, one has two starts or two ends,
-            or an end and returns to its start; or both lengths are those of longest routes.
+        Refusal: A field is for a single robot; two robots share an id; a robot has two starts, two
+            ends, or an end although it returns to its start; or both lengths are of longest routes.
     """
     if "over" in given and not robots:
         raise invalid("over", "is for several robots, and none are given")

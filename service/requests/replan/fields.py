@@ -33,8 +33,8 @@ class StopCosts(StrictModel):
 
     to: _Row = Field(
         description="from the new stop to each stop of the front, then to each of `add`, then to"
-        " `position` where that is a place; its own entry is disregarded; null where there"
-        " is no way"
+        " `position` if that is a place; the entry for the new stop itself is ignored;"
+        " null where there is no way"
     )
     back: _Row = Field(
         default_factory=list,
@@ -72,7 +72,7 @@ class CostEntry(StrictModel):
     origin: StopReference = Field(alias="from", description="the stop that the step leads from")
     destination: StopReference = Field(alias="to", description="the stop that it leads to")
     cost: Cost | None = Field(
-        description="of that step from now on; null where there is no way any more"
+        description="the new cost of that step; null if there is no longer a way"
     )
 
 
@@ -109,21 +109,24 @@ class ReplanRequest(PlanFields):
     )
     position: Position | None = Field(
         default=None,
-        description="where the way goes on: a stop, or a place, which is given as an added stop is;"
-        " by default the last that is done",
+        description="where the way goes on: a stop, or a new place in the form of an added stop; by"
+        " default the last stop that is done",
     )
     add: Items[_Added] = Field(
         default_factory=list,
-        description="stops to visit as well; of a front of a map row and column of each place",
+        description="more stops to visit; on a map row and column of each place",
     )
-    remove: _References = Field(default_factory=list, description="stops not to visit any more")
+    remove: _References = Field(
+        default_factory=list, description="stops that are no longer visited"
+    )
     costs: Items[CostEntry] = Field(
         default_factory=list, description="single costs that have changed"
     )
     objectives: OneEach[ObjectiveItem] = Field(
         default_factory=list,
-        description="both objectives anew, where more has changed: with the costs between the"
-        " stops of the front, then those of `add`, then `position` where that is a place",
+        description="both objectives again, where more than single costs has changed: with the"
+        " costs between the stops of the front, then those of `add`, then `position` if that"
+        " is a place",
     )
     tour: _References = Field(
         default_factory=list,
@@ -142,22 +145,22 @@ class ReplanRequest(PlanFields):
     )
     grid: Layer = Field(
         default_factory=empty_array,
-        description="of a front of a map: the map anew, as large as it was, 0 where it is free and"
-        " 1 an obstacle",
+        description="on a map: the whole map as it is now, in its old size; 0 free, 1 an obstacle",
     )
     blocked: _Cells = Field(
         default_factory=list,
-        description="of a front of a map: row and column of each cell that is an obstacle now",
+        description="on a map: row and column of each cell that has become an obstacle",
     )
     freed: _Cells = Field(
-        default_factory=list, description="likewise, of each cell that is an obstacle no more"
+        default_factory=list,
+        description="on a map: row and column of each cell that is no longer an obstacle",
     )
     cost_layer: Layer = Field(
         default_factory=empty_array,
-        description="of a front of a map: the second objective anew, as in `POST /coverage`",
+        description="on a map: a new second objective, as in `POST /coverage`",
     )
     paths: bool = Field(
-        default=False, description="of a front of a map: whether each tour comes with its path"
+        default=False, description="on a map: whether each tour comes with its path"
     )
 
 

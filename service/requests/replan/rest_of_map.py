@@ -134,10 +134,10 @@ def _all_places(
 
 
 def _position_cell(coverage: Coverage, request: ReplanRequest) -> tuple[str, list[int] | None]:
-    """Return the cell where the way goes on, None if that is a place, and the field that says it.
+    """Return the field that says where the way goes on, and the cell; None if it names a place.
 
     Raises:
-        Refusal: It is said twice, is no cell of the grid, or is in a frame that nobody knows.
+        Refusal: Two fields say it, it is not a cell of the grid, or the map has no origin.
     """
     if not request.pose:
         if isinstance(request.position, list):

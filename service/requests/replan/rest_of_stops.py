@@ -85,7 +85,7 @@ class _AllStops:
     Args:
         stops: All of them, the first n those of the front.
         n: The number of the front's stops.
-        new: The others as in the request, by their place in it, such as add/0 or position.
+        new: The others as the request has them, by their part of it: add/0 or position.
     """
 
     stops: tuple[Stop, ...]
@@ -109,7 +109,9 @@ def _all_stops(front: EarlierFront, request: ReplanRequest) -> _AllStops:
             demand = "must be a stop with an id: row and column are of a place on a map"
             raise invalid(part, demand)
         if item.id in seen:
-            raise invalid(f"{part}/id", f"must be that of no other stop, got {show(item.id)}")
+            raise invalid(
+                f"{part}/id", f"must differ from the ids of all other stops, got {show(item.id)}"
+            )
         seen.add(item.id)
         new[part] = item
     stops = (*front.labels.stops, *(Stop(item.id, item.location) for item in new.values()))
@@ -131,7 +133,7 @@ def _all_costs(
         objectives = read_objectives(request.objectives)
         for part, item in stops.new.items():
             for name in {"coordinates", "costs"} & item.model_fields_set:
-                raise invalid(f"{part}/{name}", "must not be given beside objectives")
+                raise invalid(f"{part}/{name}", "must not be given together with objectives")
         sources = read_sources(request.objectives, stops.stops)
     else:
         objectives = front.labels.objectives

@@ -206,7 +206,7 @@ class RestOfWay:
 
 
 def rest_of_way(front: EarlierFront, request: ReplanRequest) -> RestOfWay:
-    """Return what is left of the way through a front's stops.
+    """Return the rest of the way through a front's stops.
 
     A closed tour leads back to its start, and an open route to its end if that is fixed. A fixed
     start counts as visited as soon as the position is another.
@@ -289,7 +289,7 @@ def _left_of_tours(
 
 
 def _beside_gone(tours: Indices, is_left: NDArray[np.bool_]) -> Indices:
-    """Return the remaining stops that are beside a gone one in some tour, ascending."""
+    """Return the remaining stops that are next to one that is gone in some tour, ascending."""
     gone = ~is_left[tours]
     beside = np.roll(gone, 1, axis=1) | np.roll(gone, -1, axis=1)
     return np.unique(tours[beside & ~gone])
