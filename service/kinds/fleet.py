@@ -14,8 +14,7 @@ from service.fleet.fleet import Fleet
 from service.fleet.necessary import least_lengths
 from service.fleet.plans import FleetFront, Plan, Route, path_of
 from service.front import ReportOf, reporting
-from service.kinds.front_document import FrontDocument
-from service.kinds.json_parts import joined
+from service.kinds.front_document import FrontDocument, joined
 from service.kinds.kind import NamedActor, Report, Tools
 from service.pareto import balances
 from service.requests.limits import check_reference_point

@@ -24,8 +24,7 @@ from service.fleet.fleet import Fleet, Over, Rules, VehicleType, Visit
 from service.fleet.plans import FleetFront, Plan, Route, path_of
 from service.front import reporting
 from service.kinds.fleet import document_of_plans, plan_front
-from service.kinds.front_document import FrontDocument
-from service.kinds.json_parts import encode_path, with_member
+from service.kinds.front_document import FrontDocument, encode_path, with_member
 from service.kinds.kind import Report, Tools
 from service.kinds.tour_document import on_map
 from service.kinds.tours import unless_cancelled

@@ -11,8 +11,14 @@ from pydantic_core import to_json
 from service.coverage.path import CoveragePath
 from service.coverage.survey import Survey
 from service.front import Front
-from service.kinds.front_document import FrontDocument
-from service.kinds.json_parts import encode_path, encode_tours, joined, split, with_member
+from service.kinds.front_document import (
+    FrontDocument,
+    encode_path,
+    encode_tours,
+    joined,
+    split,
+    with_member,
+)
 from service.pareto import balances
 from service.requests.stops import Labels
 
@@ -67,26 +73,16 @@ def on_map(surveyed: Survey | None) -> dict[str, Any]:
 
 def _rows(front: Front, arrivals: NDArray[np.float64] | None) -> list[dict[str, Any]]:
     """Return the members of each tour, all of them numbers, ready for JSON."""
-    columns = zip(
-        front.angles.tolist(),
-        balances(front.points).tolist(),
-        _optional("kept", front.kept, front),
-        front.points.tolist(),
-        front.tours.tolist(),
-        _optional("arrivals", arrivals, front),
-        strict=True,
-    )
-    return [
-        {"angle": angle, "balance": balance, **kept, "lengths": lengths, "tour": tour, **arrived}
-        for angle, balance, kept, lengths, tour, arrived in columns
-    ]
-
-
-def _optional(name: str, values: NDArray[np.float64] | None, front: Front) -> list[dict[str, Any]]:
-    """Return a member for each tour of a front; without values, no members."""
-    if values is None:
-        return [{}] * len(front.tours)
-    return [{name: value} for value in values.tolist()]
+    columns = {
+        "angle": front.angles,
+        "balance": balances(front.points),
+        "kept": front.kept,
+        "lengths": front.points,
+        "tour": front.tours,
+        "arrivals": arrivals,
+    }
+    given = {name: values.tolist() for name, values in columns.items() if values is not None}
+    return [dict(zip(given, row, strict=True)) for row in zip(*given.values(), strict=True)]
 
 
 def _with_stops(encoded: list[bytes], tours: NDArray[np.integer], labels: Labels) -> list[bytes]:

@@ -7,34 +7,82 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from service.coverage.coverage import Coverage
+from service.coverage.robots import Robot
 from service.errors import invalid
-from service.instance import CLOSED, Kind, RouteEnds
+from service.fleet.fleet import Over
+from service.instance import CLOSED, RouteEnds
 from service.requests.arrays import array_field, check_costs, cost_matrix
 from service.requests.fields import (
     NO_WAY,
     Cost,
     CostRows,
     NonNegativeInteger,
+    Number,
+    OneEach,
     Pair,
     PlanePoint,
     PositiveNumber,
     SomeItems,
+    StrictModel,
+    Text,
 )
 from service.requests.limits import Limits, check_limits, lower_defaults
 from service.requests.maps.fields import Layer, MapRequest, empty_array
-from service.requests.maps.robots import (
-    DEFAULT_OVER,
-    MOST_ROBOTS,
-    OverBoth,
-    RobotItem,
-    RobotPose,
-    check_robots,
-)
+from service.requests.stop_fields import check_unique
 from service.requests.task import SharedCoverage
 from service.requests.validation import parse_json, too_many_cities
 
 Matrix = Annotated[NDArray[np.float64], array_field(cost_matrix, CostRows)]
 Cell = Pair[NonNegativeInteger]
+
+MOST_ROBOTS = 100
+DEFAULT_OVER: tuple[Over, Over] = ("sum", "max")
+RobotPose = Annotated[list[Number], Field(min_length=2, max_length=3, fail_fast=True)]
+# The fields that are about the tours of one robot, or about the network that builds them.
+OF_ONE_ROBOT = (
+    "start",
+    "end",
+    "start_pose",
+    "end_pose",
+    "initial_tours",
+    "preferences",
+    "repairs",
+    "arrivals",
+    "bound",
+    "actor",
+)
+ENDS = (("start", "start_pose"), ("end", "end_pose"))
+
+
+class RobotItem(StrictModel):
+    """A robot: where it starts and, where robots do not return, maybe where it ends."""
+
+    id: Text = Field(description="comes back with its routes; no two robots share one")
+    start: NonNegativeInteger = Field(
+        default=0, description="the place where it starts, which needs no other visit"
+    )
+    start_pose: RobotPose = Field(
+        default_factory=list,
+        description="instead of start: x and y, and maybe yaw, in the frame of the map",
+    )
+    end: NonNegativeInteger = Field(
+        default=0, description="with closed false, the place where it ends; by default anywhere"
+    )
+    end_pose: RobotPose = Field(
+        default_factory=list, description="instead of end: where it ends, in the frame of the map"
+    )
+
+    def robot(self, closed: bool) -> Robot:
+        """Return the robot, which returns to its start where routes are closed."""
+        given = self.model_fields_set
+        return Robot(
+            id=self.id,
+            closed=closed,
+            start=None if self.start_pose else self.start,
+            end=self.end if "end" in given else None,
+            start_pose=self.start_pose or None,
+            end_pose=self.end_pose or None,
+        )
 
 
 class CoverageRequest(MapRequest):
@@ -85,17 +133,12 @@ class CoverageRequest(MapRequest):
         description="several robots that share the places; the answer is a front of plans. They may"
         " do without a second objective: then both are metres",
     )
-    over: OverBoth = Field(
+    over: OneEach[Over] = Field(
         default_factory=lambda: list(DEFAULT_OVER),
         description="for robots: whether the length of a plan in each objective is the sum over its"
         " routes or the longest route; max for one objective at most; by default sum and"
         " max",
     )
-
-    @property
-    def kind(self) -> Kind:
-        """The kind of instance that an actor has to read."""
-        return "matrices"
 
     @property
     def ends(self) -> RouteEnds:
@@ -152,7 +195,10 @@ def parse_coverage_as(
     if len(request.places) > most:
         raise too_many_cities("places", most, len(request.places))
     _check_poses(request)
-    check_robots(request.robots, request.over, request.model_fields_set, request.closed)
+    if request.robots:
+        _check_robots(request)
+    elif "over" in request.model_fields_set:
+        raise invalid("over", "is for several robots, and none are given")
     check_costs(request.second_matrix, "second_matrix")
     # With a spacing, the number of places is not known before the survey.
     n = len(request.places) or most
@@ -164,10 +210,31 @@ def _check_poses(request: CoverageRequest) -> None:
     given = request.model_fields_set
     if request.initial_tours and not request.places:
         raise invalid("initial_tours", "must be of places, and none are given")
-    for pose, place in (("start_pose", "start"), ("end_pose", "end")):
-        if pose in given and place in given:
-            raise invalid(pose, f"or {place} must be left out")
-        if pose in given and request.initial_tours:
-            raise invalid("initial_tours", "must be left out where a pose may become a place")
+    _check_ends(request)
+    if request.initial_tours and {"start_pose", "end_pose"} & given:
+        raise invalid("initial_tours", "must be left out where a pose may become a place")
     if request.closed and request.end_pose:
         raise invalid("end_pose", "is for open routes, with closed false")
+
+
+def _check_ends(item: CoverageRequest | RobotItem, part: str = "") -> None:
+    """Raise a refusal where a start or an end is given as a place and as a pose."""
+    for place, pose in ENDS:
+        if {place, pose} <= item.model_fields_set:
+            raise invalid(f"{part}{pose}", f"or {place} must be left out")
+
+
+def _check_robots(request: CoverageRequest) -> None:
+    """Raise a refusal where the robots of a request contradict its other fields, or each other."""
+    given = request.model_fields_set
+    for name in OF_ONE_ROBOT:
+        if name in given:
+            raise invalid(name, "must be left out with robots, whose routes are planned together")
+    if request.over == ["max", "max"]:
+        raise invalid("over/1", "must be sum, as over/0 is max, got max")
+    check_unique([robot.id for robot in request.robots], "robots")
+    for index, robot in enumerate(request.robots):
+        _check_ends(robot, f"robots/{index}/")
+        for name in ("end", "end_pose"):
+            if request.closed and name in robot.model_fields_set:
+                raise invalid(f"robots/{index}/{name}", "is for open routes, with closed false")

@@ -10,13 +10,12 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from service.requests.coverage import CoverageRequest
+from service.requests.coverage import ENDS, OF_ONE_ROBOT, CoverageRequest
 from service.requests.fields import PlanFields
 from service.requests.fleet import FleetRequest
 from service.requests.front import FORMS, FrontRequest
 from service.requests.limits import Limits, defaults
 from service.requests.maps.fields import USELESS
-from service.requests.maps.robots import ENDS, OF_ONE_ROBOT
 from service.requests.replan.fields import ReplanRequest
 from service.requests.stops import ROAD_MEASURES
 

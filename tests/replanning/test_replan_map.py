@@ -10,8 +10,7 @@ import pytest
 
 from service.coverage.frame import MapFrame
 from service.jobs.task_runner import TaskRunner
-from service.kinds.front_document import FrontDocument
-from service.kinds.json_parts import joined
+from service.kinds.front_document import FrontDocument, joined
 from service.requests.limits import Limits
 from service.requests.parser import parse_task
 from service.requests.replan.parser import ReplanSource, parse_replan

@@ -10,7 +10,7 @@ from pydantic_core import from_json, to_json
 
 from service.api.geojson.lines import Line, encode_line
 from service.jobs.record import Record
-from service.kinds.json_parts import with_member
+from service.kinds.front_document import with_member
 from service.kinds.table import KINDS
 
 

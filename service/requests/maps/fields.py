@@ -96,26 +96,21 @@ class MapRequest(PlanRequest):
                 field is given that does not apply to this form.
         """
         self._check_forms(picture)
-        if picture is not None:
-            how = self._interpretation()
-            values = occupancy(read_picture(picture, most_cells), how)
-            return self.model_copy(update={"grid": self._blocked(values)})
-        if "occupancy_grid" in self.model_fields_set:
-            return self._with_occupancy_grid(most_cells)
-        if self.grid.size > most_cells:
-            raise too_many_cells(most_cells, self.grid.size, self.grid.size)
-        check_grid(self.grid)
-        return self
-
-    def _with_occupancy_grid(self, most_cells: int) -> Self:
         message = self.occupancy_grid
-        update: dict[str, Any] = {
-            "grid": self._blocked(message.occupancy(most_cells)),
-            "cell_size": message.info.resolution,
-            "origin": list(message.origin()),
-            "occupancy_grid": _no_occupancy_grid(),
-        }
-        return self.model_copy(update=update)
+        update: dict[str, Any] = {}
+        if picture is not None:
+            values = occupancy(read_picture(picture, most_cells), self._interpretation())
+        elif "occupancy_grid" in self.model_fields_set:
+            values = message.occupancy(most_cells)
+            update["cell_size"] = message.info.resolution
+            update["origin"] = list(message.origin())
+            update["occupancy_grid"] = _no_occupancy_grid()
+        else:
+            if self.grid.size > most_cells:
+                raise too_many_cells(most_cells, self.grid.size, self.grid.size)
+            check_grid(self.grid)
+            return self
+        return self.model_copy(update={"grid": self._blocked(values), **update})
 
     def _check_forms(self, picture: bytes | None) -> None:
         given = self.model_fields_set

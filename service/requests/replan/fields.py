@@ -6,7 +6,7 @@ from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
 from service.instance import OBJECTIVES
-from service.requests.coverage import Cell
+from service.requests.coverage import Cell, RobotPose
 from service.requests.fields import (
     GEOMETRY,
     Cost,
@@ -21,7 +21,6 @@ from service.requests.fields import (
     Text,
 )
 from service.requests.maps.fields import Layer, empty_array
-from service.requests.maps.robots import RobotPose
 from service.requests.stop_fields import Latitude, Longitude, ObjectiveItem, StopReference
 
 _Row = SomeItems[Cost | None]

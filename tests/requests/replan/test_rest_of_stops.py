@@ -186,7 +186,12 @@ def changed(**entry: Any) -> dict[str, Any]:
             "must differ from the ids of all other stops",
         ),
         (NAMED, {"add": [NEW, NEW]}, "/add/1/id", "must differ from the ids of all other stops"),
-        (NAMED, {"add": [NEW], "position": NEW}, "/position/id", "must differ from the ids of all other"),
+        (
+            NAMED,
+            {"add": [NEW], "position": NEW},
+            "/position/id",
+            "must differ from the ids of all other",
+        ),
         (NAMED, {"add": [[0, 0]]}, "/add/0", "must be a stop with an id"),
         (NAMED, {"add": [{**NEW, "location": None}]}, "/add/0/location", '"way" is measured'),
         (
