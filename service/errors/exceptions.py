@@ -85,9 +85,9 @@ class Refusal(Exception):
         self.headers = dict(headers or {})
         super().__init__(self.detail)
 
-    def __reduce__(self) -> tuple[Callable[..., "Refusal"], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...], dict[str, Any]]:
         """Pickle all members: subclasses take other arguments than the base class."""
-        return _unpickled, (type(self), self.__dict__)
+        return Exception.__new__, (type(self), self.detail), self.__dict__
 
     def document(self, request_id: str) -> dict[str, Any]:
         """Return the problem document (RFC 9457) without the members that are None."""
@@ -271,13 +271,6 @@ class NotFound(LookupError):
 
 class Expired(LookupError):
     """The caller's front with this id was dropped: too old, or the store was full."""
-
-
-def _unpickled(kind: type[Refusal], members: dict[str, Any]) -> Refusal:
-    refusal = kind.__new__(kind)
-    refusal.__dict__.update(members)
-    refusal.args = (refusal.detail,)
-    return refusal
 
 
 def summary(first: Fault, count: int) -> str:

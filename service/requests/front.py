@@ -1,8 +1,7 @@
 """Requests of `POST /front`: their fields, and their parser."""
 
-from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Annotated, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +40,6 @@ from service.requests.stops import (
     Matrix,
     Plane,
     Source,
-    Stop,
     Stops,
     kind_of,
     locations_of,
@@ -119,11 +117,15 @@ class FrontRequest(PlanRequest):
     @cached_property
     def sources(self) -> tuple[Source, ...]:
         """The source of the costs of each objective."""
-        if self.labels is not None:
-            return self._sources(self.labels.stops)
+        if not self.matrices.size and self.labels is not None:
+            return tuple(read_sources(self.objectives, self.labels.stops))
         if self.coordinates:
             cities = np.array(self.coordinates, np.float64)
             return tuple(Plane(cities[:, m : m + PLANE]) for m in range(0, _COLUMNS, PLANE))
+        for m, item in enumerate(self.objectives):
+            if item.sources:
+                demand = "must have no source where the part matrices holds both, got"
+                raise invalid(f"objectives/{m}", f"{demand} {' and '.join(item.sources)}")
         return tuple(Matrix(matrix) for matrix in self.matrices)
 
     @property
@@ -132,16 +134,6 @@ class FrontRequest(PlanRequest):
         stops = () if self.labels is None else self.labels.stops
         locations = locations_of(stops) if stops else np.full((self.n, 2), np.nan)
         return Stops(locations, self.sources, self.ends)
-
-    def _sources(self, stops: tuple[Stop, ...]) -> tuple[Source, ...]:
-        """Return the source of each objective; with a file, its matrices are the sources."""
-        if not self.matrices.size:
-            return tuple(read_sources(self.objectives, stops))
-        for m, item in enumerate(self.objectives):
-            if item.sources:
-                demand = "must have no source where the part matrices holds both, got"
-                raise invalid(f"objectives/{m}", f"{demand} {' and '.join(item.sources)}")
-        return tuple(Matrix(matrix) for matrix in self.matrices)
 
 
 AnyFrontRequest = TypeVar("AnyFrontRequest", bound=FrontRequest)
@@ -219,21 +211,16 @@ def _by_index(request: AnyFrontRequest) -> AnyFrontRequest:
         return request
     stops = request.labels.stops if request.labels else ()
     ids = {stop.id: index for index, stop in enumerate(stops)}
-    tours = [
-        _indexes(tour, ids, f"initial_tours/{number}")
-        for number, tour in enumerate(request.initial_tours)
-    ]
-    ends = {
+    found: dict[str, Any] = {
         name: None if reference is None else find_index(reference, ids, name)
         for name, reference in (("start", request.start), ("end", request.end))
     }
-    found = {**ends, "initial_tours": tours}
+    found["initial_tours"] = [
+        [
+            each if isinstance(each, int) else find_index(each, ids, f"initial_tours/{t}/{i}")
+            for i, each in enumerate(tour)
+        ]
+        for t, tour in enumerate(request.initial_tours)
+    ]
     given = request.model_fields_set
     return request.model_copy(update={name: found[name] for name in found if name in given})
-
-
-def _indexes(references: Sequence[int | str], ids: Mapping[str, int], part: str) -> list[int]:
-    return [
-        each if isinstance(each, int) else find_index(each, ids, f"{part}/{i}")
-        for i, each in enumerate(references)
-    ]

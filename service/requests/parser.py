@@ -157,29 +157,23 @@ def choose_actor(actors: Mapping[str, ActorInfo], kind: Kind, name: str | None) 
     If the default is not loaded, the first by name that serves the kind is taken.
 
     Raises:
-        Refusal: The requested actor is not loaded or does not serve the kind, or no actor serves
-            it.
+        Refusal: The requested actor is not loaded or does not serve the kind, or none does.
     """
     able = sorted(each for each, info in actors.items() if info.serves(kind))
-    if name is not None:
-        _check_able(name, kind, able, actors)
+    if name in able:
         return name
-    if not able:
-        raise Refusal("no-actor", kind=kind)
-    return DEFAULT_ACTORS[kind] if DEFAULT_ACTORS[kind] in able else able[0]
+    if name is None:
+        if not able:
+            raise Refusal("no-actor", kind=kind)
+        return DEFAULT_ACTORS[kind] if DEFAULT_ACTORS[kind] in able else able[0]
+    among = f"one of {', '.join(able)}" if able else "one that is loaded, and none is"
+    if name not in actors:
+        raise Refusal("unknown-actor", among=among, came=repr(name[:80]), pointer="/actor")
+    inputs = actors[name].inputs
+    raise Refusal("unfit-actor", kind=kind, among=among, name=name, inputs=inputs, pointer="/actor")
 
 
 def actor_for_plans(actors: Mapping[str, ActorInfo]) -> str:
     """Return the name of the actor whose tours are cut into first plans; "" if none is loaded."""
     able = any(info.serves("matrices") for info in actors.values())
     return choose_actor(actors, "matrices", None) if able else ""
-
-
-def _check_able(name: str, kind: Kind, able: list[str], actors: Mapping[str, ActorInfo]) -> None:
-    if name in able:
-        return
-    among = f"one of {', '.join(able)}" if able else "one that is loaded, and none is"
-    if name not in actors:
-        raise Refusal("unknown-actor", among=among, came=repr(name[:80]), pointer="/actor")
-    inputs = actors[name].inputs
-    raise Refusal("unfit-actor", kind=kind, among=among, name=name, inputs=inputs, pointer="/actor")
