@@ -86,7 +86,8 @@ def check_instance(task: Task, instance: Instance) -> None:
         NoTour: Forbidden legs leave no tour.
         Refusal: No tour lies below the reference point.
     """
-    check_legs(instance, task.city_names)
+    if instance.matrices is not None:  # else no leg is forbidden
+        check_legs(instance, task.city_names)
     check_reference_point(task.options, partial(least_lengths, instance))
 
 
@@ -159,13 +160,14 @@ def choose_actor(actors: Mapping[str, ActorInfo], kind: Kind, name: str | None) 
     Raises:
         Refusal: The requested actor is not loaded or does not serve the kind, or none does.
     """
+    first = DEFAULT_ACTORS[kind] if name is None else name
+    if first in actors and actors[first].serves(kind):
+        return first
     able = sorted(each for each, info in actors.items() if info.serves(kind))
-    if name in able:
-        return name
     if name is None:
         if not able:
             raise Refusal("no-actor", kind=kind)
-        return DEFAULT_ACTORS[kind] if DEFAULT_ACTORS[kind] in able else able[0]
+        return able[0]
     among = f"one of {', '.join(able)}" if able else "one that is loaded, and none is"
     if name not in actors:
         raise Refusal("unknown-actor", among=among, came=repr(name[:80]), pointer="/actor")
