@@ -226,6 +226,25 @@ def test_a_front_of_a_map_is_replanned_on_the_map_as_it_is_now(client: httpx.Cli
     assert client.get(f"/front/{front['id']}").json() == front
 
 
+def test_a_place_that_became_an_obstacle_is_named_at_once_or_by_the_job(
+    client: httpx.Client,
+) -> None:
+    front = client.post("/coverage", json=MAP).json()
+    place = front["front"][0]["tour"][2]
+    request = {"blocked": [front["places"][place]]}
+    refusal = problem(replan(client, front, **request))
+    assert (refusal["status"], refusal["errors"][0]["pointer"]) == (422, "/remove")
+    assert f"must have place {place}, as it must be a free cell" in refusal["detail"]
+    later = client.post(
+        f"/front/{front['id']}/replan", json=request, headers={"Prefer": "respond-async"}
+    )
+    assert later.status_code == 202
+    while (job := client.get(later.headers["Location"]).json())["status"] in ("queued", "running"):
+        time.sleep(0.01)
+    assert job["status"] == "failed"
+    assert job["problem"]["errors"] == refusal["errors"]
+
+
 def test_what_is_of_a_map_alone_is_refused_of_stops(
     client: httpx.Client, front: dict[str, Any]
 ) -> None:
