@@ -34,7 +34,7 @@ from service.jobs.runner import MakeRunner, make_runner
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool
-from service.requests.stored_task import read_task
+from service.requests.task_codec import read_task
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 from service.settings import Settings

@@ -127,7 +127,7 @@ def engines(pid: int) -> set[str]:
 
 
 @pytest.mark.usefixtures("compiled")
-def test_the_process_of_the_service_loads_nothing_that_plans(
+def test_the_service_and_its_parsers_load_nothing_that_plans(
     tmp_path: Path, quick_actors: dict[str, str]
 ) -> None:
     with served(tmp_path, **quick_actors) as (process, url):
@@ -148,11 +148,19 @@ def test_the_process_of_the_service_loads_nothing_that_plans(
                     answer = client.post(path, content=content, headers=headers)
                     assert answer.status_code == 200, answer.text
                     ids.append(answer.json()["id"])
-            for front in ids[:4]:
-                body = {"done": [0], "time_limit": 0.1}
-                assert client.post(f"/front/{front}/replan", json=body).status_code == 200
+            for front, changes in zip(ids[:4], [{}] * 2 + [{"blocked": [[0, 2]]}] * 2, strict=True):
+                content = json.dumps({"done": [0], "time_limit": 0.1, **changes}).encode()
+                for more in (0, 2**18):
+                    url_of_rest = f"/front/{front}/replan"
+                    answer = client.post(
+                        url_of_rest, content=content + b" " * more, headers=headers
+                    )
+                    assert answer.status_code == 200, answer.text
             assert client.get("/tour", params={"front": ids[0], "knee": True}).status_code == 200
-        assert engines(process.pid) == set()
+        children = psutil.Process(process.pid).children()
+        parsers = [child.pid for child in children if "anyio.to_process" in child.cmdline()]
+        assert len(parsers) == 1
+        assert [engines(pid) for pid in (process.pid, *parsers)] == [set(), set()]
 
 
 def test_onnx_runtime_is_imported_in_one_place_with_its_telemetry_off() -> None:

@@ -129,7 +129,7 @@ class Metrics(Collector):
         """Count a planned front, its phases, and the hypervolume that the search gained."""
         self._fronts(KINDS[front.kind].label, front.terminated).inc()
         cities = _size_class(front.cities)
-        for phase, milliseconds in front.timings_ms.phases.items():
+        for phase, milliseconds in front.phases.items():
             self._planning(phase, cities).observe(milliseconds / 1000)
         if front.gained is not None:
             self._gained.labels(cities).observe(front.gained)

@@ -34,11 +34,11 @@ from service.jobs.engine import Engine, record_in_time
 from service.jobs.record import Record
 from service.jobs.store import Store
 from service.kinds.table import empty_document
-from service.requests.replan.earlier_front import StoredFront, not_replannable
+from service.requests.fields import Geometry
 from service.requests.replan.parser import ReplanSource
-from service.requests.schemas import Geometry
-from service.requests.stored_task import stored
+from service.requests.replan.way import StoredFront, not_replannable
 from service.requests.task import Task, TaskKind, TaskSource
+from service.requests.task_codec import stored
 
 _QUICK = 8  # times as fast as a request stored tours are read
 _LONG = 2**20  # bytes of a body; the task of a longer one takes a while to write

@@ -7,11 +7,17 @@ which is JSON, and a file.
 from collections.abc import Iterable
 from typing import Any
 
-from service.requests.coverage import coverage_schemas
-from service.requests.fleets.schemas import fleet_schemas
-from service.requests.front_schemas import FILE_FORMS, JSON_FORMS, front_schemas, one_of
-from service.requests.limits import Limits, reference_to
-from service.requests.replan.fields import replan_schemas
+from service.requests.json_schemas import (
+    FILE_FORMS,
+    JSON_FORMS,
+    coverage_schemas,
+    fleet_schemas,
+    front_schemas,
+    one_of,
+    reference_to,
+    replan_schemas,
+)
+from service.requests.limits import Limits
 
 Schema = dict[str, Any]
 

@@ -27,7 +27,7 @@ from service.jobs.engine import Engine, JobState
 from service.jobs.record import Record
 from service.jobs.store import Store
 from service.kinds.table import KINDS
-from service.requests.schemas import GEOMETRY, Geometry, NonNegativeInteger
+from service.requests.fields import GEOMETRY, Geometry, NonNegativeInteger
 from service.requests.tour import TourQuery
 
 PLAN = (

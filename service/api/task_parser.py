@@ -98,9 +98,7 @@ class TaskParser:
     async def replan(self, source: ReplanSource, length: int) -> Task:
         """Return the rest of the way of a checked request; `length` is the bytes to parse."""
         quotes = source.body.count(b'"') + source.front.source.body.count(b'"')
-        # Checking places on a map needs SciPy, which only a process that parses should load.
-        on_map = source.front.found.places is not None
-        if length <= _SHORT and quotes <= _FEW_QUOTES and not on_map:
+        if length <= _SHORT and quotes <= _FEW_QUOTES:
             return parse_replan(source, self._limits, self._actors)
         return await self._in_turn(parse_replan, source, length)
 

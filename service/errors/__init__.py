@@ -1,65 +1,31 @@
 """All error codes with their sentences, in one table, and the exceptions of the service."""
 
-from service.errors.exceptions import (
-    MOST_FAULTS,
-    Cancelled,
-    DeadlineExceeded,
-    Expired,
-    Fault,
-    IdempotencyMismatch,
-    InvalidCoverage,
-    InvalidInstance,
-    NotFound,
-    NoWorker,
-    QueueFull,
-    Refusal,
-    ShareFull,
-    ShuttingDown,
-    StoreUnavailable,
-    TooManyPlaces,
-    WarmingUp,
-    WorkerLost,
-    invalid,
-)
-from service.errors.problems import PROBLEMS
-from service.errors.roads import (
-    NoRoad,
-    OffRoad,
-    RouterTooSlow,
-    RouterUnavailable,
-    RouterUnusable,
-    StreetsTooLong,
-)
-from service.errors.tours import CityNames, NoTour, Obstacle
-
-__all__ = [
-    "MOST_FAULTS",
-    "PROBLEMS",
-    "Cancelled",
-    "CityNames",
-    "DeadlineExceeded",
-    "Expired",
-    "Fault",
-    "IdempotencyMismatch",
-    "InvalidCoverage",
-    "InvalidInstance",
-    "NoRoad",
-    "NoTour",
-    "NoWorker",
-    "NotFound",
-    "Obstacle",
-    "OffRoad",
-    "QueueFull",
-    "Refusal",
-    "RouterTooSlow",
-    "RouterUnavailable",
-    "RouterUnusable",
-    "ShareFull",
-    "ShuttingDown",
-    "StoreUnavailable",
-    "StreetsTooLong",
-    "TooManyPlaces",
-    "WarmingUp",
-    "WorkerLost",
-    "invalid",
-]
+from service.errors.exceptions import MOST_FAULTS as MOST_FAULTS
+from service.errors.exceptions import Cancelled as Cancelled
+from service.errors.exceptions import DeadlineExceeded as DeadlineExceeded
+from service.errors.exceptions import Expired as Expired
+from service.errors.exceptions import Fault as Fault
+from service.errors.exceptions import IdempotencyMismatch as IdempotencyMismatch
+from service.errors.exceptions import InvalidCoverage as InvalidCoverage
+from service.errors.exceptions import InvalidInstance as InvalidInstance
+from service.errors.exceptions import NoRoad as NoRoad
+from service.errors.exceptions import NotFound as NotFound
+from service.errors.exceptions import NoWorker as NoWorker
+from service.errors.exceptions import OffRoad as OffRoad
+from service.errors.exceptions import QueueFull as QueueFull
+from service.errors.exceptions import Refusal as Refusal
+from service.errors.exceptions import RouterTooSlow as RouterTooSlow
+from service.errors.exceptions import RouterUnavailable as RouterUnavailable
+from service.errors.exceptions import RouterUnusable as RouterUnusable
+from service.errors.exceptions import ShareFull as ShareFull
+from service.errors.exceptions import ShuttingDown as ShuttingDown
+from service.errors.exceptions import StoreUnavailable as StoreUnavailable
+from service.errors.exceptions import StreetsTooLong as StreetsTooLong
+from service.errors.exceptions import TooManyPlaces as TooManyPlaces
+from service.errors.exceptions import WarmingUp as WarmingUp
+from service.errors.exceptions import WorkerLost as WorkerLost
+from service.errors.exceptions import invalid as invalid
+from service.errors.problems import PROBLEMS as PROBLEMS
+from service.errors.tours import CityNames as CityNames
+from service.errors.tours import NoTour as NoTour
+from service.errors.tours import Obstacle as Obstacle

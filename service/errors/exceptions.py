@@ -14,7 +14,7 @@
     │   ├── Cancelled             a task was cancelled before it had a front
     │   ├── DeadlineExceeded      a task took too long before it had a front
     │   ├── IdempotencyMismatch   a key was used for another body
-    │   ├── OffRoad, NoRoad       stops without a road, or a way to another; see `roads.py`
+    │   ├── OffRoad, NoRoad       stops without a road, or without a way to another
     │   ├── NoTour                every tour has a forbidden leg; see `tours.py`
     │   ├── RouterUnavailable, RouterUnusable, RouterTooSlow
     │   ├── StreetsTooLong        lines along streets are too many, or too long
@@ -34,6 +34,7 @@ from typing import Any
 from service.errors.problems import PROBLEMS
 
 MOST_FAULTS = 20  # the most that one problem document lists
+_LONGEST_NAME = 100  # characters of a caller's name for a stop, where it is quoted
 
 
 @dataclass(frozen=True)
@@ -49,9 +50,10 @@ class Refusal(Exception):
     """A request that is not served, with all members of its problem document.
 
     Args:
-        code: One of PROBLEMS.
+        code: One of PROBLEMS; by default that of the class.
         pointer: The one field at fault, as a JSON pointer into the body.
         errors: The fields at fault, where there are several or they have sentences of their own.
+            The sentence has them in its field `detail`, unless that is given.
         limit: The most that is allowed.
         actual: The number that came, where it is known.
         headers: Further headers of the response.
@@ -62,7 +64,7 @@ class Refusal(Exception):
 
     def __init__(
         self,
-        code: str,
+        code: str = "",
         *,
         pointer: str | None = None,
         errors: Sequence[Fault] = (),
@@ -71,18 +73,21 @@ class Refusal(Exception):
         headers: Mapping[str, str] | None = None,
         **fields: object,
     ) -> None:
-        self.code = code
-        self.status = PROBLEMS[code].status
-        self.detail = PROBLEMS[code].sentence.format(limit=limit, actual=actual, **fields)
-        self.errors = tuple(errors) if pointer is None else (Fault(self.detail, pointer),)
+        self.code = code or type(self).code
+        self.status, sentence, _ = PROBLEMS[self.code]
+        if errors:
+            fields = {"detail": summary(errors[0], len(errors)), **fields}
+        self.detail = sentence.format(limit=limit, actual=actual, **fields)
+        shown = tuple(errors[:MOST_FAULTS])
+        self.errors = shown if pointer is None else (Fault(self.detail, pointer),)
         self.limit = limit
         self.actual = actual
         self.headers = dict(headers or {})
         super().__init__(self.detail)
 
-    def __reduce__(self) -> tuple[Callable[..., "Refusal"], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...], dict[str, Any]]:
         """Pickle all members: subclasses take other arguments than the base class."""
-        return _unpickled, (type(self), self.__dict__)
+        return Exception.__new__, (type(self), self.detail), self.__dict__
 
     def document(self, request_id: str) -> dict[str, Any]:
         """Return the problem document (RFC 9457) without the members that are None."""
@@ -122,9 +127,7 @@ class InvalidCoverage(InvalidInstance):
     ) -> None:
         self.faults = faults
         errors = [Fault(f"{part} {demand}", f"/{part}") for part, demand in faults]
-        detail, shown = summarize(errors), errors[:MOST_FAULTS]
-        code = type(self).code
-        Refusal.__init__(self, code, detail=detail, errors=shown, limit=limit, actual=actual)
+        Refusal.__init__(self, errors=errors, limit=limit, actual=actual)
 
     def __str__(self) -> str:
         """Return all faults as one sentence."""
@@ -141,13 +144,6 @@ class TooManyPlaces(InvalidCoverage):
         super().__init__(("spacing", demand), limit=limit, actual=actual)
 
 
-class _Plain(Refusal):
-    """A refusal whose sentence has no fields."""
-
-    def __init__(self) -> None:
-        super().__init__(type(self).code)
-
-
 class NoWorker(Refusal):
     """No worker process runs or can be started; the service keeps trying."""
 
@@ -155,7 +151,7 @@ class NoWorker(Refusal):
         super().__init__("no-worker", reason=reason)
 
 
-class QueueFull(_Plain):
+class QueueFull(Refusal):
     """No place is left for another task."""
 
     code = "queue-full"
@@ -167,49 +163,106 @@ class ShareFull(QueueFull):
     code = "share-full"
 
     def __init__(self, limit: int) -> None:
-        Refusal.__init__(self, type(self).code, limit=limit, actual=limit)
+        super().__init__(limit=limit, actual=limit)
 
 
-class ShuttingDown(_Plain):
+class ShuttingDown(Refusal):
     """The service takes no more tasks."""
 
     code = "shutting-down"
 
 
-class WarmingUp(_Plain):
+class WarmingUp(Refusal):
     """The search is still being loaded, or compiled, which happens once."""
 
     code = "warming-up"
 
 
-class WorkerLost(_Plain):
+class WorkerLost(Refusal):
     """Two workers died over the task, which may be the cause."""
 
     code = "worker-lost"
 
 
-class Cancelled(_Plain):
+class Cancelled(Refusal):
     """The task was cancelled before it had a front."""
 
     code = "stopped"
 
 
-class DeadlineExceeded(_Plain):
+class DeadlineExceeded(Refusal):
     """The task took longer than any may, and had no front yet."""
 
     code = "overdue"
 
 
-class IdempotencyMismatch(_Plain):
+class IdempotencyMismatch(Refusal):
     """The caller has used this idempotency key for another body."""
 
     code = "idempotency-mismatch"
 
 
-class StoreUnavailable(_Plain):
+class StoreUnavailable(Refusal):
     """The store does not answer."""
 
     code = "store-unavailable"
+
+
+class OffRoad(Refusal):
+    """Stops, given by index and id, lie too many metres from every road."""
+
+    def __init__(self, stops: Sequence[tuple[int, str]], snap: float) -> None:
+        demand = f"must lie within {snap:g} m of a road, and does not"
+        faults = [
+            Fault(f"stop {quoted(name)} {demand}", f"/stops/{index}/location")
+            for index, name in stops
+        ]
+        super().__init__("off-road", errors=faults)
+
+
+class NoRoad(Refusal):
+    """There is no way by road between some stops.
+
+    Each missing way is given as the index of the stop to look at, and the ids of both its ends.
+    """
+
+    def __init__(self, ways: Sequence[tuple[int, str, str]]) -> None:
+        faults = [
+            Fault(
+                f"there must be a way by road from stop {quoted(origin)} to stop"
+                f" {quoted(destination)}, and the routing engine knows none",
+                f"/stops/{index}",
+            )
+            for index, origin, destination in ways
+        ]
+        super().__init__("no-road", errors=faults)
+
+
+class RouterUnavailable(Refusal):
+    """The routing engine does not answer, or answers that it is busy."""
+
+    code = "router-unavailable"
+
+
+class RouterUnusable(Refusal):
+    """The routing engine's answer is not as documented; the reason quotes none of its text."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__("router-unusable", reason=reason)
+
+
+class RouterTooSlow(Refusal):
+    """The routing engine took longer than its time limit."""
+
+    def __init__(self, seconds: float) -> None:
+        super().__init__("router-too-slow", limit=seconds)
+
+
+class StreetsTooLong(Refusal):
+    """Lines along streets have more legs or positions than one answer may have."""
+
+    def __init__(self, parts: str, limit: int, actual: int | None = None) -> None:
+        super().__init__("streets-too-long", parts=parts, limit=limit, actual=actual)
 
 
 class NotFound(LookupError):
@@ -220,17 +273,14 @@ class Expired(LookupError):
     """The caller's front with this id was dropped: too old, or the store was full."""
 
 
-def _unpickled(kind: type[Refusal], members: dict[str, Any]) -> Refusal:
-    refusal = kind.__new__(kind)
-    refusal.__dict__.update(members)
-    refusal.args = (refusal.detail,)
-    return refusal
+def summary(first: Fault, count: int) -> str:
+    """Return the first of `count` faults, and how many more there are, as one sentence."""
+    return first.detail + (f" (and {count - 1} more)" if count > 1 else "")
 
 
-def summarize(faults: Sequence[Fault]) -> str:
-    """Return the first fault, and how many more there are, as one sentence."""
-    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
-    return faults[0].detail + more
+def quoted(name: str) -> str:
+    """Return a caller's name for a stop as it is quoted in a sentence."""
+    return repr(name[:_LONGEST_NAME])
 
 
 def _without_none(members: Mapping[str, Any]) -> dict[str, Any]:

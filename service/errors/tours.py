@@ -3,9 +3,8 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from service.errors.exceptions import MOST_FAULTS, Fault, Refusal, summarize
+from service.errors.exceptions import Fault, Refusal, quoted, summary
 
-_LONGEST_NAME = 100  # characters of a caller's name for a stop, where it is quoted
 _MOST_NAMED = 5  # cities of one kind in one sentence
 _PLURALS = {"city": "cities", "stop": "stops", "place": "places"}
 
@@ -38,7 +37,7 @@ class CityNames:
         return None if self.part is None else f"/{self.part}/{city}"
 
     def _name(self, city: int) -> str:
-        return str(city) if self.ids is None else repr(self.ids[city][:_LONGEST_NAME])
+        return str(city) if self.ids is None else quoted(self.ids[city])
 
 
 @dataclass(frozen=True)
@@ -47,8 +46,8 @@ class Obstacle:
 
     Args:
         sentence: A template with the fields `{cities}`, `{noun}` and optionally `{others}`.
-        cities: Those to look at first.
-        others: Those that the sentence names beside them.
+        cities: The cities at fault.
+        others: Further cities that the sentence names.
     """
 
     sentence: str
@@ -82,9 +81,7 @@ class NoTour(Refusal):
     ) -> None:
         self.obstacles = tuple(obstacles)
         faults = [each.fault(names or CityNames()) for each in self.obstacles]
-        summary = summarize(faults)
-        shown = faults[:MOST_FAULTS]
-        super().__init__(code, errors=shown, reason=summary, detail=summary)
+        super().__init__(code, errors=faults, reason=summary(faults[0], len(faults)))
 
     def named(self, names: CityNames) -> "NoTour":
         """Return this refusal with other names of the cities."""

@@ -20,7 +20,7 @@ from numba.core.event import Event, Listener, install_listener
 
 from service import jit, own_code
 from service.coverage import shortest_paths
-from service.kinds.fleet import run as fleet_run
+from service.kinds import fleet
 from service.replanning import insertion
 from service.search import improve
 
@@ -28,7 +28,7 @@ from service.search import improve
 def _compile_beside() -> None:
     insertion.warm_up()
     shortest_paths.warm_up()
-    fleet_run.warm_up()
+    fleet.warm_up()
 
 
 _PARTS: Sequence[Callable[[], None]] = (

@@ -4,20 +4,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-# Here, or the first task of each kind would wait until they are loaded.
-import service.kinds.coverage.run
-import service.kinds.front.run
-import service.kinds.robots.run  # noqa: F401  # with that of fleets
 from service.actor import load_actors
 from service.actor_info import ActorInfo
 from service.jobs.compiled_code import warm_up
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import NamedActor, Report, Tools
-from service.kinds.table import KINDS
+from service.kinds.run import RUNS
 from service.requests.limits import Limits
 from service.requests.road_measurer import BlockingMeasurer, needs_roads
-from service.requests.stored_task import read_task
 from service.requests.task import Task, TaskSource
+from service.requests.task_codec import read_task
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 
@@ -52,7 +48,7 @@ class TaskRunner:
         """Return the front of a task."""
         if self.measurer is not None and needs_roads(task):
             task = self.measurer.measured(task, stop)
-        return KINDS[task.kind].run(task, Tools(self.actors, self.limits), stop, report)
+        return RUNS[task.kind](task, Tools(self.actors, self.limits), stop, report)
 
     def terminate(self) -> None:
         """End the running call of a network, if one runs; from any thread."""

@@ -1,1 +1,1 @@
-"""The kinds of plans: a row of the table `KINDS` and a folder each; and fronts as JSON."""
+"""The kinds of plans: a row of the table `KINDS` each; how each is planned; and fronts as JSON."""

@@ -1,50 +1,31 @@
 """A front as JSON: the one form in which it is sent between processes, stored and answered.
 
 To add a member to the answer, add a field to `FrontDocument` and fill it in where documents are
-written: `empty_document` in `table`, `tour_document`, and `document` in `fleet` and in `robots`.
-Stores, engines and routes pass on all members without knowing them. A field that earlier releases
-did not store needs a default.
+written: `empty_document` in `table`, `tour_document`, `fleet` and `robots`. Stores, engines and
+routes pass on all members without knowing them. A field that earlier releases did not store needs a
+default.
 """
 
-from collections.abc import Mapping
+from array import array
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
+from itertools import accumulate, islice
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from service.front import Termination
+from service.coverage.path import CoveragePath
+from service.fleet.plans import FleetFront
+from service.front import Front, Termination
 from service.instance import OBJECTIVES
-from service.kinds.json_parts import joined, split
 from service.pareto import balances
+from service.preferences import angles
 from service.requests.task import KindName
 
 _HEAD = 100  # the first bytes of a tour, which contain its first members
-
-
-@dataclass(frozen=True)
-class Timings:
-    """Milliseconds of each phase of planning, and once it has ended the total since the request.
-
-    Their JSON form is one object: the time in the queue, the phases, the total.
-    """
-
-    phases: Mapping[str, float]
-    total: float | None = None
-
-    @classmethod
-    def from_json(cls, members: Mapping[str, float]) -> Self:
-        """Return the timings of a parsed JSON object."""
-        phases = {name: ms for name, ms in members.items() if name not in ("queue", "total")}
-        return cls(phases, members.get("total"))
-
-    def as_json(self) -> dict[str, float]:
-        """Return the members of the JSON object."""
-        if self.total is None:
-            return dict(self.phases)
-        queue = self.total - sum(self.phases.values())
-        return {"queue": queue, **self.phases, "total": self.total}
+PATH_PART = 2**14  # cells of a path that are written at once
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -57,6 +38,8 @@ class FrontDocument:
     Attributes:
         reference_point: One number for each objective; None while the places are not known.
         scale: One number for each objective; None while the places are not known.
+        timings_ms: Milliseconds of each phase of planning; once it has ended, first those in the
+            queue, and last all since the request.
         actor: Name and digest of the network; None where it built no tours.
         places: Row and column of each place of a coverage task.
         closed: False where tours are open routes; None where they are closed.
@@ -76,7 +59,7 @@ class FrontDocument:
     hypervolume_bound: float | None
     reference_point: list[float] | None
     scale: list[float] | None
-    timings_ms: Timings
+    timings_ms: Mapping[str, float]
     terminated: Termination | None
     actor: Mapping[str, str] | None
     places: list[list[int]] | None = None
@@ -90,6 +73,20 @@ class FrontDocument:
     gained: float | None = None
 
     @classmethod
+    def of(cls, front: Front | FleetFront, **members: Any) -> Self:
+        """Return the document of a front that was found, with these other members."""
+        return cls(
+            points=front.found,
+            hypervolume=front.hypervolume,
+            reference_point=front.reference_point.tolist(),
+            scale=front.scale.tolist(),
+            timings_ms=front.timings,
+            terminated=front.terminated,
+            angles=angles(front.points, front.scale).tobytes(),
+            **members,
+        )
+
+    @classmethod
     def from_members(cls, members: Mapping[str, Any], **encoded: Any) -> Self:
         """Return the document of parsed members, with the other fields as given.
 
@@ -98,8 +95,7 @@ class FrontDocument:
         """
         known = {name: members[name] for name in _MEMBERS if name in members}
         known.setdefault("kind", _kind_of_earlier_version(members))
-        timings = Timings.from_json(known.pop("timings_ms"))
-        return cls(**known, timings_ms=timings, **encoded).with_balances()
+        return cls(**known, **encoded).with_balances()
 
     def with_balances(self) -> Self:
         """Return the front with the balance of each tour, computed where it is missing."""
@@ -114,13 +110,18 @@ class FrontDocument:
     def members(self) -> dict[str, Any]:
         """Return the members of the answer but the tours, ready for JSON."""
         values = {name: getattr(self, name) for name in _MEMBERS}
-        given = {k: v for k, v in values.items() if v is not None or k not in _OPTIONAL}
-        return {**given, "timings_ms": self.timings_ms.as_json()}
+        return {k: v for k, v in values.items() if v is not None or k not in _OPTIONAL}
 
     def json(self, **more: Any) -> bytes:
         """Return the answer as JSON, beginning with these other members."""
         members = to_json({**more, **self.members()})
         return b"".join((members[:-1], b',"front":[', self.tours, b"]}"))
+
+    @property
+    def phases(self) -> dict[str, float]:
+        """The milliseconds of each phase of planning."""
+        timings = self.timings_ms.items()
+        return {name: ms for name, ms in timings if name not in ("queue", "total")}
 
     @property
     def directions(self) -> NDArray[np.float64]:
@@ -168,7 +169,8 @@ class FrontDocument:
         terminated = self.terminated
         if terminated in (None, "cancelled"):
             terminated = "time_limit" if late else "cancelled"
-        timings = replace(self.timings_ms, total=1000 * seconds)
+        phases, total = self.phases, 1000 * seconds
+        timings = {"queue": total - sum(phases.values()), **phases, "total": total}
         return replace(self, timings_ms=timings, terminated=terminated)
 
 
@@ -190,3 +192,46 @@ def _between(text: bytes, before: bytes, after: bytes, begin: int) -> bytes:
     """Return the text between two parts: the first ones at or after a byte."""
     at = text.index(before, begin) + len(before)
     return text[at : text.index(after, at)]
+
+
+def encode_tours(rows: list[dict[str, Any]]) -> tuple[bytes, bytes]:
+    """Encode all tours at once; return their JSON, and the byte where each tour ends.
+
+    This is faster than one by one. All members must be numbers, so that each brace ends a tour.
+    """
+    encoded = to_json(rows)[1:-1]
+    ends = np.flatnonzero(np.frombuffer(encoded, np.uint8) == ord("}")) + 1
+    return encoded, ends.astype(np.int64).tobytes()
+
+
+def joined(tours: Iterable[bytes]) -> tuple[bytes, bytes]:
+    """Join the JSON of tours; return it and where each tour ends in it."""
+    each = list(tours)
+    ends = accumulate(each, lambda end, tour: end + 1 + len(tour), initial=-1)
+    return b",".join(each), array("q", islice(ends, 1, None)).tobytes()
+
+
+def split(tours: bytes, ends: bytes) -> list[bytes]:
+    """Split joined JSON at these ends into the JSON of each tour."""
+    lasts = np.frombuffer(ends, np.int64).tolist()
+    begins = [0, *(last + 1 for last in lasts)]
+    return [tours[begin:last] for begin, last in zip(begins, lasts, strict=False)]
+
+
+def with_member(encoded: bytes, name: bytes, value: bytes) -> bytes:
+    """Return the JSON of an object that is not empty, with one more member at its end."""
+    return b"".join((encoded[:-1], b',"', name, b'":', value, b"}"))
+
+
+def encode_path(path: CoveragePath) -> bytes:
+    """Return a path as JSON, written in parts: a list takes ten times the memory of its text."""
+    parts = [path.cells[i : i + PATH_PART] for i in range(0, len(path.cells), PATH_PART)]
+    members = [b'"cells":', *_encode_rows(parts), b',"metres":', to_json(path.metres)]
+    if path.frame is not None:
+        members += [b',"points":', *_encode_rows(map(path.frame.points, parts))]
+    return b"".join((b"{", *members, b"}"))
+
+
+def _encode_rows(parts: Iterable[NDArray[Any]]) -> tuple[bytes, bytes, bytes]:
+    """Return a list of rows of numbers as JSON, from parts of them."""
+    return b"[", b",".join(to_json(part.tolist())[1:-1] for part in parts), b"]"

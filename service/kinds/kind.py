@@ -1,4 +1,4 @@
-"""The interface of a kind of plan: everything in which the kinds differ."""
+"""A kind of plan as a row of a table, and the interface of the function that plans it."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -64,11 +64,9 @@ class Kind:
         label: The label of its fronts in the metrics.
         outline: Returns the number of cities of a task, and the members of its answer that are
             known before anything is planned.
-        run: Plans the front of a task. It imports the modules that plan when it is called.
     """
 
     name: KindName
     of_plans: bool
     label: str
     outline: Callable[[Task], tuple[int, dict[str, Any]]]
-    run: Run

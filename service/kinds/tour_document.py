@@ -11,8 +11,14 @@ from pydantic_core import to_json
 from service.coverage.path import CoveragePath
 from service.coverage.survey import Survey
 from service.front import Front
-from service.kinds.front_document import FrontDocument, Timings
-from service.kinds.json_parts import encode_path, encode_tours, joined, split, with_member
+from service.kinds.front_document import (
+    FrontDocument,
+    encode_path,
+    encode_tours,
+    joined,
+    split,
+    with_member,
+)
 from service.pareto import balances
 from service.requests.stops import Labels
 
@@ -25,11 +31,15 @@ def encode_front(
     labels: Labels | None = None,
     arrivals: NDArray[np.float64] | None = None,
 ) -> FrontDocument:
-    """Return a front as JSON, with the ids of stops, the arrivals and the paths that are given.
+    """Return a front as JSON.
 
-    With a survey it has the places on the map, and the cells that are uncovered.
-
-    The actor is left out if it built no tours. Arrivals have shape (m, stops, 2).
+    Args:
+        front: The front.
+        actor: The name and digest of the network, which is left out if it built no tours.
+        surveyed: The map, whose places and uncovered cells are members of the document.
+        paths: The path of each tour.
+        labels: The names of stops and objectives.
+        arrivals: Both lengths of each tour up to each of its stops, shape (m, stops, 2).
     """
     tours, ends = encode_tours(_rows(front, arrivals))
     if labels is not None:
@@ -39,23 +49,17 @@ def encode_front(
             with_member(tour, b"path", encode_path(path))
             for tour, path in zip(split(tours, ends), paths, strict=True)
         )
-    return FrontDocument(
+    return FrontDocument.of(
+        front,
         kind="front" if surveyed is None else "coverage",
         cities=front.n,
-        points=front.found,
-        hypervolume=front.hypervolume,
         hypervolume_bound=front.bound,
-        reference_point=front.reference_point.tolist(),
-        scale=front.scale.tolist(),
-        timings_ms=Timings(front.timings),
-        terminated=front.terminated,
         actor=actor if front.constructed else None,
         **on_map(surveyed),
         closed=None if front.closed else False,
         **({} if labels is None else labels.members),
         tours=tours,
         ends=ends,
-        angles=front.angles.tobytes(),
         gained=front.gained,
     )
 
@@ -69,26 +73,16 @@ def on_map(surveyed: Survey | None) -> dict[str, Any]:
 
 def _rows(front: Front, arrivals: NDArray[np.float64] | None) -> list[dict[str, Any]]:
     """Return the members of each tour, all of them numbers, ready for JSON."""
-    columns = zip(
-        front.angles.tolist(),
-        balances(front.points).tolist(),
-        _optional("kept", front.kept, front),
-        front.points.tolist(),
-        front.tours.tolist(),
-        _optional("arrivals", arrivals, front),
-        strict=True,
-    )
-    return [
-        {"angle": angle, "balance": balance, **kept, "lengths": lengths, "tour": tour, **arrived}
-        for angle, balance, kept, lengths, tour, arrived in columns
-    ]
-
-
-def _optional(name: str, values: NDArray[np.float64] | None, front: Front) -> list[dict[str, Any]]:
-    """Return a member for each tour of a front; without values, no members."""
-    if values is None:
-        return [{}] * len(front.tours)
-    return [{name: value} for value in values.tolist()]
+    columns = {
+        "angle": front.angles,
+        "balance": balances(front.points),
+        "kept": front.kept,
+        "lengths": front.points,
+        "tour": front.tours,
+        "arrivals": arrivals,
+    }
+    given = {name: values.tolist() for name, values in columns.items() if values is not None}
+    return [dict(zip(given, row, strict=True)) for row in zip(*given.values(), strict=True)]
 
 
 def _with_stops(encoded: list[bytes], tours: NDArray[np.integer], labels: Labels) -> list[bytes]:

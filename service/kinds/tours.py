@@ -1,12 +1,16 @@
-"""Plan the tours of an instance for a task: through stops, or through the places of a map."""
+"""Plan fronts of tours: through stops or cities, or through the places of a map."""
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.coverage.survey import Survey
-from service.errors import NoTour
+from service.coverage.coverage import Coverage
+from service.coverage.path import CoveragePath
+from service.coverage.survey import Survey, survey
+from service.errors import Cancelled, InvalidCoverage, NoTour
 from service.front import Front, reporting
 from service.instance import Instance, cumulated_lengths
 from service.kinds.front_document import FrontDocument
@@ -14,10 +18,80 @@ from service.kinds.kind import Report, Tools
 from service.kinds.tour_document import encode_front
 from service.planner import plan
 from service.replanning.replan import replan
+from service.requests.limits import Limits, within_network
+from service.requests.parser import check_instance
+from service.requests.replan.rest_of_map import about_request
+from service.requests.stops import Stops
 from service.requests.task import Task
 
 
-def plan_tours(
+def run_front(task: Task, tools: Tools, stop: Callable[[], bool], report: Report) -> FrontDocument:
+    """Return the front of a task; see `Run`."""
+    assert isinstance(task.subject, Stops)
+    stops = task.subject
+    began = time.perf_counter()
+    instance, timings = stops.instance, {}
+    if task.timings or not stops.measured:  # else it was checked when it came
+        check_instance(task, instance)
+        timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
+    front = _plan(task, instance, tools, stop, report)
+    if timings:
+        front = replace(front, timings={**timings, **front.timings})
+    return encode_front(
+        front,
+        tools.actors[task.actor].info.identity,
+        labels=task.labels,
+        arrivals=_arrivals(task, instance, front),
+    )
+
+
+def run_coverage(
+    task: Task, tools: Tools, stop: Callable[[], bool], report: Report
+) -> FrontDocument:
+    """Return the front of a task; see `Run`."""
+    limits = tools.limits
+    began = time.perf_counter()
+    surveyed = survey_map(task, limits, stop)
+    check_instance(task, surveyed.instance)
+    surveyed_at = time.perf_counter()
+    options = within_network(task.options, surveyed.instance.n, limits)
+    task = replace(task, options=replace(options, start=surveyed.start))
+    front = _plan(task, surveyed.instance, tools, stop, report, surveyed)
+    planned_at = time.perf_counter()
+    paths = None
+    if task.paths:
+        paths = unless_cancelled(surveyed.paths(front.tours, limits.path_cells, stop))
+    timings = {
+        "survey": 1000 * (surveyed_at - began),
+        **front.timings,
+        "paths": 1000 * (time.perf_counter() - planned_at),
+    }
+    return encode_front(
+        replace(front, timings=timings),
+        tools.actors[task.actor].info.identity,
+        surveyed,
+        paths,
+        arrivals=_arrivals(task, surveyed.instance, front),
+    )
+
+
+def survey_map(task: Task, limits: Limits, stop: Callable[[], bool]) -> Survey:
+    """Return the survey of the map of a task.
+
+    Raises:
+        InvalidCoverage: A place cannot be visited, or there are too many.
+        Cancelled: `stop` returned True.
+    """
+    assert isinstance(task.subject, Coverage)
+    try:
+        return survey(task.subject, limits.most_places(shared=False), stop)
+    except InvalidCoverage as refusal:
+        if not task.parts:
+            raise
+        raise about_request(refusal, task.parts) from None
+
+
+def _plan(
     task: Task,
     instance: Instance,
     tools: Tools,
@@ -40,6 +114,14 @@ def plan_tours(
         raise refusal.named(task.city_names) from None
 
 
-def arrivals_of(task: Task, instance: Instance, front: Front) -> NDArray[np.float64] | None:
+def _arrivals(task: Task, instance: Instance, front: Front) -> NDArray[np.float64] | None:
     """Return both lengths of each tour up to each of its stops, if the task asks for them."""
     return cumulated_lengths(instance, front.tours) if task.arrivals else None
+
+
+def unless_cancelled(paths: Iterable[CoveragePath]) -> list[CoveragePath] | None:
+    """Return all paths; None if the task is cancelled before."""
+    try:
+        return list(paths)
+    except Cancelled:
+        return None

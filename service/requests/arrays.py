@@ -12,7 +12,8 @@ from pydantic import GetPydanticSchema, ValidationInfo
 from pydantic_core.core_schema import with_info_after_validator_function
 
 from service.errors import invalid
-from service.requests.validation import show
+from service.requests.fields import LARGEST
+from service.requests.validation import show, too_many_cells
 
 Array = NDArray[np.float64]
 Rows = list[list[float]]
@@ -20,10 +21,10 @@ CostRows = list[list[float | None]]
 AnyRows = TypeVar("AnyRows", Rows, CostRows)
 
 
-def array_field(parse: Callable[[AnyRows, str], Array], rows_type: Any) -> GetPydanticSchema:
+def array_field(parse: Callable[[Any, str], Array], rows_type: Any) -> GetPydanticSchema:
     """Return the schema of a field of rows of a type, parsed with its name into an array."""
 
-    def parse_named(rows: AnyRows, info: ValidationInfo) -> Array:
+    def parse_named(rows: Any, info: ValidationInfo) -> Array:
         return parse(rows, str(info.field_name))
 
     return GetPydanticSchema(
@@ -31,18 +32,18 @@ def array_field(parse: Callable[[AnyRows, str], Array], rows_type: Any) -> GetPy
     )
 
 
-def stack_matrices(matrices: list[CostRows]) -> Array:
+def stack_matrices(matrices: list[CostRows], name: str = "matrices") -> Array:
     """Return the costs of each objective as one array, shape (2, n, n), as `cost_matrix` does.
 
     Raises:
         Refusal: A matrix is not square, or they differ in size, or an entry is not finite.
     """
-    arrays = [cost_matrix(rows, f"matrices/{m}") for m, rows in enumerate(matrices)]
+    arrays = [cost_matrix(rows, f"{name}/{m}") for m, rows in enumerate(matrices)]
     n = len(arrays[0])
     for m, array in enumerate(arrays):
         if len(array) != n:
-            demand = f"must have {n} rows, as many as matrices/0, got {len(array)}"
-            raise invalid(f"matrices/{m}", demand)
+            demand = f"must have {n} rows, as many as {name}/0, got {len(array)}"
+            raise invalid(f"{name}/{m}", demand)
     return np.stack(arrays)
 
 
@@ -52,7 +53,7 @@ def cost_matrix(rows: CostRows, name: str) -> Array:
     The diagonal becomes 0; its values are ignored.
 
     Raises:
-        Refusal: A row is not as long as there are rows, or an entry is not finite.
+        Refusal: The rows are not those of a square matrix, or an entry is not finite.
     """
     matrix = rectangular_array(rows, name)
     n, width = matrix.shape
@@ -93,7 +94,23 @@ def rectangular_array(rows: AnyRows, name: str) -> Array:
     return np.array(rows, dtype=np.float64)
 
 
-def check_costs(matrix: Array, name: str, largest: float) -> None:
+def check_grid(grid: Array) -> None:
+    """Raise a refusal unless all cells of a map, shape (rows, columns), are 0 or 1."""
+    binary = (grid == 0) | (grid == 1)
+    if not binary.all():
+        row, column = np.unravel_index(binary.argmin(), binary.shape)
+        raise invalid(f"grid/{row}/{column}", f"must be 0 or 1, got {grid[row, column]:g}")
+
+
+def check_size(columns: int, rows: int, most: int) -> None:
+    """Raise a refusal unless a map has a cell or more and at most `most`, before it is read."""
+    if columns * rows > most:
+        raise too_many_cells(most, columns * rows, f"{rows} x {columns}")
+    if columns * rows == 0:
+        raise invalid("grid", f"must have a cell or more, got {rows} x {columns}")
+
+
+def check_costs(matrix: Array, name: str) -> None:
     """Raise a refusal unless all entries of a matrix, shape (n, n), off its diagonal are costs.
 
     An infinite entry means that there is no way.
@@ -103,7 +120,7 @@ def check_costs(matrix: Array, name: str, largest: float) -> None:
     """
     # A comparison with NaN is false, so NaN is found as well.
     with np.errstate(invalid="ignore"):
-        is_cost = (matrix >= 0) & ((matrix <= largest) | (matrix == np.inf))
+        is_cost = (matrix >= 0) & ((matrix <= LARGEST) | (matrix == np.inf))
     is_cost |= np.eye(len(matrix), dtype=np.bool_)
     if is_cost.all():
         return
@@ -112,5 +129,5 @@ def check_costs(matrix: Array, name: str, largest: float) -> None:
     if np.isnan(entry):
         demand = "must be a number, or infinity where there is no way"
     else:
-        demand = "must not be negative" if entry < 0 else f"must be at most {largest:g}"
+        demand = "must not be negative" if entry < 0 else f"must be at most {LARGEST:g}"
     raise invalid(f"{name}/{i}/{j}", f"{demand}, got {show(entry)}")

@@ -1,61 +1,105 @@
-"""Requests of `POST /coverage`: their fields, their JSON schema and their parser."""
+"""Requests of `POST /coverage`: their fields, and their parser."""
 
-from collections.abc import Iterable
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
 from service.coverage.coverage import Coverage
+from service.coverage.robots import Robot
 from service.errors import invalid
-from service.instance import CLOSED, Kind, RouteEnds
+from service.fleet.fleet import Over
+from service.instance import CLOSED, RouteEnds
 from service.requests.arrays import array_field, check_costs, cost_matrix
-from service.requests.limits import Limits, check_limits, limited_schema, lower_defaults
-from service.requests.maps.fields import ABSENT, Layer, MapRequest, describe_map, empty_array
-from service.requests.maps.robots import (
-    DEFAULT_OVER,
-    MOST_ROBOTS,
-    OverBoth,
-    RobotItem,
-    RobotPose,
-    SharedCoverage,
-    check_robots,
-    describe_robots,
-    rules_of_robots,
-)
-from service.requests.schemas import (
-    LARGEST,
+from service.requests.fields import (
     NO_WAY,
+    Cost,
     CostRows,
     NonNegativeInteger,
+    Number,
+    OneEach,
+    Pair,
     PlanePoint,
     PositiveNumber,
+    SomeItems,
+    StrictModel,
+    Text,
 )
+from service.requests.limits import Limits, check_limits, lower_defaults
+from service.requests.maps.fields import Layer, MapRequest, empty_array
+from service.requests.stop_fields import check_unique
+from service.requests.task import SharedCoverage
 from service.requests.validation import parse_json, too_many_cities
 
 Matrix = Annotated[NDArray[np.float64], array_field(cost_matrix, CostRows)]
-Cell = Annotated[list[NonNegativeInteger], Field(min_length=2, max_length=2, fail_fast=True)]
-_SECOND = ("second_matrix", "cost_layer", "second_coordinates")
+Cell = Pair[NonNegativeInteger]
+
+MOST_ROBOTS = 100
+DEFAULT_OVER: tuple[Over, Over] = ("sum", "max")
+RobotPose = Annotated[list[Number], Field(min_length=2, max_length=3, fail_fast=True)]
+# The fields that are about the tours of one robot, or about the network that builds them.
+OF_ONE_ROBOT = (
+    "start",
+    "end",
+    "start_pose",
+    "end_pose",
+    "initial_tours",
+    "preferences",
+    "repairs",
+    "arrivals",
+    "bound",
+    "actor",
+)
+ENDS = (("start", "start_pose"), ("end", "end_pose"))
+
+
+class RobotItem(StrictModel):
+    """A robot: where it starts and, where robots do not return, maybe where it ends."""
+
+    id: Text = Field(description="comes back with its routes; no two robots share one")
+    start: NonNegativeInteger = Field(
+        default=0, description="the place where it starts, which needs no other visit"
+    )
+    start_pose: RobotPose = Field(
+        default_factory=list,
+        description="instead of start: x and y, and maybe yaw, in the frame of the map",
+    )
+    end: NonNegativeInteger = Field(
+        default=0, description="with closed false, the place where it ends; by default anywhere"
+    )
+    end_pose: RobotPose = Field(
+        default_factory=list, description="instead of end: where it ends, in the frame of the map"
+    )
+
+    def robot(self, closed: bool) -> Robot:
+        """Return the robot, which returns to its start where routes are closed."""
+        given = self.model_fields_set
+        return Robot(
+            id=self.id,
+            closed=closed,
+            start=None if self.start_pose else self.start,
+            end=self.end if "end" in given else None,
+            start_pose=self.start_pose or None,
+            end_pose=self.end_pose or None,
+        )
 
 
 class CoverageRequest(MapRequest):
     """Places on a map, a second objective between them, and the options of their front."""
 
-    robot_radius: float = Field(
+    robot_radius: Cost = Field(
         default=0.0,
-        ge=0,
-        le=LARGEST,
-        allow_inf_nan=False,
-        description="in metres; the robot's middle stays farther than this from an obstacle's",
+        description="in metres; the centre of the robot stays farther than this from the centre of"
+        " every obstacle cell",
     )
-    places: Annotated[list[Cell], Field(min_length=1, fail_fast=True)] = Field(
+    places: SomeItems[Cell] = Field(
         default_factory=list, description="row and column of each place to visit"
     )
     spacing: PositiveNumber = Field(
         default=0.0,
-        description="instead of places, in metres: one is laid in each square of this side over"
-        " the region of the start pose, or the largest free region",
+        description="instead of places, in metres: places are laid out, one in each square of this"
+        " side, over the region of the start pose or the largest free region",
     )
     start_pose: RobotPose = Field(
         default_factory=list,
@@ -63,7 +107,8 @@ class CoverageRequest(MapRequest):
         " map; the tours begin in this cell, which is a place of its own if none is there",
     )
     end_pose: RobotPose = Field(
-        default_factory=list, description="instead of end, of open routes: where they end, likewise"
+        default_factory=list,
+        description="instead of end, where routes are open: the pose at which they end",
     )
     second_matrix: Matrix = Field(
         default_factory=empty_array,
@@ -72,9 +117,10 @@ class CoverageRequest(MapRequest):
     )
     cost_layer: Layer = Field(
         default_factory=empty_array,
-        description="or: on each cell of the grid, what a metre costs; added up along the paths",
+        description="or: the cost of a metre on each cell of the grid; costs are added up along the"
+        " paths",
     )
-    second_coordinates: Annotated[list[PlanePoint], Field(min_length=1, fail_fast=True)] = Field(
+    second_coordinates: SomeItems[PlanePoint] = Field(
         default_factory=list, description="or: x and y of each place in a plane; its distances"
     )
     paths: bool = Field(
@@ -87,16 +133,12 @@ class CoverageRequest(MapRequest):
         description="several robots that share the places; the answer is a front of plans. They may"
         " do without a second objective: then both are metres",
     )
-    over: OverBoth = Field(
+    over: OneEach[Over] = Field(
         default_factory=lambda: list(DEFAULT_OVER),
-        description="of robots, whether a plan's length in each objective is the sum over their"
-        " routes, or the longest; max for one objective at most; by default sum and max",
+        description="for robots: whether the length of a plan in each objective is the sum over its"
+        " routes or the longest route; max for one objective at most; by default sum and"
+        " max",
     )
-
-    @property
-    def kind(self) -> Kind:
-        """The kind of instance that an actor has to read."""
-        return "matrices"
 
     @property
     def ends(self) -> RouteEnds:
@@ -133,56 +175,6 @@ class CoverageRequest(MapRequest):
 AnyCoverageRequest = TypeVar("AnyCoverageRequest", bound=CoverageRequest)
 
 
-def coverage_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str, Any]]:
-    """Return the JSON schemas of a request, without and with a file of the map, by name."""
-    whole = _coverage_schema(limits, actors)
-    maps = ("grid", "occupancy_grid")
-    _, *others = whole["allOf"]
-    file = {
-        **whole,
-        "title": "CoverageFileRequest",
-        "description": "Places on a map that is a file, and the options of their front.",
-        "properties": {k: v for k, v in whole["properties"].items() if k not in maps},
-        "required": ["cell_size"],
-        "allOf": others,
-    }
-    return {"CoverageRequest": whole, "CoverageFileRequest": file}
-
-
-def _coverage_schema(limits: Limits, actors: Iterable[str]) -> dict[str, Any]:
-    """Return the JSON schema of a request under these limits, with these actors to choose from."""
-    schema = limited_schema(CoverageRequest, limits, actors)
-    fields = schema["properties"]
-    describe_robots(schema, limits.most_places(shared=False))
-    forms = describe_map(schema, limits.cells)
-    del fields["spacing"]["default"]
-    fields["places"]["maxItems"] = limits.most_places(shared=False)
-    in_a_frame = [{"required": ["origin"]}, {"required": ["occupancy_grid"]}]
-    schema["dependentSchemas"] = {
-        **rules_of_robots(),
-        "start_pose": {
-            "anyOf": in_a_frame,
-            "properties": {"start": ABSENT, "initial_tours": ABSENT},
-        },
-        "end_pose": {
-            "anyOf": in_a_frame,
-            "required": ["closed"],
-            "properties": {"closed": {"const": False}, "end": ABSENT, "initial_tours": ABSENT},
-        },
-    }
-    schema["allOf"] = [
-        {"oneOf": forms},
-        {"oneOf": [{"required": ["places"]}, {"required": ["spacing"]}]},
-        {
-            "oneOf": [
-                *({"required": [name]} for name in _SECOND),
-                {"required": ["robots"], "properties": dict.fromkeys(_SECOND, ABSENT)},
-            ]
-        },
-    ]
-    return schema
-
-
 def parse_coverage_request(
     body: bytes, limits: Limits, picture: bytes | None = None
 ) -> CoverageRequest:
@@ -203,8 +195,11 @@ def parse_coverage_as(
     if len(request.places) > most:
         raise too_many_cities("places", most, len(request.places))
     _check_poses(request)
-    check_robots(request.robots, request.over, request.model_fields_set, request.closed)
-    check_costs(request.second_matrix, "second_matrix", LARGEST)
+    if request.robots:
+        _check_robots(request)
+    elif "over" in request.model_fields_set:
+        raise invalid("over", "is for several robots, and none are given")
+    check_costs(request.second_matrix, "second_matrix")
     # With a spacing, the number of places is not known before the survey.
     n = len(request.places) or most
     check_limits(request, n, limits)
@@ -215,10 +210,31 @@ def _check_poses(request: CoverageRequest) -> None:
     given = request.model_fields_set
     if request.initial_tours and not request.places:
         raise invalid("initial_tours", "must be of places, and none are given")
-    for pose, place in (("start_pose", "start"), ("end_pose", "end")):
-        if pose in given and place in given:
-            raise invalid(pose, f"or {place} must be left out")
-        if pose in given and request.initial_tours:
-            raise invalid("initial_tours", "must be left out where a pose may become a place")
+    _check_ends(request)
+    if request.initial_tours and {"start_pose", "end_pose"} & given:
+        raise invalid("initial_tours", "must be left out where a pose may become a place")
     if request.closed and request.end_pose:
         raise invalid("end_pose", "is for open routes, with closed false")
+
+
+def _check_ends(item: CoverageRequest | RobotItem, part: str = "") -> None:
+    """Raise a refusal where a start or an end is given as a place and as a pose."""
+    for place, pose in ENDS:
+        if {place, pose} <= item.model_fields_set:
+            raise invalid(f"{part}{pose}", f"or {place} must be left out")
+
+
+def _check_robots(request: CoverageRequest) -> None:
+    """Raise a refusal where the robots of a request contradict its other fields, or each other."""
+    given = request.model_fields_set
+    for name in OF_ONE_ROBOT:
+        if name in given:
+            raise invalid(name, "must be left out with robots, whose routes are planned together")
+    if request.over == ["max", "max"]:
+        raise invalid("over/1", "must be sum, as over/0 is max, got max")
+    check_unique([robot.id for robot in request.robots], "robots")
+    for index, robot in enumerate(request.robots):
+        _check_ends(robot, f"robots/{index}/")
+        for name in ("end", "end_pose"):
+            if request.closed and name in robot.model_fields_set:
+                raise invalid(f"robots/{index}/{name}", "is for open routes, with closed false")

@@ -11,15 +11,13 @@ from numpy.typing import NDArray
 from pydantic import Base64Bytes, BaseModel, Field
 
 from service.actor_info import ActorInfo
-from service.instance import OBJECTIVES
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.arrays import costs_array
 from service.requests.coverage import CoverageRequest, parse_coverage_as
-from service.requests.front import FrontRequest
-from service.requests.front_parser import parse_front_as
+from service.requests.fields import Cost, Items, OneEach
+from service.requests.front import FrontRequest, parse_front_as
 from service.requests.limits import Limits
 from service.requests.parser import coverage_task, front_task
-from service.requests.replan.fields import Cost
 from service.requests.stop_fields import ObjectiveItem
 from service.requests.stops import Changed, Matrix, Source, Stop, changed_costs
 from service.requests.task import Task, TaskSource
@@ -63,7 +61,7 @@ class EarlierMembers(BaseModel):
     balance: float | None = Field(
         default=None, ge=0, le=1, description="of the tour being driven, in the earlier front"
     )
-    touched: Annotated[list[Index], Field(fail_fast=True)] | None = Field(
+    touched: Items[Index] | None = Field(
         default=None, description="the stops at which these may have become worse; null is any"
     )
 
@@ -84,7 +82,7 @@ class RestObjective(ObjectiveItem):
     A cost is null if there is no longer a way.
     """
 
-    changed: Annotated[list[_Step], Field(fail_fast=True)] = Field(default_factory=list)
+    changed: Items[_Step] = Field(default_factory=list)
 
     def source(self, part: str, stops: tuple[Stop, ...]) -> Source:  # type: ignore[override]
         """Return the source of the costs between these stops, with the changed costs."""
@@ -102,10 +100,7 @@ class RestObjective(ObjectiveItem):
 class RestRequest(EarlierMembers, FrontRequest):
     """The rest of a way: its stops, costs and ends, and what is left of the earlier tours."""
 
-    objectives: Annotated[
-        list[RestObjective],
-        Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
-    ] = Field(default_factory=list)  # type: ignore[assignment]
+    objectives: OneEach[RestObjective] = Field(default_factory=list)  # type: ignore[assignment]
 
 
 class RestOfMapRequest(EarlierMembers, CoverageRequest):

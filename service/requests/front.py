@@ -1,17 +1,16 @@
-"""Requests of `POST /front`: their fields, and the plan that they ask for."""
+"""Requests of `POST /front`: their fields, and their parser."""
 
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, GetPydanticSchema
-from pydantic_core.core_schema import no_info_after_validator_function
+from pydantic import Field
 
-from service.errors import invalid
+from service.errors import Refusal, invalid
 from service.instance import OBJECTIVES, PLANE, Kind
-from service.requests.arrays import stack_matrices
-from service.requests.schemas import (
+from service.requests.arrays import array_field, check_costs, stack_matrices
+from service.requests.fields import (
     END,
     GEOMETRY,
     NO_WAY,
@@ -19,14 +18,21 @@ from service.requests.schemas import (
     AsInteger,
     CostRows,
     Geometry,
+    Items,
     Number,
+    OneEach,
     PlanRequest,
+    SomeItems,
 )
+from service.requests.limits import Limits, check_limits, check_router, lower_defaults
+from service.requests.npy import read_npy
 from service.requests.stop_fields import (
     ObjectiveItem,
     StopItem,
     StopReference,
+    find_index,
     read_objectives,
+    read_sources,
     read_stops,
 )
 from service.requests.stops import (
@@ -34,35 +40,29 @@ from service.requests.stops import (
     Matrix,
     Plane,
     Source,
-    Stop,
     Stops,
     kind_of,
     locations_of,
 )
+from service.requests.validation import parse_json, too_many_cities
 
 _COLUMNS = 2 * OBJECTIVES  # x and y in the plane of each objective
-_MOST_SYMMETRIES = 8  # that earlier versions showed the network
+_MOST_SYMMETRIES = 8  # the most that earlier versions allowed
 FORMS = ("coordinates", "matrices", "stops")  # of a request, each named by its member
+_REFERENCES = {"start", "end", "initial_tours"}  # the fields that may name stops by their ids
 City = Annotated[list[Number], Field(min_length=_COLUMNS, max_length=_COLUMNS, fail_fast=True)]
-_MatrixRows = Annotated[
-    list[CostRows], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
-]
-Matrices = Annotated[
-    NDArray[np.float64],
-    GetPydanticSchema(
-        lambda _, handler: no_info_after_validator_function(stack_matrices, handler(_MatrixRows))
-    ),
-]
+_MatrixRows = OneEach[CostRows]
+Matrices = Annotated[NDArray[np.float64], array_field(stack_matrices, _MatrixRows)]
 
 
 class FrontRequest(PlanRequest):
-    """Stops or stops under two objectives, and the options of their front.
+    """Cities or stops under two objectives, and the options of their front.
 
     A request is complete only after `parse_front_request` has checked it.
     """
 
     # An empty default means that the field was not given: no caller can give an empty array.
-    coordinates: Annotated[list[City], Field(min_length=1, fail_fast=True)] = Field(
+    coordinates: SomeItems[City] = Field(
         default_factory=list,
         description="a row for each city: x and y in plane 1, x and y in plane 2",
     )
@@ -71,13 +71,12 @@ class FrontRequest(PlanRequest):
         description="instead of coordinates, for each objective the costs from each city (row) to"
         f" each (column), {NO_WAY}",
     )
-    stops: Annotated[list[StopItem], Field(min_length=1, fail_fast=True)] = Field(
+    stops: SomeItems[StopItem] = Field(
         default_factory=list, description="the cities, by ids that come back with every tour"
     )
-    objectives: Annotated[
-        list[ObjectiveItem],
-        Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
-    ] = Field(default_factory=list, description="both, each with the costs between the stops")
+    objectives: OneEach[ObjectiveItem] = Field(
+        default_factory=list, description="both, each with the costs between the stops"
+    )
     # In a checked request these hold only indexes, as in every PlanRequest.
     start: StopReference | None = Field(  # type: ignore[assignment]
         default=0, description=f"{START}; by index or id"
@@ -85,12 +84,9 @@ class FrontRequest(PlanRequest):
     end: StopReference | None = Field(  # type: ignore[assignment]
         default=None, description=f"{END}; by index or id"
     )
-    initial_tours: Annotated[
-        list[Annotated[list[StopReference], Field(fail_fast=True)]],
-        Field(min_length=1, fail_fast=True),
-    ] = Field(  # type: ignore[assignment]
+    initial_tours: SomeItems[Items[StopReference]] = Field(  # type: ignore[assignment]
         default_factory=list,
-        description="tours that the front shall dominate or equal, of indexes or ids",
+        description="tours that the front must dominate or equal, by indexes or ids",
     )
     augment: Annotated[int, Field(ge=1, le=_MOST_SYMMETRIES), AsInteger] = Field(
         default=1,
@@ -121,27 +117,110 @@ class FrontRequest(PlanRequest):
     @cached_property
     def sources(self) -> tuple[Source, ...]:
         """The source of the costs of each objective."""
-        if self.labels is not None:
-            return self._sources(self.labels.stops)
+        if not self.matrices.size and self.labels is not None:
+            return tuple(read_sources(self.objectives, self.labels.stops))
         if self.coordinates:
             cities = np.array(self.coordinates, np.float64)
             return tuple(Plane(cities[:, m : m + PLANE]) for m in range(0, _COLUMNS, PLANE))
-        return tuple(Matrix(matrix) for matrix in self.matrices)
-
-    @property
-    def subject(self) -> Stops:
-        """The stops to plan; those of a checked request have the indexes of their ends."""
-        stops = () if self.labels is None else self.labels.stops
-        locations = locations_of(stops) if stops else np.full((self.n, 2), np.nan)
-        return Stops(locations, self.sources, self.ends)
-
-    def _sources(self, stops: tuple[Stop, ...]) -> tuple[Source, ...]:
-        """Return the source of each objective; with a file, its matrices are the sources."""
-        if not self.matrices.size:
-            items = enumerate(self.objectives)
-            return tuple(item.source(f"objectives/{m}", stops) for m, item in items)
         for m, item in enumerate(self.objectives):
             if item.sources:
                 demand = "must have no source where the part matrices holds both, got"
                 raise invalid(f"objectives/{m}", f"{demand} {' and '.join(item.sources)}")
         return tuple(Matrix(matrix) for matrix in self.matrices)
+
+    @property
+    def subject(self) -> Stops:
+        """The stops of a checked request, in which the ends of tours are indexes."""
+        stops = () if self.labels is None else self.labels.stops
+        locations = locations_of(stops) if stops else np.full((self.n, 2), np.nan)
+        return Stops(locations, self.sources, self.ends)
+
+
+AnyFrontRequest = TypeVar("AnyFrontRequest", bound=FrontRequest)
+
+
+def parse_front_request(body: bytes, limits: Limits, npy: bytes | None = None) -> FrontRequest:
+    """Return the request in a JSON body, with the matrices of a .npy file where one came with it.
+
+    Raises:
+        Refusal: The body is not JSON, misses the schema or is over a limit.
+    """
+    return parse_front_as(FrontRequest, body, limits, npy)
+
+
+def parse_front_as(
+    model: type[AnyFrontRequest], body: bytes, limits: Limits, npy: bytes | None
+) -> AnyFrontRequest:
+    """Return a request of a class, as `parse_front_request` does."""
+    request = parse_json(model, body)
+    _check_form(request, npy is not None)
+    if npy is not None:
+        request = request.model_copy(
+            update={"matrices": read_npy(npy, limits.most_cities("matrices"))}
+        )
+    _check_cities(request, limits)
+    request = _by_index(request)
+    n, id_bytes = request.n, 0 if request.labels is None else request.labels.id_bytes
+    check_limits(request, n, limits, id_bytes)
+    return lower_defaults(request, n, limits, id_bytes)
+
+
+def _check_form(request: FrontRequest, with_file: bool) -> None:
+    """Raise a refusal unless the cities come in one form; stops may have matrices in a file."""
+    given = request.model_fields_set
+    if with_file and "matrices" in given:
+        raise invalid("matrices", "must come once, got them as a part as well")
+    forms = [form for form in FORMS if form in given]
+    if with_file and "stops" not in forms:
+        forms.append("matrices")
+    if len(forms) != 1:
+        came = " and ".join(forms) or "none"
+        sentence = f"one of {', '.join(FORMS[:-1])} and {FORMS[-1]} is required, got {came}"
+        raise Refusal("invalid-request", detail=sentence, pointer=f"/{(forms or FORMS)[0]}")
+    if ("stops" in given) != ("objectives" in given):
+        missing, there = ("objectives", "stops") if "stops" in given else ("stops", "objectives")
+        raise invalid(missing, f"is required with {there}")
+
+
+def _check_cities(request: FrontRequest, limits: Limits) -> None:
+    form = "stops" if request.stops else request.kind
+    # The larger limit first: the kind of stops is known only after their costs are read.
+    if request.n > limits.cities:
+        raise too_many_cities(form, limits.cities, request.n)
+    most = limits.most_cities("matrices")
+    if request.n > most and request.kind == "matrices":
+        condition = " unless both objectives have coordinates" if request.stops else ""
+        raise too_many_cities(form, most, request.n, condition)
+    if request.matrices.size:
+        _check_matrices(request)
+    if request.stops:
+        check_router(request.sources, limits)
+
+
+def _check_matrices(request: FrontRequest) -> None:
+    rows = request.matrices.shape[1]
+    if request.stops and rows != request.n:
+        raise invalid("matrices", f"must have {request.n} rows, one for each stop, got {rows}")
+    for m, matrix in enumerate(request.matrices):
+        check_costs(matrix, f"matrices/{m}")
+
+
+def _by_index(request: AnyFrontRequest) -> AnyFrontRequest:
+    """Return the request with the index of a stop in place of every id."""
+    if not request.model_fields_set & _REFERENCES:
+        return request
+    stops = request.labels.stops if request.labels else ()
+    ids = {stop.id: index for index, stop in enumerate(stops)}
+    found: dict[str, Any] = {
+        name: None if reference is None else find_index(reference, ids, name)
+        for name, reference in (("start", request.start), ("end", request.end))
+    }
+    found["initial_tours"] = [
+        [
+            each if isinstance(each, int) else find_index(each, ids, f"initial_tours/{t}/{i}")
+            for i, each in enumerate(tour)
+        ]
+        for t, tour in enumerate(request.initial_tours)
+    ]
+    given = request.model_fields_set
+    return request.model_copy(update={name: found[name] for name in found if name in given})

@@ -1,18 +1,18 @@
-"""The limits of a service on the contents of requests, as checks and as JSON schema."""
+"""The limits of a service on the contents of requests, and the checks of them."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from service.errors import Refusal, invalid
 from service.front import PlanOptions
 from service.instance import Array, Kind
-from service.requests.schemas import PlanFields, PlanRequest
+from service.requests.fields import PlanFields, PlanRequest, SearchFields
 from service.requests.stops import ROAD_MEASURES, Measured, Source, base_of
 
 _TOURS_BY_ID = 100  # initial tours that may name every stop by its id
-_ID_BYTES = 40  # of an id in an answer that count as one cell: a UUID with its quotation marks
-AnyPlanRequest = TypeVar("AnyPlanRequest", bound=PlanFields)
+_ID_BYTES = 40  # of ids that count as one cell of an answer: a UUID in quotation marks
+AnyRequest = TypeVar("AnyRequest", bound=SearchFields)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +24,7 @@ class Limits:
         cities: Stops in two planes.
         matrix_cities: Stops whose costs are matrices: as they come, as they are measured, or over
             a map.
-        network_cities: Stops of which a network builds tours.
+        network_cities: Stops for which a network builds tours.
         fleet_stops: Stops of a fleet, and places that several robots share.
         cells: Cells of a map.
         path_cells: Cells of all paths of an answer, and stops of all its tours; long ids of stops
@@ -33,7 +33,7 @@ class Limits:
         repairs: Repairs of the network's tours.
         size: Tours to return, or initial tours in a request.
         seconds: The time limit of planning.
-        roads: Whether a routing engine is configured, so that costs may be those of roads.
+        roads: Whether a routing engine is configured, so that costs may be by road.
     """
 
     body_bytes: int
@@ -48,6 +48,16 @@ class Limits:
     fleet_stops: int = 500
     repairs: int = 200
     roads: bool = False
+
+    @property
+    def of_options(self) -> Mapping[str, float]:
+        """The largest value of each option that has a limit."""
+        return {
+            "preferences": self.preferences,
+            "size": self.size,
+            "repairs": self.repairs,
+            "time_limit": self.seconds,
+        }
 
     def most_cities(self, kind: Kind) -> int:
         """Return the most cities of an instance of a kind."""
@@ -90,34 +100,23 @@ def check_structure(body: bytes, limits: Limits) -> None:
             raise Refusal("body-too-complex", demand=demand, limit=limit, actual=actual)
 
 
-def check_amounts(request: PlanFields, n: int, limits: Limits, id_bytes: int = 0) -> None:
-    """Raise a refusal where a request about n cities asks for more than the limits allow."""
-    asked = {
-        "preferences": (limits.preferences, request.preference_count),
-        "size": (limits.size, request.size),
-        "repairs": (limits.repairs, request.repairs),
-        "time_limit": (limits.seconds, request.time_limit),
-    }
-    for name, (limit, actual) in asked.items():
-        if name in request.model_fields_set:
-            check_limit(name, limit, actual)
-    if "size" in request.model_fields_set:
-        check_size(request.size, n, id_bytes, limits)
-
-
-def check_size(size: int, n: int, id_bytes: int, limits: Limits) -> None:
-    """Raise a refusal where an answer with `size` tours of n cities would be too large.
+def check_amounts(request: SearchFields, n: int, limits: Limits, id_bytes: int = 0) -> None:
+    """Raise a refusal where a request about n cities asks for more than the limits allow.
 
     Args:
-        size: The number of tours.
+        request: The request.
         n: The number of cities.
-        id_bytes: Bytes of the ids in one tour.
         limits: The limits.
+        id_bytes: Bytes of the ids in one tour, or one plan, of the answer.
     """
+    for name, limit in limits.of_options.items():
+        if name in request.model_fields_set:
+            amount = getattr(request, name)
+            check_limit(name, limit, len(amount) if isinstance(amount, list) else amount)
     most = limits.most_tours(n, id_bytes)
-    if size > most:
+    if "size" in request.model_fields_set and request.size > most:
         ids = " and ids so long" if most < limits.most_tours(n) else ""
-        raise invalid("size", f"must be at most {most} with {n} cities{ids}, got {size}")
+        raise invalid("size", f"must be at most {most} with {n} cities{ids}, got {request.size}")
 
 
 def check_limits(request: PlanRequest, n: int, limits: Limits, id_bytes: int = 0) -> None:
@@ -156,9 +155,9 @@ def _check_ends(request: PlanRequest, n: int) -> None:
 def check_reference_point(
     options: PlanOptions, least: Callable[[], Array], noun: str = "tour"
 ) -> None:
-    """Raise a refusal if clearly no tour, or plan, lies below the reference point.
+    """Raise a refusal if it is clear that no tour or plan lies below the reference point.
 
-    Every hypervolume would be 0. That may still happen where it is not clear beforehand.
+    Every hypervolume would be 0.
 
     Args:
         options: The options, with the reference point if one was given.
@@ -166,7 +165,7 @@ def check_reference_point(
         noun: What the front consists of, for the sentence.
 
     Raises:
-        Refusal: In one objective, every tour or plan is as long or longer.
+        Refusal: In one objective, no tour or plan can be shorter.
     """
     if options.reference_point is None:
         return
@@ -178,11 +177,11 @@ def check_reference_point(
 
 
 def within_network(options: PlanOptions, n: int, limits: Limits) -> PlanOptions:
-    """Return the options for n cities; for more than a network serves, without its tours.
+    """Return the options for n cities, without tours of a network if n is too many for it.
 
     Raises:
-        Refusal: There are more, and the request needs its tours: it has preferences, or no time
-            for a search.
+        Refusal: They are too many, and the request needs tours of a network: it has preferences, or
+            no time for a search.
     """
     if n <= limits.network_cities:
         return options
@@ -208,12 +207,10 @@ def check_router(sources: Sequence[Source], limits: Limits) -> None:
             raise Refusal("no-router", name=part, measure=source.measure, pointer=f"/{part}")
 
 
-def lower_defaults(
-    request: AnyPlanRequest, n: int, limits: Limits, id_bytes: int = 0
-) -> AnyPlanRequest:
+def lower_defaults(request: AnyRequest, n: int, limits: Limits, id_bytes: int = 0) -> AnyRequest:
     """Return a request in which each default above its limit is lowered to it, as in `defaults`."""
     given, values = request.model_fields_set, defaults(limits, n, id_bytes)
-    lowered = {k: v for k, v in values.items() if k not in given and v < getattr(request, k)}
+    lowered = {k: v for k, v in values.items() if k not in given and v < getattr(request, k, v)}
     if not lowered:
         return request
     copied = request.model_copy(update=lowered)
@@ -230,48 +227,9 @@ def defaults(limits: Limits, n: int = 1, id_bytes: int = 0) -> dict[str, float]:
         n: The number of cities.
         id_bytes: Bytes of the ids in one tour.
     """
-    most = {
-        "preferences": limits.preferences,
-        "size": limits.most_tours(n, id_bytes),
-        "repairs": limits.repairs,
-        "time_limit": limits.seconds,
-    }
+    largest = {**limits.of_options, "size": limits.most_tours(n, id_bytes)}
     fields = PlanFields.model_fields
-    return {name: min(fields[name].default, limit) for name, limit in most.items()}
-
-
-def limited_schema(
-    model: type[PlanFields], limits: Limits, actors: Iterable[str]
-) -> dict[str, Any]:
-    """Return the JSON schema of a request under these limits, with these actors to choose from.
-
-    References in it are to components of an OpenAPI document.
-    """
-    schema = model.model_json_schema(ref_template=reference_to("{model}")["$ref"])
-    fields = schema["properties"]
-    count, angles = fields["preferences"]["oneOf"]
-    count["maximum"] = angles["maxItems"] = limits.preferences
-    fields["size"]["maximum"] = limits.size
-    fields["repairs"]["maximum"] = limits.repairs
-    for name, default in defaults(limits).items():
-        fields[name]["default"] = default
-    for name in ("preferences", "repairs"):
-        del fields[name]["default"]  # it depends on the time limit
-    for name in {"start", "end"}.intersection(fields):
-        reference, _ = fields[name]["anyOf"]  # the other is null
-        index, *_ = reference.get("oneOf", [reference])
-        index["maximum"] = limits.cities - 1
-    del fields["actor"]["default"]
-    fields["actor"]["enum"] = sorted(actors)
-    fields["time_limit"]["maximum"] = limits.seconds
-    if "initial_tours" in fields:
-        fields["initial_tours"]["maxItems"] = limits.size
-    return schema
-
-
-def reference_to(name: str) -> dict[str, str]:
-    """Return the schema that refers to a component of an OpenAPI document."""
-    return {"$ref": f"#/components/schemas/{name}"}
+    return {name: min(fields[name].default, most) for name, most in largest.items()}
 
 
 def check_limit(name: str, limit: float, actual: float) -> None:

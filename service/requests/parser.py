@@ -8,13 +8,12 @@ from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage
 from service.errors import Refusal
 from service.front import PlanOptions
-from service.instance import Instance, least_lengths
+from service.instance import Instance, Kind, least_lengths
 from service.replanning.earlier_tours import EarlierTours
-from service.requests.actors import actor_for_plans, choose_actor
 from service.requests.coverage import CoverageRequest, parse_coverage_request
-from service.requests.fleets.request import parse_fleet_request
-from service.requests.front import FrontRequest
-from service.requests.front_parser import parse_front_request
+from service.requests.fields import PlanFields
+from service.requests.fleet import parse_fleet_request
+from service.requests.front import FrontRequest, parse_front_request
 from service.requests.limits import (
     Limits,
     check_reference_point,
@@ -23,10 +22,11 @@ from service.requests.limits import (
     within_network,
 )
 from service.requests.replan.fields import ReplanRequest
-from service.requests.schemas import PlanFields
 from service.requests.stops import Labels, Stops
 from service.requests.task import Task, TaskSource
 from service.search.forbidden_legs import check_legs
+
+DEFAULT_ACTORS: Mapping[Kind, str] = {"coordinates": "pa-one", "matrices": "pa-one-matrix"}
 
 
 def parse_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
@@ -60,8 +60,8 @@ def front_task(
     """Return the task of a checked request about stops; keyword arguments are those of Task.
 
     Raises:
-        Refusal: No actor serves it, the actor cannot do what it asks for, or clearly every tour has
-            a forbidden leg.
+        Refusal: No actor serves it, the actor cannot do what it asks for, or it is clear that
+            every tour has a forbidden leg.
         InvalidInstance: The costs cannot be planned.
     """
     name = choose_actor(actors, stops.kind, request.requested_actor)
@@ -86,7 +86,8 @@ def check_instance(task: Task, instance: Instance) -> None:
         NoTour: Forbidden legs leave no tour.
         Refusal: No tour lies below the reference point.
     """
-    check_legs(instance, task.city_names)
+    if instance.matrices is not None:  # else no leg is forbidden
+        check_legs(instance, task.city_names)
     check_reference_point(task.options, partial(least_lengths, instance))
 
 
@@ -149,3 +150,32 @@ def _fleet_task(body: bytes, limits: Limits, actors: Mapping[str, ActorInfo]) ->
         labels=request.labels,
         geometry=request.geometry,
     )
+
+
+def choose_actor(actors: Mapping[str, ActorInfo], kind: Kind, name: str | None) -> str:
+    """Return the name of the actor for instances of a kind: the one requested, or the default.
+
+    If the default is not loaded, the first by name that serves the kind is taken.
+
+    Raises:
+        Refusal: The requested actor is not loaded or does not serve the kind, or none does.
+    """
+    first = DEFAULT_ACTORS[kind] if name is None else name
+    if first in actors and actors[first].serves(kind):
+        return first
+    able = sorted(each for each, info in actors.items() if info.serves(kind))
+    if name is None:
+        if not able:
+            raise Refusal("no-actor", kind=kind)
+        return able[0]
+    among = f"one of {', '.join(able)}" if able else "one that is loaded, and none is"
+    if name not in actors:
+        raise Refusal("unknown-actor", among=among, came=repr(name[:80]), pointer="/actor")
+    inputs = actors[name].inputs
+    raise Refusal("unfit-actor", kind=kind, among=among, name=name, inputs=inputs, pointer="/actor")
+
+
+def actor_for_plans(actors: Mapping[str, ActorInfo]) -> str:
+    """Return the name of the actor whose tours are cut into first plans; "" if none is loaded."""
+    able = any(info.serves("matrices") for info in actors.values())
+    return choose_actor(actors, "matrices", None) if able else ""

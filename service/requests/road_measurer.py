@@ -8,9 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from service.errors import Cancelled
-from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.stops import Stops
-from service.requests.task import Task
+from service.requests.task import Task, UnmeasuredFleet
 from service.roads.client import RoadClient
 from service.search.forbidden_legs import check_ways
 
@@ -52,7 +51,7 @@ class BlockingMeasurer:
         """Return the task with its costs by road.
 
         Raises:
-            Cancelled: It was told to stop before.
+            Cancelled: `stop` returned True before.
             Refusal: The costs cannot be found; see RoadClient.costs.
         """
         return self._runner.run(self._until_stopped(task, stop))

@@ -1,26 +1,25 @@
 """The fields of stops and objectives in requests, and their conversion to stops and sources."""
 
-from collections.abc import Mapping, Sequence
-from itertools import takewhile
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
 from service.requests.arrays import check_costs, cost_matrix
-from service.requests.schemas import (
-    LARGEST,
+from service.requests.fields import (
     NO_WAY,
     CostRows,
     NonNegativeInteger,
     PlanePoint,
+    SomeItems,
+    StrictModel,
     Text,
 )
 from service.requests.stops import UNITS, Matrix, Measure, Measured, Objective, Plane, Source, Stop
-from service.requests.validation import show
+from service.requests.validation import nearest, show
 
-_TYPO = 2  # neighbouring characters that are wrong, left out or added
 StopReference = Annotated[
     Annotated[NonNegativeInteger, Tag("[index]")] | Annotated[Text, Tag("[id]")],
     Discriminator(lambda value: "[id]" if isinstance(value, str) else "[index]"),
@@ -29,10 +28,8 @@ Longitude = Annotated[float, Field(ge=-180, le=180, allow_inf_nan=False)]
 Latitude = Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)]
 
 
-class StopItem(BaseModel):
+class StopItem(StrictModel):
     """A stop by its id, and where it is on the earth."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     id: Text = Field(description="comes back in every answer; no two stops share one")
     location: tuple[Longitude, Latitude] | None = Field(
@@ -40,10 +37,8 @@ class StopItem(BaseModel):
     )
 
 
-class ObjectiveItem(BaseModel):
+class ObjectiveItem(StrictModel):
     """An objective by its name, and the source of its costs."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     name: Text = Field(description="of the objective, in answers and charts")
     unit: Text | None = Field(default=None, description="of its costs, in answers and charts")
@@ -52,14 +47,14 @@ class ObjectiveItem(BaseModel):
         default_factory=list,
         description=f"the costs from each stop (row) to each (column), {NO_WAY}",
     )
-    coordinates: Annotated[list[PlanePoint], Field(min_length=1, fail_fast=True)] = Field(
+    coordinates: SomeItems[PlanePoint] = Field(
         default_factory=list, description="x and y of each stop in a plane; its distances"
     )
     measure: Measure = Field(
         default="great_circle",
         alias="from",
-        description="what is measured between the locations of stops: metres along a great circle,"
-        " or seconds or metres by road",
+        description="the measure between the locations of stops: metres along a great circle, or"
+        " seconds or metres by road",
     )
 
     @property
@@ -104,7 +99,7 @@ class ObjectiveItem(BaseModel):
     def _matrix(self, part: str, n: int) -> Matrix:
         _check_rows(part, n, len(self.matrix))
         matrix = cost_matrix(self.matrix, part)
-        check_costs(matrix, part, LARGEST)
+        check_costs(matrix, part)
         return Matrix(matrix)
 
 
@@ -114,11 +109,7 @@ def read_stops(items: Sequence[StopItem]) -> tuple[Stop, ...]:
     Raises:
         Refusal: Two have the same id.
     """
-    first: dict[str, int] = {}
-    for index, item in enumerate(items):
-        if (other := first.setdefault(item.id, index)) != index:
-            demand = f"must not be that of stops/{other}, got {show(item.id)} twice"
-            raise invalid(f"stops/{index}/id", demand)
+    check_unique([item.id for item in items], "stops")
     return tuple(Stop(item.id, item.location) for item in items)
 
 
@@ -128,48 +119,59 @@ def read_objectives(items: Sequence[ObjectiveItem]) -> tuple[Objective, ...]:
     Raises:
         Refusal: Both have the same name, or one has a unit other than its measure's.
     """
-    first, second = items
-    if first.name == second.name:
-        demand = f"must not be that of objectives/0, got {show(second.name)} twice"
-        raise invalid("objectives/1/name", demand)
+    check_unique([item.name for item in items], "objectives", "name")
     return tuple(item.objective(f"objectives/{m}") for m, item in enumerate(items))
 
 
-def find_index(reference: int | str, ids: Mapping[str, int], part: str) -> int:
+def read_sources(items: Sequence[ObjectiveItem], stops: Sequence[Stop]) -> list[Source]:
+    """Return the source of the costs of each objective between these stops.
+
+    Raises:
+        Refusal: An objective does not have exactly one source, or it does not fit the stops.
+    """
+    return [item.source(f"objectives/{m}", stops) for m, item in enumerate(items)]
+
+
+def check_unique(names: Iterable[str], items: str, member: str = "id") -> None:
+    """Raise a refusal where two items of a list, as stops, have the same id or name."""
+    first: dict[str, int] = {}
+    for index, name in enumerate(names):
+        if (other := first.setdefault(name, index)) != index:
+            demand = f"must not be that of {items}/{other}, got {show(name)} twice"
+            raise invalid(f"{items}/{index}/{member}", demand)
+
+
+def find_index(
+    reference: int | str,
+    ids: Mapping[str, int],
+    part: str,
+    n: int | None = None,
+    noun: str = "a stop",
+) -> int:
     """Return the index of a stop that is named by its id or its index.
 
     Args:
-        reference: The id or the index, which is not checked.
+        reference: The id or the index.
         ids: The index of each stop by its id; empty where the cities have no ids.
         part: Its place in the request, such as initial_tours/0/2.
+        n: The number of stops that an index may be of; without it, an index is not checked.
+        noun: What these stops are, for the sentence.
 
     Raises:
-        Refusal: No stop has this id.
+        Refusal: No stop has this id or index.
     """
     if isinstance(reference, int):
+        if n is not None and reference >= n:
+            raise invalid(part, f"must be {noun}, 0 to {n - 1}, got {reference}")
         return reference
     if reference in ids:
         return ids[reference]
     if not ids:
         demand = "must be the index of a city, as there are no stops with ids"
         raise invalid(part, f"{demand}, got {show(reference)}")
-    near = next((each for each in ids if _is_near(reference, each)), None)
+    near = nearest(reference, ids)
     hint = f"; did you mean {show(near)}?" if near else ""
     raise invalid(part, f"must be the id of a stop, got {show(reference)}{hint}")
-
-
-def _is_near(text: str, other: str) -> bool:
-    """Return whether texts differ by one typing error. O(length): difflib takes its square."""
-    text, other = text.casefold(), other.casefold()
-    begin = _shared(text, other)
-    shared = begin + _shared(text[begin:][::-1], other[begin:][::-1])
-    return max(len(text), len(other)) - shared <= min(_TYPO, shared)
-
-
-def _shared(text: str, other: str) -> int:
-    """Return the number of characters that texts have in common at their beginning."""
-    pairs = zip(text, other, strict=False)
-    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
 
 
 def _check_rows(part: str, n: int, rows: int) -> None:

@@ -129,7 +129,7 @@ class Stops:
 
     @property
     def measured(self) -> bool:
-        """Whether nothing has to be measured any more."""
+        """Whether no costs are left to be measured."""
         return not any(isinstance(base_of(source), Measured) for source in self.sources)
 
     @cached_property
@@ -151,7 +151,7 @@ class Stops:
         return (self.instance.scale, self.instance.reference_point) if self.measured else None
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave out the instance: other processes make it of the sources as fast as they read it.
+        """Leave out the instance: another process makes it from the sources as fast as it reads it.
 
         The scale goes with the stops, once it is known.
         """
@@ -185,7 +185,7 @@ def kind_of(sources: Sequence[Source]) -> Kind:
 
 
 def base_of(source: Source) -> Source:
-    """Return the source without what has changed."""
+    """Return the source before single costs were changed."""
     return source.base if isinstance(source, Changed) else source
 
 

@@ -1,21 +1,75 @@
-"""Tasks: what is planned, as a request says it once it is checked."""
+"""Tasks: what a request asks for, checked and ready to be planned."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 from service.construction.repairs import TOURS_REPAIRED
 from service.coverage.coverage import Coverage
 from service.errors import CityNames
+from service.fleet.fleet import Fleet, Over, Rules
 from service.front import PlanOptions
 from service.replanning.earlier_tours import EarlierTours
-from service.requests.fleets.subject import UnmeasuredFleet
-from service.requests.maps.robots import SharedCoverage
-from service.requests.schemas import Geometry
-from service.requests.stops import Labels, Stops
+from service.requests.fields import Geometry
+from service.requests.stops import Array, Labels, RoadMeasure, Stops, cost_matrices
 
 KindName = Literal["front", "coverage", "fleet", "robots"]
 _BRIEF = 5000  # preferences times cities
+_METRES = {"sum": "total distance", "max": "longest route"}
+_COSTS = {"sum": "total cost", "max": "greatest cost"}
+
+
+@dataclass(frozen=True, eq=False)
+class UnmeasuredFleet:
+    """The rules of a fleet, the names of its types of vehicles, and the sources of its costs."""
+
+    rules: Rules
+    vehicles: tuple[str, ...]
+    stops: Stops
+
+    @property
+    def n(self) -> int:
+        """The number of stops."""
+        return self.rules.n
+
+    def members(self, labels: Labels) -> dict[str, Any]:
+        """Return the members of an answer that name the stops and objectives, ready for JSON."""
+        members = labels.members
+        objectives = zip(members["objectives"], self.rules.over, strict=True)
+        return {**members, "objectives": [{**each, "over": over} for each, over in objectives]}
+
+    def measured_by_road(self, costs: Mapping[RoadMeasure, Array]) -> "UnmeasuredFleet":
+        """Return this fleet with a matrix, shape (n, n), in place of each measure by road."""
+        return replace(self, stops=self.stops.measured_by_road(costs))
+
+    def fleet(self) -> Fleet:
+        """Return the fleet with its costs. O(n^2)."""
+        return Fleet(rules=self.rules, costs=cost_matrices(self.stops))
+
+
+@dataclass(frozen=True, eq=False)
+class SharedCoverage:
+    """A coverage task that robots share, and how a plan's lengths are made of their routes'."""
+
+    coverage: Coverage
+    over: tuple[Over, Over]
+
+    @property
+    def members(self) -> dict[str, Any]:
+        """The members of an answer about its objectives, and about open routes."""
+        first, second = self.over
+        closed = all(robot.closed for robot in self.coverage.robots)
+        costs = {"name": _COSTS[second], "unit": None}
+        metres = {"name": _METRES[second], "unit": "m"}
+        return {
+            "closed": None if closed else False,
+            "objectives": [
+                {"name": _METRES[first], "unit": "m", "over": first},
+                {**(costs if self.coverage.has_costs else metres), "over": second},
+            ],
+        }
+
+
 _KINDS: Mapping[type, KindName] = {
     Stops: "front",
     Coverage: "coverage",
@@ -29,17 +83,19 @@ class Task:
     """A front to plan, checked and ready for the planner.
 
     Args:
-        subject: What tours go through: stops; the places of a map, for one robot or several; or
+        subject: The stops that tours go through; the places of a map, for one robot or several; or
             the stops of a fleet.
         options: The options for the planner.
-        actor: The name of the actor that builds the first tours; empty for a fleet, or several
-            robots, where none is loaded that reads matrices.
+        actor: The name of the actor that builds the first tours; empty for a fleet or several
+            robots, if no actor that is loaded reads matrices.
         paths: Whether each tour comes with its path over the map.
         arrivals: Whether each tour comes with both lengths up to each stop.
-        geometry: What the lines of the answer follow, where that is GeoJSON.
+        geometry: Whether lines in GeoJSON are straight or follow the streets.
         labels: The caller's names of stops and objectives.
-        timings: Milliseconds of what was done for it since it was parsed, by name.
+        timings: Milliseconds of each step that was done for it after parsing, by name.
         earlier: What is left of the tours of the front that is replanned, if one is.
+        parts: Of a map that is replanned, the part of the request that names each place; places/2
+            is place 2 of the earlier front.
     """
 
     subject: Stops | Coverage | SharedCoverage | UnmeasuredFleet
@@ -51,6 +107,7 @@ class Task:
     labels: Labels | None = None
     timings: Mapping[str, float] = field(default_factory=dict)
     earlier: EarlierTours | None = None
+    parts: tuple[str, ...] = ()
 
     @property
     def kind(self) -> KindName:
@@ -69,7 +126,7 @@ class Task:
 
     @property
     def city_names(self) -> CityNames:
-        """The names of its cities in refusals; the request to replan has none of the rest."""
+        """The names of its cities in refusals; a request to replan has no part that lists them."""
         names = CityNames()
         if self.labels is not None:
             names = self.labels.city_names
@@ -89,7 +146,7 @@ class Task:
 
     @property
     def is_brief(self) -> bool:
-        """Whether planning is one short call of a network: by pa-one, of 50 ms or less."""
+        """Whether planning is one short call of a network: 50 ms or less with pa-one."""
         if not isinstance(self.subject, Stops) or self.needs_compiled_code:
             return False
         short = len(self.options.angles) * self.subject.n <= _BRIEF

@@ -1,8 +1,8 @@
 """Tasks as bytes: the one form in which they are stored, queued and sent to other machines.
 
 The bytes are a line with the version, the length of the header, the header, and the arrays one
-after another as .npy. The header is JSON: the members of the task. It has the number of an array in
-place of the array, and the name of its type beside each value of one of `_TYPES`.
+after another as .npy. The header is JSON: the members of the task. In it the number of an array
+stands for the array, and a value of one of `_TYPES` comes with the name of its type.
 """
 
 import struct
@@ -15,14 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
+from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage
 from service.coverage.robots import Robot
 from service.fleet.fleet import Rules, Shipment, VehicleType, Visit
 from service.front import PlanOptions
 from service.instance import RouteEnds
 from service.replanning.earlier_tours import EarlierTours
-from service.requests.fleets.subject import UnmeasuredFleet
-from service.requests.maps.robots import SharedCoverage
+from service.requests.earlier_versions import parse_rest
+from service.requests.limits import Limits
+from service.requests.parser import parse_task
 from service.requests.stops import (
     Changed,
     Labels,
@@ -33,7 +35,7 @@ from service.requests.stops import (
     Stop,
     Stops,
 )
-from service.requests.task import Task
+from service.requests.task import SharedCoverage, Task, TaskSource, UnmeasuredFleet
 
 _FIRST_LINE = b"paretour task 1\n"
 _LENGTH = struct.Struct("!Q")
@@ -52,6 +54,26 @@ _FLAT_TYPES: Mapping[str, type[Any]] = {
 _NUMBERS = "biuf"  # kinds of NumPy's types: booleans, integers and floats
 
 Arrays = list[NDArray[Any]]
+
+
+def stored(task: Task) -> TaskSource:
+    """Return a task in the form that stores and queues keep."""
+    return TaskSource("task", encode_task(task))
+
+
+def read_task(source: TaskSource, limits: Limits, actors: Mapping[str, ActorInfo]) -> Task:
+    """Return a stored task; earlier versions stored the request, which is parsed again.
+
+    Raises:
+        Refusal: The request of an earlier version is refused now.
+        ValueError: The task is damaged.
+    """
+    match source.kind:
+        case "task":
+            return decode_task(source.body)
+        case "replan" | "replan-coverage":
+            return parse_rest(source, limits, actors)
+    return parse_task(source, limits, actors)
 
 
 def encode_task(task: Task) -> bytes:

@@ -1,6 +1,6 @@
 """The query of `GET /tour`, and the tour of a front that it chooses."""
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,20 +9,14 @@ from pydantic.json_schema import SkipJsonSchema
 
 from service.errors import Refusal
 from service.pareto import balances, knee
-from service.requests.schemas import GEOMETRY, Angle, Geometry
+from service.requests.fields import GEOMETRY, Angle, Geometry, Share, optional
 
 Array = NDArray[np.float64]
 _BUDGETS = ("first_at_most", "second_at_most")  # of objectives 0 and 1
 _WAYS = ("angle", "balance", *_BUDGETS, "knee")
 _Length = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-_Balance = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
-# `?knee` says as much as `?knee=true`.
+# `?knee` means `?knee=true`.
 _Flag = Annotated[bool, BeforeValidator(lambda value: value if value != "" else True)]
-
-
-def _optional(description: str) -> Any:
-    """Return a field with default None, which no query can give: so it means not given."""
-    return Field(default=None, description=description)
 
 
 class TourQuery(BaseModel):
@@ -30,19 +24,20 @@ class TourQuery(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    angle: Angle = _optional("the tour nearest to this angle, in degrees")
-    balance: _Balance = _optional(
+    angle: Angle = optional("the tour nearest to this angle, in degrees")
+    balance: Share = optional(
         "the tour nearest to this balance: 0 at the front's least first length, 1 at its least"
         " second"
     )
-    first_at_most: _Length = _optional(
+    first_at_most: _Length = optional(
         "the tour with the least second length whose first length is at most this"
     )
-    second_at_most: _Length = _optional(
+    second_at_most: _Length = optional(
         "the tour with the least first length whose second length is at most this"
     )
     knee: _Flag = Field(
-        default=False, description="the least sum of both lengths, each in the front's own box"
+        default=False,
+        description="the tour with the least sum of both lengths, each in the front's own box",
     )
     front: str | SkipJsonSchema[None] = Field(
         default=None, description="the front's id; by default the latest"

@@ -1,9 +1,10 @@
 """Validate JSON against a pydantic model, and word each error as a refusal of this service."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from difflib import get_close_matches
+from collections.abc import Iterable, Mapping, Sequence, Sized
+from difflib import SequenceMatcher, get_close_matches
 from functools import cache
+from heapq import nlargest
 from typing import Any, TypeVar
 
 import numpy as np
@@ -11,10 +12,26 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails, from_json, to_json
 
 from service.errors import MOST_FAULTS, Fault, Refusal
+from service.errors.exceptions import summary
 
 Model = TypeVar("Model", bound=BaseModel)
 _ANYTHING: Mapping[str, Any] = {}
+_LONGEST_WORD = 100  # characters that are compared with other words
+_MOST_COMPARED = 10
 _DEEPEST = 100  # levels, half of what pydantic parses
+# What pydantic says less well than these: its name of an error, and the end of our sentence.
+_DEMANDS = {
+    "missing": "is required",
+    "extra_forbidden": "is not a field that this request has",
+    "exact_length": "must have {length} items, got {count}",
+    "too_short": "must have {min_length} {items} or more, got {count}",
+    "too_long": "must have {max_length} items or fewer, got {count}",
+    "string_too_short": "must have {min_length} character or more, got {count}",
+    "string_too_long": "must have {max_length} characters or fewer, got {count}",
+    "string_pattern_mismatch": "must be printable, in one line, got {value}",
+    "greater_than_equal": "must be at least {ge:.16g}, got {value}",
+    "less_than_equal": "must be at most {le:.16g}, got {value}",
+}
 _NO_BRACKETS = bytes(set(range(256)).difference(b"[]{}"))
 
 
@@ -61,8 +78,7 @@ def refusal_of(
 ) -> Refusal:
     """Return pydantic's errors in a body of this JSON schema, or in query parameters."""
     faults = [_fault(error, parameters, schema) for error in errors[:MOST_FAULTS]]
-    more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
-    return Refusal("invalid-request", detail=faults[0].detail + more, errors=faults)
+    return Refusal("invalid-request", errors=faults, detail=summary(faults[0], len(errors)))
 
 
 def too_many_cities(part: str, limit: int, actual: int, condition: str = "") -> Refusal:
@@ -99,6 +115,25 @@ def show(value: object) -> str:
             return shorten(to_json(value, inf_nan_mode="constants").decode())
 
 
+def nearest(word: str, words: Iterable[str]) -> str | None:
+    """Return the word that is most like another one, whatever their case; None if none is.
+
+    To compare two words takes difflib up to the cube of their length. So it compares only the few
+    words that have the most letters in common with this one, which are found in linear time.
+    """
+    folded = {each.casefold(): each for each in words}
+    word = word[:_LONGEST_WORD].casefold()
+    matcher = SequenceMatcher(b=word)
+
+    def share(other: str) -> float:
+        matcher.set_seq1(other)
+        return matcher.quick_ratio()
+
+    alike = nlargest(_MOST_COMPARED, folded, key=share)
+    near = get_close_matches(word, alike, n=1)
+    return folded[near[0]] if near else None
+
+
 @cache
 def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
     return model.model_json_schema()
@@ -109,31 +144,21 @@ def _fault(error: ErrorDetails, parameters: bool, schema: Mapping[str, Any]) -> 
     parts = [str(part) for part in error["loc"] if not str(part).startswith("[")]
     if parameters:
         name = shorten(".".join(parts[1:]))
-        return Fault(detail=f"{name} {_demand(error)}", parameter=name)
+        return Fault(detail=f"{name} {_demand(error, schema)}", parameter=name)
     pointer = shorten("".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts))
     name = pointer.lstrip("/") or "the body"
-    sentence = f"{name} {_demand(_with_exact_length(error, schema))}{_hint(error, schema)}"
+    sentence = f"{name} {_demand(error, schema)}{_hint(error, schema)}"
     return Fault(detail=sentence, pointer=pointer)
 
 
-def _with_exact_length(error: ErrorDetails, schema: Mapping[str, Any]) -> ErrorDetails:
-    """Return the error of a list of a wrong length; where one length is right, as that demand."""
-    if error["type"] not in ("too_short", "too_long"):
-        return error
-    lengths = _schema_at(error["loc"], schema)
-    if "minItems" not in lengths or lengths["minItems"] != lengths.get("maxItems"):
-        return error
-    return {**error, "type": "exact_length", "ctx": {"length": lengths["minItems"]}}
-
-
 def _hint(error: ErrorDetails, schema: Mapping[str, Any]) -> str:
-    """Return the field that an unknown one may be meant for, as the end of a sentence."""
+    """Return the field that the caller may have meant, as the end of a sentence."""
     if error["type"] != "extra_forbidden":
         return ""
     *parents, unknown = error["loc"]
     fields = _schema_at(parents, schema).get("properties", ())
-    near = get_close_matches(shorten(str(unknown)), fields, n=1)
-    return f"; did you mean {near[0]}?" if near else ""
+    near = nearest(str(unknown), fields)
+    return f"; did you mean {near}?" if near else ""
 
 
 def _schema_at(loc: Iterable[int | str], schema: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -148,46 +173,15 @@ def _schema_at(loc: Iterable[int | str], schema: Mapping[str, Any]) -> Mapping[s
     return at
 
 
-def _demand(error: ErrorDetails) -> str:
-    bounds: Mapping[str, Any] = error.get("ctx", {})
-    match error["type"]:
-        case "missing":
-            return "is required"
-        case "extra_forbidden":
-            return "is not a field that this request has"
-        case "exact_length" | "too_short" | "too_long":
-            return f"{_length_demand(error['type'], bounds)}, got {len(error['input'])}"
-        case "string_too_short" | "string_too_long":
-            return f"{_text_demand(error['type'], bounds)}, got {len(error['input'])}"
-    demand = _value_demand(error["type"], bounds) or error["msg"]
-    return f"{re.sub(r'^Input should be', 'must be', demand)}, got {show(error['input'])}"
-
-
-def _length_demand(kind: str, bounds: Mapping[str, Any]) -> str:
-    """Return what a list misses that has another length than it must have."""
-    if kind == "exact_length":
-        return f"must have {bounds['length']} items"
-    if kind == "too_long":
-        return f"must have {bounds['max_length']} items or fewer"
-    least = bounds["min_length"]
-    return f"must have {least} {'item' if least == 1 else 'items'} or more"
-
-
-def _text_demand(kind: str, bounds: Mapping[str, Any]) -> str:
-    """Return what a text misses that is too short or too long."""
-    if kind == "string_too_long":
-        return f"must have {bounds['max_length']} characters or fewer"
-    return f"must have {bounds['min_length']} character or more"
-
-
-def _value_demand(kind: str, bounds: Mapping[str, Any]) -> str:
-    """Return what a value misses that is out of bounds; nothing where pydantic says it well."""
-    match kind:
-        case "greater_than_equal":
-            return f"must be at least {bounds['ge']:.16g}"
-        case "less_than_equal":
-            return f"must be at most {bounds['le']:.16g}"
-        case "string_pattern_mismatch":
-            return "must be printable, in one line"
-        case _:
-            return ""
+def _demand(error: ErrorDetails, schema: Mapping[str, Any]) -> str:
+    """Return what the part at fault must be, and what came, as the end of a sentence."""
+    kind, came, bounds = error["type"], error["input"], error.get("ctx", {})
+    if kind in ("too_short", "too_long"):
+        lengths = _schema_at(error["loc"], schema)
+        if "minItems" in lengths and lengths["minItems"] == lengths.get("maxItems"):
+            kind, bounds = "exact_length", {"length": lengths["minItems"]}
+    if kind not in _DEMANDS:
+        return f"{re.sub(r'^Input should be', 'must be', error['msg'])}, got {show(came)}"
+    items = "item" if bounds.get("min_length") == 1 else "items"
+    count = len(came) if isinstance(came, Sized) else 1
+    return _DEMANDS[kind].format(**bounds, items=items, count=count, value=show(came))

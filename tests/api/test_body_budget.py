@@ -18,7 +18,7 @@ from service.api.app import Edge
 from service.api.body_budget import BodyBudget
 from service.errors import Refusal
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
-from service.kinds.json_parts import joined
+from service.kinds.front_document import joined
 from tests.helpers.actors import Shuffler
 from tests.helpers.scripted_runner import document
 from tests.helpers.serving import app_of, problem, serving

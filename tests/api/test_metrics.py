@@ -10,7 +10,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from service.api.app import Edge
 from service.api.metrics import Metrics
 from service.jobs.engine import EngineStats
-from service.kinds.front_document import FrontDocument, Timings
+from service.kinds.front_document import FrontDocument
 from service.requests.task import KindName
 from tests.helpers.actors import Broken
 from tests.helpers.processes import serve_process
@@ -24,7 +24,7 @@ FOUND = FrontDocument(
     hypervolume_bound=None,
     reference_point=[1.0, 1.0],
     scale=[1.0, 1.0],
-    timings_ms=Timings({}),
+    timings_ms={},
     terminated="converged",
     actor=None,
 )

@@ -138,7 +138,7 @@ def changed(**entry: Any) -> dict[str, Any]:
         ({"done": [1], "remove": [0]}, "/remove/0", "must not be where the way ends"),
         ({"position": 99}, "/position", "must be a stop of the front"),
         ({"position": 1, "remove": [1]}, "/remove/0", "must not be where the way goes on"),
-        ({"add": [{"id": "3"}]}, "/add/0/id", "must be that of no other stop"),
+        ({"add": [{"id": "3"}]}, "/add/0/id", "must differ from the ids of all other stops"),
         ({"add": [{"id": "new"}]}, "/add/0/coordinates", 'is required, with an entry for "first"'),
         ({"position": {"id": "here"}}, "/position/coordinates", "is required"),
         (
@@ -224,6 +224,25 @@ def test_a_front_of_a_map_is_replanned_on_the_map_as_it_is_now(client: httpx.Cli
     tour = client.get("/tour", params={"front": again["id"], "knee": ""}).json()
     assert tour in [{"front": again["id"], **each} for each in again["front"]]
     assert client.get(f"/front/{front['id']}").json() == front
+
+
+def test_a_place_that_became_an_obstacle_is_named_at_once_or_by_the_job(
+    client: httpx.Client,
+) -> None:
+    front = client.post("/coverage", json=MAP).json()
+    place = front["front"][0]["tour"][2]
+    request = {"blocked": [front["places"][place]]}
+    refusal = problem(replan(client, front, **request))
+    assert (refusal["status"], refusal["errors"][0]["pointer"]) == (422, "/remove")
+    assert f"must have place {place}, as it must be a free cell" in refusal["detail"]
+    later = client.post(
+        f"/front/{front['id']}/replan", json=request, headers={"Prefer": "respond-async"}
+    )
+    assert later.status_code == 202
+    while (job := client.get(later.headers["Location"]).json())["status"] in ("queued", "running"):
+        time.sleep(0.01)
+    assert job["status"] == "failed"
+    assert job["problem"]["errors"] == refusal["errors"]
 
 
 def test_what_is_of_a_map_alone_is_refused_of_stops(

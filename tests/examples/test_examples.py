@@ -23,10 +23,10 @@ from service.examples.warehouse import DOCKS
 from service.fleet.planner import FleetOptions, plan_fleet
 from service.front import PlanOptions
 from service.instance import Instance
-from service.kinds.robots.as_fleet import robot_fleet
+from service.kinds.robots import robot_fleet
 from service.planner import plan
 from service.requests.coverage import parse_coverage_request
-from service.requests.fleets.request import parse_fleet_request
+from service.requests.fleet import parse_fleet_request
 from service.roads.client import RoadClient, RoadCosts
 from service.roads.great_circle import great_circle_distances
 from service.roads.router import RouterSettings

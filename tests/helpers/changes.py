@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from service.requests.replan.earlier_front import StoredFront
+from service.requests.replan.way import StoredFront
 from service.requests.task import TaskSource
 from service.roads.great_circle import great_circle_matrix
 

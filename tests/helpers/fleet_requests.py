@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from service.fleet.fleet import Fleet
-from service.requests.fleets.request import parse_fleet_request
+from service.requests.fleet import parse_fleet_request
 from service.requests.limits import Limits
 
 STOPS = 8

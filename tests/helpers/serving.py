@@ -24,7 +24,7 @@ from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.kind import NamedActor
 from service.requests.limits import Limits
-from service.requests.stored_task import read_task
+from service.requests.task_codec import read_task
 from service.server import Ending, build, make_server
 from service.settings import Settings
 from tests.helpers.actors import Shuffler, info_of

@@ -12,7 +12,7 @@ from service.jobs.record import Record, as_finished
 from service.jobs.retries import UnsavedRecords
 from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
-from service.kinds.front_document import FrontDocument, Timings
+from service.kinds.front_document import FrontDocument
 from service.requests.task import Task, TaskSource
 from tests.helpers.actors import Shuffler
 from tests.helpers.scripted_runner import document, task
@@ -25,7 +25,7 @@ FRONT = FrontDocument(
     hypervolume_bound=None,
     reference_point=None,
     scale=None,
-    timings_ms=Timings({}),
+    timings_ms={},
     terminated=None,
     actor={},
 )

@@ -10,15 +10,13 @@ import pytest
 
 from service.coverage.frame import MapFrame
 from service.jobs.task_runner import TaskRunner
-from service.kinds.front_document import FrontDocument
-from service.kinds.json_parts import joined
+from service.kinds.front_document import FrontDocument, joined
 from service.requests.limits import Limits
 from service.requests.parser import parse_task
-from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
-from service.requests.stored_task import stored
+from service.requests.replan.way import StoredFront
 from service.requests.task import Task, TaskSource
-from service.requests.task_codec import encode_task
+from service.requests.task_codec import encode_task, stored
 from tests.helpers.actors import Shuffler, info_of
 
 LIMITS = Limits(body_bytes=2**20, cities=20, cells=200, preferences=99, size=9999, seconds=9)

@@ -9,7 +9,8 @@ import pytest
 from PIL import Image
 
 from service.errors import Refusal
-from service.requests.coverage import coverage_schemas, parse_coverage_request
+from service.requests.coverage import parse_coverage_request
+from service.requests.json_schemas import coverage_schemas
 from tests.helpers.serving import LIMITS
 
 GRID = [

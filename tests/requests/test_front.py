@@ -10,8 +10,7 @@ import pytest
 
 from service.errors import Refusal
 from service.instance import Instance, tour_lengths
-from service.requests.front import FrontRequest
-from service.requests.front_parser import parse_front_request
+from service.requests.front import FrontRequest, parse_front_request
 from tests.helpers.serving import LIMITS
 
 COSTS = np.random.default_rng(6).random((2, 12, 12))

@@ -6,8 +6,9 @@ from typing import Any
 import pytest
 
 from service.errors import Refusal
-from service.requests.limits import check_limits, limited_schema, lower_defaults, within_network
-from service.requests.schemas import PlanRequest
+from service.requests.fields import PlanRequest
+from service.requests.json_schemas import limited_schema
+from service.requests.limits import check_limits, lower_defaults, within_network
 from tests.helpers.serving import LIMITS
 
 N = 12

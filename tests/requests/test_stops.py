@@ -10,8 +10,7 @@ import pytest
 from pydantic_core import to_json
 
 from service.errors import Refusal
-from service.requests.front import FrontRequest
-from service.requests.front_parser import parse_front_request
+from service.requests.front import FrontRequest, parse_front_request
 from service.requests.stops import (
     Measured,
     Objective,
@@ -245,6 +244,11 @@ def test_an_id_stands_where_an_index_may() -> None:
             {"start": "order17"},
             "/start",
             'start must be the id of a stop, got "order17"; did you mean "order-17"?',
+        ),
+        (
+            {"stops": [{**STOPS[0], "id": f"a-{i}"} for i in (1, 12, 132, 9)], "start": "a-32"},
+            "/start",
+            'start must be the id of a stop, got "a-32"; did you mean "a-132"?',
         ),
         ({"start": "x"}, "/start", 'start must be the id of a stop, got "x"'),
         ({"start": "elsewhere"}, "/start", 'start must be the id of a stop, got "elsewhere"'),

@@ -10,8 +10,7 @@ import pytest
 from service.actor_info import ActorInfo
 from service.coverage.survey import Coverage
 from service.errors import InvalidCoverage, Refusal
-from service.requests.actors import choose_actor
-from service.requests.parser import parse_task
+from service.requests.parser import choose_actor, parse_task
 from service.requests.stops import Stops
 from service.requests.task import Task, TaskSource
 from tests.helpers.actors import info_of

@@ -1,11 +1,15 @@
 """JSON that does not fit a model is refused, each fault with its pointer and its sentence."""
 
+import sys
+from types import FrameType
+
+import numpy as np
 import pytest
 
 from service.errors import MOST_FAULTS, Refusal
+from service.requests.fields import PlanRequest
 from service.requests.front import FrontRequest
-from service.requests.schemas import PlanRequest
-from service.requests.validation import check_depth, parse_json, shorten
+from service.requests.validation import check_depth, nearest, parse_json, shorten
 
 
 def refusal(body: bytes) -> Refusal:
@@ -79,6 +83,44 @@ def test_where_one_length_is_right_it_is_named(body: bytes, sentence: str) -> No
     with pytest.raises(Refusal) as refused:
         parse_json(FrontRequest, body)
     assert refused.value.detail == sentence
+
+
+@pytest.mark.parametrize(
+    ("word", "words", "near"),
+    [
+        ("order-17", ["order-1", "order-71", "order-7", "order-171"], "order-171"),
+        ("oslo-hub", ["oslo-hut-2", "oslo-bus", "Oslo-Hub", "oslo-hubs"], "Oslo-Hub"),
+        ("dopet", ["depot", "dopet-2", "carpet"], "dopet-2"),
+        ("warehouse", ["wharehose", "ware", "house"], "wharehose"),
+        ("x", ["depot", "order-17"], None),
+        ("", ["a"], None),
+        ("depot", [], None),
+    ],
+)
+def test_the_nearest_word_is_meant_not_the_first_near_one(
+    word: str, words: list[str], near: str | None
+) -> None:
+    for _ in words or [""]:
+        assert nearest(word, words) == near
+        words = [*words[1:], *words[:1]]
+
+
+def test_the_nearest_of_many_alike_words_is_found_in_a_bounded_number_of_comparisons() -> None:
+    letters = np.array(list("ab" * 50))
+    words = ["".join(np.random.default_rng(i).permutation(letters)) for i in range(10_000)]
+    word = words[1234][:40] + "x" + words[1234][40:99]
+    calls = []
+
+    def profile(frame: FrameType, event: str, _: object) -> None:
+        if event == "call" and frame.f_code.co_name == "find_longest_match":
+            calls.append(frame)
+
+    sys.setprofile(profile)
+    try:
+        assert nearest(word, [*words, word + "y"]) == word + "y"
+    finally:
+        sys.setprofile(None)
+    assert len(calls) < 10_000
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from service.api.responses import compressed, json_bytes
 from service.errors import Fault, Refusal
 from service.jobs.record import Record
 from service.kinds.table import KINDS
-from service.requests.schemas import Geometry
+from service.requests.fields import Geometry
 
 VARY = {"Vary": "Accept"}
 # For the OpenAPI document.

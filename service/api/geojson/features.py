@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
 from service.jobs.record import Record
-from service.kinds.json_parts import with_member
+from service.kinds.front_document import with_member
 from service.kinds.table import KINDS
 
 Line = NDArray[np.float64]  # longitude and latitude in degrees of each position, shape (m, 2)

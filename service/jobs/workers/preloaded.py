@@ -11,9 +11,7 @@ threads.
 import scipy.linalg  # numba imports it when it first loads compiled code
 import scipy.ndimage  # noqa: F401  # as the first survey does
 
-import service.kinds.coverage.run
-import service.kinds.front.run
-import service.kinds.robots.run  # noqa: F401  # with that of fleets
+import service.kinds.run  # noqa: F401
 from service.jobs.compiled_code import load_from_cache
 from service.jobs.workers import messages  # noqa: F401
 from service.requests import road_measurer  # noqa: F401

@@ -4,7 +4,6 @@ A map is the rows of `grid`, a picture beside the JSON, or an occupancy grid of 
 picture go by the names of the keys of a map.yaml, so that one becomes a request by copying them.
 """
 
-from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -12,7 +11,8 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from service.errors import invalid
-from service.requests.arrays import Array, array_field, rectangular_array
+from service.requests.arrays import Array, array_field, check_grid, rectangular_array
+from service.requests.fields import ArrayRows, AsInteger, Number, PlanRequest, PositiveNumber, Share
 from service.requests.maps.occupancy_grid import OccupancyGrid
 from service.requests.maps.pictures import (
     UNKNOWN,
@@ -22,16 +22,14 @@ from service.requests.maps.pictures import (
     occupancy,
     read_picture,
 )
-from service.requests.schemas import ArrayRows, AsInteger, Number, PlanRequest, PositiveNumber
 from service.requests.validation import too_many_cells
 
 Layer = Annotated[NDArray[np.float64], array_field(rectangular_array, ArrayRows)]
-_Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 _Pose = Annotated[list[Number], Field(min_length=3, max_length=3, fail_fast=True)]
 
 _OF_PICTURE = ("mode", "negate", "occupied_thresh", "free_thresh")
-# The forms of a map in the JSON, and the fields that have nothing to say about them.
-_USELESS = {
+# The forms of a map in JSON, and the fields that do not apply to each.
+USELESS = {
     "grid": (*_OF_PICTURE, "obstacle_from", "unknown"),
     "occupancy_grid": (*_OF_PICTURE, "cell_size", "origin"),
 }
@@ -69,10 +67,10 @@ class MapRequest(PlanRequest):
         default="trinary", description="how map_server reads a picture; needs both thresholds"
     )
     negate: bool = Field(default=False, description="whether in a picture black is free")
-    occupied_thresh: _Share = Field(
+    occupied_thresh: Share = Field(
         default=0.5, description="a pixel darker than this, 0 white to 1 black, is an obstacle"
     )
-    free_thresh: _Share = Field(
+    free_thresh: Share = Field(
         default=0.0,
         description="a pixel lighter than this is free, those between are unknown; without it"
         " every pixel that is not an obstacle is free, except grey 205, which is unknown",
@@ -83,11 +81,11 @@ class MapRequest(PlanRequest):
         " and of a picture in mode scale or raw",
     )
     unknown: Literal["blocked", "free"] = Field(
-        default="blocked", description="what unknown cells are for the robot"
+        default="blocked", description="whether unknown cells are free for the robot, or blocked"
     )
 
     def with_map(self, picture: bytes | None, most_cells: int) -> Self:
-        """Return the request with grid, cell_size and origin of the map, whichever its form.
+        """Return the request with the grid, the cell_size and the origin of its map in any form.
 
         Args:
             picture: The PNG or PGM file that came with the request.
@@ -95,38 +93,35 @@ class MapRequest(PlanRequest):
 
         Raises:
             Refusal: There is no map, or more than one, or it cannot be read, or is too large; or a
-                field is given that such a map has no use for.
+                field is given that does not apply to this form.
         """
         self._check_forms(picture)
-        if picture is not None:
-            how = self._interpretation()
-            values = occupancy(read_picture(picture, most_cells), how)
-            return self.model_copy(update={"grid": self._blocked(values)})
-        if "occupancy_grid" in self.model_fields_set:
-            return self._with_occupancy_grid(most_cells)
-        _check_grid(self.grid, most_cells)
-        return self
-
-    def _with_occupancy_grid(self, most_cells: int) -> Self:
         message = self.occupancy_grid
-        update: dict[str, Any] = {
-            "grid": self._blocked(message.occupancy(most_cells)),
-            "cell_size": message.info.resolution,
-            "origin": list(message.origin()),
-            "occupancy_grid": _no_occupancy_grid(),
-        }
-        return self.model_copy(update=update)
+        update: dict[str, Any] = {}
+        if picture is not None:
+            values = occupancy(read_picture(picture, most_cells), self._interpretation())
+        elif "occupancy_grid" in self.model_fields_set:
+            values = message.occupancy(most_cells)
+            update["cell_size"] = message.info.resolution
+            update["origin"] = list(message.origin())
+            update["occupancy_grid"] = _no_occupancy_grid()
+        else:
+            if self.grid.size > most_cells:
+                raise too_many_cells(most_cells, self.grid.size, self.grid.size)
+            check_grid(self.grid)
+            return self
+        return self.model_copy(update={"grid": self._blocked(values), **update})
 
     def _check_forms(self, picture: bytes | None) -> None:
         given = self.model_fields_set
-        forms = [form for form in _USELESS if form in given]
+        forms = [form for form in USELESS if form in given]
         if picture is not None:
             forms.append("the part map")
         if not forms:
             raise invalid("grid", "is required, as rows, as occupancy_grid or as the part map")
         if len(forms) > 1:
             raise invalid("grid", f"must come once, got it as {' and as '.join(forms)}")
-        for name in _USELESS.get(forms[0], ()):
+        for name in USELESS.get(forms[0], ()):
             if name in given:
                 raise invalid(name, f"must be left out where the map comes as {forms[0]}")
         if forms != ["occupancy_grid"] and "cell_size" not in given:
@@ -157,48 +152,3 @@ class MapRequest(PlanRequest):
         if self.unknown == "blocked":
             blocked |= values == UNKNOWN
         return blocked.astype(np.float64)
-
-
-# Of a member that must not be there: as false, which generators of clients do not read.
-ABSENT: dict[str, Any] = {"not": {}}
-
-
-def describe_map(schema: dict[str, Any], most_cells: int) -> list[dict[str, Any]]:
-    """Refine the fields of a map in a JSON schema, and return a schema for each form of a map.
-
-    Definitions are put where they are referred to, as the schema is part of a larger document.
-    """
-    fields, definitions = schema["properties"], schema.pop("$defs")
-    fields["grid"]["items"]["items"] = {"enum": [0, 1]}
-    for name in ("cell_size", "mode", "free_thresh"):
-        del fields[name]["default"]
-    fields["occupancy_grid"] = _inlined(fields["occupancy_grid"], definitions)
-    data = fields["occupancy_grid"]["properties"]["data"]
-    data["items"], data["maxItems"] = {"type": "integer", "minimum": -1, "maximum": 100}, most_cells
-    required = {"grid": ["grid", "cell_size"], "occupancy_grid": ["occupancy_grid"]}
-    return [
-        {"required": required[form], "properties": dict.fromkeys((*useless, *others), ABSENT)}
-        for form, useless in _USELESS.items()
-        if (others := _USELESS.keys() - {form})
-    ]
-
-
-def _inlined(schema: Any, definitions: Mapping[str, Any]) -> Any:
-    """Return a JSON schema with definitions in the place of the references to them."""
-    if isinstance(schema, list):
-        return [_inlined(each, definitions) for each in schema]
-    if not isinstance(schema, dict):
-        return schema
-    beside = {name: _inlined(each, definitions) for name, each in schema.items() if name != "$ref"}
-    if "$ref" not in schema:
-        return beside
-    return {**_inlined(definitions[schema["$ref"].rsplit("/", 1)[1]], definitions), **beside}
-
-
-def _check_grid(grid: Array, most: int) -> None:
-    if grid.size > most:
-        raise too_many_cells(most, grid.size, grid.size)
-    binary = (grid == 0) | (grid == 1)
-    if not binary.all():
-        row, column = np.unravel_index(binary.argmin(), binary.shape)
-        raise invalid(f"grid/{row}/{column}", f"must be 0 or 1, got {grid[row, column]:g}")

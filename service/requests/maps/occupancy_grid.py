@@ -1,19 +1,18 @@
 """Occupancy grids as the message nav_msgs/OccupancyGrid of ROS has them, in JSON.
 
-Members that say nothing about the cells, as header and map_load_time, are disregarded.
+Other members of the message, such as header and map_load_time, are ignored.
 """
 
 import math
-from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.errors import invalid
+from service.requests.arrays import check_size
+from service.requests.fields import Items, Number, PositiveInteger, PositiveNumber
 from service.requests.maps.pictures import UNKNOWN, Occupancy
-from service.requests.maps.size import check_size
-from service.requests.schemas import Number, PositiveInteger, PositiveNumber
 
 _OCCUPIED = 100
 _TILT = 1e-3  # at most, of a quaternion about the z axis; and how far it may be from a unit one
@@ -60,7 +59,7 @@ class OccupancyGrid(_Message):
     """A message nav_msgs/OccupancyGrid."""
 
     info: MapMetaData
-    data: Annotated[list[float], Field(fail_fast=True)] = Field(
+    data: Items[float] = Field(
         description="row by row from the lower left cell: occupancy 0 to 100, or -1 for unknown"
     )
 

@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import Refusal, invalid
-from service.requests.maps.size import check_size
+from service.requests.arrays import check_size
 
 SIGNATURES = (b"P5", b"P2")
 _LONGEST_HEADER = 4096  # bytes, with its comments
 _GAP = rb"(?:\s|#[^\n]*\n)+"
 _HEADER = re.compile(rb"P[25]" + 3 * (_GAP + rb"(\d{1,10})") + rb"\s")
 _MOST_SHADE = 255  # one byte a cell
-_MOST_BYTES = 8  # of a cell in a plain file: three digits and what stands between
+_MOST_BYTES = 8  # of a cell in a plain file: three digits and some white space
 
 
 def read_pgm(content: bytes, most_cells: int) -> NDArray[np.uint8]:

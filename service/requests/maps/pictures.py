@@ -38,11 +38,11 @@ class Interpretation:
     The darkness of a pixel is 0 where it is white and 1 where it is black; `negate` swaps the two.
 
     Args:
-        mode: A mode of map_server. Or None: what is not occupied is free, but for grey 205;
-            colours are as bright as they look, and transparency is disregarded.
+        mode: A mode of map_server. Without one every shade that is not occupied is free, except
+            grey 205; a colour is as bright as it looks, and transparency is ignored.
         negate: Whether black is free and white is occupied.
         occupied_thresh: A darker pixel is occupied.
-        free_thresh: A lighter pixel is free; of no meaning without a mode.
+        free_thresh: A lighter pixel is free. It is ignored without a mode.
     """
 
     mode: Mode | None = None

@@ -1,7 +1,7 @@
-"""Maps in a PNG file: check the file chunk by chunk, and decode what is left of it.
+"""Read maps in PNG files: check a file chunk by chunk, then decode the chunks of the picture.
 
-The decoder sees the chunks of the picture alone, one header among them: a second header, which
-some decoders obey, is refused, and so are sizes over the limit before a pixel is unpacked.
+The decoder gets these chunks alone, with one header: a second header, which some decoders obey, is
+refused. So is a size over the limit, before a pixel is unpacked.
 """
 
 import struct
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from service.errors import Refusal, invalid
-from service.requests.maps.size import check_size
+from service.requests.arrays import check_size
 from service.requests.validation import shorten
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"

@@ -1,33 +1,39 @@
-"""Requests to replan a front: their fields, their JSON schemas, and what belongs to which kind."""
+"""Requests to replan a front: their fields, and which of them a kind of front has."""
 
-from collections.abc import Iterable
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag
 
 from service.errors import invalid
 from service.instance import OBJECTIVES
-from service.requests.coverage import Cell
-from service.requests.limits import Limits, limited_schema
+from service.requests.coverage import Cell, RobotPose
+from service.requests.fields import (
+    GEOMETRY,
+    Cost,
+    Geometry,
+    Items,
+    OneEach,
+    PlanePoint,
+    PlanFields,
+    Share,
+    SomeItems,
+    StrictModel,
+    Text,
+)
 from service.requests.maps.fields import Layer, empty_array
-from service.requests.maps.robots import RobotPose
-from service.requests.schemas import GEOMETRY, LARGEST, Geometry, PlanePoint, PlanFields, Text
 from service.requests.stop_fields import Latitude, Longitude, ObjectiveItem, StopReference
 
-Cost = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
-_Row = Annotated[list[Cost | None], Field(min_length=1, fail_fast=True)]
-_References = Annotated[list[StopReference], Field(fail_fast=True)]
+_Row = SomeItems[Cost | None]
+_References = Items[StopReference]
 
 
-class StopCosts(BaseModel):
+class StopCosts(StrictModel):
     """The costs of one objective between a new stop and all others."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     to: _Row = Field(
         description="from the new stop to each stop of the front, then to each of `add`, then to"
-        " `position` where that is a place; its own entry is disregarded; null where there"
-        " is no way"
+        " `position` if that is a place; the entry for the new stop itself is ignored;"
+        " null where there is no way"
     )
     back: _Row = Field(
         default_factory=list,
@@ -37,36 +43,26 @@ class StopCosts(BaseModel):
     )
 
 
-class NewStop(BaseModel):
+class NewStop(StrictModel):
     """A stop that the front does not have, and how to reach it under each objective."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     id: Text = Field(description="one that no stop of the front has")
     location: tuple[Longitude, Latitude] | None = Field(
         default=None,
         description="longitude and latitude in degrees, where an objective is measured",
     )
-    coordinates: Annotated[
-        list[PlanePoint | None],
-        Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
-    ] = Field(
+    coordinates: OneEach[PlanePoint | None] = Field(
         default_factory=list,
         description="for each objective x and y in its plane, null where it has none",
     )
-    costs: Annotated[
-        list[StopCosts | None],
-        Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
-    ] = Field(
+    costs: OneEach[StopCosts | None] = Field(
         default_factory=list,
         description="for each objective the costs to and from all stops, null if not a matrix",
     )
 
 
-class CostEntry(BaseModel):
+class CostEntry(StrictModel):
     """One cost that has changed, in one direction."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     objective: Annotated[
         Annotated[int, Field(ge=0, lt=OBJECTIVES), Tag("[index]")] | Annotated[Text, Tag("[name]")],
@@ -75,7 +71,7 @@ class CostEntry(BaseModel):
     origin: StopReference = Field(alias="from", description="the stop that the step leads from")
     destination: StopReference = Field(alias="to", description="the stop that it leads to")
     cost: Cost | None = Field(
-        description="of that step from now on; null where there is no way any more"
+        description="the new cost of that step; null if there is no longer a way"
     )
 
 
@@ -97,44 +93,10 @@ _Added = Annotated[
 ]
 
 
-_Cells = Annotated[list[Cell], Field(fail_fast=True)]
+_Cells = Items[Cell]
 
 
-class MapChanges(PlanFields):
-    """What has changed on the map of a front of `POST /coverage`."""
-
-    pose: RobotPose = Field(
-        default_factory=list,
-        description="instead of position, on a map with an origin: x and y, and maybe yaw, of the"
-        " robot in the frame of the map",
-    )
-    grid: Layer = Field(
-        default_factory=empty_array,
-        description="of a front of a map: the map anew, as large as it was, 0 where it is free and"
-        " 1 an obstacle",
-    )
-    blocked: _Cells = Field(
-        default_factory=list,
-        description="of a front of a map: row and column of each cell that is an obstacle now",
-    )
-    freed: _Cells = Field(
-        default_factory=list, description="likewise, of each cell that is an obstacle no more"
-    )
-    cost_layer: Layer = Field(
-        default_factory=empty_array,
-        description="of a front of a map: the second objective anew, as in `POST /coverage`",
-    )
-    paths: bool = Field(
-        default=False, description="of a front of a map: whether each tour comes with its path"
-    )
-
-    @property
-    def map_changed(self) -> bool:
-        """Whether a path between two places may have become another."""
-        return bool(self.grid.size or self.blocked or self.freed or self.cost_layer.size)
-
-
-class ReplanRequest(MapChanges):
+class ReplanRequest(PlanFields):
     """What has changed since a front was planned, and the options of the front of the rest.
 
     Stops are named by their ids, or by their indexes in the front. Stops of a front without ids
@@ -146,24 +108,24 @@ class ReplanRequest(MapChanges):
     )
     position: Position | None = Field(
         default=None,
-        description="where the way goes on: a stop, or a place, which is given as an added stop is;"
-        " by default the last that is done",
+        description="where the way goes on: a stop, or a new place in the form of an added stop; by"
+        " default the last stop that is done",
     )
-    add: Annotated[list[_Added], Field(fail_fast=True)] = Field(
+    add: Items[_Added] = Field(
         default_factory=list,
-        description="stops to visit as well; of a front of a map row and column of each place",
+        description="more stops to visit; on a map row and column of each place",
     )
-    remove: _References = Field(default_factory=list, description="stops not to visit any more")
-    costs: Annotated[list[CostEntry], Field(fail_fast=True)] = Field(
+    remove: _References = Field(
+        default_factory=list, description="stops that are no longer visited"
+    )
+    costs: Items[CostEntry] = Field(
         default_factory=list, description="single costs that have changed"
     )
-    objectives: Annotated[
-        list[ObjectiveItem],
-        Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True),
-    ] = Field(
+    objectives: OneEach[ObjectiveItem] = Field(
         default_factory=list,
-        description="both objectives anew, where more has changed: with the costs between the"
-        " stops of the front, then those of `add`, then `position` where that is a place",
+        description="both objectives again, where more than single costs has changed: with the"
+        " costs between the stops of the front, then those of `add`, then `position` if that"
+        " is a place",
     )
     tour: _References = Field(
         default_factory=list,
@@ -171,74 +133,43 @@ class ReplanRequest(MapChanges):
         " front's knee",
     )
     geometry: Geometry = Field(default="straight", description=GEOMETRY)
-    min_kept: float = Field(
+    min_kept: Share = Field(
         default=0.0,
-        ge=0,
-        le=1,
-        allow_inf_nan=False,
         description="return only tours that keep this share of the driven tour's remaining legs",
     )
+    pose: RobotPose = Field(
+        default_factory=list,
+        description="instead of position, on a map with an origin: x and y, and maybe yaw, of the"
+        " robot in the frame of the map",
+    )
+    grid: Layer = Field(
+        default_factory=empty_array,
+        description="on a map: the whole map as it is now, in its old size; 0 free, 1 an obstacle",
+    )
+    blocked: _Cells = Field(
+        default_factory=list,
+        description="on a map: row and column of each cell that has become an obstacle",
+    )
+    freed: _Cells = Field(
+        default_factory=list,
+        description="on a map: row and column of each cell that is no longer an obstacle",
+    )
+    cost_layer: Layer = Field(
+        default_factory=empty_array,
+        description="on a map: a new second objective, as in `POST /coverage`",
+    )
+    paths: bool = Field(
+        default=False, description="on a map: whether each tour comes with its path"
+    )
 
-    @property
-    def options_given(self) -> frozenset[str]:
-        """The names of the options that the request has, as those of a new request."""
-        return frozenset({*PlanFields.model_fields, "geometry"} & self.model_fields_set)
 
-
-OF_MAPS = tuple(name for name in MapChanges.model_fields if name not in PlanFields.model_fields)
+_OF_MAPS = ("pose", "grid", "blocked", "freed", "cost_layer", "paths")
 _OF_STOPS = ("costs", "objectives", "geometry")
 
 
-def check_of_stops(request: MapChanges) -> None:
-    """Raise a refusal where a request about a front of stops has what only those of maps have."""
-    _refuse(request, OF_MAPS, "a map, by POST /coverage")
-
-
-def check_of_map(request: MapChanges) -> None:
-    """Raise a refusal where a request about a front of a map has what only those of stops have."""
-    _refuse(request, _OF_STOPS, "stops or cities, by POST /front")
-
-
-def _refuse(request: MapChanges, names: tuple[str, ...], kind: str) -> None:
-    for name in names:
+def check_fields(request: ReplanRequest, *, on_map: bool) -> None:
+    """Raise a refusal where a request has a field that only fronts of the other kind have."""
+    kind = "stops or cities, by POST /front" if on_map else "a map, by POST /coverage"
+    for name in _OF_STOPS if on_map else _OF_MAPS:
         if name in request.model_fields_set:
             raise invalid(name, f"must be left out: it is for fronts of {kind}")
-
-
-_SHARED = "ObjectiveItem"  # of which each form has a name of its own, as in `front_schemas`
-_OBJECTIVES = ("MatrixObjective", "PlaneObjective", "MeasuredObjective")
-
-
-def replan_schemas(limits: Limits, actors: Iterable[str]) -> dict[str, dict[str, Any]]:
-    """Return the schema of a request to replan, and of what is in it, by name.
-
-    Its objectives are of the kinds that `front_schemas` has.
-    """
-    schema = limited_schema(ReplanRequest, limits, actors)
-    parts = schema.pop("$defs")
-    fields = schema["properties"]
-    if not limits.roads:
-        fields["geometry"]["enum"].remove("roads")
-    kinds = [{"$ref": f"#/components/schemas/{name}"} for name in _OBJECTIVES]
-    fields["objectives"] = {**fields["objectives"], "items": {"oneOf": kinds}}
-    _describe_map_changes(fields, limits.cells)
-    for name in ("done", "remove", "tour", "add"):
-        fields[name]["maxItems"] = limits.cities
-    named = {name: part for name, part in parts.items() if name != _SHARED}
-    return {**{name: _without_null(part) for name, part in named.items()}, "ReplanRequest": schema}
-
-
-def _without_null(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return a schema without defaults of null, from which generators conclude too much."""
-    fields = {
-        name: {k: v for k, v in field.items() if k != "default" or v is not None}
-        for name, field in schema["properties"].items()
-    }
-    return {**schema, "properties": fields}
-
-
-def _describe_map_changes(fields: dict[str, Any], most_cells: int) -> None:
-    """Refine the fields of a map in the JSON schema of a request."""
-    fields["grid"]["items"]["items"] = {"enum": [0, 1]}
-    for name in ("blocked", "freed"):
-        fields[name]["maxItems"] = most_cells

@@ -6,16 +6,14 @@ from dataclasses import dataclass
 from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage
 from service.errors import Refusal
-from service.requests.fleets.subject import UnmeasuredFleet
 from service.requests.limits import Limits
-from service.requests.maps.robots import SharedCoverage
-from service.requests.replan.earlier_front import StoredFront, earlier_front, not_replannable
 from service.requests.replan.fields import ReplanRequest
 from service.requests.replan.rest_of_map import rest_of_map
 from service.requests.replan.rest_of_stops import rest_of_stops
+from service.requests.replan.way import StoredFront, earlier_front, not_replannable
 from service.requests.stops import Stops
-from service.requests.stored_task import read_task
-from service.requests.task import Task
+from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
+from service.requests.task_codec import read_task
 from service.requests.validation import parse_json
 
 

@@ -1,35 +1,24 @@
 """The rest of a way over a map: from the task of an earlier front and what has changed."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.actor_info import ActorInfo
 from service.coverage.coverage import Coverage, size_of
-from service.coverage.grid import free_cells
-from service.coverage.places import find_places
 from service.errors import InvalidCoverage, invalid
-from service.replanning.earlier_tours import EarlierTours
+from service.requests.arrays import check_grid
 from service.requests.limits import Limits, check_amounts, lower_defaults
 from service.requests.parser import coverage_task
-from service.requests.replan.costs import AllStops
-from service.requests.replan.earlier_front import StoredFront, earlier_front_of_map
-from service.requests.replan.fields import ReplanRequest, check_of_map
-from service.requests.replan.way import (
-    RestOfWay,
-    driven_tour,
-    indexes_in_rest,
-    left_of_tours,
-    rest_of_way,
-)
-from service.requests.stops import Stop
+from service.requests.replan.fields import ReplanRequest, check_fields
+from service.requests.replan.way import RestOfWay, StoredFront, earlier_front_of_map, rest_of_way
 from service.requests.task import Task
 from service.requests.validation import too_many_cities
 
-Array = NDArray[np.float64]
 Cells = NDArray[np.int64]
 
 
@@ -43,73 +32,112 @@ def rest_of_map(
     """Return the rest of the way over a map.
 
     Raises:
-        Refusal: The request has what only a front of stops has, its map does not fit, a place is
-            not free or cannot be reached any more, no actor serves it, or the way cannot be that
-            of the front.
+        Refusal: The request has what only a front of stops has, its map does not fit, no actor
+            serves it, or the way cannot be that of the front. A worker surveys the map, and
+            refuses places that are not free or cannot be reached any more.
     """
-    check_of_map(request)
+    check_fields(request, on_map=True)
     front = earlier_front_of_map(stored, coverage)
-    coverage = _changed_map(coverage, request)
+    changes = _changes(coverage, request)
     known = np.array(stored.found.places, np.int64).reshape(-1, 2)
-    cells, request = _all_places(known, coverage, request)
-    stops = AllStops(tuple(Stop(str(index)) for index in range(len(cells))), front.n, {})
-    rest = rest_of_way(front, request, stops)
+    anywhere = request.cost_layer.size > 0 or coverage.cost_layer is not None
+    cells, request = _all_places(known, coverage, request, anywhere)
+    rest = rest_of_way(front, request)
     n, most = len(rest.stops), limits.most_places(shared=False)
     if n > most:
         raise too_many_cities("add", most, n)
     check_amounts(request, n, limits)
-    place = np.full(len(cells), -1)
-    place[rest.stops] = np.arange(n)
-    driven = driven_tour(front, request)
-    left, moved = left_of_tours(front, driven, rest)
-    of_rest = _of_rest(coverage, cells, rest, place)
-    _check_places(of_rest, rest, front.n, request, limits)
-    earlier = EarlierTours(
-        tours=place[left],
-        min_kept=request.min_kept,
-        touched=None if request.map_changed else indexes_in_rest(place, moved),
-        balance=front.balance_of(driven),
+    matrix, points = coverage.second_matrix, coverage.second_coordinates
+    if request.cost_layer.size:  # it replaces both
+        matrix = points = None
+    members = {
+        "places": cells[rest.stops],
+        "second_matrix": None if matrix is None else matrix[np.ix_(rest.stops, rest.stops)],
+        "second_coordinates": None if points is None else points[rest.stops],
+        "start": rest.begin or 0,
+        "ends": rest.ends_in_rest,
+        **dict.fromkeys(("spacing", "start_pose", "end_pose")),
+        **changes,
+    }
+    changed = None if changes else np.empty(0, np.int64)
+    task = coverage_task(
+        lower_defaults(request, n, limits),
+        replace(coverage, **members),
+        actors,
+        earlier=rest.earlier_tours(front, request, changed),
     )
-    return coverage_task(lower_defaults(request, n, limits), of_rest, actors, earlier)
+    return replace(task, parts=tuple(_parts(request, rest, len(known))))
+
+
+def _changes(coverage: Coverage, request: ReplanRequest) -> dict[str, Any]:
+    """Return the members of the task that are about the map, as far as they have changed."""
+    changes: dict[str, Any] = {}
+    if request.grid.size or request.blocked or request.freed:
+        changes["blocked"] = _blocked(coverage, request)
+    if request.cost_layer.size:
+        changes["cost_layer"] = request.cost_layer
+    return changes
+
+
+def _blocked(coverage: Coverage, request: ReplanRequest) -> NDArray[np.bool_]:
+    """Return the obstacles of the map as it is now."""
+    blocked = coverage.blocked.copy()
+    if request.grid.size:
+        if request.grid.shape != blocked.shape:
+            came = size_of(request.grid)
+            demand = f"must be as large as that of the front, {coverage.size}, got {came}"
+            raise invalid("grid", demand)
+        check_grid(request.grid)
+        blocked = request.grid > 0
+    for name, cells, now in (("blocked", request.blocked, True), ("freed", request.freed, False)):
+        for index, (row, column) in enumerate(cells):
+            if row >= blocked.shape[0] or column >= blocked.shape[1]:
+                demand = f"must be a cell of the grid of {coverage.size}, got [{row}, {column}]"
+                raise invalid(f"{name}/{index}", demand)
+            blocked[row, column] = now
+    return blocked
 
 
 def _all_places(
-    known: Cells, coverage: Coverage, request: ReplanRequest
+    known: Cells, coverage: Coverage, request: ReplanRequest, anywhere: bool
 ) -> tuple[Cells, ReplanRequest]:
     """Return the known places, those added, and maybe one where the way goes on, in this order.
 
     In the request that is returned, the position is a known place or the last of all.
 
+    Args:
+        known: The places of the front, shape (n, 2).
+        coverage: The task of the front.
+        request: The request to replan.
+        anywhere: Whether there are costs from and to any cell, not only those of known places.
+
     Raises:
-        Refusal: A new one is no cell of the grid, or has no costs.
+        Refusal: A new place is not a cell of the grid, or has no costs.
     """
     new = []
     for index, item in enumerate(request.add):
         if not isinstance(item, list):
             raise invalid(f"add/{index}", "must be row and column of a place on the map")
-        _check_costs(coverage, f"add/{index}")
+        _check_costs(anywhere, f"add/{index}")
         new.append(item)
     name, cell = _position_cell(coverage, request)
-    if cell is None:
-        return (np.concatenate((known, _cells(new))), request)
-    there = np.flatnonzero((known == cell).all(axis=1))
-    if coverage.cost_layer is None and len(there):
-        request = request.model_copy(update={"position": int(there[0])})
-        return (np.concatenate((known, _cells(new))), request)
-    _check_costs(coverage, name)
-    request = request.model_copy(update={"position": cell})
-    return (np.concatenate((known, _cells([*new, cell]))), request)
-
-
-def _cells(cells: list[list[int]]) -> Cells:
-    return np.array(cells, np.int64).reshape(-1, 2)
+    if cell is not None:
+        position: list[int] | int = cell
+        there = np.flatnonzero((known == cell).all(axis=1))
+        if not anywhere and len(there):
+            position = int(there[0])
+        else:
+            _check_costs(anywhere, name)
+            new.append(cell)
+        request = request.model_copy(update={"position": position})
+    return np.concatenate((known, np.array(new, np.int64).reshape(-1, 2))), request
 
 
 def _position_cell(coverage: Coverage, request: ReplanRequest) -> tuple[str, list[int] | None]:
-    """Return the cell where the way goes on, None if that is a place, and the field that says it.
+    """Return the field that says where the way goes on, and the cell; None if it names a place.
 
     Raises:
-        Refusal: It is said twice, is no cell of the grid, or is in a frame that nobody knows.
+        Refusal: Two fields say it, it is not a cell of the grid, or the map has no origin.
     """
     if not request.pose:
         if isinstance(request.position, list):
@@ -128,91 +156,39 @@ def _position_cell(coverage: Coverage, request: ReplanRequest) -> tuple[str, lis
     return "pose", [row, column]
 
 
-def _check_costs(coverage: Coverage, part: str) -> None:
-    if coverage.cost_layer is None:
+def _check_costs(anywhere: bool, part: str) -> None:
+    if not anywhere:
         demand = "must be in the cell of a place, as only a cost_layer has costs of other cells"
         raise invalid(part, demand)
 
 
-def _changed_map(coverage: Coverage, request: ReplanRequest) -> Coverage:
-    """Return the task on the map as it is now, with its second objective as it is now."""
-    blocked = coverage.blocked.copy()
-    if request.grid.size:
-        blocked = _whole_map(request.grid, coverage)
-    for name, cells, now in (("blocked", request.blocked, True), ("freed", request.freed, False)):
-        for index, (row, column) in enumerate(cells):
-            if row >= blocked.shape[0] or column >= blocked.shape[1]:
-                demand = f"must be a cell of the grid of {coverage.size}, got [{row}, {column}]"
-                raise invalid(f"{name}/{index}", demand)
-            blocked[row, column] = now
-    if not request.cost_layer.size:
-        return replace(coverage, blocked=blocked)
-    return replace(
-        coverage,
-        blocked=blocked,
-        cost_layer=request.cost_layer,
-        second_matrix=None,
-        second_coordinates=None,
-    )
+def _parts(request: ReplanRequest, rest: RestOfWay, n: int) -> Iterator[str]:
+    """Yield the part of a request that names each place of the rest; n places are the front's."""
+    for stop in rest.stops.tolist():
+        if stop == rest.start:
+            yield "pose" if request.pose else "position"
+        else:
+            yield f"places/{stop}" if stop < n else f"add/{stop - n}"
 
 
-def _whole_map(grid: Array, coverage: Coverage) -> NDArray[np.bool_]:
-    if grid.shape != coverage.blocked.shape:
-        demand = f"must be as large as that of the front, {coverage.size}, got {size_of(grid)}"
-        raise invalid("grid", demand)
-    binary = (grid == 0) | (grid == 1)
-    if not binary.all():
-        row, column = np.unravel_index(binary.argmin(), binary.shape)
-        raise invalid(f"grid/{row}/{column}", f"must be 0 or 1, got {grid[row, column]:g}")
-    return grid > 0
+def about_request(refusal: InvalidCoverage, parts: Sequence[str]) -> InvalidCoverage:
+    """Return the refusal of places of the rest as one of the parts that name them.
 
-
-def _of_rest(
-    coverage: Coverage, cells: Cells, rest: RestOfWay, place: NDArray[np.int64]
-) -> Coverage:
-    """Return the task of the rest: its places, and the second objective between them."""
-    matrix, points = coverage.second_matrix, coverage.second_coordinates
-    ends = rest.end_members(place)
-    return replace(
-        coverage,
-        places=cells[rest.stops],
-        spacing=None,
-        start_pose=None,
-        end_pose=None,
-        start=ends["start"] or 0,
-        ends=rest.ends_at(place),
-        second_matrix=None if matrix is None else matrix[np.ix_(rest.stops, rest.stops)],
-        second_coordinates=None if points is None else points[rest.stops],
-    )
-
-
-def _check_places(
-    task: Coverage, rest: RestOfWay, n: int, request: ReplanRequest, limits: Limits
-) -> None:
-    """Raise a refusal, about the parts of the request, where a place cannot be visited."""
-    free = free_cells(task.blocked, task.cell_size, task.robot_radius)
-    try:
-        find_places(task, free, limits.most_places(shared=False))
-    except InvalidCoverage as refusal:
-        position = "pose" if request.pose else "position"
-        raise InvalidCoverage(*_about_request(refusal.faults, rest, n, position)) from None
-
-
-def _about_request(
-    faults: tuple[tuple[str, str], ...], rest: RestOfWay, n: int, position: str
-) -> Iterator[tuple[str, str]]:
-    """Yield the faults of places of the rest as faults of parts of the request."""
-    for part, demand in faults:
+    Args:
+        refusal: The refusal, about the places in the order of the rest.
+        parts: The part for each place; places/2 is a place of the front, not in the request.
+    """
+    faults = []
+    for part, demand in refusal.faults:
         name, _, index = part.partition("/")
         if name != "places":
-            yield part, demand
+            faults.append((part, demand))
             continue
-        stop = int(rest.stops[int(index)])
+        named = parts[int(index)]
         # The request does not name places of the rest.
         demand = re.sub(r"from places/\d+", "from where the way goes on", demand)
-        if stop == rest.start:
-            yield position, demand
-        elif stop < n:
-            yield "remove", f"must have place {stop}, as it {demand}"
-        else:
-            yield f"add/{stop - n}", demand
+        if named.startswith("places/"):
+            demand = f"must have place {named.removeprefix('places/')}, as it {demand}"
+            named = "remove"
+        faults.append((named, demand))
+    return InvalidCoverage(*faults)

@@ -50,7 +50,7 @@ async def front(workers: WorkerPool, deed: str = "") -> FrontDocument:
 
 def test_work_becomes_a_front_with_the_time_that_it_waited() -> None:
     async def test(workers: WorkerPool) -> None:
-        timings = (await front(workers)).timings_ms.as_json()
+        timings = (await front(workers)).timings_ms
         assert timings["construction"] == 1
         assert timings["total"] == pytest.approx(timings["queue"] + 1)
 

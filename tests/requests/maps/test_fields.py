@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from service.errors import Refusal
-from service.requests.coverage import CoverageRequest, coverage_schemas, parse_coverage_request
+from service.requests.coverage import CoverageRequest, parse_coverage_request
+from service.requests.json_schemas import coverage_schemas
 from tests.helpers.serving import LIMITS
 from tests.requests.maps.test_occupancy_grid import MESSAGE
 

@@ -12,11 +12,11 @@ from service.errors import Refusal
 from service.replanning.earlier_tours import EarlierTours
 from service.requests.limits import Limits
 from service.requests.parser import parse_task
-from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.replan.way import StoredFront
 from service.requests.stops import Stops
-from service.requests.stored_task import stored
 from service.requests.task import Task, TaskSource
+from service.requests.task_codec import stored
 from tests.helpers.actors import info_of
 from tests.helpers.changes import Found
 

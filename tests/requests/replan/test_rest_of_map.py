@@ -9,9 +9,10 @@ import pytest
 from service.coverage.coverage import Coverage
 from service.coverage.frame import MapFrame
 from service.errors import Refusal
+from service.kinds.tours import survey_map
 from service.requests.limits import Limits
-from service.requests.replan.earlier_front import StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.replan.way import StoredFront
 from service.requests.task import Task, TaskSource
 from tests.helpers.actors import info_of
 from tests.helpers.changes import Found
@@ -52,7 +53,9 @@ def rest(second: str = "cost_layer", more: dict[str, Any] | None = None, **reque
     came = {name: value for name, value in members.items() if value is not None}
     found = Found(np.array(TOURS), np.array([[1.0, 2.0], [2.0, 1.0]]), PLACES)
     front = StoredFront("front", TaskSource("coverage", json.dumps(came).encode()), found)
-    return parse_replan(ReplanSource(json.dumps(request).encode(), front), LIMITS, INFOS)
+    task = parse_replan(ReplanSource(json.dumps(request).encode(), front), LIMITS, INFOS)
+    survey_map(task, LIMITS, lambda: False)  # as a worker does before it plans
+    return task
 
 
 def map_of(task: Task) -> Coverage:

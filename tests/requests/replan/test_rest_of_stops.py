@@ -10,8 +10,8 @@ import pytest
 from service.errors import Refusal
 from service.pareto import balances
 from service.requests.limits import Limits
-from service.requests.replan.earlier_front import MOST_TOURS, StoredFront
 from service.requests.replan.parser import ReplanSource, parse_replan
+from service.requests.replan.way import MOST_TOURS, StoredFront
 from service.requests.stops import Stops, cost_matrices
 from service.requests.task import Task, TaskSource
 from tests.helpers.actors import info_of
@@ -179,9 +179,19 @@ def changed(**entry: Any) -> dict[str, Any]:
         (NAMED, {"tour": ["s0"] * 6}, "/tour/1", "must not be tour/0 again"),
         (NAMED, {"tour": ["s0"]}, "/tour", "must have all 6 stops of the front, got 1"),
         (NAMED, {"remove": ["s0"]}, "/remove/0", "must not be where the way goes on"),
-        (NAMED, {"add": [{**NEW, "id": "s3"}]}, "/add/0/id", "must be that of no other stop"),
-        (NAMED, {"add": [NEW, NEW]}, "/add/1/id", "must be that of no other stop"),
-        (NAMED, {"add": [NEW], "position": NEW}, "/position/id", "must be that of no other"),
+        (
+            NAMED,
+            {"add": [{**NEW, "id": "s3"}]},
+            "/add/0/id",
+            "must differ from the ids of all other stops",
+        ),
+        (NAMED, {"add": [NEW, NEW]}, "/add/1/id", "must differ from the ids of all other stops"),
+        (
+            NAMED,
+            {"add": [NEW], "position": NEW},
+            "/position/id",
+            "must differ from the ids of all other",
+        ),
         (NAMED, {"add": [[0, 0]]}, "/add/0", "must be a stop with an id"),
         (NAMED, {"add": [{**NEW, "location": None}]}, "/add/0/location", '"way" is measured'),
         (
@@ -228,7 +238,7 @@ def changed(**entry: Any) -> dict[str, Any]:
             NAMED,
             {"objectives": NAMED["objectives"], "add": [NEW]},
             "/add/0/costs",
-            "must not be given beside objectives",
+            "must not be given together with objectives",
         ),
         (
             NAMED,

@@ -10,8 +10,8 @@ import pytest
 
 from service.errors import Refusal
 from service.fleet.fleet import ALWAYS, Shipment, VehicleType, Visit
-from service.requests.fleets.request import parse_fleet_request
-from service.requests.fleets.schemas import fleet_schemas
+from service.requests.fleet import parse_fleet_request
+from service.requests.json_schemas import fleet_schemas
 from service.requests.limits import Limits
 from service.requests.parser import parse_task
 from service.requests.task import TaskSource

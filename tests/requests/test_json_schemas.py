@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from service.requests.front_schemas import FILE_FORMS, JSON_FORMS, front_schemas
+from service.requests.json_schemas import FILE_FORMS, JSON_FORMS, front_schemas
 from tests.helpers.serving import LIMITS
 
 SCHEMAS = front_schemas(LIMITS, ["pa-one"])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from service.errors import Refusal
-from service.requests.schemas import PlanRequest
+from service.requests.fields import PlanRequest
 from service.requests.validation import parse_json
 
 
@@ -50,7 +50,6 @@ def test_a_whole_number_may_be_written_with_a_point() -> None:
 def test_preferences_become_angles() -> None:
     even = parse_json(PlanRequest, b'{"preferences": 3}')
     given = parse_json(PlanRequest, b'{"preferences": [0, 12.5]}')
-    assert (even.preference_count, given.preference_count) == (3, 2)
     np.testing.assert_allclose(even.options().angles, [15, 45, 75])
     np.testing.assert_array_equal(given.options().angles, [0, 12.5])
 

@@ -1,1 +1,0 @@
-"""Fronts of a robot's tours over a map: `POST /coverage`."""

@@ -1,0 +1,127 @@
+"""Plan fronts of plans for several vehicles, and write them as JSON."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from pydantic_core import to_json
+
+from service.errors import NoTour
+from service.fleet.evaluation import route_lengths, schedule, unassigned
+from service.fleet.fleet import Fleet
+from service.fleet.necessary import least_lengths
+from service.fleet.plans import FleetFront, Plan, Route, path_of
+from service.front import ReportOf, reporting
+from service.kinds.front_document import FrontDocument, joined
+from service.kinds.kind import NamedActor, Report, Tools
+from service.pareto import balances
+from service.requests.limits import check_reference_point
+from service.requests.task import Task, UnmeasuredFleet
+
+
+def run_fleet(task: Task, tools: Tools, stop: Callable[[], bool], report: Report) -> FrontDocument:
+    """Return the front of plans of a task; see `Run`."""
+    subject, actor = task.subject, tools.actors.get(task.actor)
+    assert isinstance(subject, UnmeasuredFleet)
+    assert task.labels is not None
+    known = subject.members(task.labels)
+    ids = [stop.id for stop in task.labels.stops]
+
+    def encoded(front: FleetFront) -> FrontDocument:
+        return document_of_plans(
+            front,
+            lambda plan, members: _encode_plan(front.fleet, plan, members, subject.vehicles, ids),
+            actor,
+            kind="fleet",
+            cities=subject.n,
+            **known,
+        )
+
+    began = time.perf_counter()
+    fleet = subject.fleet()
+    timings = {**task.timings, "costs": 1000 * (time.perf_counter() - began)}
+    try:
+        front = plan_front(task, fleet, actor, stop, reporting(report, encoded))
+    except NoTour as refusal:
+        raise refusal.named(task.city_names) from None
+    return encoded(replace(front, timings={**timings, **front.timings}))
+
+
+def plan_front(
+    task: Task,
+    fleet: Fleet,
+    actor: NamedActor | None,
+    stop: Callable[[], bool],
+    report: ReportOf[FleetFront],
+) -> FleetFront:
+    """Return the front of plans of a fleet, with the options of a task."""
+    # Imported here so that a service or a worker starts without PyVRP.
+    from service.fleet.planner import FleetOptions, plan_fleet
+
+    check_reference_point(task.options, partial(least_lengths, fleet), "plan")
+    options = FleetOptions(
+        time_limit=task.options.time_limit,
+        size=task.options.size,
+        seed=task.options.seed,
+        reference_point=task.options.reference_point,
+    )
+    return plan_fleet(fleet, options, actor, stop, report)
+
+
+def warm_up() -> None:
+    """Import PyVRP, which takes some tenths of a second, and compile the optimal split."""
+    import service.fleet.planner  # noqa: F401
+    from service.fleet.splitting import cutter
+
+    cutter.warm_up()
+
+
+def document_of_plans(
+    front: FleetFront,
+    encode: Callable[[Plan, dict[str, Any]], bytes],
+    actor: NamedActor | None,
+    **members: Any,
+) -> FrontDocument:
+    """Return a front of plans as JSON, whose plans are encoded one after another.
+
+    Args:
+        front: The front.
+        encode: Returns a plan as JSON, which begins with the members that it is given.
+        actor: The network whose tours were cut into the first plans, if there were any.
+        members: Other members of the document.
+    """
+    network = actor.info.identity if actor is not None and front.constructed else None
+    columns = zip(front.plans, balances(front.points).tolist(), front.points.tolist(), strict=True)
+    plans, ends = joined(
+        encode(plan, {"balance": balance, "lengths": lengths}) for plan, balance, lengths in columns
+    )
+    return FrontDocument.of(
+        front, hypervolume_bound=None, actor=network, tours=plans, ends=ends, **members
+    )
+
+
+def _encode_plan(
+    fleet: Fleet,
+    plan: Plan,
+    members: dict[str, Any],
+    vehicles: Sequence[str],
+    ids: Sequence[str],
+) -> bytes:
+    routes = [_route(fleet, route, vehicles, ids) for route in plan.routes]
+    left_out = [ids[stop] for stop in unassigned(fleet.rules, plan)]
+    return to_json({**members, "routes": routes, "unassigned": left_out})
+
+
+def _route(
+    fleet: Fleet, route: Route, vehicles: Sequence[str], ids: Sequence[str]
+) -> dict[str, Any]:
+    members = {
+        "vehicle": vehicles[route.vehicle],
+        "stops": [ids[stop] for stop in path_of(fleet.rules, route)],
+        "lengths": list(route_lengths(fleet, route)),
+    }
+    if fleet.rules.clock is not None:
+        members["arrivals"] = list(schedule(fleet, route).arrivals)
+    return members

@@ -1,1 +1,0 @@
-"""Fronts of plans for several vehicles: `POST /fleet`."""

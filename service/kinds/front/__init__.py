@@ -1,1 +1,0 @@
-"""Fronts of tours through stops or cities: `POST /front`."""

@@ -1,0 +1,185 @@
+"""The types of fields in requests, and the fields that all requests share."""
+
+from dataclasses import replace
+from typing import Annotated, Any, Literal, TypeVar
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
+
+from service.front import PlanOptions
+from service.instance import CLOSED, OBJECTIVES, RouteEnds
+from service.preferences import fan
+
+# Between these, lengths and hypervolumes neither overflow nor vanish.
+LARGEST = 1e150
+SMALLEST = 1e-150
+_MOST_INTEGER = 2**31 - 1
+LONGEST_TEXT = 100  # characters of an id, a name or a unit
+# No control characters, line ends, marks of direction or byte order marks.
+PRINTABLE = r"^[^\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069\ufeff]+$"
+
+
+START = (
+    "the city at which every tour begins in the answer; open routes start there, or anywhere if it"
+    " is null"
+)
+END = "the city at which open routes end; null for any city"
+Geometry = Literal["straight", "roads"]
+GEOMETRY = (
+    "in GeoJSON, whether the lines of tours lead straight from stop to stop, or along the streets"
+    " that a routing engine knows"
+)
+
+
+def _integer(value: object) -> object:
+    """Return a float without a fraction as an integer; JSON schemas call 3.0 an integer, too."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+Each = TypeVar("Each")
+# Lists whose validation ends at the first item that is wrong.
+Items = Annotated[list[Each], Field(fail_fast=True)]
+SomeItems = Annotated[list[Each], Field(min_length=1, fail_fast=True)]
+Pair = Annotated[list[Each], Field(min_length=2, max_length=2, fail_fast=True)]
+OneEach = Annotated[  # for each objective
+    list[Each], Field(min_length=OBJECTIVES, max_length=OBJECTIVES, fail_fast=True)
+]
+Angle = Annotated[float, Field(ge=0, le=90, allow_inf_nan=False)]
+Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
+Cost = Annotated[float, Field(ge=0, le=LARGEST, allow_inf_nan=False)]
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
+PositiveNumber = Annotated[float, Field(ge=SMALLEST, le=LARGEST, allow_inf_nan=False)]
+PlanePoint = Pair[Number]
+AsInteger = BeforeValidator(_integer)
+# AsInteger comes last: in front of the bounds it would hide them from the OpenAPI document.
+PositiveInteger = Annotated[int, Field(ge=1, le=_MOST_INTEGER), AsInteger]
+NonNegativeInteger = Annotated[int, Field(ge=0, le=_MOST_INTEGER), AsInteger]
+Text = Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT, pattern=PRINTABLE)]
+# Only the type of the numbers is checked here, and the rest once they are an array: half a million
+# are too many to check one by one.
+ArrayRows = Items[Items[float]]
+# Costs from each city to each; null where there is no way.
+CostRows = Items[Items[float | None]]
+NO_WAY = "null where there is no way; the diagonal is ignored"
+
+
+def optional(description: str) -> Any:
+    """Return a field that is None where it was not given."""
+    return Field(default=None, description=description)
+
+
+class StrictModel(BaseModel):
+    """A part of a request, which has no other fields and takes no value for one of another type."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+
+class SearchFields(StrictModel):
+    """The fields of every request: how long to plan, and how much to return."""
+
+    time_limit: float = Field(
+        default=1.0,
+        ge=0,
+        allow_inf_nan=False,
+        description="seconds of all planning, at most; 0 asks for what the network builds alone",
+    )
+    size: PositiveInteger = Field(default=100, description="the most tours, or plans, to return")
+    reference_point: list[PositiveNumber] = Field(
+        default_factory=list,
+        min_length=OBJECTIVES,
+        max_length=OBJECTIVES,
+        description="the reference point of the hypervolume; by default, for tours the number of"
+        " cities times the scale, for plans lengths above those of all sensible plans",
+    )
+    seed: NonNegativeInteger = Field(
+        default=0, description="the seed of everything random in the search"
+    )
+
+    def options(self) -> PlanOptions:
+        """Return the options for the planner."""
+        return PlanOptions(
+            angles=np.empty(0),
+            size=self.size,
+            time_limit=self.time_limit,
+            reference_point=np.array(self.reference_point) if self.reference_point else None,
+            seed=self.seed,
+        )
+
+
+class PlanFields(SearchFields):
+    """The fields of every request for a front of tours."""
+
+    preferences: Annotated[
+        Annotated[PositiveInteger, Tag("[count]")]
+        | Annotated[list[Angle], Field(min_length=1, fail_fast=True), Tag("[angles]")],
+        Discriminator(lambda value: "[angles]" if isinstance(value, list) else "[count]"),
+    ] = Field(
+        default=100,
+        description="the angles in degrees along which the network builds tours, or the number of"
+        " evenly spread ones; by default 100 if time_limit is 0, else as many as fit into"
+        " a tenth of it, maybe none",
+    )
+    repairs: NonNegativeInteger = Field(
+        default=_MOST_INTEGER,
+        description="how often the network cuts each of its tours open and joins it again, which"
+        " never makes the tour worse; tours found on the way count for the front, too. By"
+        " default 0 with a time limit, else as many as are worth their time: with"
+        " coordinates an eighth of the number of cities and at least 3, with matrices a"
+        " third and at least 2",
+    )
+    arrivals: bool = Field(
+        default=False, description="whether each tour comes with both its lengths up to each stop"
+    )
+    bound: bool = Field(
+        default=False,
+        description="whether to compute, in up to 5 s, a bound that no hypervolume exceeds",
+    )
+    actor: str = Field(
+        default="",
+        description="the network that builds the tours; by default pa-one for coordinates and"
+        " pa-one-matrix for matrices",
+    )
+
+    @property
+    def requested_actor(self) -> str | None:
+        """The name of the actor; None where the request leaves the choice to the service."""
+        return self.actor if "actor" in self.model_fields_set else None
+
+    def options(self) -> PlanOptions:
+        """Return the options for the planner."""
+        angles = self.preferences
+        given = "repairs" in self.model_fields_set
+        return replace(
+            super().options(),
+            angles=fan(angles) if isinstance(angles, int) else np.array(angles),
+            fewer="preferences" not in self.model_fields_set,
+            repairs=self.repairs if given or self.time_limit == 0 else 0,
+            fewer_repairs=not given,
+            bound=self.bound,
+        )
+
+
+class PlanRequest(PlanFields):
+    """A request for a front of a new instance: adds the ends of its tours, and initial tours."""
+
+    closed: bool = Field(
+        default=True,
+        description="whether tours return to where they began; if not, they are open routes",
+    )
+    start: NonNegativeInteger | None = Field(default=0, description=START)
+    end: NonNegativeInteger | None = Field(default=None, description=END)
+    initial_tours: SomeItems[Items[NonNegativeInteger]] = Field(
+        default_factory=list, description="tours that the front must dominate or equal"
+    )
+
+    @property
+    def ends(self) -> RouteEnds:
+        """Whether tours are closed, and where open routes start and end."""
+        if self.closed:
+            return CLOSED
+        return RouteEnds(closed=False, start=self.start, end=self.end)
+
+    def options(self) -> PlanOptions:
+        """Return the options for the planner."""
+        first = np.array(self.initial_tours) if self.initial_tours else None
+        return replace(super().options(), start=self.start or 0, initial_tours=first)
