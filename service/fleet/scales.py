@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 
 from service.errors import Refusal
-from service.fleet.fleet import Array, Fleet, Rules, VehicleType, Visit
+from service.fleet.fleet import Array, Fleet, Rules, Span
 from service.fleet.squeezing import Squeezed
 
 _LARGEST = 2.0**61  # the largest penalty of all routes together: PyVRP's integers have 64 bits
@@ -47,12 +47,10 @@ class Horizon:
         if rules.clock is None:
             return cls()
         route = rules.n * leg + _services(rules)
-        spans = [visit.window for visit in rules.visits]
-        shifts = [vehicle.shift for vehicle in rules.vehicles]
-        bounds = [time for span in (*spans, *shifts) for time in span if 0 < time < inf]
+        bounds = [time for span in rules.spans for time in span if 0 < time < inf]
         first = min(bounds, default=0.0) - route
-        begin = max(0.0, first, min(begin for begin, _ in shifts))
-        latest = max(begin for begin, _ in (*spans, *shifts))
+        begin = max(0.0, first, min(vehicle.shift[0] for vehicle in rules.vehicles))
+        latest = max((begin for begin, _ in rules.spans), default=0.0)
         return cls(begin, max(begin, latest) + 2 * route)
 
 
@@ -75,20 +73,33 @@ class Units:
         Raises:
             Refusal: In these units a prize or a time would overflow.
         """
-        largest = fleet.largest_legs
+        largest, rules = fleet.largest_legs, fleet.rules
         tiny = (largest > 0) & (largest < _TINY)
         shifts = np.where(tiny, 1 - np.frexp(largest)[1], 0)
         if not tiny.any():
             return cls(fleet, shifts)
-        rules = fleet.rules
-        timed = rules.maximum if rules.clock is None else rules.clock
-        extra, time = int(shifts[0]), 0 if timed is None else int(shifts[timed])
-        scaled = replace(
-            rules,
-            visits=tuple(_scaled_visit(visit, extra, time) for visit in rules.visits),
-            vehicles=tuple(_scaled_vehicle(vehicle, extra, time) for vehicle in rules.vehicles),
+        extra = int(shifts[0])
+        time = 0 if rules.limited is None else int(shifts[rules.limited])
+        visits = tuple(
+            replace(
+                visit,
+                service=_scaled(visit.service, time),
+                window=_scaled_span(visit.window, time),
+                prize=None if visit.prize is None else _scaled(visit.prize, extra),
+            )
+            for visit in rules.visits
+        )
+        vehicles = tuple(
+            replace(
+                vehicle,
+                shift=_scaled_span(vehicle.shift, time),
+                longest=_scaled_bound(vehicle.longest, time),
+                fixed=_scaled(vehicle.fixed, extra),
+            )
+            for vehicle in rules.vehicles
         )
         costs = np.ldexp(fleet.costs, shifts[:, np.newaxis, np.newaxis])
+        scaled = replace(rules, visits=visits, vehicles=vehicles)
         return cls(Fleet(rules=scaled, costs=costs), shifts)
 
     def points(self, points: Array) -> Array:
@@ -98,26 +109,8 @@ class Units:
         return scaled
 
 
-def _scaled_visit(visit: Visit, extra: int, time: int) -> Visit:
-    """Return a visit whose prize and times are multiplied by powers of two."""
-    opens, closes = visit.window
-    return replace(
-        visit,
-        service=_scaled(visit.service, time),
-        window=(_scaled(opens, time), _scaled_bound(closes, time)),
-        prize=None if visit.prize is None else _scaled(visit.prize, extra),
-    )
-
-
-def _scaled_vehicle(vehicle: VehicleType, extra: int, time: int) -> VehicleType:
-    """Return a type of vehicles in the same way."""
-    opens, closes = vehicle.shift
-    return replace(
-        vehicle,
-        shift=(_scaled(opens, time), _scaled_bound(closes, time)),
-        longest=_scaled_bound(vehicle.longest, time),
-        fixed=_scaled(vehicle.fixed, extra),
-    )
+def _scaled_span(span: Span, shift: int) -> Span:
+    return _scaled(span[0], shift), _scaled_bound(span[1], shift)
 
 
 def _scaled(value: float, shift: int) -> float:

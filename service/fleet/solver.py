@@ -16,7 +16,7 @@ from pyvrp.IteratedLocalSearch import (
 from pyvrp.PenaltyManager import PenaltyManager, PenaltyParams
 
 from service.fleet.scales import Penalties
-from service.fleet.translation import Goal, Translation, Weights
+from service.fleet.translation import Goal, Translation, Weights, visits_of
 
 _FEW = 100  # stops: a search of their whole neighbourhood takes at most about 50 ms
 _EXHAUSTIVE = 5e-6  # seconds per pair of stops, more than a 2.5 GHz Xeon needs
@@ -72,7 +72,10 @@ class Solver:
         data = self._translation.data(goal)
         local_search = self._local_search(data, goal)
         manager = _Penalties(data, self._translation.penalties, max(goal.weights))
-        initial = self._initial(data, step.start, local_search, manager)
+        if step.start is None:
+            initial = self._initial(data, local_search, manager)
+        else:
+            initial = _moved(data, step.start)
         self._offer(initial, goal.weights)
         watcher = _Watcher(self._offer, self._stop, goal.weights, step.iterations)
         small = len(self._translation.fleet.rules.clients) <= _FEW
@@ -95,12 +98,9 @@ class Solver:
     def _initial(
         self,
         data: pyvrp.ProblemData,
-        start: pyvrp.Solution | None,
         local_search: pyvrp.search.LocalSearch,
         manager: PenaltyManager,
     ) -> pyvrp.Solution:
-        if start is not None:
-            return _moved(data, start)
         random = pyvrp.Solution.make_random(data, self._random)
         seconds = _EXHAUSTIVE * len(self._translation.fleet.rules.clients) ** 2
         if self._deadline is not None and time.monotonic() + seconds > self._deadline:
@@ -170,8 +170,6 @@ class _Watcher(IteratedLocalSearchCallbacks):
 def _moved(data: pyvrp.ProblemData, solution: pyvrp.Solution) -> pyvrp.Solution:
     """Return a solution of other data of the same fleet as a solution of these data."""
     routes = [
-        pyvrp.Route(data, [each for each in route.schedule() if not each.is_depot()], vehicle)
-        for route in solution.routes()
-        for vehicle in [route.vehicle_type()]
+        pyvrp.Route(data, [*visits_of(route)], route.vehicle_type()) for route in solution.routes()
     ]
     return pyvrp.Solution(data, routes)

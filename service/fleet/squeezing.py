@@ -57,7 +57,7 @@ class Squeezed:
         changed = False
         for objective, costs in enumerate(fleet.costs):
             ordinary = _ordinary(costs)
-            waiting = waiting_of(rules) if objective == rules.clock else 0.0
+            waiting = _waiting(rules) if objective == rules.clock else 0.0
             extra = np.concatenate((prizes, fixed)) if objective == 0 else np.empty(0)
             numbers = np.concatenate((costs[np.isfinite(costs)], extra))
             of_plan = max(rules.n, _LEAST_LEGS) * ordinary + waiting
@@ -134,8 +134,8 @@ def _stepwise(huge: Array, ordinary: float, ratio: float) -> Array:
     return np.array(squeezed)
 
 
-def waiting_of(rules: Rules) -> float:
+def _waiting(rules: Rules) -> float:
     """Return the time from the first bound of any window or shift to the last begin."""
-    spans = [*(visit.window for visit in rules.visits), *(each.shift for each in rules.vehicles)]
-    bounds = [time for span in spans for time in span if 0 < time < inf]
-    return max(0.0, max(begin for begin, _ in spans) - min(bounds, default=0.0))
+    bounds = [time for span in rules.spans for time in span if 0 < time < inf]
+    last = max((begin for begin, _ in rules.spans), default=0.0)
+    return max(0.0, last - min(bounds, default=0.0))

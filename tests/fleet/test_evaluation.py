@@ -99,7 +99,7 @@ BROKEN = [
     (
         {"shipments": (Shipment(1, 3),), "visits": (Visit(), Visit(prize=1), *(Visit(),) * 3)},
         [(1, 2, 4)],
-        "half is done",
+        "only half of the shipment",
     ),
     (
         {"visits": (Visit(), Visit(window=(0, 3)), *(Visit(),) * 3), "clock": 0},

@@ -67,6 +67,6 @@ def identity_of(front: FleetFront, actor: NamedActor | None) -> dict[str, str] |
 def warm_up() -> None:
     """Import PyVRP, which takes some tenths of a second, and compile the optimal split."""
     import service.fleet.planner  # noqa: F401
-    from service.fleet.splitting import cutter
+    from service.fleet import first_plans
 
-    cutter.warm_up()
+    first_plans.warm_up()
