@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from service.coverage.path import CoveragePath
+from service.coverage.frame import CoveragePath
 
 PATH_PART = 2**14  # cells of a path that are written at once
 

@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
-from service.coverage.coverage import Coverage
-from service.coverage.robots import Robot
+from service.coverage.coverage import Coverage, Robot
 from service.fleet.fleet import Rules, Shipment, VehicleType, Visit
 from service.front import PlanOptions
 from service.instance import RouteEnds

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from service.coverage.coverage import Coverage
-from service.coverage.path import CoveragePath
+from service.coverage.frame import CoveragePath
 from service.coverage.survey import Survey, survey
 from service.errors import Cancelled
 from service.front import Front

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic_core import to_json
 
-from service.coverage.path import CoveragePath
+from service.coverage.frame import CoveragePath
 from service.coverage.survey import Survey
 from service.fleet.evaluation import route_lengths
 from service.fleet.plans import FleetFront, Plan, Route

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-from service.coverage.path import CoveragePath
+from service.coverage.frame import CoveragePath
 from service.coverage.survey import Survey, survey
 from service.errors import Cancelled
 from service.fleet.plans import FleetFront

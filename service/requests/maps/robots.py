@@ -6,8 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.coverage.coverage import Coverage
-from service.coverage.robots import Robot
+from service.coverage.coverage import Coverage, Robot
 from service.errors import invalid
 from service.fleet.fleet import Over
 from service.instance import OBJECTIVES
