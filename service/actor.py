@@ -46,8 +46,7 @@ class OnnxActor:
         self._session: onnxruntime.InferenceSession | None = None
         self._loading = Lock()
         self._lock = Lock()
-        self._running_many = False
-        self._running = _run_options(self._running_many)
+        self._running = onnxruntime.RunOptions()
 
     def load(self) -> None:
         """Open the inference session, unless it is open.
@@ -74,7 +73,9 @@ class OnnxActor:
         if repairs > 0 and not self.info.repairs:
             raise ValueError(f"{self.info.name} cannot repair tours, got repairs {repairs}")
         outputs = ["tours", "visited"] if repairs > 0 else ["tours"]
-        options = self._begin(max(instance.n, len(preferences)))
+        options = _run_options(max(instance.n, len(preferences)) > _FEW)
+        with self._lock:
+            self._running = options
         if self.info.inputs == "matrices":
             scaled = instance.scaled_matrices.clip(max=_LARGEST_COST)
             matrices = _without_zeros(scaled.astype(np.float32))
@@ -106,14 +107,6 @@ class OnnxActor:
         """
         with self._lock:
             self._running.terminate = True
-
-    def _begin(self, size: int) -> onnxruntime.RunOptions:
-        """Return the options of a call, which `terminate` ends."""
-        many = size > _FEW
-        with self._lock:
-            if self._running.terminate or many != self._running_many:
-                self._running, self._running_many = _run_options(many), many
-            return self._running
 
     def _run(
         self,
@@ -215,7 +208,7 @@ def _open_session(content: bytes, path: Path, threads: int) -> onnxruntime.Infer
 
 
 def _run_options(many: bool) -> onnxruntime.RunOptions:
-    """Return the options of a call, of many cities or preferences or of few."""
+    """Return the options of a call; `many` is whether it has many cities or preferences."""
     options = onnxruntime.RunOptions()
     options.log_severity_level = _FATAL  # being terminated is not an error
     if many:

@@ -29,6 +29,7 @@ from service.search.open_routes import oriented, plain_tours, rotated
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 Indices = NDArray[np.intp]
+_PHASES = ("construction", "improvement", "selection", "bound")
 BOUND_SECONDS = 5.0  # for tightening a bound; it is valid at any time
 
 
@@ -53,7 +54,7 @@ def plan(
         Cancelled: `stop` returned True before a tour was found.
         NoTour: Every tour that was found has a forbidden leg.
     """
-    clock = _Clock()
+    times = [time.perf_counter()]
     deadline = time.monotonic() + options.time_limit
     reference_point = options.reference_point
     if reference_point is None:
@@ -63,7 +64,7 @@ def plan(
     first = _first_tours(instance, constructed, options)
     searched = options.time_limit > 0
     before = hypervolume(tour_lengths(instance, first), reference_point) if searched else None
-    clock.ends("construction")
+    times.append(time.perf_counter())
     front_of = partial(
         Front,
         constructed=len(constructed),
@@ -83,7 +84,7 @@ def plan(
         report(progress, best_front)
 
     found = _improved(instance, first, options, deadline, stop, report_front)
-    clock.ends("improvement")
+    times.append(time.perf_counter())
     if not len(found.points):
         raise Cancelled if stop() else _no_tour(instance, options, found)
     gained = None if before is None else hypervolume(found.points, reference_point) - before
@@ -91,15 +92,15 @@ def plan(
     if options.choose_again is not None:
         chosen = options.choose_again(found, chosen)
     tours = found.tours_at(chosen).astype(np.int64)
-    clock.ends("selection")
+    times.append(time.perf_counter())
     bound = _bound(instance, reference_point, stop) if options.bound and not stop() else None
-    clock.ends("bound")
+    times.append(time.perf_counter())
     return front_of(
         tours=_as_reported(instance, options.start, tours),
         points=found.points[chosen],
         found=len(found.points),
         terminated=found.terminated,
-        timings=clock.phases,
+        timings=dict(zip(_PHASES, (1000 * np.diff(times)).tolist(), strict=True)),
         bound=bound,
         gained=gained,
     )
@@ -117,12 +118,9 @@ def _constructed(constructor: Constructor, instance: Instance, options: PlanOpti
 
 def _first_tours(instance: Instance, constructed: Tours, options: PlanOptions) -> Tours:
     """Return the constructed tours, then the caller's; for one or two cities all tours."""
-    tours = [constructed]
-    if instance.n < MIN_CONSTRUCTED:
-        tours.append(plain_tours(instance).astype(np.int64))
-    if options.initial_tours is not None:
-        tours.append(options.initial_tours)
-    return np.concatenate(tours)
+    plain = plain_tours(instance) if instance.n < MIN_CONSTRUCTED else constructed[:0]
+    initial = constructed[:0] if options.initial_tours is None else options.initial_tours
+    return np.concatenate((constructed, plain.astype(np.int64), initial))
 
 
 def _improved(
@@ -173,16 +171,3 @@ def _as_reported(instance: Instance, start: int, tours: NDArray[np.integer]) -> 
     if not instance.closed:
         return oriented(instance, tours)
     return rotated(tours, (tours == start).argmax(axis=1))
-
-
-class _Clock:
-    """A stopwatch: the milliseconds that each phase took, by name."""
-
-    def __init__(self) -> None:
-        self.phases: dict[str, float] = {}
-        self._since = time.perf_counter()
-
-    def ends(self, phase: str) -> None:
-        now = time.perf_counter()
-        self.phases[phase] = 1000 * (now - self._since)
-        self._since = now

@@ -56,9 +56,7 @@ class SolutionArchive:
     def offer(self, solution: pyvrp.Solution, weights: Weights) -> None:
         """Add a solution, unless it breaks a rule or another one is at least as good.
 
-        Args:
-            solution: The solution.
-            weights: The weights of the goal under which it was found. They multiply its prizes.
+        `weights` are those of the goal under which it was found. They multiply its prizes.
         """
         if not self._keeps_rules(solution):
             return

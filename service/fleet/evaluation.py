@@ -91,15 +91,12 @@ def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
 
 def route_lengths(fleet: Fleet, route: Route) -> tuple[float, float]:
     """Return the lengths of a route: its duration in the clock's objective, else its costs."""
-    first, second = (_length(fleet, route, objective) for objective in range(OBJECTIVES))
-    return first, second
+    return _length(fleet, route, 0), _length(fleet, route, 1)
 
 
 def plan_lengths(fleet: Fleet, plan: Plan) -> tuple[float, float]:
     """Return the lengths of a plan. The first one includes lost prizes and fixed costs."""
-    routes = np.array([route_lengths(fleet, route) for route in plan.routes]).reshape(
-        -1, OBJECTIVES
-    )
+    routes = np.reshape([route_lengths(fleet, each) for each in plan.routes], (-1, OBJECTIVES))
     first, second = (
         float(lengths.max(initial=0.0) if over == "max" else lengths.sum())
         for lengths, over in zip(routes.T, fleet.rules.over, strict=True)
@@ -154,8 +151,7 @@ def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:
 
 
 def _counts_broken(rules: Rules, plan: Plan) -> Iterator[str]:
-    used = Counter(route.vehicle for route in plan.routes)
-    for index, count in used.items():
+    for index, count in Counter(route.vehicle for route in plan.routes).items():
         if count > rules.vehicles[index].count:
             yield f"{count} vehicles of type {index} leave, and there are fewer"
 
@@ -200,15 +196,12 @@ def _loads(rules: Rules, route: Route, dimension: int) -> Iterator[int]:
 
     At the start it holds the demands of all stops that are not in shipments.
     """
-    delivered = {each.delivery: each.pickup for each in rules.shipments}
-
-    def demand(stop: int) -> int:
-        return (rules.visits[stop].demand or (0,) * rules.dimensions)[dimension]
+    pickups = {each.delivery: each.pickup for each in rules.shipments}
 
     def change(stop: int) -> int:
-        if stop in delivered:
-            return -demand(delivered[stop])
-        return demand(stop) if stop in rules.shipped else -demand(stop)
+        demand = rules.visits[pickups.get(stop, stop)].demand
+        load = demand[dimension] if demand else 0
+        return load if stop in rules.shipped and stop not in pickups else -load
 
-    brought = sum(demand(stop) for stop in route.stops if stop not in rules.shipped)
-    return accumulate((change(stop) for stop in route.stops), initial=brought)
+    brought = -sum(change(stop) for stop in route.stops if stop not in rules.shipped)
+    return accumulate(map(change, route.stops), initial=brought)

@@ -3,7 +3,6 @@
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from math import inf
-from typing import NamedTuple
 
 import numpy as np
 
@@ -87,13 +86,6 @@ def _angular_costs(costs: Array) -> Array:
     return np.sqrt(costs * sines)
 
 
-class _Cut(NamedTuple):
-    """A plan whose routes follow a sequence, and its longest route in the limited objective."""
-
-    plan: Plan
-    longest: float
-
-
 class Cutter:
     """Cuts sequences of stops into routes, again and again, and finds the best of all cuts.
 
@@ -109,12 +101,17 @@ class Cutter:
     def __init__(
         self, fleet: Fleet, sequences: Sequence[Indices], stop: Callable[[], bool]
     ) -> None:
+        if fleet.rules.shipments:
+            reason = "shipments need a time_limit over 0: no cut of a tour keeps them"
+            raise Refusal("no-plan", reason=reason)
         self._fleet = fleet
         self._stop = stop
         arrays = _from_begin(fleet, arrays_of(fleet))
         most = max(most_stops(arrays, sequence) for sequence in sequences)
         routes = len(fleet.rules.vehicles) * len(sequences[0]) * most
-        _check_cuttable(fleet, routes, routes * states_of(fleet.rules))
+        if routes > _MOST_ROUTES or routes * states_of(fleet.rules) > _MOST_STEPS:
+            reason = "this many stops, types and numbers of vehicles need a time_limit over 0"
+            raise Refusal("no-plan", reason=reason)
         self._stock = stock_of(fleet.rules)
         self._sequences = sequences[: _MOST_ROUTES // routes]
         self._tables = [route_table(arrays, sequence, most) for sequence in self._sequences]
@@ -137,19 +134,20 @@ class Cutter:
         least = float(np.nextafter(self._least_limit(maximum), inf))
         limit, apart = inf, 0.0
         while cut := self._best(costs, limit):
-            yield cut.plan
-            if not cut.plan.routes:  # all stops are left out: no lower limit changes this plan
+            plan, longest = cut
+            yield plan
+            if not plan.routes:  # all stops are left out: no lower limit changes this plan
                 return
             if limit == inf:
-                apart = (cut.longest - least) / self._cuts
-            limit = min(cut.longest, max(limit - apart, least))
+                apart = (longest - least) / self._cuts
+            limit = min(longest, max(limit - apart, least))
 
     def _under_weights(self) -> Iterator[Plan]:
         """Yield the plans at both ends, and those on the hull between (Aneja and Nair, 1979)."""
         scale = self._fleet.largest_legs
         scale = np.maximum(scale / (scale.max() or 1.0), _LEAST_SCALE)
         steepest = np.array([[_STEEPEST, 1.0], [1.0, _STEEPEST]]) / scale
-        ends = [cut.plan for weights in steepest if (cut := self._best(self._costs(weights)))]
+        ends = [cut[0] for weights in steepest if (cut := self._best(self._costs(weights)))]
         yield from ends
         edges = deque([tuple(ends)] if len(ends) == OBJECTIVES else [])
         left = self._cuts
@@ -161,13 +159,16 @@ class Cutter:
             cut = self._best(self._costs(weights)) if (weights > 0).all() else None
             if cut is None:
                 continue
-            summed = weights @ plan_lengths(self._fleet, cut.plan)
-            if summed < (1 - _ROUNDING) * (weights @ lengths[0]):
-                yield cut.plan
-                edges += [(a, cut.plan), (cut.plan, b)]
+            plan, _ = cut
+            if weights @ plan_lengths(self._fleet, plan) < (1 - _ROUNDING) * (weights @ lengths[0]):
+                yield plan
+                edges += [(a, plan), (plan, b)]
 
-    def _best(self, costs: Sequence[RouteCosts], limit: float = inf) -> _Cut | None:
-        """Return the cheapest cut whose routes are all shorter than a limit, or None."""
+    def _best(self, costs: Sequence[RouteCosts], limit: float = inf) -> tuple[Plan, float] | None:
+        """Return the cheapest cut whose routes are all shorter than a limit, or None.
+
+        With the plan comes the length of its longest route in the objective to bound.
+        """
         least, found = inf, None
         for number, routes in enumerate(costs):
             if self._stop():
@@ -180,7 +181,7 @@ class Cutter:
         number, chosen = found
         vehicles, places, counts = chosen.T
         longest = costs[number].bounded[vehicles, places, counts - 1].max(initial=0.0)
-        return _Cut(plan_of(self._sequences[number], chosen), float(longest))
+        return (plan_of(self._sequences[number], chosen), float(longest))
 
     def _least_limit(self, limited: int) -> float:
         """Return the least limit that lets each required stop have a route of its own."""
@@ -219,16 +220,6 @@ def _from_begin(fleet: Fleet, arrays: FleetArrays) -> FleetArrays:
     begin = Horizon.of(fleet.rules, float(fleet.largest_legs[fleet.rules.clock])).begin
     window, shift = (np.maximum(0.0, spans - begin) for spans in (arrays.window, arrays.shift))
     return arrays._replace(window=window, shift=shift)
-
-
-def _check_cuttable(fleet: Fleet, routes: int, steps: int) -> None:
-    """Raise a refusal if tours cannot be cut into routes of a fleet, or into too many ones."""
-    if fleet.rules.shipments:
-        reason = "shipments need a time_limit over 0: no cut of a tour keeps them"
-        raise Refusal("no-plan", reason=reason)
-    if routes > _MOST_ROUTES or steps > _MOST_STEPS:
-        reason = "this many stops, types and numbers of vehicles need a time_limit over 0"
-        raise Refusal("no-plan", reason=reason)
 
 
 def warm_up() -> None:

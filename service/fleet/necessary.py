@@ -19,9 +19,7 @@ NAMES = CityNames("stop")
 def check_necessary(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> None:
     """Raise a refusal if a stop fits no vehicle, or all stops together do not fit all vehicles.
 
-    Args:
-        fleet: The fleet.
-        ended: Called often; once it returns True, slow conditions are left out.
+    `ended` is called often; once it returns True, slow conditions are left out.
 
     Raises:
         NoTour: A necessary condition fails for some stops.

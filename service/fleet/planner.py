@@ -113,10 +113,10 @@ def _searched(
     if constructor is not None and not fleet.rules.shipments:
         search.begin_at(constructor)
     terminated = search.run()
-    if not search.found and terminated != "cancelled" and fleet.rules.has_bounds:
+    if not search.archive and terminated != "cancelled" and fleet.rules.has_bounds:
         search = _Search(fleet, options, stop, report, began, loose=True)
         terminated = search.run()
-    if not search.found and terminated != "cancelled":
+    if not search.archive and terminated != "cancelled":
         plan = _one_route(fleet)
         if not violations(fleet, plan):
             return _front(fleet, options, [plan], terminated, began)
@@ -187,7 +187,7 @@ class _Search:
         self._translation = Translation(units.fleet, loose)
         give_up = not loose and fleet.rules.has_bounds
         self._gives_up = began + options.time_limit / 2 if give_up else inf
-        self._archive = SolutionArchive(self._translation)
+        self.archive = SolutionArchive(self._translation)
         self._constructed = 0
         self._iterations = 0
         self._checked = self._began
@@ -214,16 +214,11 @@ class _Search:
         data = self._translation.data(FREE)
         for plan in cutter.plans():
             self._constructed += 1
-            self._archive.offer(self._translation.solution(data, plan), FREE.weights)
-
-    @property
-    def found(self) -> bool:
-        """Whether a plan was found."""
-        return len(self._archive) > 0
+            self.archive.offer(self._translation.solution(data, plan), FREE.weights)
 
     def run(self) -> Termination:
         """Search until nothing is left to do, the time is over, or `stop` returns True."""
-        options, archive = self._options, self._archive
+        options, archive = self._options, self.archive
         solver = Solver(self._translation, options.seed, archive.offer, self._ended, self._deadline)
         random = np.random.default_rng(options.seed)
         for step in Sweep(self._translation, archive, random, self._left).steps():
@@ -240,7 +235,7 @@ class _Search:
             Refusal: No plan was found.
             Cancelled: No plan was found before `stop` returned True.
         """
-        archive = self._archive
+        archive = self.archive
         chosen = best_subset(np.array(archive.points).reshape(-1, 2), size, self._reference_point)
         found = [self._translation.plan(archive.solutions[index]) for index in chosen]
         plans = [plan for plan in found if not violations(self._fleet, plan)]
@@ -270,12 +265,12 @@ class _Search:
         if self._stop():
             self._cancelled = True
             return True
-        if now > self._gives_up and not self.found:
+        if now > self._gives_up and not self.archive:
             return True
         left = self._deadline - now
-        if now - self._reported >= _REPORT_EVERY and left > _REPORT_EVERY and len(self._archive):
+        if now - self._reported >= _REPORT_EVERY and left > _REPORT_EVERY and self.archive:
             self._reported = now
-            points = np.array(self._archive.points)
+            points = np.array(self.archive.points)
             volume = hypervolume(points, self._reference_point)
             progress = Progress(now - self._began, volume, len(points))
             self._report(progress, partial(self.front, terminated=None))
@@ -286,7 +281,7 @@ class _Search:
 
         The iteration is assumed to be as long as the longest recent one.
         """
-        found = len(self._archive)
+        found = len(self.archive)
         checked = min(found, self._options.size) * self._fleet.rules.n
         selected = selection_seconds(self._options.size, found)
         return self._pause + _CHECKING * checked + selected

@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from service.fleet.evaluation import unassigned
 from service.fleet.fleet import Fleet, VehicleType
 from service.fleet.plans import Plan, Route
-from service.fleet.scales import UNBOUNDED, Horizon, most_legs, round_down, round_up, scales_of
-from service.fleet.squeezing import Squeezed
+from service.fleet.scales import UNBOUNDED, Horizon, Squeezed, round_down, round_up, scales_of
 from service.instance import OBJECTIVES
 
 _MOST_EXTRA = 2**50  # a prize or a fixed cost: 500 of them together do not overflow
@@ -65,7 +64,7 @@ class Translation:
         # A location for each stop, and one more for "anywhere": open routes start or end there.
         self._depots = [*sorted(rules.depots), rules.n]
         self._singles = [stop for stop in rules.clients if stop not in rules.shipped]
-        self.squeezed = Squeezed.of(fleet, most_legs(rules))
+        self.squeezed = Squeezed.of(fleet)
         self._horizon = Horizon.of(rules, float(self.squeezed.largest[rules.clock or 0]))
         scales, self.penalties = scales_of(fleet, self.squeezed, self._horizon)
         self.scales = [scales[self.distance]] * OBJECTIVES if same else scales
@@ -89,10 +88,15 @@ class Translation:
         """Return the plan of a solution."""
         stops = self._stops
         routes = (
-            Route(route.vehicle_type(), tuple(stops[each] for each in visits_of(route)))
+            Route(route.vehicle_type(), tuple(stops[each] for each in _visits(route)))
             for route in solution.routes()
         )
         return Plan(tuple(route for route in routes if route.stops))
+
+    def moved(self, solution: pyvrp.Solution, data: pyvrp.ProblemData) -> pyvrp.Solution:
+        """Return a solution of other data of this fleet as a solution of these data."""
+        routes = [pyvrp.Route(data, _visits(r), r.vehicle_type()) for r in solution.routes()]
+        return pyvrp.Solution(data, routes)
 
     def solution(self, data: pyvrp.ProblemData, plan: Plan) -> pyvrp.Solution:
         """Return a plan as a solution of data that `data` returned."""
@@ -229,14 +233,14 @@ class Translation:
         return early, max(early, late, least_late), service
 
     def _early(self, time: float) -> int:
-        return int(round_up(self._since_begin(time)))
+        return int(round_up(self._scaled_time(time)))
 
     def _late(self, time: float) -> int:
         if time >= self._horizon.end:
             return UNBOUNDED
-        return int(round_down(self._since_begin(time))) + self._slack
+        return int(round_down(self._scaled_time(time))) + self._slack
 
-    def _since_begin(self, time: float) -> float:
+    def _scaled_time(self, time: float) -> float:
         return max(0.0, time - self._horizon.begin) * self._time_scale
 
     @property
@@ -244,6 +248,5 @@ class Translation:
         return self.scales[self.fleet.rules.clock or 0]
 
 
-def visits_of(route: pyvrp.Route) -> list[pyvrp.ScheduledActivity]:
-    """Return the visits of a route, without its depots."""
+def _visits(route: pyvrp.Route) -> list[pyvrp.Activity]:
     return [each for each in route.schedule() if not each.is_depot()]
