@@ -167,7 +167,7 @@ def _places_by_matrices(matrices: NDArray[np.float32]) -> tuple[Indices, Indices
 def _without_zeros(objectives: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return planes or matrices, shape (2, n, ...), with the other one in place of one of zeros.
 
-    Tours then differ in the other objective alone, whatever the preference.
+    All tours have the same length in an objective of zeros, so only the other one matters.
     """
     first, second = (bool(objective.any()) for objective in objectives)
     return objectives if first == second else objectives[[0, 0] if first else [1, 1]]

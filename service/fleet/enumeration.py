@@ -1,4 +1,4 @@
-"""The exact front of a fleet of few stops and vehicles, by dynamic programming over its routes.
+"""Find the exact front of a fleet of few stops and vehicles by dynamic programming over routes.
 
 Every order of every subset of the stops is a route. One vehicle after another takes a route or
 none. Among the partial plans that visit the same stops, dominated ones are dropped.

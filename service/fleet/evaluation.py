@@ -167,7 +167,7 @@ def _shipments_broken(rules: Rules, plan: Plan) -> Iterator[str]:
         if (pickup is None) != (delivery is None):
             yield f"only half of the shipment from {each.pickup} to {each.delivery} is done"
         elif pickup and delivery and (pickup[0] != delivery[0] or pickup > delivery):
-            yield f"what is delivered at {each.delivery} was not picked up at {each.pickup}"
+            yield f"the load for {each.delivery} was not picked up at {each.pickup} before"
 
 
 def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
@@ -175,7 +175,7 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
     rules = fleet.rules
     vehicle = rules.vehicles[route.vehicle]
     if fleet.forbids and inf in legs(fleet, route, 0):
-        yield f"a vehicle of type {route.vehicle} takes a leg where there is no way"
+        yield f"a vehicle of type {route.vehicle} takes a forbidden leg"
         return
     for dimension, capacity in enumerate(vehicle.capacity):
         if (most := max(_loads(rules, route, dimension))) > capacity:

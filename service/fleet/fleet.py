@@ -1,4 +1,4 @@
-"""Fleets: stops, vehicles and rules, and the costs between the stops."""
+"""The values of a fleet: stops, vehicles, rules, and the costs between the stops."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class Visit:
 
 @dataclass(frozen=True)
 class Shipment:
-    """Two stops: what is picked up at one is delivered to the other later, by the same vehicle."""
+    """Two stops: the same vehicle takes a load from the one to the other."""
 
     pickup: int
     delivery: int
@@ -53,11 +53,11 @@ class VehicleType:
     Args:
         start: The stop at which they start; None if each starts at its first visit.
         end: The stop at which they end; None if each ends at its last visit.
-        count: How many there are.
+        count: The number of vehicles.
         capacity: The most that a vehicle can hold, in each dimension.
         shift: The earliest departure and the latest end of a route.
-        longest: The limit on a route: on its time if the fleet has a clock, else on its length in
-            the objective that is a maximum.
+        longest: The limit on the time of a route; without a clock, on its length in the objective
+            that is a maximum.
         fixed: The cost of using one vehicle.
     """
 
@@ -72,7 +72,7 @@ class VehicleType:
 
 @dataclass(frozen=True, kw_only=True)
 class Rules:
-    """All of a fleet but the costs between its stops.
+    """A fleet without the costs between its stops.
 
     Args:
         visits: The demands of each of the n stops. Starts and ends of vehicles have none.
@@ -199,17 +199,17 @@ class Fleet:
 
     @property
     def scale(self) -> Array:
-        """The unit of each objective, shape (2,): its largest leg, 1 where that is 0."""
+        """The unit of each objective, shape (2,): its largest leg, 1 if that is 0."""
         return np.where(self.largest_legs > 0, self.largest_legs, 1.0)
 
 
 def least_paths(costs: Array, starts: Sequence[int], combine: np.ufunc = np.add) -> Array:
-    """Return the least cost of a path from one of some starts to each stop, shape (n,). O(n^2).
+    """Return the least cost of a path from any of the starts to each stop, shape (n,). O(n^2).
 
     This is Dijkstra's algorithm over arrays.
 
     Args:
-        costs: The costs of legs, shape (n, n); infinite where there is no way.
+        costs: The costs of legs, shape (n, n); infinite for forbidden legs.
         starts: The stops where paths may start.
         combine: How the costs of legs make the cost of a path: np.add, or np.maximum.
     """

@@ -14,16 +14,16 @@ from service.instance import OUTLYING
 _LARGEST = 2.0**61  # the largest penalty of all routes together: PyVRP's integers have 64 bits
 UNBOUNDED = 2**44  # more than every route
 _COARSEST = 1000  # the least units of the longest leg
-_FINEST = 1e6  # the most units of it without limits: more would not help
-_FINE = 1e4  # the least units of it that squeezed legs must leave
+_FINEST = 1e6  # the most units of the longest leg without limits: more would not help
+_FINE = 1e4  # the least units of an ordinary leg beside squeezed legs
 _ROUNDING = 1e-12  # relative error of a float
 STEEPEST = 1000  # weight of one of two sums if the other has weight 1
 _HARDEST = 10  # the penalty for one unit over a limit or capacity, in longest legs
 _LEAST_LEGS = 10  # the least legs that an ordinary plan costs
-_HIGHEST = 1e4  # a squeezed leg, in ordinary legs: more would leave these too few units
+_HIGHEST = 1e4  # the most ordinary legs that a squeezed leg costs: more would leave these few units
 _MOST_STEPS = 1000  # the most huge numbers whose differences are kept
 _FORBIDDEN = 4.0  # cost of a forbidden leg, in highest squeezed legs
-_TINY = 2.0**-900  # of a longest leg: a power of ten that scales a shorter one would be infinite
+_TINY = 2.0**-900  # the power of ten that scales a shorter longest leg would be infinite
 
 
 def round_up(scaled: Array | float) -> Array:
@@ -38,7 +38,7 @@ def round_down(scaled: float) -> float:
 
 @dataclass(frozen=True)
 class Horizon:
-    """The times between which all routes fit: no vehicle needs to leave before or return after."""
+    """Two times: no vehicle needs to leave before the first or return after the second."""
 
     begin: float = 0.0
     end: float = 0.0
