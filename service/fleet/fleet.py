@@ -265,12 +265,12 @@ def _check_visit(rules: Rules, visit: Visit, index: int) -> None:
     part = f"stops/{index}"
     if index in rules.depots:
         _check_depot(visit, part)
+    if rules.clock is None and visit.service:
+        raise invalid(f"{part}/service", _UNTIMED)
     _check_span(rules, visit.window, f"{part}/window")
     if visit.demand and len(visit.demand) != rules.dimensions:
         demand = f"must have {rules.dimensions} numbers, as each capacity has"
         raise invalid(f"{part}/demand", f"{demand}, got {len(visit.demand)}")
-    if rules.clock is None and visit.service:
-        raise invalid(f"{part}/service", _UNTIMED)
     if visit.prize is not None and rules.over[0] == "max":
         raise invalid(f"{part}/prize", _UNSUMMED)
 
