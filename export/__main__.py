@@ -67,7 +67,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _refusal(name: str, out: Path, replace: bool) -> str | None:
-    """Return why an actor of this name is not written into this file, None where it may be."""
+    """Return why an actor of this name must not be written into this file, or None."""
     if not _NAME.fullmatch(name):
         return f"--name must be 1 to 64 letters, digits, dots, - and _, got {name!r}"
     if replace:

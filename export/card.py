@@ -1,4 +1,4 @@
-"""Write the card of an exported actor: how it was trained and what it reaches, in Markdown."""
+"""Write the card of an exported actor in Markdown: its training and its figures."""
 
 import json
 from collections.abc import Mapping

@@ -25,7 +25,7 @@ from torch import Tensor, nn
 from torch.onnx.symbolic_helper import parse_args
 from torch.onnx.utils import register_custom_op_symbolic, unregister_custom_op_symbolic
 
-DOMAIN = "paretour"  # of functions that stand for parts until they are put in their places
+DOMAIN = "paretour"  # the domain of functions that are later replaced by parts
 
 OPSET = 18
 _REDUCTIONS = {"amax": "max", "amin": "min", "sum": "add"}
@@ -115,7 +115,7 @@ def _check_sizes(graph: GraphProto, axes: Collection[int]) -> None:
 
 
 def inputs_of(model: ModelProto, part: Part) -> list[NDArray[Any]]:
-    """Return the arrays with which a part is traced: of its inputs those that its graph has."""
+    """Return the arrays with which a part is traced: the inputs that its graph has."""
     by_name = dict(zip(part[2], _flat(part[1]), strict=True))
     return [by_name[value.name].numpy() for value in model.graph.input]
 
@@ -128,7 +128,7 @@ def _flat(argument: Any) -> list[Tensor]:
 
 @contextmanager
 def _reductions_of_tables() -> Iterator[None]:
-    """Have scatter_reduce exported without the case of tensors that have no axis."""
+    """Export scatter_reduce without the case of tensors that have no axis."""
 
     @parse_args("v", "i", "v", "v", "s", "b")
     def scatter_reduce(

@@ -154,7 +154,7 @@ def _typed(names: tuple[str, ...], prefix: str, ends: str) -> str:
 
 
 def _slices(names: tuple[str, ...], all_: str, prefix: str) -> str:
-    """Return lines that slice off the ends that are kept, and pass on what is not by end."""
+    """Return lines that keep the first ends, and pass on the tensors that have no axis of ends."""
     return "\n".join(
         f"{prefix}{name} = Slice ({all_}{name}, zero, {all_}kept, one)"
         if name in _BY_END

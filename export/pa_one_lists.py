@@ -1,4 +1,4 @@
-"""Parts of PA-One's ONNX graph that build tours by shortlists and then contract what is left."""
+"""Parts of PA-One's ONNX graph that build tours by shortlists, and then by contraction."""
 
 import torch
 from torch import Tensor, nn

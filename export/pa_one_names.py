@@ -1,4 +1,4 @@
-"""The names of what the parts of PA-One's ONNX graph pass on to each other."""
+"""The names of the tensors that the parts of PA-One's ONNX graph pass on to each other."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ STATE = ("tours", "points", "visited", "visited_points", "freshness")
 
 
 class Names(NamedTuple):
-    """The names of what parts pass on, for coordinates or for matrices."""
+    """The names of the tensors that parts pass on, for coordinates or for matrices."""
 
     instance: str
     tables: tuple[str, ...]

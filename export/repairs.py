@@ -98,17 +98,17 @@ def left_of(fragments: Fragments) -> tuple[Tensor, ...]:
 
 
 def present(tensors: Costs | Fragments | Shortlists | RowLists) -> tuple[Tensor, ...]:
-    """Return those tensors of a kind that there are."""
+    """Return the tensors of a kind that are not None."""
     return tuple(tensor for tensor in tensors if tensor is not None)
 
 
 def as_costs(given: tuple[Tensor, ...]) -> Planes | Matrices:
-    """Return the costs in each objective that these tensors are."""
+    """Return these tensors as the costs in each objective."""
     return Planes(*given) if len(given) == 1 else Matrices(*given)
 
 
 def as_problem(given: tuple[Tensor, ...]) -> Problem:
-    """Return the problem that these tensors are, in the order of `Names.problem`."""
+    """Return these tensors, in the order of `Names.problem`, as a problem."""
     if len(given) == _OF_PLANES:
         cities, rows = given
         return Problem(Planes(cities), rows)

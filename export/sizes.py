@@ -1,9 +1,9 @@
-"""Sizes in a traced graph, each computed once, from the shapes of the graph's inputs.
+"""Compute each size in a traced graph only once, from the shapes of the graph's inputs.
 
-The exporter computes sizes anew wherever they are used: in a graph of many small operations these
-are a third of all. Here a graph has been run twice, on inputs of other sizes. What is the same both
-times is a constant; what is a size of an input, or made of one or two of them, is computed from
-these at the beginning. What remains is left as it was.
+The exporter computes a size again wherever it is used. In a graph of many small operations, this is
+a third of all operations. So the graph is run twice, on inputs of different sizes. A value that is
+the same both times becomes a constant. A value that follows from one or two sizes of inputs is
+computed from these at the beginning. Other values stay as they are.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,7 @@
 """`python -m models.average --out MEAN.pt A.pt B.pt ...`: the mean of the weights of several runs.
 
-Runs that began from the same weights and went on apart each settle with a noise of their own;
-their mean has less of it, and costs nothing to use (Wortsman et al., 2022, arXiv:2203.05482).
+Each of several runs from the same weights ends with noise of its own. Their mean has less noise,
+and is as fast to use (Wortsman et al., 2022, arXiv:2203.05482).
 """
 
 import argparse

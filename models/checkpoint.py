@@ -101,7 +101,7 @@ def restore(run: Any, state: dict[str, Any], stateful: Sequence[str]) -> None:
 
 
 def write_whole(state: dict[str, Any], path: Path) -> None:
-    """Write a file that is the old one or the new one at any moment, never a torn one."""
+    """Replace a file at once: at any moment it is the old one or the new one."""
     unfinished = path.with_suffix(".part")
     torch.save(state, unfinished)
     os.replace(unfinished, path)

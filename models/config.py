@@ -13,7 +13,7 @@ OBJECTIVES = ("lagrangian", "weighted-sum", "imitation", "repairs")
 
 @dataclass(frozen=True, kw_only=True)
 class NetworkConfig(Architecture):
-    """The name and sizes of an actor that there is."""
+    """The name and sizes of an actor."""
 
     name: str = setting("pa-one", f"one of {', '.join(NAMES)}")
 
@@ -31,7 +31,7 @@ class NetworkConfig(Architecture):
 
     @property
     def repairs(self) -> bool:
-        """Whether the actor repairs what it built."""
+        """Whether the actor repairs the tours that it built."""
         return self.name.startswith("pa-one")
 
     @property

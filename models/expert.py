@@ -96,7 +96,7 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the command."""
     parser = argparse.ArgumentParser("python -m models.expert", description=__doc__)
     parser.add_argument("--out", type=Path, required=True, help="folder of the shards")
-    parser.add_argument("--shards", type=int, default=100, help="how many there shall be")
+    parser.add_argument("--shards", type=int, default=100, help="the number of shards")
     add_options(parser, ExpertConfig)
     options = parser.parse_args(arguments)
     config = from_options(ExpertConfig, options)

@@ -1,4 +1,4 @@
-"""Objectives that actors are trained to lower: the Lagrangian and the weighted sum.
+"""The objectives that training minimises: the Lagrangian and the weighted sum.
 
 Mehta, Taghipour and Saeedi (2022), arXiv:2203.01298, equations 10 to 18: make the norm of a
 tour's two lengths small, while the vector of lengths points along the preference. The weighted

@@ -22,12 +22,12 @@ def add_options(parser: ArgumentParser, kind: type[Any]) -> None:
 
 
 def from_options(kind: type[T], options: Namespace, **others: Any) -> T:
-    """Return the configuration that the options describe; fields without option come by name."""
+    """Return the configuration of the options; fields without an option are given by name."""
     return kind(**_given(kind, options), **others)
 
 
 def differences(config: Any, options: Namespace) -> list[str]:
-    """Return what options that were given differ in from a configuration, a phrase for each."""
+    """Return a phrase for each given option that differs from a configuration."""
     return [
         f"--{name.replace('_', '-')} {value}, which has {getattr(config, name)}"
         for name, value in _given(type(config), options).items()

@@ -1,8 +1,8 @@
-"""Training steps on repairs: policy gradient on what it gains to join anew what cuts have left.
+"""Training steps on repairs: policy gradient on the gain of joining a cut tour again.
 
-The states are those that repairs meet: tours as the actor builds them, then after one repair of
-its own, after two, and so on. Now and then it learns from building tours, too, so that it does not
-unlearn that.
+The states are those of real repairs: tours as the actor builds them, then after one of its own
+repairs, after two, and so on. Now and then the actor also learns from building tours, so that it
+does not forget how.
 """
 
 from collections.abc import Sequence
@@ -40,7 +40,7 @@ from models.steps import StepMeans, drawn_instances, drawn_preferences, learn_to
 
 _REPAIRS = 60  # of each tour, one after another
 _BUILT_EVERY = 8  # repairs
-_LEAK = 0.25  # what a tour longer than before counts, for one that is as much shorter
+_LEAK = 0.25  # how much a longer tour counts, if one that is as much shorter counts 1
 
 
 class _Chain(NamedTuple):

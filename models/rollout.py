@@ -51,7 +51,7 @@ def roll_out(
     starts: Int[Tensor, "b r"],
     choose: Choose,
 ) -> Int[Tensor, "b r n"]:
-    """Build a tour for each row. Decoders that choose the first city disregard the starts."""
+    """Build a tour for each row. Decoders that choose the first city ignore the starts."""
     n = memory.pointers.shape[-1]
     visited = torch.zeros(*starts.shape, n, dtype=torch.bool, device=starts.device)
     no_city = torch.full_like(starts, n)

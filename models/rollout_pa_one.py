@@ -26,7 +26,7 @@ EdgeLogits = Callable[[Costs, Fragments, Candidates], Tensor]
 
 
 class Judgement(NamedTuple):
-    """How a network judges edges: to how many candidates, and once for how many joinings."""
+    """How a network rates edges: to how many candidates, and for how many joinings at once."""
 
     edge_logits: EdgeLogits
     candidates: int
@@ -38,9 +38,9 @@ def sampled_tours(
 ) -> tuple[Int[Tensor, "r n"], Float[Tensor, " r"]]:
     """Draw a tour for each row of costs, and return their log-likelihoods.
 
-    The logits of each edge are moved by chance (Gumbel's distribution, so that the best of several
-    is drawn from their softmax). The log-likelihood takes each fragment's choice among its own
-    edges for a draw of its own, which it is but for edges that two fragments share.
+    Noise is added to the logit of each edge: with Gumbel's distribution, the best of several edges
+    is then drawn from their softmax. The log-likelihood treats the choice of each fragment among
+    its own edges as a separate draw. That is exact except for edges that two fragments share.
     """
     fragments, likelihoods = joined_by_chance(judgement, costs, single_cities(costs), generator)
     return toured(costs, fragments), likelihoods

@@ -22,7 +22,7 @@ from models.networks.joining.fragments import NEVER
 
 
 class Cut(NamedTuple):
-    """How many cities a repair looks at, and how many of these it cuts out of a tour."""
+    """The numbers of cities that a repair looks at, and that it cuts out of a tour."""
 
     near: int
     cities: int
@@ -30,9 +30,9 @@ class Cut(NamedTuple):
 
 EARLY, LATE = Cut(16, 8), Cut(24, 12)
 LATE_FROM = 64  # repairs, after which they are late; each as many late ones have the same patterns
-_NEARNESS = 0.15  # by how much less a place in the order of nearness counts than the one before
+_NEARNESS = 0.15  # how much less a city counts than the next nearer one
 _AFTER_A_CUT = 0.5  # of a city's freshness
-_ROUNDING = 2e-6  # of a length: what sums of float32 may be wrong by
+_ROUNDING = 2e-6  # of a length: the error of sums of float32
 
 
 def _patterns(near: int, seed: int) -> Float[Tensor, "p near"]:
@@ -71,7 +71,7 @@ def from_the_first_city(tours: Int[Tensor, "k n"]) -> Int[Tensor, "k n"]:
 
 
 def least_costs(candidates: Candidates) -> Float[Tensor, "r n"]:
-    """Return the least that both edges of each city can cost, by its first candidates."""
+    """Return the least possible cost of both edges of each city, by its first candidates."""
     return candidates.costs[..., :2].sum(dim=-1)
 
 
@@ -136,7 +136,7 @@ def _cities_near(
 
 
 def _costs_from(problem: Problem, cities: Int[Tensor, " r"]) -> Float[Tensor, "r n"]:
-    """Return what the edges at one city of each row cost at least, but for its own price."""
+    """Return the least cost of the edges at one city of each row, without the price of the city."""
     costs, weights, prices = problem
     in_each = costs.beginning_at(cities)
     means = weighted_sums(in_each.means, weights)
@@ -203,6 +203,6 @@ def _worth_remembering(
 def _weakly_dominated(
     points: Float[Tensor, "r 2"], by: Float[Tensor, "q 2"]
 ) -> Bool[Tensor, "r q"]:
-    """Return whether each point is dominated or equalled, but for rounding, by each of others."""
+    """Return whether each other point dominates or equals each point, up to rounding."""
     low, lower = points[:, None] + _ROUNDING * points[:, None], by[None]
     return (lower[..., 0] <= low[..., 0]) & (lower[..., 1] <= low[..., 1])

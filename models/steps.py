@@ -105,7 +105,7 @@ def descend(optimizer: Optimizer, network: nn.Module, loss: Tensor, clip_gradien
 
 
 def drawn_instances(run: Run) -> Tensor:
-    """Draw instances of the kind that the actor reads, all with as many cities."""
+    """Draw instances of the kind that the actor reads, all with the same number of cities."""
     config, generator = run.config, run.instance_generator
     n = city_count(config.least_cities, config.most_cities, generator)
     if run.actor.reads == "coordinates":
@@ -122,14 +122,14 @@ def _numpy_generator(generator: Generator) -> np.random.Generator:
 
 
 def drawn_preferences(run: Run) -> Tensor:
-    """Return the paper's fixed fan where each preference has a multiplier; else draw anew."""
+    """Return the paper's fixed fan if each preference has a multiplier; else draw preferences."""
     if run.config.objective == "lagrangian":
         return fan_of_preferences(run.config.preferences, run.device)
     return spread_preferences(run.config.preferences, run.instance_generator, run.device)
 
 
 def _baseline(run: Run, instances: Tensor, preferences: Tensor, objectives: Tensor) -> Tensor:
-    """Return the objective to expect of each tour: the critic's, or the mean over the starts."""
+    """Return the expected objective of each tour: the critic's, or the mean over the starts."""
     if run.config.baseline == "shared":
         by_start = objectives.unflatten(1, (run.config.preferences, run.config.starts))
         return by_start.mean(dim=-1, keepdim=True).expand_as(by_start).flatten(1)

@@ -91,7 +91,7 @@ def _begun_or_resumed(options: argparse.Namespace, device: torch.device) -> Run:
 
 
 def _check_unchanged(run: Run, options: argparse.Namespace) -> None:
-    """Raise ValueError where options differ from those of the run that is to be resumed."""
+    """Raise ValueError if options differ from those of the run that is to be resumed."""
     differing = [*differences(run.config.network, options), *differences(run.config, options)]
     if options.initial:
         differing.append(f"--initial {options.initial}, which has weights")

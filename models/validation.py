@@ -29,7 +29,7 @@ class ValidationSet:
 def validation_sets(
     reads: str, counts: dict[int, int], device: torch.device
 ) -> list[ValidationSet]:
-    """Return, for each number of cities, as many uniform instances as asked; always the same."""
+    """Return the requested counts of uniform instances by number of cities; always the same."""
     return [
         ValidationSet(
             n, uniform_instances(reads, count, n, Generator().manual_seed(_SEED + n), device)

@@ -1,4 +1,4 @@
-"""Actors: the networks as released, one ONNX file each, which build a tour for each preference."""
+"""Actors: networks in ONNX files, which build a tour for each preference."""
 
 from functools import partial
 from pathlib import Path
@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from service.actor_info import RELEASED, check_names, onnx_files, read_actor_info
 from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled
-from service.instance import PLANE, Instance
+from service.instance import OBJECTIVES, PLANE, Instance
 from service.onnx_runtime import onnxruntime
 
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 Indices = NDArray[np.intp]
-_FATAL = 4  # the severity from which on ONNX Runtime writes to stderr
-_FEW = 100  # cities or preferences, up to which a session keeps less than 20 MB
-_MIN_PLACES = 3  # of fewer there is one tour, and no network was trained on them
+_FATAL = 4  # the least severity that ONNX Runtime writes to stderr
+_FEW = 100  # a session keeps less than 20 MB after calls of this many cities or preferences
+_MIN_PLACES = 3  # with fewer there is only one tour, and no network was trained on them
 _RESOLUTION = 2.0**20  # of a plane: cities whose coordinates round to the same are at one place
 _LARGEST_COST = 2.0  # scaled, of a forbidden leg or an outlier: networks were trained on up to 1
 _MARGIN = 0.25  # around the unit square, in which cities far from all others are put
@@ -29,10 +29,10 @@ _SAMPLED = 32  # rows of matrices, in which ties are looked for
 
 
 class OnnxActor:
-    """An ONNX file, whose network runs in a number of threads.
+    """The network of an ONNX file, which runs in a number of threads.
 
-    The file's metadata are read at once. Its inference session is opened by `load`, or by the first
-    call, since that takes up to two seconds, and a process often needs few of the actors.
+    The file's metadata are read at once. `load` or the first call opens its inference session: that
+    takes up to two seconds, and a process often needs only a few of the actors.
 
     Raises:
         ValueError: The file is not ONNX, lacks metadata, or reads neither coordinates nor matrices.
@@ -46,8 +46,7 @@ class OnnxActor:
         self._session: onnxruntime.InferenceSession | None = None
         self._loading = Lock()
         self._lock = Lock()
-        self._running_many = False
-        self._running = _run_options(self._running_many)
+        self._running = onnxruntime.RunOptions()
 
     def load(self) -> None:
         """Open the inference session, unless it is open.
@@ -62,9 +61,9 @@ class OnnxActor:
     def tours(self, instance: Instance, preferences: Array, repairs: int = 0) -> Tours:
         """Return tours, shape (k, n), one for each preference, shape (k, 2), by one inference.
 
-        Cities at one place are one city to the network, and follow one another in the tours.
-        With repairs, each tour is repaired that many times, and k more rows follow, shape (2k, n):
-        for each preference another tour that the repairs passed through.
+        The network sees cities at one place as one city; in the tours they follow one another.
+        With repairs, each tour is repaired that many times, and the shape is (2k, n): the k last
+        rows are other tours for the same preferences, which the repairs found on the way.
 
         Raises:
             ValueError: Repairs are asked for, and the file has no input for them.
@@ -74,17 +73,20 @@ class OnnxActor:
         if repairs > 0 and not self.info.repairs:
             raise ValueError(f"{self.info.name} cannot repair tours, got repairs {repairs}")
         outputs = ["tours", "visited"] if repairs > 0 else ["tours"]
-        options = self._begin(max(instance.n, len(preferences)))
+        options = _run_options(max(instance.n, len(preferences)) > _FEW)
+        with self._lock:
+            self._running = options
         if self.info.inputs == "matrices":
             scaled = instance.scaled_matrices.clip(max=_LARGEST_COST)
-            matrices = _without_zero_matrix(scaled.astype(np.float32))
+            matrices = _without_zeros(scaled.astype(np.float32))
             first, place = _places_by_matrices(matrices)
-            apart = _without_tied_costs(matrices[:, first[:, np.newaxis], first])
-            inputs: dict[str, NDArray[Any]] = {"matrices": apart}
+            costs = _without_tied_costs(matrices[:, first[:, np.newaxis], first])
+            inputs: dict[str, NDArray[Any]] = {"matrices": costs}
         else:
             scaled = instance.scaled_coordinates.clip(-_MARGIN, 1 + _MARGIN)
-            cities = _without_zero_plane(scaled.astype(np.float32))
-            first, place = _places_by_coordinates(cities)
+            planes = scaled.astype(np.float32).reshape(-1, OBJECTIVES, PLANE)
+            cities = _without_zeros(planes.swapaxes(0, 1)).swapaxes(0, 1).reshape(scaled.shape)
+            first, place = _places(np.rint(cities * np.float32(_RESOLUTION)))
             inputs = {"cities": _without_tied_cities(cities[first])}
         if len(first) < _MIN_PLACES:
             return np.tile(np.argsort(place, kind="stable"), (len(outputs) * len(preferences), 1))
@@ -105,14 +107,6 @@ class OnnxActor:
         """
         with self._lock:
             self._running.terminate = True
-
-    def _begin(self, size: int) -> onnxruntime.RunOptions:
-        """Return the options of a call, which `terminate` ends."""
-        many = size > _FEW
-        with self._lock:
-            if self._running.terminate or many != self._running_many:
-                self._running, self._running_many = _run_options(many), many
-            return self._running
 
     def _run(
         self,
@@ -136,11 +130,11 @@ def load_actors(
 ) -> dict[str, OnnxActor]:
     """Return the actors of the ONNX files in a directory, and in one of the user's, by name.
 
-    Each runs in a number of threads. The user's are opened at once, so that a file that ONNX
-    Runtime cannot run shows at the start.
+    Each runs in a number of threads. The user's files are opened at once, so that the service does
+    not start with a file that ONNX Runtime cannot run.
 
     Raises:
-        ValueError: As of read_actor_infos, or one is no network that ONNX Runtime can run.
+        ValueError: As in read_actor_infos; or ONNX Runtime cannot run one of the user's files.
     """
     actors = {path: OnnxActor(path, threads) for path in onnx_files(directory, own_directory)}
     check_names({path: actor.info for path, actor in actors.items()})
@@ -150,21 +144,11 @@ def load_actors(
     return {actor.info.name: actor for actor in actors.values()}
 
 
-def _places_by_coordinates(cities: NDArray[np.float32]) -> tuple[Indices, Indices]:
-    """Return the first city of each place, and the place of each city, of cities (n, 4)."""
-    return _places(np.rint(cities * np.float32(_RESOLUTION)))
-
-
-def _places_by_matrices(matrices: NDArray[np.float32]) -> tuple[Indices, Indices]:
-    """Return the same of matrices, shape (2, n, n): at one place, all costs are the same."""
-    n = matrices.shape[1]
-    if np.count_nonzero((matrices == 0).all(axis=0)) <= n:  # the diagonal alone: all are apart
-        return np.arange(n), np.arange(n)
-    return _places(np.concatenate((*matrices, *matrices.transpose(0, 2, 1)), axis=1) + 0.0)
-
-
 def _places(rows: NDArray[np.floating[Any]]) -> tuple[Indices, Indices]:
-    """Return the first of each group of equal rows, and the group of each row."""
+    """Return the first of each group of equal rows, and the group of each row.
+
+    Equal rows are cities at one place.
+    """
     numbers: dict[bytes, int] = {}
     place = np.array([numbers.setdefault(row.tobytes(), len(numbers)) for row in rows])
     if len(numbers) == len(rows):
@@ -172,22 +156,21 @@ def _places(rows: NDArray[np.floating[Any]]) -> tuple[Indices, Indices]:
     return np.unique(place, return_index=True)[1], place
 
 
-def _without_zero_plane(cities: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return cities, shape (n, 4), with the other plane where they all coincide in one.
+def _places_by_matrices(matrices: NDArray[np.float32]) -> tuple[Indices, Indices]:
+    """Return the same for matrices, shape (2, n, n): cities at one place have equal costs."""
+    n = matrices.shape[1]
+    if np.count_nonzero((matrices == 0).all(axis=0)) <= n:  # only the diagonal: all are apart
+        return np.arange(n), np.arange(n)
+    return _places(np.concatenate((*matrices, *matrices.transpose(0, 2, 1)), axis=1) + 0.0)
 
-    Tours then differ in the other objective alone, whatever the preference.
+
+def _without_zeros(objectives: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return planes or matrices, shape (2, n, ...), with the other one in place of one of zeros.
+
+    All tours have the same length in an objective of zeros, so only the other one matters.
     """
-    planes = [cities[:, :PLANE], cities[:, PLANE:]]
-    apart = [plane if plane.any() else other for plane, other in (planes, planes[::-1])]
-    return np.concatenate(apart, axis=1)
-
-
-def _without_zero_matrix(matrices: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return the same of matrices, shape (2, n, n), with the other where one is all zero."""
-    first, second = bool(matrices[0].any()), bool(matrices[1].any())
-    if first and second:
-        return matrices
-    return matrices[[0, 0] if first else [1, 1]]
+    first, second = (bool(objective.any()) for objective in objectives)
+    return objectives if first == second else objectives[[0, 0] if first else [1, 1]]
 
 
 def _without_tied_cities(cities: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -210,28 +193,22 @@ def _without_tied_costs(matrices: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _open_session(content: bytes, path: Path, threads: int) -> onnxruntime.InferenceSession:
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = threads
+    options.inter_op_num_threads = 1
+    # Planning memory for the shapes of a call takes 2 to 3 % of it, and the shapes rarely recur.
+    options.enable_mem_pattern = False
+    # Threads that spin while they wait would slow down the plans of other processes.
+    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
     try:
-        return onnxruntime.InferenceSession(
-            content, _options(threads), providers=["CPUExecutionProvider"]
-        )
+        return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
     except Exception as error:  # ONNX Runtime has a class for each of its codes, and no common one
         reason = str(error).strip().partition("\n")[0]
         raise ValueError(f"{path} must be an ONNX file that can be read: {reason}") from error
 
 
-def _options(threads: int) -> onnxruntime.SessionOptions:
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = threads
-    options.inter_op_num_threads = 1
-    # To plan memory for the shapes of a call takes 2 to 3 % of it, and in a loop they rarely recur.
-    options.enable_mem_pattern = False
-    # Threads that spin while they wait take the cores from the plans beside them.
-    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-    return options
-
-
 def _run_options(many: bool) -> onnxruntime.RunOptions:
-    """Return the options of a call, of many cities or preferences or of few."""
+    """Return the options of a call; `many` is whether it has many cities or preferences."""
     options = onnxruntime.RunOptions()
     options.log_severity_level = _FATAL  # being terminated is not an error
     if many:

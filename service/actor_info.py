@@ -1,7 +1,7 @@
-"""The metadata of an actor's ONNX file, for those that need no network.
+"""Read the metadata of an actor's ONNX file without its network.
 
-Apart from the actor: who imports ONNX Runtime has threads, and can no longer be forked; and to open
-a network for inference takes up to two seconds, in which its nodes are checked and simplified.
+This module does not import ONNX Runtime, because that starts threads, and a process with threads
+cannot be forked. Opening a network for inference would also take up to two seconds.
 """
 
 import hashlib
@@ -18,7 +18,8 @@ from service.instance import Kind
 
 RELEASED = Path(__file__).parent / "actors"
 _METADATA = ("name", "config", "commit", "sizes", "angles", "figures", "inputs")
-# Of onnx.proto what is read here: by message the number of each field, and its type if no text.
+# The part of onnx.proto that is read here: the number of each field of a message, and its type
+# unless that is text.
 _FIELDS: dict[str, dict[str, tuple[int, str | None]]] = {
     "Model": {"graph": (7, "Graph"), "metadata_props": (14, "Entry")},
     "Graph": {"input": (11, "Value")},
@@ -32,16 +33,16 @@ class ActorInfo:
     """The metadata of an actor's ONNX file.
 
     Args:
-        name: As requests name it.
-        digest: SHA-256 of the file, in hex.
-        commit: Of the code that wrote the file.
+        name: Its name in requests.
+        digest: The SHA-256 of the file, in hex.
+        commit: The commit of the code that wrote the file.
         inputs: The kind of instance that it reads: `coordinates`, shape (n, 4), each plane moved
             and scaled into the unit square; or `matrices`, shape (2, n, n), in units of the
             scale, with zeros on the diagonal.
-        sizes: Least and greatest number of cities that it was trained on.
-        angles: Least and greatest angle that it was trained on, in degrees.
-        config: Of the training run.
-        figures: Hypervolumes measured after training, by number of cities.
+        sizes: The least and greatest number of cities in its training.
+        angles: The least and greatest angle in its training, in degrees.
+        config: The configuration of the training run.
+        figures: The hypervolumes that were measured after training, by number of cities.
         repairs: Whether it can repair the tours that it has built.
     """
 
@@ -69,7 +70,7 @@ def read_actor_infos(directory: Path, own_directory: Path | None = None) -> dict
     """Return the metadata of the ONNX files in a directory, and in one of the user's, by path.
 
     Raises:
-        ValueError: There is no file in a directory, one is no actor, or two have the same name.
+        ValueError: A directory has no ONNX file, one is not an actor, or two have the same name.
     """
     files = onnx_files(directory, own_directory)
     infos = {path: read_actor_info(path.read_bytes(), path) for path in files}
@@ -81,7 +82,7 @@ def onnx_files(directory: Path, own_directory: Path | None = None) -> list[Path]
     """Return the ONNX files of a directory, and of one of the user's.
 
     Raises:
-        ValueError: There is none in a directory.
+        ValueError: A directory has none.
     """
     files: list[Path] = []
     for folder in [directory] if own_directory is None else [directory, own_directory]:
@@ -93,7 +94,7 @@ def onnx_files(directory: Path, own_directory: Path | None = None) -> list[Path]
 
 
 def check_names(infos: Mapping[Path, ActorInfo]) -> None:
-    """Raise ValueError if two files, with this metadata, hold actors of the same name."""
+    """Raise ValueError if two files hold actors of the same name."""
     paths: dict[str, Path] = {}
     for path, info in infos.items():
         if (other := paths.setdefault(info.name, path)) is not path:
@@ -104,7 +105,7 @@ def check_names(infos: Mapping[Path, ActorInfo]) -> None:
 
 
 def read_actor_info(content: bytes, path: Path) -> ActorInfo:
-    """Return the metadata in the content of an actor's ONNX file, whose path errors name.
+    """Return the metadata of an actor from the content of its ONNX file. Errors name its path.
 
     Raises:
         ValueError: It is not ONNX, lacks metadata, or reads neither coordinates nor matrices.
@@ -113,9 +114,12 @@ def read_actor_info(content: bytes, path: Path) -> ActorInfo:
     metadata = {entry.key: entry.value for entry in model.metadata_props}
     if missing := [name for name in _METADATA if name not in metadata]:
         raise ValueError(f"the metadata of {path} must have {', '.join(missing)}")
+    inputs: Any = metadata["inputs"]
+    if inputs not in get_args(Kind):
+        raise ValueError(f"inputs of {path} must be coordinates or matrices, got {inputs!r}")
     return ActorInfo(
         digest=hashlib.sha256(content).hexdigest(),
-        inputs=_kind(metadata["inputs"], path),
+        inputs=inputs,
         repairs=any(value.name == "repairs" for value in model.graph.input),
         **{name: metadata[name] for name in ("name", "commit")},
         **{name: _decoded(metadata[name]) for name in ("sizes", "angles", "config", "figures")},
@@ -123,7 +127,7 @@ def read_actor_info(content: bytes, path: Path) -> ActorInfo:
 
 
 def _parsed(content: bytes, path: Path) -> Any:
-    """Return a model of onnx.proto, with the members that are named in `_FIELDS`."""
+    """Return a model of onnx.proto with the members in `_FIELDS`."""
     model = _MODEL()
     try:
         model.ParseFromString(content)
@@ -154,13 +158,6 @@ def _model_class() -> type[Message]:
 
 
 _MODEL = _model_class()
-
-
-def _kind(inputs: str, path: Path) -> Kind:
-    for kind in get_args(Kind):
-        if inputs == kind:
-            return kind
-    raise ValueError(f"inputs of {path} must be coordinates or matrices, got {inputs!r}")
 
 
 def _decoded(text: str) -> Any:

@@ -1,4 +1,4 @@
-"""Values of planning: its options, the progress of a search, and fronts of tours."""
+"""The values of planning: options, the progress of a search, and fronts of tours."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class SearchResult:
     Args:
         points: The points.
         tours_at: Returns the tours, shape (k, n), of the points at indices, shape (k,). Copying a
-            few is much faster than copying all, which may take a quarter of a GB.
+            few tours is much faster than copying all: these may take a quarter of a GB.
         terminated: How the search ended; None while it runs.
     """
 
@@ -49,7 +49,7 @@ class Progress:
 
 A = TypeVar("A")
 B = TypeVar("B")
-# Takes the progress of a search, and a function that returns its best front so far of n tours.
+# Called with the progress of a search, and a function that returns the best front of n tours.
 ReportOf = Callable[[Progress, Callable[[int], A]], None]
 
 
@@ -65,15 +65,15 @@ class PlanOptions:
     Args:
         angles: The angles of the preferences for which tours are constructed, in degrees, shape
             (k,).
-        fewer: Whether a time limit may reduce the number of preferences: to as many, evenly spread,
-            as fit into the network's share of it, but at most k.
+        fewer: Whether a time limit may reduce the number of preferences to those that fit into the
+            network's share of the time. These are evenly spread.
         size: The greatest number of tours of the front.
-        start: The city from which every closed tour is reported.
+        start: The city at which every reported closed tour begins.
         reference_point: The reference point of the hypervolume, shape (2,), in the instance's
-            units; by default that of the instance.
-        time_limit: Seconds for construction, search and selection together, not for the bound;
-            at 0 there is no search.
-        initial_tours: Tours, shape (m, n), each of which the front must dominate or equal.
+            units; by default the reference point of the instance.
+        time_limit: The most seconds for construction, search and selection together, without the
+            bound; with 0 only the network plans.
+        initial_tours: Tours, shape (m, n). The front must dominate or equal each of them.
         bound: Whether to compute an upper bound on the hypervolume of any front.
         seed: The seed of the search's random choices.
         touched: Only with initial tours of an earlier front: the cities at which they may have

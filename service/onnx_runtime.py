@@ -1,7 +1,7 @@
-"""ONNX Runtime, imported with its telemetry off: import it from here and nowhere else.
+"""Import ONNX Runtime with its telemetry off. All other modules must import it from here.
 
-Left to itself it writes an identifier of the device and a database of events into the user's cache
-when it is imported, and sends these events to its maker.
+With its telemetry on, ONNX Runtime writes an identifier of the device and a database of events into
+the user's cache when it is imported, and sends these events to its maker.
 """
 
 import os

@@ -1,8 +1,7 @@
-"""Make child processes run the code of this one, whatever the current directory holds.
+"""Make child processes import the same code as this process.
 
-Python puts the current directory before all installed packages when it is started with -m or -c,
-as most children are. A folder that holds a package `service`, or any other name that is imported,
-would then stand in for the one that this process runs.
+Most children are started with -m or -c. Python then looks for packages in the current directory
+first. If that holds a folder `service`, or another name that is imported, children would run it.
 """
 
 import os
@@ -10,11 +9,11 @@ import sys
 
 
 def variables() -> dict[str, str]:
-    """Return the environment variables by which a process imports what this one would import."""
+    """Return the environment variables with which a process imports the same code as this one."""
     folders = os.pathsep.join(os.path.abspath(folder) for folder in sys.path)
     return {"PYTHONSAFEPATH": "1", "PYTHONPATH": folders}
 
 
 def keep_for_children() -> None:
-    """Have processes that are started from now on import what this one would import."""
+    """Make processes that are started from now on import the same code as this one."""
     os.environ.update(variables())

@@ -1,8 +1,8 @@
 """plan(...): from an instance to its front.
 
-A constructor, which is a network, builds first tours; the search improves them; the best subset
-of the size asked for is reported. The time limit is that of all three together. Nothing here knows
-of HTTP, jobs or files.
+A constructor, which is a network, builds first tours. The search improves them. The best subset of
+the requested size is reported. The time limit holds for all three together. Nothing here knows of
+HTTP, jobs or files.
 """
 
 import time
@@ -29,7 +29,8 @@ from service.search.open_routes import oriented, plain_tours, rotated
 Array = NDArray[np.float64]
 Tours = NDArray[np.int64]
 Indices = NDArray[np.intp]
-BOUND_SECONDS = 5.0  # after these a bound, which is valid all along, is tight enough
+_PHASES = ("construction", "improvement", "selection", "bound")
+BOUND_SECONDS = 5.0  # for tightening a bound; it is valid at any time
 
 
 def plan(
@@ -44,16 +45,16 @@ def plan(
     Args:
         constructor: Builds the tours that the search starts from.
         instance: The instance.
-        options: What front is wanted, and how much may be spent on it.
-        stop: Called every millisecond or two; True ends the planning with what was found so far.
+        options: The options of the front and the search.
+        stop: Called every millisecond or two; True ends planning with the best front so far.
         report: Called about ten times a second with the progress of the search, and with a function
             that returns the best front so far of at most n tours.
 
     Raises:
-        Cancelled: It was told to stop before it had a tour.
+        Cancelled: `stop` returned True before a tour was found.
         NoTour: Every tour that was found has a forbidden leg.
     """
-    clock = _Clock()
+    times = [time.perf_counter()]
     deadline = time.monotonic() + options.time_limit
     reference_point = options.reference_point
     if reference_point is None:
@@ -63,10 +64,27 @@ def plan(
     first = _first_tours(instance, constructed, options)
     searched = options.time_limit > 0
     before = hypervolume(tour_lengths(instance, first), reference_point) if searched else None
-    clock.ends("construction")
-    report_front = partial(_report_front, instance, options, len(constructed), report)
+    times.append(time.perf_counter())
+    front_of = partial(
+        Front,
+        constructed=len(constructed),
+        scale=instance.scale,
+        reference_point=reference_point,
+        closed=instance.closed,
+    )
+
+    def report_front(progress: Progress, best: Callable[[int], SearchResult]) -> None:
+        def best_front(size: int) -> Front:
+            found = best(min(size, options.size))
+            tours = _as_reported(instance, options.start, found.tours)
+            return front_of(
+                tours=tours, points=found.points, found=progress.points, terminated=None, timings={}
+            )
+
+        report(progress, best_front)
+
     found = _improved(instance, first, options, deadline, stop, report_front)
-    clock.ends("improvement")
+    times.append(time.perf_counter())
     if not len(found.points):
         raise Cancelled if stop() else _no_tour(instance, options, found)
     gained = None if before is None else hypervolume(found.points, reference_point) - before
@@ -74,24 +92,17 @@ def plan(
     if options.choose_again is not None:
         chosen = options.choose_again(found, chosen)
     tours = found.tours_at(chosen).astype(np.int64)
-    clock.ends("selection")
-    bound = None
-    if options.bound and not stop():
-        until = time.monotonic() + BOUND_SECONDS
-        bound = hypervolume_bound(instance, reference_point, until, stop)
-    clock.ends("bound")
-    return Front(
+    times.append(time.perf_counter())
+    bound = _bound(instance, reference_point, stop) if options.bound and not stop() else None
+    times.append(time.perf_counter())
+    return front_of(
         tours=_as_reported(instance, options.start, tours),
         points=found.points[chosen],
         found=len(found.points),
-        constructed=len(constructed),
-        scale=instance.scale,
-        reference_point=reference_point,
         terminated=found.terminated,
-        timings=clock.phases,
+        timings=dict(zip(_PHASES, (1000 * np.diff(times)).tolist(), strict=True)),
         bound=bound,
         gained=gained,
-        closed=instance.closed,
     )
 
 
@@ -107,12 +118,9 @@ def _constructed(constructor: Constructor, instance: Instance, options: PlanOpti
 
 def _first_tours(instance: Instance, constructed: Tours, options: PlanOptions) -> Tours:
     """Return the constructed tours, then the caller's; for one or two cities all tours."""
-    tours = [constructed]
-    if instance.n < MIN_CONSTRUCTED:
-        tours.append(plain_tours(instance).astype(np.int64))
-    if options.initial_tours is not None:
-        tours.append(options.initial_tours)
-    return np.concatenate(tours)
+    plain = plain_tours(instance) if instance.n < MIN_CONSTRUCTED else constructed[:0]
+    initial = constructed[:0] if options.initial_tours is None else options.initial_tours
+    return np.concatenate((constructed, plain.astype(np.int64), initial))
 
 
 def _improved(
@@ -141,32 +149,8 @@ def _improved(
     )
 
 
-def _report_front(
-    instance: Instance,
-    options: PlanOptions,
-    constructed: int,
-    report: ReportOf[Front],
-    progress: Progress,
-    best: Callable[[int], SearchResult],
-) -> None:
-    """Report the progress of the search, with the best tours found so far on demand."""
-
-    def best_front(size: int) -> Front:
-        assert options.reference_point is not None
-        found = best(min(size, options.size))
-        return Front(
-            tours=_as_reported(instance, options.start, found.tours),
-            points=found.points,
-            found=progress.points,
-            constructed=constructed,
-            scale=instance.scale,
-            reference_point=options.reference_point,
-            terminated=None,
-            timings={},
-            closed=instance.closed,
-        )
-
-    report(progress, best_front)
+def _bound(instance: Instance, reference_point: Array, stop: Callable[[], bool]) -> float:
+    return hypervolume_bound(instance, reference_point, time.monotonic() + BOUND_SECONDS, stop)
 
 
 def _no_tour(instance: Instance, options: PlanOptions, result: SearchResult) -> NoTour:
@@ -187,16 +171,3 @@ def _as_reported(instance: Instance, start: int, tours: NDArray[np.integer]) -> 
     if not instance.closed:
         return oriented(instance, tours)
     return rotated(tours, (tours == start).argmax(axis=1))
-
-
-class _Clock:
-    """A stopwatch: the milliseconds that each phase took, by name."""
-
-    def __init__(self) -> None:
-        self.phases: dict[str, float] = {}
-        self._since = time.perf_counter()
-
-    def ends(self, phase: str) -> None:
-        now = time.perf_counter()
-        self.phases[phase] = 1000 * (now - self._since)
-        self._since = now

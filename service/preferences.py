@@ -65,7 +65,7 @@ def weights(preferences: Array) -> Array:
     """Return the weights, rows adding to 1, of the weighted sum that goes with each direction.
 
     Args:
-        preferences: Directions, shape (k, 2), as of from_angles().
+        preferences: Directions, shape (k, 2), as from_angles() returns them.
 
     >>> weights(np.array([[0.6, 0.8], [1.0, 0.0]])).round(4)
     array([[0.5714, 0.4286],

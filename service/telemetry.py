@@ -14,8 +14,8 @@ from service.errors import Refusal
 from service.errors.printable import printable_lines
 
 T = TypeVar("T")
-_POLL_SECONDS = 0.2  # between two questions whether the search is loaded
-_SAY_SECONDS = 10.0  # between two lines on how long it has taken so far
+_POLL_SECONDS = 0.2  # between two checks whether the search is loaded
+_SAY_SECONDS = 10.0  # between two lines that say how long something has taken so far
 _KNOWN = frozenset(vars(logging.makeLogRecord({}))) | {"message", "asctime", "color_message"}
 
 _VERBOSE = (  # loggers whose lines repeat what the service logs itself
@@ -26,23 +26,22 @@ _VERBOSE = (  # loggers whose lines repeat what the service logs itself
 
 
 class PlainFormatter(logging.Formatter):
-    """Formats a record as a line to read: time, message, and the members added to it."""
+    """Formats a record as a plain line: the time, the message and the members added to it."""
 
     def format(self, record: logging.LogRecord) -> str:
         """Return the line."""
         added = {name: value for name, value in vars(record).items() if name not in _KNOWN}
-        members = "".join(f" {name}={_short(value)}" for name, value in added.items())
+        members = "".join(
+            f" {name}={value:.3g}" if isinstance(value, float) else f" {name}={value}"
+            for name, value in added.items()
+        )
         return printable_lines(super().format(record) + members)
 
 
-def _short(value: object) -> str:
-    return f"{value:.3g}" if isinstance(value, float) else str(value)
-
-
 def logging_config(level: str = "INFO", plain: bool = False) -> dict[str, Any]:
-    """Return a configuration of `logging`: a line for each record to standard error.
+    """Return a configuration of `logging` that writes a line for each record to standard error.
 
-    It is an object of JSON, or if `plain` a line for people to read.
+    The line is a JSON object, or if `plain` a line for people to read.
     """
     json_lines = {
         "()": "pythonjsonlogger.json.JsonFormatter",
@@ -66,7 +65,7 @@ def logging_config(level: str = "INFO", plain: bool = False) -> dict[str, Any]:
 
 
 def log_loading(app: Any, check_ready: Callable[[], Awaitable[None]]) -> None:
-    """Have an application log how the loading of its search goes, from its start on."""
+    """Make an application log, from its start on, how long its search takes to load."""
     lifespan: Callable[[Any], AbstractAsyncContextManager[Any]] = app.router.lifespan_context
 
     @asynccontextmanager
@@ -80,22 +79,15 @@ def log_loading(app: Any, check_ready: Callable[[], Awaitable[None]]) -> None:
 
 
 async def _log_until_ready(check_ready: Callable[[], Awaitable[None]]) -> None:
-    log = logging.getLogger("paretour")
-    log.info("loading the search; the first time it is compiled, for a minute or two")
     began = time.monotonic()
-    said = 0.0
-    while True:
-        seconds = time.monotonic() - began
-        try:
-            await check_ready()
-        except Refusal:
-            if seconds - said >= _SAY_SECONDS:
-                said = seconds
-                log.info("still loading, %.0f s", seconds)
-            await asyncio.sleep(_POLL_SECONDS)
-        else:
-            log.info("ready after %.1f s", seconds)
-            return
+    with logging_every("loading the search; the first time it is compiled, for a minute or two"):
+        while True:
+            try:
+                await check_ready()
+                break
+            except Refusal:
+                await asyncio.sleep(_POLL_SECONDS)
+    logging.getLogger("paretour").info("ready after %.1f s", time.monotonic() - began)
 
 
 @contextmanager
@@ -120,13 +112,13 @@ def logging_every(sentence: str, seconds: float = _SAY_SECONDS) -> Iterator[None
 
 
 def configure_logging(plain: bool = False) -> None:
-    """Write logs from now on, as JSON unless plain, and warnings as logs of `py.warnings`."""
+    """Write logs from now on, as JSON unless plain; log warnings as `py.warnings`."""
     logging.config.dictConfig(logging_config(plain=plain))
     logging.captureWarnings(True)
 
 
 def logged(load: Callable[[], T]) -> T:
-    """Configure logging in a process that was just started, and return what it is to load."""
+    """Configure logging in a process that was just started, and return what `load` returns."""
     configure_logging(plain=sys.stderr.isatty())
     return load()
 
@@ -134,8 +126,8 @@ def logged(load: Callable[[], T]) -> T:
 def trace(app: Any) -> None:
     """Send a span for each request to the collector at OTEL_EXPORTER_OTLP_ENDPOINT.
 
-    The application is typed Any: worker processes import this module, and shall not load FastAPI.
-    OpenTelemetry reads that variable, and all its others, by itself.
+    The application is typed Any, because worker processes import this module without FastAPI.
+    OpenTelemetry reads this variable, and all its others, by itself.
 
     Raises:
         ValueError: The extra for traces is not installed.

@@ -42,7 +42,7 @@ def streets(n: int, generator: Generator) -> Array:
 
 
 def _in_unit_square(cities: Array) -> Array:
-    # Of cities that all lie in one place there is nothing to scale.
+    # If all cities are at one place, nothing can be scaled.
     return (cities - cities.min(axis=0)) / max(np.ptp(cities, axis=0).max(), np.finfo(float).tiny)
 
 

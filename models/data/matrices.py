@@ -14,9 +14,9 @@ Array = NDArray[np.float64]
 
 _UNITS = (10.0, 1000.0)  # of a rounded plane: the side of the unit square, least and largest
 _ONE_WAY = (0.2, 0.7)  # least and largest share of streets that go in one direction
-_STREETS = 0.85  # share of a full grid's streets that there are
+_STREETS = 0.85  # share of the streets of a full grid
 _SPEEDS = (1.0, 2.0, 4.0)  # of a street, by its class
-_PLACES = 1.6  # crossings of a street graph for each city, at least
+_PLACES = 1.6  # the least number of crossings of a street graph for each city
 _CONGESTION = 0.3  # standard deviation of the logarithm of a street's slowness
 
 
@@ -28,7 +28,7 @@ def entries(n: int, generator: Generator) -> Array:
 
 
 def closed_entries(n: int, generator: Generator) -> Array:
-    """Draw such costs and close them under the triangle inequality, by Floyd and Warshall."""
+    """Draw random costs and close them under the triangle inequality, by Floyd and Warshall."""
     return np.stack([floyd_warshall(matrix) for matrix in entries(n, generator)])
 
 
@@ -38,7 +38,7 @@ def planes(n: int, generator: Generator) -> Array:
 
 
 def rounded_planes(n: int, generator: Generator) -> Array:
-    """Draw distances in two planes, to whole numbers of a unit."""
+    """Draw distances in two planes, rounded to whole numbers of a unit."""
     least, most = np.log(_UNITS)
     sides = np.exp(generator.uniform(least, most, size=(2, 1, 1)))
     return np.rint(sides * planes(n, generator))

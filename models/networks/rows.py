@@ -1,6 +1,6 @@
-"""Rows: what is done to every tensor of a tuple of them that has the rows of a problem in common.
+"""Operations on tuples of tensors that share the rows of a problem: each tensor is treated alike.
 
-A member of the tuple may be None, and stays so.
+A member of a tuple may be None, and stays None.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -14,7 +14,7 @@ Rows = TypeVar("Rows", bound=tuple[Any, ...])  # a NamedTuple
 
 
 def stacked(parts: Sequence[Rows], dim: int = 0) -> Rows:
-    """Return the rows of all parts, or what is along another dimension, one after the other."""
+    """Return all parts, concatenated by rows or along another dimension."""
     members = zip(*parts, strict=True)
     return _made(
         type(parts[0]), (each[0] if each[0] is None else torch.cat(each, dim) for each in members)

@@ -1,7 +1,7 @@
-"""Decoding city by city: the state of tours under construction, and what decoders share.
+"""Decode tours city by city: the state of tours under construction, and the base of decoders.
 
-A *row* is one tour under construction, or one moment of it when finished tours are scored: the
-same method of a decoder serves both.
+A *row* is one tour under construction. When finished tours are scored, it is one moment of a tour:
+the same method of a decoder does both.
 """
 
 from abc import ABC, abstractmethod

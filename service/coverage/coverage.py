@@ -1,47 +1,73 @@
-"""Coverage tasks: a map, a robot, places to visit and a second objective between them."""
+"""Coverage tasks: a map, robots, places to visit and a second objective between them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.coverage.frame import MapFrame
-from service.coverage.robots import Robot, poses_of
+from service.coverage.frame import Array, Cells, MapFrame, Mask
 from service.errors import InvalidCoverage
 from service.instance import CLOSED, RouteEnds
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Cells = NDArray[np.int64]
+
+@dataclass(frozen=True, kw_only=True)
+class Robot:
+    """A robot with a start of its own.
+
+    Args:
+        id: The name that comes back with its routes.
+        closed: Whether it returns to its start.
+        start: The place where it starts.
+        end: The place where it ends if it does not return; None allows any place.
+        start_pose: Replaces the start, as in Coverage.
+        end_pose: Replaces the end, in the same way.
+    """
+
+    id: str
+    closed: bool = True
+    start: int | None = None
+    end: int | None = None
+    start_pose: Sequence[float] | None = None
+    end_pose: Sequence[float] | None = None
+
+    def ends(self, part: str, poses: Mapping[str, int]) -> RouteEnds:
+        """Return the places where it starts and ends.
+
+        Args:
+            part: Its part of the request, such as robots/0.
+            poses: The place of each pose, by its part, such as robots/0/start_pose.
+        """
+        start = poses.get(f"{part}/start_pose", self.start)
+        return RouteEnds(self.closed, start, poses.get(f"{part}/end_pose", self.end))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Coverage:
-    """A coverage task: a grid, a robot, places to visit, and a second objective.
+    """A coverage task.
 
     Exactly one of `places` and `spacing` is given, and exactly one source of the second objective:
-    a matrix, a layer or coordinates. Robots may do without, and have both their objectives in
-    metres.
+    a matrix, a layer or coordinates. A task with `robots` needs no second objective: then both
+    objectives are metres.
 
     Args:
         blocked: Obstacles, shape (rows, columns).
         cell_size: The side of a cell, in metres.
-        origin: The pose of the map's lower left corner, as MapFrame has it; None if nobody knows.
+        origin: The pose of the map's lower left corner, as in MapFrame; None if it is unknown.
         robot_radius: In metres.
         places: Rows and columns of the places, shape (n, 2).
-        spacing: In metres. The places cover the region of the start pose, or without one the
+        spacing: In metres. The places cover the region of the first pose, or without poses the
             largest free region: one in each square of this side.
         start: The place from which all others must be reachable.
         ends: Whether tours are closed, and the places at which open routes start and end.
-        start_pose: Instead of both starts, x and y in the frame of the map, and maybe more, which
-            is disregarded: a place of its own, if none is there.
-        end_pose: Instead of the end of open routes, likewise.
+        start_pose: Replaces both starts: x and y in the frame of the map; further numbers are
+            ignored. Its cell becomes a place, if it is not one already.
+        end_pose: Replaces the end of open routes, in the same way.
         second_matrix: Costs between places, shape (n, n).
         cost_layer: Costs on the grid, shape (rows, columns).
         second_coordinates: Coordinates of the places in a plane, shape (n, 2).
-        robots: Those that share the places, each with a start of its own instead of `start`, `ends`
-            and both poses; none where one robot visits all places.
+        robots: The robots that share the places. Each has a start of its own, which replaces
+            `start`, `ends` and both poses. Empty if one robot visits all places.
 
     Raises:
         InvalidCoverage: A size is not positive, a cost layer does not fit the grid or has an
@@ -78,24 +104,31 @@ class Coverage:
         if given > 1 or (given == 0 and not self.robots):
             demand = "or cost_layer or second_coordinates is required, and only one of them"
             raise InvalidCoverage(("second_matrix", demand))
-        for name in self.poses:
-            if self.frame is None:
+        if self.frame is None:
+            for name in self.poses:
                 raise InvalidCoverage((name, "must be in the frame of a map with an origin"))
         self._check_layer()
 
     @property
     def frame(self) -> MapFrame | None:
-        """The frame that the map lies in, where its origin is known."""
+        """The frame of the map, if its origin is known."""
         if self.origin is None:
             return None
         return MapFrame(origin=self.origin, cell_size=self.cell_size, rows=len(self.blocked))
 
     @property
+    def robot_parts(self) -> Iterator[tuple[str, Robot]]:
+        """Each robot after its part of the request, such as robots/0."""
+        return ((f"robots/{index}", robot) for index, robot in enumerate(self.robots))
+
+    @property
     def poses(self) -> dict[str, Sequence[float]]:
-        """The poses at which tours start and end, by name, as far as they are given."""
+        """The poses that are given, by part of the request, such as robots/0/start_pose."""
         poses = {"start_pose": self.start_pose, "end_pose": self.end_pose}
-        given = {name: pose for name, pose in poses.items() if pose is not None}
-        return {**given, **poses_of(self.robots)}
+        for part, robot in self.robot_parts:
+            poses[f"{part}/start_pose"] = robot.start_pose
+            poses[f"{part}/end_pose"] = robot.end_pose
+        return {name: pose for name, pose in poses.items() if pose is not None}
 
     @property
     def has_costs(self) -> bool:
@@ -104,7 +137,7 @@ class Coverage:
 
     @property
     def has_costs_of_places_alone(self) -> bool:
-        """Whether the second objective has no costs of other cells than the places."""
+        """Whether the second objective has costs between the given places only."""
         return self.second_matrix is not None or self.second_coordinates is not None
 
     @property

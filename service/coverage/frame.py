@@ -1,4 +1,4 @@
-"""Map frames: where the cells of a grid lie in the frame that a robot's poses are in."""
+"""Map frames, in which robots have their poses, and the paths of tours over a map."""
 
 import math
 from collections.abc import Sequence
@@ -9,17 +9,17 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Cells = NDArray[np.int64]
-
-_DIGITS = 6  # after the first one of a cell's side, to which points are rounded
+Mask = NDArray[np.bool_]
+_DIGITS = 6  # points are rounded to this many digits after the first one of a cell's side
 
 
 @dataclass(frozen=True, kw_only=True)
 class MapFrame:
-    """Where a grid lies in the frame of its map, as ROS has it.
+    """The position of a grid in the frame of its map, as in ROS.
 
-    The origin is the pose of the grid's lower left corner (nav_msgs/MapMetaData, and costmap_2d,
-    whose cells have their centres half a cell from it). Row 0 of a grid is its top one, as in a
-    picture, so rows count against y, where the yaw is 0.
+    The origin is the pose of the grid's lower left corner (nav_msgs/MapMetaData). The centre of the
+    first cell is half a cell away from it, as in costmap_2d. Row 0 of a grid is the top one, as in
+    a picture: if the yaw is 0, y falls from row to row.
 
     Args:
         origin: x and y in metres, and the yaw in radians, counterclockwise.
@@ -34,7 +34,7 @@ class MapFrame:
     def points(self, cells: Cells) -> Array:
         """Return x and y in metres, shape (n, 2), of the centres of cells.
 
-        They are rounded to a millionth of a cell, which keeps their JSON short.
+        They are rounded to a millionth of a cell, to keep their JSON short.
 
         Args:
             cells: Rows and columns, shape (n, 2).
@@ -47,7 +47,7 @@ class MapFrame:
         return points.round(_DIGITS - math.floor(math.log10(self.cell_size)))
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
-        """Return the row and column of the cell around a point, which may lie beside the grid.
+        """Return the row and column of the cell at a point. It may lie outside the grid.
 
         >>> MapFrame(origin=(-10.0, -10.0, 0.0), cell_size=0.05, rows=384).cell(-1.98, -0.52)
         (194, 160)
@@ -58,3 +58,18 @@ class MapFrame:
         up = cosine * (y - bottom) - sine * (x - left)
         column = math.floor(right / self.cell_size)
         return self.rows - 1 - math.floor(up / self.cell_size), column
+
+
+@dataclass(frozen=True, eq=False)
+class CoveragePath:
+    """The path of a tour over a map.
+
+    Args:
+        cells: Rows and columns, shape (m, 2). The path of a closed tour ends at its first cell.
+        metres: The length.
+        frame: The frame of the map, if it is known.
+    """
+
+    cells: Cells
+    metres: float
+    frame: MapFrame | None = None

@@ -4,25 +4,25 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from service.coverage.coverage import Coverage
+from service.coverage.frame import Cells, Mask
 from service.coverage.grid import covering_places, largest_region, region_of, regions
-from service.coverage.robots import parts_of
 from service.errors import InvalidCoverage, TooManyPlaces
 from service.instance import RouteEnds
-
-Mask = NDArray[np.bool_]
-Cells = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
 class Places:
-    """The places that tours go through: rows and columns, shape (n, 2).
+    """The places that tours go through.
 
-    Tours are reported from `start`, and the places at which open routes start and end are `ends`.
-    The first places, `to_visit` of them, are the caller's or cover a region; the others are those
-    of poses. `robots` are the places at which each robot starts and ends, where several share them.
+    Attributes:
+        cells: Rows and columns, shape (n, 2).
+        start: The place at which reported tours begin.
+        ends: Whether tours are closed, and the places at which open routes start and end.
+        to_visit: The number of places that are the caller's, or that cover a region. They come
+            first; the others are the places of poses.
+        robots: The places at which each robot starts and ends, if several share the places.
     """
 
     cells: Cells
@@ -42,24 +42,26 @@ def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
 
     Raises:
         InvalidCoverage: A place or a pose is not free or cannot be reached, or the second objective
-            is not of as many places.
+            has another number of places.
         TooManyPlaces: A spacing gives more than `max_places`.
     """
     poses = _pose_cells(coverage, free)
     cells = _given_or_laid_out(coverage, free, poses)
     to_visit = len(cells)
-    names = [f"places/{i}" for i in range(len(cells))]
+    names = [f"places/{i}" for i in range(to_visit)]
     found: dict[str, int] = {}
     for name, cell in poses.items():
         there = np.flatnonzero((cells == cell).all(axis=1))
         found[name] = int(there[0]) if len(there) else len(cells)
         if not len(there):
-            _check_costs_anywhere(coverage, name)
+            if coverage.has_costs_of_places_alone:
+                costs = "only a cost_layer has costs of other cells"
+                raise InvalidCoverage((name, f"must be in the cell of a place, as {costs}"))
             cells, names = np.vstack((cells, cell)), [*names, name]
     if coverage.spacing is not None and len(cells) > max_places:
         raise TooManyPlaces(max_places, len(cells))
     places = _with_ends(coverage, cells, to_visit, found)
-    _raise_any(_miscounted(coverage, places))
+    _raise_any(_misfits(coverage, places))
     _raise_any(_unreachable(places, names, free))
     return places
 
@@ -67,7 +69,7 @@ def find_places(coverage: Coverage, free: Mask, max_places: int) -> Places:
 def _with_ends(coverage: Coverage, cells: Cells, to_visit: int, poses: Mapping[str, int]) -> Places:
     """Return the places with the ends of tours; `poses` are the places of the poses, by name."""
     if coverage.robots:
-        robots = tuple(robot.ends(part, poses) for part, robot in parts_of(coverage.robots))
+        robots = tuple(robot.ends(part, poses) for part, robot in coverage.robot_parts)
         return Places(cells, robots[0].start or 0, coverage.ends, to_visit, robots)
     start, ends = poses.get("start_pose", coverage.start), coverage.ends
     if not ends.closed:
@@ -105,7 +107,7 @@ def _pose_cells(coverage: Coverage, free: Mask) -> dict[str, Cells]:
 
 
 def _misplaced(coverage: Coverage, cell: Sequence[int], free: Mask) -> str | None:
-    """Return what a cell misses to be a place; None where it misses nothing."""
+    """Return the demand on places that a cell does not meet; None if it meets all."""
     row, column = cell
     shown = f"[{row:.6g}, {column:.6g}]"
     if not (0 <= row < free.shape[0] and 0 <= column < free.shape[1]):
@@ -117,40 +119,25 @@ def _misplaced(coverage: Coverage, cell: Sequence[int], free: Mask) -> str | Non
     return None
 
 
-def _check_costs_anywhere(coverage: Coverage, name: str) -> None:
-    """Raise InvalidCoverage unless there are costs from and to any cell, not of places alone."""
-    if coverage.has_costs_of_places_alone:
-        demand = "must be in the cell of a place, as only a cost_layer has costs of other cells"
-        raise InvalidCoverage((name, demand))
-
-
-def _miscounted(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
-    yield from _ends_of_robots(coverage, places) if coverage.robots else _ends(coverage, places)
+def _misfits(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
+    """Yield the ends of tours that are not places, and sources of costs with wrong sizes."""
     n = len(places.cells)
+    ends, most = {"start": places.start, "end": places.ends.end}, n
+    if coverage.robots:
+        ends, most = {}, places.to_visit
+        for part, robot in coverage.robot_parts:
+            ends |= {f"{part}/start": robot.start, f"{part}/end": robot.end}
+    for name, place in ends.items():
+        if place is not None and place >= most:
+            yield name, f"must be a place, 0 to {most - 1}, got {place}"
+    _, start, end = places.ends
+    if n > 1 and start == end is not None:
+        name = "end" if coverage.end_pose is None else "end_pose"
+        yield name, f"must not be the start, or tours are closed, got place {end}"
     for name in ("second_matrix", "second_coordinates"):
         rows = getattr(coverage, name)
         if rows is not None and len(rows) != n:
             yield name, f"must have a row for each of {n} places, got {len(rows)}"
-
-
-def _ends(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
-    """Yield the faults of the ends of one robot's tours."""
-    n = len(places.cells)
-    _, start, end = places.ends
-    for name, place in (("start", places.start), ("end", end)):
-        if place is not None and place >= n:
-            yield name, f"must be a place, 0 to {n - 1}, got {place}"
-    if n > 1 and start == end is not None:
-        name = "end" if coverage.end_pose is None else "end_pose"
-        yield name, f"must not be the start, or tours are closed, got place {end}"
-
-
-def _ends_of_robots(coverage: Coverage, places: Places) -> Iterator[tuple[str, str]]:
-    """Yield the starts and ends of robots that are not places of the task."""
-    for part, robot in parts_of(coverage.robots):
-        for name, place in (("start", robot.start), ("end", robot.end)):
-            if place is not None and place >= places.to_visit:
-                yield f"{part}/{name}", f"must be a place, 0 to {places.to_visit - 1}, got {place}"
 
 
 def _unreachable(places: Places, names: list[str], free: Mask) -> Iterator[tuple[str, str]]:

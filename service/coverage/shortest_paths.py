@@ -1,12 +1,12 @@
-"""Exact shortest paths on a grid from one cell to others.
+"""Exact shortest paths on a grid from one cell to others. Compiled.
 
-A step goes to one of the eight neighbours of a cell and has length 1, or the square root of 2 if
-it is diagonal; a diagonal step needs both cells beside it free, so that no corner is cut. Of
-equally short paths, one of least cost by a cost layer is taken.
+A step goes to one of the eight neighbours of a cell. Its length is 1, or the square root of 2 if it
+is diagonal. A diagonal step needs both cells beside it free, so that no corner is cut. Of equally
+short paths, one of least cost in a cost layer is taken.
 
-The algorithm is Dijkstra's with the bucket queue of Denardo and Fox (1979): where no step is
-shorter than a bucket is wide, all cells of the nearest bucket are final. It takes time linear in
-the cells, 10 ms for 512 x 512 of them: a third of scipy.sparse.csgraph.dijkstra with its heap.
+The algorithm is Dijkstra's with the bucket queue of Denardo and Fox (1979): if no step is shorter
+than the width of a bucket, all cells of the nearest bucket are final. Time is linear in the cells:
+10 ms for 512 x 512, a third of scipy.sparse.csgraph.dijkstra with its heap.
 """
 
 from collections.abc import Callable
@@ -15,32 +15,29 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from service.coverage.frame import Array, Cells, Mask
 from service.jit import allocating, inlined
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Cells = NDArray[np.int64]
 
 DIAGONAL = np.sqrt(2.0)
 
 
 class Grid(NamedTuple):
-    """Free cells and a cost layer, flattened row by row, with a frame of blocked cells around."""
+    """Free cells and a cost layer, flattened row by row, inside a frame of blocked cells."""
 
     free: Mask  # (cells,)
     layer: Array  # (cells,)
-    width: int  # of a row, frame included
+    width: int  # of a row, with the frame
 
 
 class PathTree(NamedTuple):
     """The shortest paths from a source to the cells of a grid.
 
-    A step's cost is its length times the mean of the cost layer at both its ends.
+    The cost of a step is its length times the mean of the cost layer at both its ends.
     """
 
-    length: Array  # (cells,), infinite where no path was found
+    length: Array  # (cells,), infinite if no path was found
     diagonals: NDArray[np.int32]  # (cells,), the number of diagonal steps of the path
-    cost: Array  # (cells,), along the path
+    cost: Array  # (cells,), of the path
     predecessor: NDArray[np.int32]  # (cells,), the cell before on the path, or -1
 
 
@@ -54,14 +51,14 @@ class DijkstraState(NamedTuple):
 
 
 def make_grid(free: Mask, layer: Array | None = None) -> Grid:
-    """Return a grid of free cells, shape (rows, columns), and maybe a cost layer of that shape."""
+    """Return a grid of free cells, shape (rows, columns), and of a cost layer, if there is one."""
     framed = np.pad(free, 1)
     costs = np.zeros(framed.shape) if layer is None else np.pad(layer, 1)
     return Grid(framed.ravel(), costs.ravel(), framed.shape[1])
 
 
 def cell_numbers(grid: Grid, cells: Cells) -> Cells:
-    """Return the numbers, shape (n,), in a grid of rows and columns, shape (n, 2)."""
+    """Return the numbers in a grid, shape (n,), of cells given by row and column, shape (n, 2)."""
     return (cells[:, 0] + 1) * grid.width + cells[:, 1] + 1
 
 
@@ -82,10 +79,10 @@ def pairwise_paths(
         grid: The grid.
         cells: Numbers of cells in the grid, shape (n,).
         stop: Called before each of n - 1 searches; once it returns True, the rest is left out.
-        steps: Of zeros, shape (n, n), to be filled in with the number of steps of each path.
+        steps: Zeros, shape (n, n). The number of steps of each path is written there.
 
     Returns:
-        Lengths in cells, and costs by the layer, both symmetric, shape (n, n). Where there is no
+        Lengths in cells, and costs by the layer, both symmetric, shape (n, n). If there is no
         path, the length is infinite and the cost 0.
     """
     n = len(cells)
@@ -102,7 +99,7 @@ def pairwise_paths(
 
 
 def count_steps(tree: PathTree, cells: Cells) -> NDArray[np.int32]:
-    """Return the number of steps of the paths to cells, shape (n,); 0 where there is no path."""
+    """Return the number of steps of the paths to cells, shape (n,); 0 if there is no path."""
     length, diagonals = tree.length[cells], tree.diagonals[cells]
     reached = np.isfinite(length)
     straight = np.rint(np.where(reached, length, 0.0) - diagonals * DIAGONAL)
@@ -117,9 +114,9 @@ def warm_up() -> None:
 
 @allocating
 def find_paths(grid: Grid, source: int, targets: Cells) -> PathTree:
-    """Return shortest paths from a source to targets, and to all cells that are nearer.
+    """Return the shortest paths from a source to targets, shape (n,), and to all nearer cells.
 
-    Cells are given by their numbers; targets have shape (n,). O(cells).
+    Cells are given by their numbers. O(cells).
     """
     cells = len(grid.free)
     tree = PathTree(
@@ -139,7 +136,7 @@ def find_paths(grid: Grid, source: int, targets: Cells) -> PathTree:
     while missing > 0 and state.sizes.sum() > 0:
         for k in range(state.sizes[now % 3]):
             cell = state.buckets[now % 3, k]
-            # A cell that came nearer after it was queued here was expanded from that bucket.
+            # A cell that got a shorter path since was expanded from an earlier bucket.
             if int(tree.length[cell]) == now:
                 missing -= is_target[cell]
                 _expand(state, cell)
@@ -153,7 +150,7 @@ def _expand(state: DijkstraState, cell: int) -> None:
     """Relax the steps from a cell to its free neighbours."""
     free, width = state.grid.free, state.grid.width
     diagonals = state.tree.diagonals[cell]
-    # Computed from counts of steps, so that lengths are equal exactly where the counts are.
+    # Computed from counts of steps: paths with equal counts must have exactly equal lengths.
     straight = np.rint(state.tree.length[cell] - diagonals * DIAGONAL)
     by_side = straight + 1 + diagonals * DIAGONAL
     by_corner = straight + (diagonals + 1) * DIAGONAL
@@ -168,7 +165,7 @@ def _expand(state: DijkstraState, cell: int) -> None:
 
 @inlined
 def _relax(state: DijkstraState, cell: int, beside: int, length: float, diagonal: bool) -> None:
-    """Let the path to a neighbour come from a cell if that is shorter, or as short and cheaper."""
+    """Lead the path to a neighbour over a cell if that is shorter, or as short and cheaper."""
     tree, layer = state.tree, state.grid.layer
     known = tree.length[beside]
     if length > known:

@@ -1,23 +1,21 @@
 """survey(...): from a grid and places on it to an instance; Survey.paths: from tours to paths.
 
 The first objective is the length in metres of the shortest path between two places that keeps
-clear of obstacles. The second is the caller's: a matrix; distances between points in a plane; or a
-cost layer on the grid. By a layer, a path costs the sum over its steps of the step's length in
-metres times the mean of the layer at the step's two ends; of equally short paths the cheapest is
-taken.
+clear of obstacles. The second comes from the caller: a matrix, distances between points in a plane,
+or a cost layer on the grid. In a cost layer, a step costs its length in metres times the mean of
+the layer at both its ends. Of equally short paths the cheapest is taken.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import groupby, pairwise
+from itertools import chain, groupby, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.coverage.coverage import Coverage
-from service.coverage.frame import MapFrame
-from service.coverage.grid import free_cells
-from service.coverage.path import CoveragePath
+from service.coverage.frame import Array, Cells, CoveragePath, MapFrame
+from service.coverage.grid import Uncovered, free_cells, uncovered
 from service.coverage.places import find_places
 from service.coverage.shortest_paths import (
     Grid,
@@ -27,23 +25,26 @@ from service.coverage.shortest_paths import (
     pairwise_paths,
     trace_path,
 )
-from service.coverage.uncovered import Uncovered, uncovered
 from service.errors import Cancelled, InvalidCoverage, Refusal
 from service.instance import Instance, RouteEnds
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Cells = NDArray[np.int64]
 Indices = NDArray[np.integer]
 
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """Places, rows and columns, shape (n, 2), and the instance of the costs between them.
+    """Places on a map, and the instance of the costs between them.
 
-    Tours are reported from the place `start`. `steps`, shape (n, n), are the numbers of steps of
-    the paths between places. The frame is that of the map, where it is known. `to_visit` and
-    `robots` are as of Places. No path leads to the cells that are uncovered.
+    Attributes:
+        places: Rows and columns, shape (n, 2).
+        start: The place at which reported tours begin.
+        instance: The costs between places.
+        grid: The free cells and the cost layer.
+        steps: The numbers of steps of the paths between places, shape (n, n).
+        frame: The frame of the map, if it is known.
+        to_visit: As in Places.
+        uncovered: The cells to which no path leads.
+        robots: As in Places.
     """
 
     places: Cells
@@ -62,7 +63,7 @@ class Survey:
         most_cells: int | None = None,
         stop: Callable[[], bool] = lambda: False,
     ) -> Iterator[CoveragePath]:
-        """Yield the path of each of the tours, shape (k, n); else as `paths_of_plans`."""
+        """Yield the path of each tour, shape (k, n). See `paths_of_plans`."""
         returns = tours[:, :1] if self.instance.closed else tours[:, :0]
         ways = np.hstack((tours, returns))
         return self.paths_of_plans([[way] for way in ways], most_cells, stop)
@@ -76,34 +77,36 @@ class Survey:
         """Yield the path of each way of each plan.
 
         Args:
-            plans: The ways of each, which are places in order, shape (m,), one at least.
-            most_cells: Of all paths together; None sets no limit. It is checked before any is made.
+            plans: The ways of each plan. A way is places in order, shape (m,), m at least 1.
+            most_cells: The most cells of all paths together; None sets no limit. It is checked
+                before any path is made.
             stop: Called for each leg and each path; True ends the tracing.
 
         Raises:
             Refusal: The paths have more cells than that.
             Cancelled: `stop` returned True.
         """
-        cells = [sum(self._cells_of(way) for way in plan) for plan in plans]
+        legs_of = [[(way[:-1], way[1:]) for way in plan] for plan in plans]
+        cells = [sum(1 + int(self.steps[leg].sum()) for leg in legs) for legs in legs_of]
         if most_cells is not None and sum(cells) > most_cells:
-            raise _paths_too_long(most_cells, cells)
-        ways = [way for plan in plans for way in plan]
-        legs = [np.sort(np.stack((way[:-1], way[1:]), axis=1)) for way in ways]
+            fitting = most_cells // max(cells)
+            advice = f"ask for a size of {fitting}" if fitting else "ask without paths"
+            raise Refusal(
+                "paths-too-long",
+                pointer="/paths",
+                limit=most_cells,
+                actual=sum(cells),
+                advice=advice,
+            )
+        legs = [np.sort(np.stack(each, axis=1)) for each in chain.from_iterable(legs_of)]
         steps = np.unique(np.concatenate([np.empty((0, 2), np.int64), *legs]), axis=0)
         paths = dict(self._paths_of_steps(steps.tolist(), stop))
-        for way in ways:
+        assert self.instance.matrices is not None
+        for way in chain.from_iterable(plans):
             _check(stop)
             parts = [paths[step][1:] for step in pairwise(way.tolist())]
-            cells_of_way = np.concatenate([self.places[way[:1]], *parts])
-            yield CoveragePath(cells_of_way, self._metres_of(way), self.frame)
-
-    def _cells_of(self, way: Indices) -> int:
-        """Return the number of cells of the path of a way."""
-        return int(self.steps[way[:-1], way[1:]].sum(dtype=np.int64)) + 1
-
-    def _metres_of(self, way: Indices) -> float:
-        assert self.instance.matrices is not None
-        return float(self.instance.matrices[0, way[:-1], way[1:]].sum())
+            metres = float(self.instance.matrices[0, way[:-1], way[1:]].sum())
+            yield CoveragePath(np.concatenate([self.places[way[:1]], *parts]), metres, self.frame)
 
     def _paths_of_steps(
         self, steps: list[tuple[int, int]], stop: Callable[[], bool]
@@ -133,7 +136,7 @@ def survey(coverage: Coverage, max_places: int, stop: Callable[[], bool]) -> Sur
 
     Raises:
         InvalidCoverage: No cell is free, a place or a pose is not free or cannot be reached, or the
-            second objective is not of as many places.
+            second objective has another number of places.
         TooManyPlaces: The spacing gives more than `max_places`.
         InvalidInstance: The second objective's costs are not valid.
         Cancelled: `stop` returned True.
@@ -180,11 +183,3 @@ def _second_objective(coverage: Coverage, metres: Array, costs: Array) -> Array:
 def _check(stop: Callable[[], bool]) -> None:
     if stop():
         raise Cancelled
-
-
-def _paths_too_long(most: int, cells: Sequence[int]) -> Refusal:
-    """Return the refusal of paths, given the cells of each tour or plan; advise how many fit."""
-    fitting = most // max(cells)
-    advice = f"ask for a size of {fitting}" if fitting else "ask without paths"
-    actual = sum(cells)
-    return Refusal("paths-too-long", pointer="/paths", limit=most, actual=actual, advice=advice)

@@ -1,11 +1,11 @@
-"""The exact front of a fleet of few stops and vehicles, by dynamic programming over its routes.
+"""Find the exact front of a fleet of few stops and vehicles by dynamic programming over routes.
 
 Every order of every subset of the stops is a route. One vehicle after another takes a route or
 none. Among the partial plans that visit the same stops, dominated ones are dropped.
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from itertools import permutations
 from typing import NamedTuple
 
@@ -74,7 +74,7 @@ def _routes(fleet: Fleet, vehicle: int, ended: Callable[[], bool]) -> Partials:
             if _ships_in_order(rules, stops) and not any(route_violations(fleet, route)):
                 first, second = route_lengths(fleet, route)
                 found[frozenset(stops)].append(_Partial(first + fixed, second, (route,)))
-    return {visited: _undominated(each) for visited, each in found.items()}
+    return _undominated(found)
 
 
 def _ships_in_order(rules: Rules, stops: tuple[int, ...]) -> bool:
@@ -100,7 +100,7 @@ def _with_another(
             if not visited & added:
                 joined = (_joined(rules, a, b) for a in before for b in each)
                 found.setdefault(visited | added, []).extend(joined)
-    return {visited: _undominated(each) for visited, each in found.items()}
+    return _undominated(found)
 
 
 def _joined(rules: Rules, a: _Partial, b: _Partial) -> _Partial:
@@ -111,7 +111,9 @@ def _joined(rules: Rules, a: _Partial, b: _Partial) -> _Partial:
     return _Partial(first, second, a.routes + b.routes)
 
 
-def _undominated(partials: Iterable[_Partial]) -> list[_Partial]:
-    each = list(partials)
-    points = np.array([partial[:2] for partial in each])
-    return [each[index] for index in nondominated(points)]
+def _undominated(found: Partials) -> Partials:
+    """Return the partial plans without those that another one of the same stops dominates."""
+    return {
+        visited: [each[index] for index in nondominated(np.array([one[:2] for one in each]))]
+        for visited, each in found.items()
+    }

@@ -5,7 +5,7 @@ Every plan is checked with this code, which shares nothing with the engine that 
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 from math import inf
 
@@ -23,18 +23,20 @@ _ROUNDING = 2.0**-52  # relative, for each time of a route
 class Schedule:
     """The times of a route: when the vehicle reaches each stop, and when it is done.
 
-    The vehicle leaves as late as possible without finishing later.
-
     Attributes:
         arrivals: The arrival at each stop of `path_of`; at the first stop, the departure. The
             vehicle may wait at a stop until its window opens.
         end: The end of the route.
         late: The largest delay at a window or at the end of the shift.
+        waiting: The time that the vehicle waits.
+        slack: How much later it may leave without being late, if it is never late.
     """
 
     arrivals: tuple[float, ...]
     end: float
     late: float
+    waiting: float
+    slack: float
 
     @property
     def duration(self) -> float:
@@ -43,48 +45,42 @@ class Schedule:
 
 
 def schedule(fleet: Fleet, route: Route) -> Schedule:
-    """Return the times of a route of a fleet with a clock.
+    """Return the times of a route whose vehicle leaves as late as does not delay its end.
 
     Raises:
         ValueError: The fleet has no clock.
     """
     if fleet.rules.clock is None:
         raise ValueError("a fleet without a clock has no times")
-    shift = fleet.rules.vehicles[route.vehicle].shift
-    early = _drive(fleet, route, shift[0], shift[1])
+    driven = legs(fleet, route, fleet.rules.clock)
+    begin, last = fleet.rules.vehicles[route.vehicle].shift
+    early = _drive(fleet.rules, route, driven, begin, last)
     # Savelsbergh (1992): leaving later by the waiting time, or by what windows allow, does not
     # delay the end of the route.
     delay = 0.0 if early.late else min(early.waiting, early.slack)
-    timely = _drive(fleet, route, shift[0] + delay, shift[1]) if delay else early
-    return Schedule(timely.arrivals, timely.end, early.late)
+    if not delay:
+        return early
+    return replace(_drive(fleet.rules, route, driven, begin + delay, last), late=early.late)
 
 
-@dataclass(frozen=True)
-class _Drive:
-    arrivals: tuple[float, ...]
-    end: float
-    waiting: float
-    slack: float  # by how much it may leave later, if it is never late
-    late: float
-
-
-def _drive(fleet: Fleet, route: Route, departure: float, last: float) -> _Drive:
-    """Return the times of a route that begins at this departure."""
-    path = path_of(fleet.rules, route)
+def _drive(
+    rules: Rules, route: Route, driven: Sequence[float], departure: float, last: float
+) -> Schedule:
+    """Return the times of a route with legs of these times, from a departure on."""
     time, waiting, slack, late = departure, 0.0, inf, 0.0
     arrivals = []
-    for stop, leg in zip(path, [*legs(fleet, route, _clock(fleet.rules)), 0.0], strict=True):
-        visit = fleet.rules.visits[stop]
+    for stop, leg in zip(path_of(rules, route), [*driven, 0.0], strict=True):
+        visit = rules.visits[stop]
         opens, closes = visit.window
         arrivals.append(time)
         waiting += max(0.0, opens - time)
         begin = max(time, opens)
         slack = min(slack, closes - begin + waiting)
         late = max(late, begin - closes)
-        time = begin + visit.service
-        end, time = time, time + leg
+        end = begin + visit.service
+        time = end + leg
     slack = min(slack, last - end + waiting)
-    return _Drive(tuple(arrivals), end, waiting, slack, max(late, end - last))
+    return Schedule(tuple(arrivals), end, max(late, end - last), waiting, slack)
 
 
 def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
@@ -95,15 +91,12 @@ def legs(fleet: Fleet, route: Route, objective: int) -> list[float]:
 
 def route_lengths(fleet: Fleet, route: Route) -> tuple[float, float]:
     """Return the lengths of a route: its duration in the clock's objective, else its costs."""
-    first, second = (_length(fleet, route, objective) for objective in range(OBJECTIVES))
-    return first, second
+    return _length(fleet, route, 0), _length(fleet, route, 1)
 
 
 def plan_lengths(fleet: Fleet, plan: Plan) -> tuple[float, float]:
     """Return the lengths of a plan. The first one includes lost prizes and fixed costs."""
-    routes = np.array([route_lengths(fleet, route) for route in plan.routes]).reshape(
-        -1, OBJECTIVES
-    )
+    routes = np.reshape([route_lengths(fleet, each) for each in plan.routes], (-1, OBJECTIVES))
     first, second = (
         float(lengths.max(initial=0.0) if over == "max" else lengths.sum())
         for lengths, over in zip(routes.T, fleet.rules.over, strict=True)
@@ -137,11 +130,6 @@ def violations(fleet: Fleet, plan: Plan) -> list[str]:
     ]
 
 
-def _clock(rules: Rules) -> int:
-    assert rules.clock is not None
-    return rules.clock
-
-
 def _length(fleet: Fleet, route: Route, objective: int) -> float:
     if objective == fleet.rules.clock:
         return schedule(fleet, route).duration
@@ -155,19 +143,15 @@ def _visits_broken(rules: Rules, plan: Plan) -> Iterator[str]:
             yield f"stop {stop} is not a stop to visit"
         elif times > 1:
             yield f"stop {stop} is visited {times} times"
-    required = (stop for stop in rules.clients if not _may_be_left_out(rules, stop))
-    yield from (f"stop {stop} is not visited" for stop in required if stop not in visits)
+    pickups = {each.delivery: each.pickup for each in rules.shipments}
+    for stop in unassigned(rules, plan):
+        if rules.visits[pickups.get(stop, stop)].prize is None:
+            yield f"stop {stop} is not visited"
     yield from ("a route visits no stop" for route in plan.routes if not route.stops)
 
 
-def _may_be_left_out(rules: Rules, stop: int) -> bool:
-    pickups = {each.delivery: each.pickup for each in rules.shipments}
-    return rules.visits[pickups.get(stop, stop)].prize is not None
-
-
 def _counts_broken(rules: Rules, plan: Plan) -> Iterator[str]:
-    used = Counter(route.vehicle for route in plan.routes)
-    for index, count in used.items():
+    for index, count in Counter(route.vehicle for route in plan.routes).items():
         if count > rules.vehicles[index].count:
             yield f"{count} vehicles of type {index} leave, and there are fewer"
 
@@ -181,9 +165,9 @@ def _shipments_broken(rules: Rules, plan: Plan) -> Iterator[str]:
     for each in rules.shipments:
         pickup, delivery = places.get(each.pickup), places.get(each.delivery)
         if (pickup is None) != (delivery is None):
-            yield f"of the shipment from {each.pickup} to {each.delivery} half is done"
+            yield f"only half of the shipment from {each.pickup} to {each.delivery} is done"
         elif pickup and delivery and (pickup[0] != delivery[0] or pickup > delivery):
-            yield f"what is delivered at {each.delivery} was not picked up at {each.pickup}"
+            yield f"the load for {each.delivery} was not picked up at {each.pickup} before"
 
 
 def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
@@ -191,7 +175,7 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
     rules = fleet.rules
     vehicle = rules.vehicles[route.vehicle]
     if fleet.forbids and inf in legs(fleet, route, 0):
-        yield f"a vehicle of type {route.vehicle} takes a leg where there is no way"
+        yield f"a vehicle of type {route.vehicle} takes a forbidden leg"
         return
     for dimension, capacity in enumerate(vehicle.capacity):
         if (most := max(_loads(rules, route, dimension))) > capacity:
@@ -202,9 +186,8 @@ def route_violations(fleet: Fleet, route: Route) -> Iterator[str]:
         if times.late > _TOLERANCE * times.duration + rounding:
             yield f"a vehicle of type {route.vehicle} is late by {times.late:g}"
     if vehicle.longest != inf:
-        objective = rules.maximum if rules.clock is None else rules.clock
-        assert objective is not None
-        if (length := _length(fleet, route, objective)) * (1 - _TOLERANCE) > vehicle.longest:
+        assert rules.limited is not None
+        if (length := _length(fleet, route, rules.limited)) * (1 - _TOLERANCE) > vehicle.longest:
             yield f"a route of length {length:g} is longer than {vehicle.longest:g}"
 
 
@@ -213,15 +196,12 @@ def _loads(rules: Rules, route: Route, dimension: int) -> Iterator[int]:
 
     At the start it holds the demands of all stops that are not in shipments.
     """
-    delivered = {each.delivery: each.pickup for each in rules.shipments}
-
-    def demand(stop: int) -> int:
-        return (rules.visits[stop].demand or (0,) * rules.dimensions)[dimension]
+    pickups = {each.delivery: each.pickup for each in rules.shipments}
 
     def change(stop: int) -> int:
-        if stop in delivered:
-            return -demand(delivered[stop])
-        return demand(stop) if stop in rules.shipped else -demand(stop)
+        demand = rules.visits[pickups.get(stop, stop)].demand
+        load = demand[dimension] if demand else 0
+        return load if stop in rules.shipped and stop not in pickups else -load
 
-    brought = sum(demand(stop) for stop in route.stops if stop not in rules.shipped)
-    return accumulate((change(stop) for stop in route.stops), initial=brought)
+    brought = -sum(change(stop) for stop in route.stops if stop not in rules.shipped)
+    return accumulate(map(change, route.stops), initial=brought)

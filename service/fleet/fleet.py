@@ -1,4 +1,4 @@
-"""Fleets: stops, vehicles and rules, and the costs between the stops."""
+"""The values of a fleet: stops, vehicles, rules, and the costs between the stops."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,14 +9,15 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from service.errors import Refusal, invalid
-from service.fleet.least_paths import least_paths
+from service.errors import invalid
 from service.instance import OBJECTIVES, largest_costs, ordinary_costs
 
 Array = NDArray[np.float64]
 Over = Literal["sum", "max"]
 Span = tuple[float, float]
 ALWAYS: Span = (0.0, inf)
+_UNSUMMED = "is added to the first objective, so that must be over sum, got max"
+_UNTIMED = "needs the name of the objective that is time, in clock"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +40,7 @@ class Visit:
 
 @dataclass(frozen=True)
 class Shipment:
-    """Two stops: what is picked up at one is delivered to the other later, by the same vehicle."""
+    """Two stops: the same vehicle takes a load from the one to the other."""
 
     pickup: int
     delivery: int
@@ -52,11 +53,11 @@ class VehicleType:
     Args:
         start: The stop at which they start; None if each starts at its first visit.
         end: The stop at which they end; None if each ends at its last visit.
-        count: How many there are.
+        count: The number of vehicles.
         capacity: The most that a vehicle can hold, in each dimension.
         shift: The earliest departure and the latest end of a route.
-        longest: The limit on a route: on its time if the fleet has a clock, else on its length in
-            the objective that is a maximum.
+        longest: The limit on the time of a route; without a clock, on its length in the objective
+            that is a maximum.
         fixed: The cost of using one vehicle.
     """
 
@@ -71,7 +72,7 @@ class VehicleType:
 
 @dataclass(frozen=True, kw_only=True)
 class Rules:
-    """All of a fleet but the costs between its stops.
+    """A fleet without the costs between its stops.
 
     Args:
         visits: The demands of each of the n stops. Starts and ends of vehicles have none.
@@ -91,7 +92,9 @@ class Rules:
     clock: int | None = None
 
     def __post_init__(self) -> None:
-        _check_objectives(self)
+        if self.over == ("max", "max"):
+            demand = "must be sum, as that of objectives/0 is max, got max"
+            raise invalid("objectives/1/over", demand)
         for index, vehicle in enumerate(self.vehicles):
             _check_vehicle(self, vehicle, f"vehicles/{index}")
         for index, visit in enumerate(self.visits):
@@ -130,15 +133,20 @@ class Rules:
         return self.over.index("max") if "max" in self.over else None
 
     @property
-    def has_spans(self) -> bool:
-        """Whether a window or a shift bounds any time."""
-        spans = [*(visit.window for visit in self.visits), *(each.shift for each in self.vehicles)]
-        return any(span != ALWAYS for span in spans)
+    def limited(self) -> int | None:
+        """The objective that `longest` limits, if there is one."""
+        return self.maximum if self.clock is None else self.clock
+
+    @cached_property
+    def spans(self) -> tuple[Span, ...]:
+        """All windows and shifts that bound any time."""
+        spans = (*(visit.window for visit in self.visits), *(each.shift for each in self.vehicles))
+        return tuple(span for span in spans if span != ALWAYS)
 
     @property
     def has_bounds(self) -> bool:
         """Whether anything bounds a time or the length of a route."""
-        return self.has_spans or any(vehicle.longest < inf for vehicle in self.vehicles)
+        return bool(self.spans) or any(vehicle.longest < inf for vehicle in self.vehicles)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -189,6 +197,33 @@ class Fleet:
         legs: Array = np.where(needed > ordinary, needed + ordinary, ordinary)
         return np.minimum(legs, largest)
 
+    @property
+    def scale(self) -> Array:
+        """The unit of each objective, shape (2,): its largest leg, 1 if that is 0."""
+        return np.where(self.largest_legs > 0, self.largest_legs, 1.0)
+
+
+def least_paths(costs: Array, starts: Sequence[int], combine: np.ufunc = np.add) -> Array:
+    """Return the least cost of a path from any of the starts to each stop, shape (n,). O(n^2).
+
+    This is Dijkstra's algorithm over arrays.
+
+    Args:
+        costs: The costs of legs, shape (n, n); infinite for forbidden legs.
+        starts: The stops where paths may start.
+        combine: How the costs of legs make the cost of a path: np.add, or np.maximum.
+    """
+    least = np.full(len(costs), inf)
+    least[list(starts)] = 0.0
+    left = np.ones(len(costs), np.bool_)
+    for _ in range(len(costs)):
+        nearest = int(np.where(left, least, inf).argmin())
+        if not left[nearest] or least[nearest] == inf:
+            break
+        left[nearest] = False
+        least = np.minimum(least, combine(least[nearest], costs[nearest]))
+    return least
+
 
 def _places(ends: Sequence[int | None], rules: Rules) -> list[int]:
     """Return the stops at which routes start or end; one stop if a single route may start anywhere.
@@ -214,91 +249,62 @@ def _least_bound(costs: Array, starts: Sequence[int]) -> float:
     return float(bounds.max(where=np.isfinite(bounds), initial=0.0))
 
 
-def _check_objectives(rules: Rules) -> None:
-    if rules.over == ("max", "max"):
-        raise invalid("objectives/1/over", "must be sum, as that of objectives/0 is max, got max")
-    if rules.over[0] == "max":
-        prized = (i for i, visit in enumerate(rules.visits) if visit.prize is not None)
-        fixed = (i for i, vehicle in enumerate(rules.vehicles) if vehicle.fixed)
-        for index in prized:
-            raise _unsummed(f"stops/{index}/prize")
-        for index in fixed:
-            raise _unsummed(f"vehicles/{index}/fixed")
-
-
-def _unsummed(part: str) -> Refusal:
-    demand = "is added to the first objective, so that must be over sum, got max"
-    return invalid(part, demand)
-
-
 def _check_vehicle(rules: Rules, vehicle: VehicleType, part: str) -> None:
     if len(vehicle.capacity) != rules.dimensions:
         demand = f"must have {rules.dimensions} numbers, as that of vehicles/0"
         raise invalid(f"{part}/capacity", f"{demand}, got {len(vehicle.capacity)}")
-    _check_span(vehicle.shift, f"{part}/shift")
-    if rules.clock is None and vehicle.shift != ALWAYS:
-        raise _untimed(f"{part}/shift")
-    if rules.clock is None and rules.maximum is None and vehicle.longest != inf:
+    _check_span(rules, vehicle.shift, f"{part}/shift")
+    if vehicle.fixed and rules.over[0] == "max":
+        raise invalid(f"{part}/fixed", _UNSUMMED)
+    if rules.limited is None and vehicle.longest != inf:
         demand = "needs the name of the objective that is time in clock, or an objective over max"
         raise invalid(f"{part}/longest", demand)
 
 
 def _check_visit(rules: Rules, visit: Visit, index: int) -> None:
     part = f"stops/{index}"
-    _check_span(visit.window, f"{part}/window")
     if index in rules.depots:
         _check_depot(visit, part)
+    if rules.clock is None and visit.service:
+        raise invalid(f"{part}/service", _UNTIMED)
+    _check_span(rules, visit.window, f"{part}/window")
     if visit.demand and len(visit.demand) != rules.dimensions:
         demand = f"must have {rules.dimensions} numbers, as each capacity has"
         raise invalid(f"{part}/demand", f"{demand}, got {len(visit.demand)}")
-    if rules.clock is None and visit.service:
-        raise _untimed(f"{part}/service")
-    if rules.clock is None and visit.window != ALWAYS:
-        raise _untimed(f"{part}/window")
+    if visit.prize is not None and rules.over[0] == "max":
+        raise invalid(f"{part}/prize", _UNSUMMED)
 
 
 def _check_depot(visit: Visit, part: str) -> None:
     demand = "must not be given for a stop at which vehicles start or end"
-    if any(visit.demand):
-        raise invalid(f"{part}/demand", demand)
     if visit.window != ALWAYS:
         raise invalid(f"{part}/window", f"{demand}: say in their shift when they may be on the way")
-    for name, default in (("service", 0.0), ("prize", None)):
-        if getattr(visit, name) != default:
+    for name, given in (
+        ("demand", any(visit.demand)),
+        ("service", visit.service),
+        ("prize", visit.prize is not None),
+    ):
+        if given:
             raise invalid(f"{part}/{name}", demand)
 
 
-def _check_span(span: Span, part: str) -> None:
+def _check_span(rules: Rules, span: Span, part: str) -> None:
     if span[0] > span[1]:
         raise invalid(part, f"must not end before it begins, got {span[0]:g} to {span[1]:g}")
-
-
-def _untimed(part: str) -> Refusal:
-    return invalid(part, "needs the name of the objective that is time, in clock")
+    if rules.clock is None and span != ALWAYS:
+        raise invalid(part, _UNTIMED)
 
 
 def _check_shipments(rules: Rules) -> None:
+    parts: dict[int, str] = {}
     for index, shipment in enumerate(rules.shipments):
-        part = f"shipments/{index}"
         for name, stop in (("pickup", shipment.pickup), ("delivery", shipment.delivery)):
+            part = f"shipments/{index}/{name}"
             if stop in rules.depots:
-                raise invalid(f"{part}/{name}", "must not be a start or end of vehicles")
+                raise invalid(part, "must not be a start or end of vehicles")
+            if parts.setdefault(stop, part) != part:
+                raise invalid(part, f"must be in one shipment, and is {parts[stop]}, too")
         delivery = rules.visits[shipment.delivery]
         if any(delivery.demand) or delivery.prize is not None:
             demand = "must have no demand and no prize: those of the pick-up hold for both"
-            raise invalid(f"{part}/delivery", demand)
-    _check_shipped_once(rules)
-
-
-def _check_shipped_once(rules: Rules) -> None:
-    """Raise a refusal if a stop is in two shipments, or twice in one."""
-    names = [
-        (stop, f"shipments/{index}/{name}")
-        for index, each in enumerate(rules.shipments)
-        for name, stop in (("pickup", each.pickup), ("delivery", each.delivery))
-    ]
-    first: dict[int, str] = {}
-    for stop, part in names:
-        if stop in first:
-            raise invalid(part, f"must be in one shipment, and is {first[stop]}, too")
-        first[stop] = part
+            raise invalid(f"shipments/{index}/delivery", demand)

@@ -3,14 +3,14 @@
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache, partial
+from operator import le
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.errors import CityNames, NoTour, Obstacle, Refusal
 from service.fleet.evaluation import route_violations
-from service.fleet.fleet import Array, Fleet, Rules, VehicleType
-from service.fleet.least_paths import least_paths
+from service.fleet.fleet import Array, Fleet, Rules, least_paths
 from service.fleet.plans import Route
 
 NAMES = CityNames("stop")
@@ -19,9 +19,7 @@ NAMES = CityNames("stop")
 def check_necessary(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> None:
     """Raise a refusal if a stop fits no vehicle, or all stops together do not fit all vehicles.
 
-    Args:
-        fleet: The fleet.
-        ended: Called often; once it returns True, slow conditions are left out.
+    `ended` is called often; once it returns True, slow conditions are left out.
 
     Raises:
         NoTour: A necessary condition fails for some stops.
@@ -29,9 +27,8 @@ def check_necessary(fleet: Fleet, ended: Callable[[], bool] = lambda: False) -> 
             exist.
     """
     rules = fleet.rules
-    _refuse(_demands(rules))
-    for total in _totals(rules):
-        raise Refusal("no-plan", reason=total)
+    _refuse(_too_heavy(rules))
+    _check_totals(rules)
     _refuse(_without_ways(fleet))
     _refuse(_shipped_too_late(rules))
     _refuse(_unreachable(fleet, ended))
@@ -52,14 +49,11 @@ def least_lengths(fleet: Fleet) -> Array:
     rules = fleet.rules
     required = _required(rules)
     steps = np.where(np.eye(rules.n, dtype=bool), np.inf, fleet.costs)
+    longest = np.array([over == "max" for over in rules.over])
     least = np.zeros(len(steps))
-    for ends, legs in (
-        ([vehicle.start for vehicle in rules.vehicles], steps.min(axis=1)),
-        ([vehicle.end for vehicle in rules.vehicles], steps.min(axis=2)),
-    ):
-        if required and None not in ends:
+    for end, legs in (("start", steps.min(axis=1)), ("end", steps.min(axis=2))):
+        if required and all(getattr(vehicle, end) is not None for vehicle in rules.vehicles):
             of_stops = legs[:, required]
-            longest = np.array([over == "max" for over in rules.over])
             total = np.where(longest, of_stops.max(axis=1), of_stops.sum(axis=1))
             least = np.maximum(least, total)
     return least
@@ -75,29 +69,24 @@ def _required(rules: Rules) -> list[int]:
     ]
 
 
-def _demands(rules: Rules) -> Iterator[Obstacle]:
+def _too_heavy(rules: Rules) -> Iterator[Obstacle]:
+    """Yield the stops whose demand exceeds the capacity of every vehicle."""
     for stop in _required(rules):
-        demand = rules.visits[stop].demand
-        if demand and not any(_holds(vehicle, demand) for vehicle in rules.vehicles):
+        demand = rules.visits[stop].demand  # of every dimension, or empty
+        if not any(all(map(le, demand, vehicle.capacity)) for vehicle in rules.vehicles):
             yield Obstacle("the demand of {cities} is over the capacity of every vehicle", (stop,))
 
 
-def _holds(vehicle: VehicleType, demand: tuple[int, ...]) -> bool:
-    return all(d <= c for d, c in zip(demand, vehicle.capacity, strict=True))
-
-
-def _totals(rules: Rules) -> Iterator[str]:
-    """Name a dimension in which all vehicles hold less than the required demand."""
+def _check_totals(rules: Rules) -> None:
+    """Raise a refusal if all vehicles together hold less than the required demand."""
     brought = [stop for stop in _required(rules) if stop not in rules.shipped]
     for dimension in range(rules.dimensions):
-        demands = (rules.visits[stop].demand or (0,) * rules.dimensions for stop in brought)
-        total = sum(demand[dimension] for demand in demands)
+        demands = (rules.visits[stop].demand for stop in brought)
+        total = sum(demand[dimension] for demand in demands if demand)
         most = sum(vehicle.count * vehicle.capacity[dimension] for vehicle in rules.vehicles)
         if total > most:
-            yield (
-                f"the demands sum to {total} in dimension {dimension}, and all vehicles together"
-                f" hold {most}"
-            )
+            sums = f"the demands sum to {total} in dimension {dimension}"
+            raise Refusal("no-plan", reason=f"{sums}, and all vehicles together hold {most}")
 
 
 def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
@@ -109,10 +98,12 @@ def _unreachable(fleet: Fleet, ended: Callable[[], bool]) -> Iterator[Obstacle]:
     if not rules.has_bounds:
         return
     triangle = cache(partial(_triangle_holds, fleet, ended))
-    deliveries = {each.pickup: (each.pickup, each.delivery) for each in rules.shipments}
+    deliveries = {each.pickup: (each.delivery,) for each in rules.shipments}
+    different = {replace(each, count=1, fixed=0.0): i for i, each in enumerate(rules.vehicles)}
     for stop in _required(rules):
-        stops = deliveries.get(stop, (stop,))
-        served = any(ended() or _serves(fleet, vehicle, stops) for vehicle in _different(rules))
+        stops = (stop, *deliveries.get(stop, ()))
+        routes = (Route(vehicle, stops) for vehicle in different.values())
+        served = any(ended() or not any(route_violations(fleet, route)) for route in routes)
         if not served and triangle():
             sentence = (
                 "{cities} cannot be reached within its window, the shift and the longest route of"
@@ -143,9 +134,8 @@ def _without_ways(fleet: Fleet) -> Iterator[Obstacle]:
 
 def _connected(costs: Array, end: int | None) -> NDArray[np.bool_]:
     """Return which stops can be reached from one stop, shape (n,); from anywhere, all can."""
-    if end is None:
-        return np.ones(len(costs), np.bool_)
-    connected: NDArray[np.bool_] = np.isfinite(least_paths(costs, [end]))
+    starts = range(len(costs)) if end is None else [end]
+    connected: NDArray[np.bool_] = np.isfinite(least_paths(costs, starts))
     return connected
 
 
@@ -161,17 +151,6 @@ def _shipped_too_late(rules: Rules) -> Iterator[Obstacle]:
             yield Obstacle(sentence, (each.delivery,), (each.pickup,))
 
 
-def _different(rules: Rules) -> list[int]:
-    """Return types of vehicles, one for each set of types that can serve the same stops."""
-    kinds = {replace(each, count=1, fixed=0.0): i for i, each in enumerate(rules.vehicles)}
-    return list(kinds.values())
-
-
-def _serves(fleet: Fleet, vehicle: int, stops: tuple[int, ...]) -> bool:
-    """Return whether a vehicle can visit these stops alone."""
-    return not any(route_violations(fleet, Route(vehicle, stops)))
-
-
 def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:
     """Return whether no detour over a stop is shorter, in the limited objective.
 
@@ -179,13 +158,12 @@ def _triangle_holds(fleet: Fleet, ended: Callable[[], bool]) -> bool:
     before all detours were tried.
     """
     rules = fleet.rules
-    objective = rules.maximum if rules.clock is None else rules.clock
     if fleet.forbids:
         return False
-    if objective is None:
+    if rules.limited is None:
         return True
-    costs = fleet.costs[objective]
-    slack = 1e-9 * fleet.largest_legs[objective]
+    costs = fleet.costs[rules.limited]
+    slack = 1e-9 * fleet.largest_legs[rules.limited]
     return all(
         not ended() and (costs[:, [k]] + costs[[k]] >= costs - slack).all() for k in range(rules.n)
     )

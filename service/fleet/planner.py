@@ -13,14 +13,12 @@ from service.errors import Cancelled, Refusal
 from service.fleet.archive import SolutionArchive
 from service.fleet.enumeration import exact_plans, is_enumerable
 from service.fleet.evaluation import points_of, violations
-from service.fleet.fleet import ALWAYS, Array, Fleet, Rules
+from service.fleet.first_plans import Cutter, network_sequences
+from service.fleet.fleet import Array, Fleet
 from service.fleet.necessary import check_necessary
 from service.fleet.plans import FleetFront, Plan, Route
 from service.fleet.scales import Units
 from service.fleet.solver import Solver
-from service.fleet.splitting.cutter import Cutter
-from service.fleet.splitting.first_plans import first_plans
-from service.fleet.splitting.network_sequences import network_sequences
 from service.fleet.sweep import Sweep
 from service.fleet.translation import FREE, Translation
 from service.front import Progress, ReportOf, Termination
@@ -78,9 +76,13 @@ def plan_fleet(
             the best front so far of at most n plans.
 
     Raises:
-        Refusal: There is no plan, with the reason if it is known; or none was found in time. If no
-            rule can be broken, a plan is always found.
-        Cancelled: It was told to stop before it had a plan.
+        NoTour: Some stops cannot be visited under the rules. The refusal names them.
+        Refusal: `no-plan`: no plan keeps every rule, or none was found in time. If no rule can be
+            broken, a plan is always found. `no-actor`: the time limit is 0 and there is no network.
+            `invalid-instance`: costs, prizes and times are too far apart for whole numbers.
+        InvalidInstance: Costs are too far apart, or too large, for the network.
+        Cancelled: `stop` returned True before a plan was found.
+        ValueError: A component of the reference point is not positive, or the size is below 1.
     """
     began = time.monotonic()
     checked = began + (_FINDING_FAULTS * options.time_limit or _BRIEF)
@@ -91,11 +93,10 @@ def plan_fleet(
         if all_plans is not None:
             if not all_plans:
                 raise Refusal("no-plan", reason="no plan keeps every rule: all were tried")
-            return _front(fleet, options, all_plans, terminated="converged", began=began)
+            return _front(fleet, options, all_plans, "converged", began)
     if options.time_limit == 0:
         plans = _constructed(fleet, constructor, stop)
-        constructed = _front(fleet, options, plans, terminated="converged", began=began)
-        return replace(constructed, constructed=len(plans))
+        return _front(fleet, options, plans, "converged", began, constructed=len(plans))
     return _searched(fleet, options, constructor, stop, report, began)
 
 
@@ -112,13 +113,13 @@ def _searched(
     if constructor is not None and not fleet.rules.shipments:
         search.begin_at(constructor)
     terminated = search.run()
-    if not search.found and terminated != "cancelled" and fleet.rules.has_bounds:
+    if not search.archive and terminated != "cancelled" and fleet.rules.has_bounds:
         search = _Search(fleet, options, stop, report, began, loose=True)
         terminated = search.run()
-    if not search.found and terminated != "cancelled":
+    if not search.archive and terminated != "cancelled":
         plan = _one_route(fleet)
         if not violations(fleet, plan):
-            return _front(fleet, options, [plan], terminated=terminated, began=began)
+            return _front(fleet, options, [plan], terminated, began)
     return search.front(options.size, terminated)
 
 
@@ -131,7 +132,7 @@ def _one_route(fleet: Fleet) -> Plan:
     rules = fleet.rules
     vehicle = max(range(len(rules.vehicles)), key=lambda index: rules.vehicles[index].capacity)
     with np.errstate(over="ignore"):
-        costs = (fleet.costs / scale_of(fleet)[:, np.newaxis, np.newaxis]).sum(axis=0)
+        costs = (fleet.costs / fleet.scale[:, np.newaxis, np.newaxis]).sum(axis=0)
     deliveries = {each.pickup: each.delivery for each in rules.shipments}
     left = [stop for stop in rules.clients if stop not in deliveries.values()]
     position, stops = rules.vehicles[vehicle].start, list[int]()
@@ -149,7 +150,7 @@ def _constructed(
     if constructor is None:
         raise Refusal("no-actor", kind="fleets with time_limit 0")
     cutter = Cutter(fleet, network_sequences(fleet, constructor), stop)
-    plans = [plan for plan in first_plans(fleet, cutter) if not violations(fleet, plan)]
+    plans = [plan for plan in cutter.plans() if not violations(fleet, plan)]
     if plans:
         return plans
     if stop():
@@ -186,7 +187,7 @@ class _Search:
         self._translation = Translation(units.fleet, loose)
         give_up = not loose and fleet.rules.has_bounds
         self._gives_up = began + options.time_limit / 2 if give_up else inf
-        self._archive = SolutionArchive(self._translation)
+        self.archive = SolutionArchive(self._translation)
         self._constructed = 0
         self._iterations = 0
         self._checked = self._began
@@ -211,18 +212,13 @@ class _Search:
         except Refusal:  # too large to be cut: the search constructs its first plans itself
             return
         data = self._translation.data(FREE)
-        for plan in first_plans(self._fleet, cutter):
+        for plan in cutter.plans():
             self._constructed += 1
-            self._archive.offer(self._translation.solution(data, plan), FREE.weights)
-
-    @property
-    def found(self) -> bool:
-        """Whether a plan was found."""
-        return len(self._archive) > 0
+            self.archive.offer(self._translation.solution(data, plan), FREE.weights)
 
     def run(self) -> Termination:
         """Search until nothing is left to do, the time is over, or `stop` returns True."""
-        options, archive = self._options, self._archive
+        options, archive = self._options, self.archive
         solver = Solver(self._translation, options.seed, archive.offer, self._ended, self._deadline)
         random = np.random.default_rng(options.seed)
         for step in Sweep(self._translation, archive, random, self._left).steps():
@@ -239,7 +235,7 @@ class _Search:
             Refusal: No plan was found.
             Cancelled: No plan was found before `stop` returned True.
         """
-        archive = self._archive
+        archive = self.archive
         chosen = best_subset(np.array(archive.points).reshape(-1, 2), size, self._reference_point)
         found = [self._translation.plan(archive.solutions[index]) for index in chosen]
         plans = [plan for plan in found if not violations(self._fleet, plan)]
@@ -248,9 +244,10 @@ class _Search:
         if not plans:
             sentence = f"no plan was found in {self._options.time_limit:g} s that keeps every rule"
             raise Refusal("no-plan", reason=sentence)
-        front = _front(self._fleet, self._options, plans, terminated=terminated, began=self._began)
-        most = max(front.found, len(self._archive))
-        return replace(front, found=most, constructed=self._constructed)
+        front = _front(
+            self._fleet, self._options, plans, terminated, self._began, self._constructed
+        )
+        return replace(front, found=max(front.found, len(archive)))
 
     def _left(self) -> float:
         """Return the number of iterations left, estimated from the time of earlier ones."""
@@ -268,12 +265,12 @@ class _Search:
         if self._stop():
             self._cancelled = True
             return True
-        if now > self._gives_up and not self.found:
+        if now > self._gives_up and not self.archive:
             return True
         left = self._deadline - now
-        if now - self._reported >= _REPORT_EVERY and left > _REPORT_EVERY and len(self._archive):
+        if now - self._reported >= _REPORT_EVERY and left > _REPORT_EVERY and self.archive:
             self._reported = now
-            points = np.array(self._archive.points)
+            points = np.array(self.archive.points)
             volume = hypervolume(points, self._reference_point)
             progress = Progress(now - self._began, volume, len(points))
             self._report(progress, partial(self.front, terminated=None))
@@ -284,7 +281,7 @@ class _Search:
 
         The iteration is assumed to be as long as the longest recent one.
         """
-        found = len(self._archive)
+        found = len(self.archive)
         checked = min(found, self._options.size) * self._fleet.rules.n
         selected = selection_seconds(self._options.size, found)
         return self._pause + _CHECKING * checked + selected
@@ -294,9 +291,9 @@ def _front(
     fleet: Fleet,
     options: FleetOptions,
     plans: Sequence[Plan],
-    *,
     terminated: Termination | None,
     began: float,
+    constructed: int = 0,
 ) -> FleetFront:
     """Return the front of plans that break no rule."""
     points = points_of(fleet, plans)
@@ -308,17 +305,13 @@ def _front(
         plans=[plans[index] for index in kept],
         points=points[kept],
         found=len(front),
-        scale=scale_of(fleet),
+        constructed=constructed,
+        scale=fleet.scale,
         reference_point=reference_point,
         hypervolume=hypervolume(points[kept], reference_point),
         terminated=terminated,
         timings={"improvement": 1000 * (time.monotonic() - began)},
     )
-
-
-def scale_of(fleet: Fleet) -> Array:
-    """Return the unit of each objective, shape (2,): its largest leg, 1 where that is 0."""
-    return np.where(fleet.largest_legs > 0, fleet.largest_legs, 1.0)
 
 
 def reference_point_of(fleet: Fleet, options: FleetOptions) -> Array:
@@ -332,20 +325,13 @@ def reference_point_of(fleet: Fleet, options: FleetOptions) -> Array:
     if options.reference_point is not None:
         return options.reference_point
     rules = fleet.rules
-    point = rules.n * scale_of(fleet)
+    point = rules.n * fleet.scale
     point[0] += sum(visit.prize or 0.0 for visit in rules.visits)
     point[0] += sum(vehicle.fixed * min(vehicle.count, rules.n) for vehicle in rules.vehicles)
     if rules.clock is not None:
         point[rules.clock] += sum(visit.service for visit in rules.visits)
         vehicles = min(sum(vehicle.count for vehicle in rules.vehicles), rules.n)
-        times = vehicles if rules.over[rules.clock] == "sum" else 1
-        point[rules.clock] += times * _span(rules)
+        bounds = [time for span in rules.spans for time in span if time < inf]
+        waiting = max(bounds, default=0.0) - min(bounds, default=0.0)
+        point[rules.clock] += waiting * (vehicles if rules.over[rules.clock] == "sum" else 1)
     return point
-
-
-def _span(rules: Rules) -> float:
-    """Return the time from the first shift or window to the end of the last; 0 if none is given."""
-    spans = [*(visit.window for visit in rules.visits), *(each.shift for each in rules.vehicles)]
-    bounded = [span for span in spans if span != ALWAYS]
-    times = [time for span in bounded for time in span if time < inf]
-    return max(times, default=0.0) - min(times, default=0.0)

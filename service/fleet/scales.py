@@ -1,24 +1,29 @@
-"""Scale costs and times to the whole numbers with which PyVRP computes."""
+"""Squeeze and scale the numbers of a fleet to the whole numbers with which PyVRP computes."""
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import inf
 
 import numpy as np
 
 from service.errors import Refusal
-from service.fleet.fleet import Array, Fleet, Rules, VehicleType, Visit
-from service.fleet.squeezing import Squeezed
+from service.fleet.fleet import Array, Fleet, Rules, Span
+from service.instance import OUTLYING
 
 _LARGEST = 2.0**61  # the largest penalty of all routes together: PyVRP's integers have 64 bits
 UNBOUNDED = 2**44  # more than every route
 _COARSEST = 1000  # the least units of the longest leg
-_FINEST = 1e6  # the most units of it without limits: more would not help
-_FINE = 1e4  # the least units of it that squeezed legs must leave
+_FINEST = 1e6  # the most units of the longest leg without limits: more would not help
+_FINE = 1e4  # the least units of an ordinary leg beside squeezed legs
 _ROUNDING = 1e-12  # relative error of a float
 STEEPEST = 1000  # weight of one of two sums if the other has weight 1
 _HARDEST = 10  # the penalty for one unit over a limit or capacity, in longest legs
-_TINY = 2.0**-900  # of a longest leg: a power of ten that scales a shorter one would be infinite
+_LEAST_LEGS = 10  # the least legs that an ordinary plan costs
+_HIGHEST = 1e4  # the most ordinary legs that a squeezed leg costs: more would leave these few units
+_MOST_STEPS = 1000  # the most huge numbers whose differences are kept
+_FORBIDDEN = 4.0  # cost of a forbidden leg, in highest squeezed legs
+_TINY = 2.0**-900  # the power of ten that scales a shorter longest leg would be infinite
 
 
 def round_up(scaled: Array | float) -> Array:
@@ -33,7 +38,7 @@ def round_down(scaled: float) -> float:
 
 @dataclass(frozen=True)
 class Horizon:
-    """The times between which all routes fit: no vehicle needs to leave before or return after."""
+    """Two times: no vehicle needs to leave before the first or return after the second."""
 
     begin: float = 0.0
     end: float = 0.0
@@ -47,12 +52,10 @@ class Horizon:
         if rules.clock is None:
             return cls()
         route = rules.n * leg + _services(rules)
-        spans = [visit.window for visit in rules.visits]
-        shifts = [vehicle.shift for vehicle in rules.vehicles]
-        bounds = [time for span in (*spans, *shifts) for time in span if 0 < time < inf]
+        bounds = [time for span in rules.spans for time in span if 0 < time < inf]
         first = min(bounds, default=0.0) - route
-        begin = max(0.0, first, min(begin for begin, _ in shifts))
-        latest = max(begin for begin, _ in (*spans, *shifts))
+        begin = max(0.0, first, min(vehicle.shift[0] for vehicle in rules.vehicles))
+        latest = max((begin for begin, _ in rules.spans), default=0.0)
         return cls(begin, max(begin, latest) + 2 * route)
 
 
@@ -75,20 +78,33 @@ class Units:
         Raises:
             Refusal: In these units a prize or a time would overflow.
         """
-        largest = fleet.largest_legs
+        largest, rules = fleet.largest_legs, fleet.rules
         tiny = (largest > 0) & (largest < _TINY)
         shifts = np.where(tiny, 1 - np.frexp(largest)[1], 0)
         if not tiny.any():
             return cls(fleet, shifts)
-        rules = fleet.rules
-        timed = rules.maximum if rules.clock is None else rules.clock
-        extra, time = int(shifts[0]), 0 if timed is None else int(shifts[timed])
-        scaled = replace(
-            rules,
-            visits=tuple(_scaled_visit(visit, extra, time) for visit in rules.visits),
-            vehicles=tuple(_scaled_vehicle(vehicle, extra, time) for vehicle in rules.vehicles),
+        extra = int(shifts[0])
+        time = 0 if rules.limited is None else int(shifts[rules.limited])
+        visits = tuple(
+            replace(
+                visit,
+                service=_scaled(visit.service, time),
+                window=_scaled_span(visit.window, time),
+                prize=None if visit.prize is None else _scaled(visit.prize, extra),
+            )
+            for visit in rules.visits
+        )
+        vehicles = tuple(
+            replace(
+                vehicle,
+                shift=_scaled_span(vehicle.shift, time),
+                longest=_scaled_bound(vehicle.longest, time),
+                fixed=_scaled(vehicle.fixed, extra),
+            )
+            for vehicle in rules.vehicles
         )
         costs = np.ldexp(fleet.costs, shifts[:, np.newaxis, np.newaxis])
+        scaled = replace(rules, visits=visits, vehicles=vehicles)
         return cls(Fleet(rules=scaled, costs=costs), shifts)
 
     def points(self, points: Array) -> Array:
@@ -98,26 +114,8 @@ class Units:
         return scaled
 
 
-def _scaled_visit(visit: Visit, extra: int, time: int) -> Visit:
-    """Return a visit whose prize and times are multiplied by powers of two."""
-    opens, closes = visit.window
-    return replace(
-        visit,
-        service=_scaled(visit.service, time),
-        window=(_scaled(opens, time), _scaled_bound(closes, time)),
-        prize=None if visit.prize is None else _scaled(visit.prize, extra),
-    )
-
-
-def _scaled_vehicle(vehicle: VehicleType, extra: int, time: int) -> VehicleType:
-    """Return a type of vehicles in the same way."""
-    opens, closes = vehicle.shift
-    return replace(
-        vehicle,
-        shift=(_scaled(opens, time), _scaled_bound(closes, time)),
-        longest=_scaled_bound(vehicle.longest, time),
-        fixed=_scaled(vehicle.fixed, extra),
-    )
+def _scaled_span(span: Span, shift: int) -> Span:
+    return _scaled(span[0], shift), _scaled_bound(span[1], shift)
 
 
 def _scaled(value: float, shift: int) -> float:
@@ -134,7 +132,126 @@ def _scaled_bound(value: float, shift: int) -> float:
         return float(np.ldexp(value, shift))
 
 
-def most_legs(rules: Rules) -> float:
+@dataclass(frozen=True, eq=False)
+class Squeezed:
+    """The numbers of a fleet, none of them huge, in the same order as the true numbers.
+
+    A huge number means: avoid this, or do this before everything else. Any number above the cost of
+    an ordinary plan has this effect. So the gaps between such numbers may shrink, but their order
+    stays. The search uses squeezed lengths; plans are compared by their true lengths.
+
+    Args:
+        legs: The costs, shape (2, n, n). Forbidden legs have finite costs, higher than all others.
+        largest: The largest leg of ordinary plans, in each objective, shape (2,).
+        highest: The largest allowed leg, in each objective, shape (2,); in the first objective, the
+            largest prize or fixed cost if that is more.
+        prizes: The prize of each stop, shape (n,); 0 if it has none.
+        fixed: The costs of using a vehicle of each type, shape (v,).
+        changed: Whether any number was squeezed.
+    """
+
+    legs: Array
+    largest: Array
+    highest: Array
+    prizes: Array
+    fixed: Array
+    changed: bool
+
+    @classmethod
+    def of(cls, fleet: Fleet) -> "Squeezed":
+        """Return the numbers of a fleet."""
+        rules = fleet.rules
+        prizes = np.array([visit.prize or 0.0 for visit in rules.visits])
+        fixed = np.array([vehicle.fixed for vehicle in rules.vehicles])
+        legs, (largest, highest) = np.empty_like(fleet.costs), np.empty((2, len(fleet.costs)))
+        changed = False
+        for objective, costs in enumerate(fleet.costs):
+            ordinary = _ordinary(costs)
+            waiting = _waiting(rules) if objective == rules.clock else 0.0
+            extra = np.concatenate((prizes, fixed)) if objective == 0 else np.empty(0)
+            numbers = np.concatenate((costs[np.isfinite(costs)], extra))
+            of_plan = max(rules.n, _LEAST_LEGS) * ordinary + waiting
+            top = max(of_plan, min(_HIGHEST, _most_legs(rules)) * ordinary)
+            scale = _Scale.of(numbers, of_plan, top, 2 * rules.n)
+            squeezed = scale(costs)
+            forbidden = np.isinf(costs)
+            highest[objective] = squeezed.max(where=~forbidden, initial=0.0)
+            no_way = _FORBIDDEN * max(of_plan, float(highest[objective]))
+            legs[objective] = np.where(forbidden, no_way, squeezed)
+            needed = float(scale(fleet.needed_legs[objective]))
+            largest[objective] = ordinary if needed <= ordinary else needed + ordinary
+            changed = changed or len(scale.huge) > 0
+            if objective == 0:
+                prizes, fixed = scale(prizes), scale(fixed)
+        highest[0] = max(highest[0], prizes.max(), fixed.max())
+        return cls(legs, largest, highest, prizes, fixed, changed)
+
+
+@dataclass(frozen=True, eq=False)
+class _Scale:
+    """A monotone function that keeps ordinary numbers, and shrinks the gaps between huge ones."""
+
+    huge: Array  # ascending
+    squeezed: Array
+
+    @classmethod
+    def of(cls, numbers: Array, ordinary: float, top: float, ratio: float) -> "_Scale":
+        """Return the scale of numbers, given the cost of an ordinary plan.
+
+        The least huge number becomes the cost of an ordinary plan, and the greatest one at most
+        `top`. Neighbours keep their ratio, but at most `ratio`. With that a plan with one of the
+        higher number costs more than a plan with several of the lower.
+        """
+        huge = np.unique(numbers[numbers > ordinary])
+        squeezed = _stepwise(huge[:_MOST_STEPS], ordinary, ratio)
+        if len(huge) <= _MOST_STEPS and squeezed.max(initial=0.0) <= top:
+            return cls(huge, squeezed)
+        ratios = huge / np.concatenate((huge[:1], huge[:-1]))
+        steps = np.log(np.minimum(ratios, ratio)).cumsum()
+        return cls(huge, ordinary * np.exp(steps * min(1.0, math.log(top / ordinary) / steps[-1])))
+
+    def __call__(self, numbers: Array) -> Array:
+        """Return squeezed numbers; infinite ones stay infinite."""
+        if not len(self.huge):
+            return np.asarray(numbers)
+        places = np.searchsorted(self.huge, numbers).clip(max=len(self.huge) - 1)
+        is_huge = (numbers >= self.huge[0]) & np.isfinite(numbers)
+        squeezed: Array = np.where(is_huge, self.squeezed[places], numbers)
+        return squeezed
+
+
+def _ordinary(costs: Array) -> float:
+    """Return the largest cost that is at most a hundred times the typical cost to the nearest stop.
+
+    A typical leg is not the measure: with two clusters, half of all legs lead from one to the
+    other.
+    """
+    nearest = np.where(costs > 0, costs, inf).min(axis=1)
+    nearest = nearest[np.isfinite(nearest)]
+    if not len(nearest):
+        return 1.0
+    limit = OUTLYING * float(np.median(nearest))
+    return float(costs.max(where=costs <= limit, initial=0.0))
+
+
+def _stepwise(huge: Array, ordinary: float, ratio: float) -> Array:
+    """Return squeezed numbers: small differences are kept, and large ones become those of plans."""
+    squeezed = [ordinary] * min(1, len(huge))
+    for lower, number in pairwise(huge.tolist()):
+        last = squeezed[-1]
+        step = max(ordinary, last * (min(number / lower, ratio) - 1))
+        squeezed.append(last + min(number - lower, step))
+    return np.array(squeezed)
+
+
+def _waiting(rules: Rules) -> float:
+    """Return the time from the first bound of any window or shift to the last begin."""
+    bounds = [time for span in rules.spans for time in span if 0 < time < inf]
+    last = max((begin for begin, _ in rules.spans), default=0.0)
+    return max(0.0, last - min(bounds, default=0.0))
+
+
+def _most_legs(rules: Rules) -> float:
     """Return how many ordinary legs a squeezed leg may cost, so that these have enough units."""
     room = _LARGEST / (8 * rules.n * _heaviest(rules) * _FINE**2)
     return room / _HARDEST if rules.maximum is None else math.sqrt(room / 2)
@@ -173,7 +290,9 @@ def scales_of(fleet: Fleet, squeezed: Squeezed, horizon: Horizon) -> tuple[list[
     digits = [math.floor(math.log10(finest) - math.log10(leg)) for leg in largest]
     scales = [float(f"1e{each}") for each in digits]
     leg = max(scale * leg for scale, leg in zip(scales, largest, strict=True))
-    most_load = _LARGEST / (heaviest * _largest_load(fleet.rules))
+    demands = [visit.demand for visit in fleet.rules.visits if visit.demand]
+    largest_load = max(1, *map(sum, zip(*demands, strict=True)), 1)
+    most_load = _LARGEST / (heaviest * largest_load)
     return scales, Penalties(load=min(highest * leg, most_load), limit=hardest * leg)
 
 
@@ -193,12 +312,6 @@ def _largest_total(fleet: Fleet, squeezed: Squeezed, objective: int, horizon: Ho
     if objective == fleet.rules.clock:
         total += _services(fleet.rules) + fleet.rules.n * (horizon.end - horizon.begin)
     return total
-
-
-def _largest_load(rules: Rules) -> int:
-    """Return the largest possible load over all capacities, in any dimension; at least 1."""
-    demands = (visit.demand for visit in rules.visits if visit.demand)
-    return max(1, *(sum(dimension) for dimension in zip(*demands, strict=True)), 1)
 
 
 def _services(rules: Rules) -> float:

@@ -1,9 +1,10 @@
-"""PyVRP's iterated local search towards one goal, with every solution that it visits reported."""
+"""Run PyVRP's iterated local search towards one goal, and report every solution it visits."""
 
 import time
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 
 import pyvrp
 import pyvrp.search
@@ -48,7 +49,7 @@ class Solver:
         offer: Called with each solution that a search visits, feasible or not, and the weights of
             its goal.
         stop: Called after each iteration; True ends the search.
-        deadline: The time by time.monotonic() after which nothing slow is started.
+        deadline: The time, by time.monotonic(), after which nothing slow is started.
     """
 
     def __init__(
@@ -57,7 +58,7 @@ class Solver:
         seed: int,
         offer: Offer,
         stop: Callable[[], bool],
-        deadline: float | None = None,
+        deadline: float = inf,
     ) -> None:
         self._translation = translation
         self._random = pyvrp.RandomNumberGenerator(seed=seed)
@@ -72,7 +73,10 @@ class Solver:
         data = self._translation.data(goal)
         local_search = self._local_search(data, goal)
         manager = _Penalties(data, self._translation.penalties, max(goal.weights))
-        initial = self._initial(data, step.start, local_search, manager)
+        if step.start is None:
+            initial = self._initial(data, local_search, manager)
+        else:
+            initial = self._translation.moved(step.start, data)
         self._offer(initial, goal.weights)
         watcher = _Watcher(self._offer, self._stop, goal.weights, step.iterations)
         small = len(self._translation.fleet.rules.clients) <= _FEW
@@ -95,15 +99,12 @@ class Solver:
     def _initial(
         self,
         data: pyvrp.ProblemData,
-        start: pyvrp.Solution | None,
         local_search: pyvrp.search.LocalSearch,
         manager: PenaltyManager,
     ) -> pyvrp.Solution:
-        if start is not None:
-            return _moved(data, start)
         random = pyvrp.Solution.make_random(data, self._random)
         seconds = _EXHAUSTIVE * len(self._translation.fleet.rules.clients) ** 2
-        if self._deadline is not None and time.monotonic() + seconds > self._deadline:
+        if time.monotonic() + seconds > self._deadline:
             return random
         return local_search(random, manager.max_cost_evaluator(), exhaustive=True)
 
@@ -111,10 +112,7 @@ class Solver:
 class _Penalties(PenaltyManager):
     """PyVRP's penalties, with a greatest penalty of its own for exceeding a limit.
 
-    Args:
-        data: The data to search.
-        most: The greatest penalties.
-        weight: The largest weight of the goal, which multiplies them as it does costs.
+    The largest weight of the goal multiplies the greatest penalties, as it multiplies costs.
     """
 
     def __init__(self, data: pyvrp.ProblemData, most: Penalties, weight: int) -> None:
@@ -135,17 +133,15 @@ class _Penalties(PenaltyManager):
         return pyvrp.CostEvaluator(loads, self._most_limit, self._most_limit)
 
 
+@dataclass
 class _Watcher(IteratedLocalSearchCallbacks):
     """Offers each candidate of a search, and ends it."""
 
-    def __init__(
-        self, offer: Offer, stop: Callable[[], bool], weights: Weights, iterations: int
-    ) -> None:
-        self._offer = offer
-        self._stop = stop
-        self._weights = weights
-        self._most = iterations
-        self.iterations = 0
+    offer: Offer
+    stop: Callable[[], bool]
+    weights: Weights
+    most: int  # iterations
+    iterations: int = 0
 
     def on_iteration(
         self,
@@ -156,22 +152,12 @@ class _Watcher(IteratedLocalSearchCallbacks):
     ) -> None:
         """Offer the candidate."""
         self.iterations += 1
-        self._offer(candidate, self._weights)
+        self.offer(candidate, self.weights)
 
     def on_best(self, best: pyvrp.Solution) -> None:
         """Offer a new best solution, which may be better than the candidate."""
-        self._offer(best, self._weights)
+        self.offer(best, self.weights)
 
     def __call__(self, best_cost: float) -> bool:  # noqa: ARG002
         """Return whether to end the search."""
-        return self.iterations >= self._most or self._stop()
-
-
-def _moved(data: pyvrp.ProblemData, solution: pyvrp.Solution) -> pyvrp.Solution:
-    """Return a solution of other data of the same fleet as a solution of these data."""
-    routes = [
-        pyvrp.Route(data, [each for each in route.schedule() if not each.is_depot()], vehicle)
-        for route in solution.routes()
-        for vehicle in [route.vehicle_type()]
-    ]
-    return pyvrp.Solution(data, routes)
+        return self.iterations >= self.most or self.stop()

@@ -1,16 +1,21 @@
-"""The order of the searches for a front. Each search depends on the results of those before."""
+"""The searches for a front of plans, in order. Each depends on the results of those before.
+
+A sum against a maximum is searched under limits on the longest route (epsilon-constraint). Two sums
+are searched under weights, which are the normals of the edges of the front's hull (Aneja and Nair,
+1979). Weights reach supported points only.
+"""
 
 from collections.abc import Callable, Iterator
-from itertools import count
+from itertools import count, pairwise
 
 import numpy as np
 import pyvrp
 
-from service.fleet.archive import SolutionArchive
-from service.fleet.limit_steps import LimitSteps
+from service.fleet.archive import Point, SolutionArchive
+from service.fleet.fleet import least_paths
+from service.fleet.scales import STEEPEST, UNBOUNDED
 from service.fleet.solver import Step
 from service.fleet.translation import Goal, Translation
-from service.fleet.weight_steps import weight_steps
 
 FEW_STOPS = 12  # up to this number of stops, the sweep looks for every point
 _FIRST_ITERATIONS = 100
@@ -20,6 +25,8 @@ _ROUGH_LIMITS, _ROUGH_ITERATIONS = 7, 50  # in the first round
 _LIMITS = 24  # in each further round
 _LEAST_ITERATIONS, _MOST_ITERATIONS = 50, 3000  # for a limit in one round
 _IDLE_ROUNDS = 3  # rounds without a new solution, after which a sweep of few stops has converged
+_ROUNDED = 3  # units by which a route to one stop is rounded up: two legs and a service
+_UNKNOWN = 0.1  # share of the greatest sum that an unknown sum exceeds it by, at least
 
 
 class Sweep:
@@ -39,12 +46,15 @@ class Sweep:
         random: np.random.Generator,
         left: Callable[[], float],
     ) -> None:
+        rules = translation.fleet.rules
         self._translation = translation
         self._archive = archive
         self._random = random
         self._left = left
-        self._limited = translation.roles.limited is not None
-        self._few = len(translation.fleet.rules.clients) <= FEW_STOPS
+        self._two_sums = rules.maximum is None
+        self._maximum = 0 if rules.maximum is None else rules.maximum
+        self._limit_scale = translation.scales[self._maximum]
+        self._few = len(rules.clients) <= FEW_STOPS
 
     def steps(self) -> Iterator[Step]:
         """Yield the searches.
@@ -66,31 +76,154 @@ class Sweep:
 
         The first search shows how long iterations take.
         """
-        free = Goal(weights=self._translation.sum_weights if self._limited else (1, 1))
+        free = Goal(weights=(1, 1) if self._two_sums else self._translation.sum_weights)
         iterations = _FIRST_ITERATIONS
         yield Step(free, self._least_sum(), iterations)
         while not len(self._archive):
             iterations *= 2
             yield Step(free, None, iterations)
-        if self._limited and not self._few:
+        if not self._two_sums and not self._few:
             yield Step(free, self._least_sum(), int(_FREE_SHARE * self._left()))
 
     def _least_sum(self) -> pyvrp.Solution | None:
         """Return the solution of the least sum, or of the least first of two sums, or None."""
         if not len(self._archive):
             return None
-        return self._archive.solutions[-1 if self._translation.roles.limited == 0 else 0]
+        return self._archive.solutions[0 if self._two_sums or self._maximum == 1 else -1]
 
     def _round(self, number: int) -> Iterator[Step]:
         """Yield the searches of a round; for few stops or two sums they get longer every round."""
         iterations = _FIRST_ITERATIONS * 2 ** min(number, _MOST_DOUBLINGS)
-        if not self._limited:
-            return weight_steps(self._translation, self._archive, iterations)
+        if self._two_sums:
+            return self._hull_weights(iterations)
         if self._few:
-            return LimitSteps(self._translation, self._archive, iterations).every_limit()
+            return self._every_limit(iterations)
         if number == 0:
-            rough = LimitSteps(self._translation, self._archive, _ROUGH_ITERATIONS)
-            return rough.wide_limits(_ROUGH_LIMITS, lambda: 0.5)
+            return self._wide_limits(_ROUGH_LIMITS, _ROUGH_ITERATIONS, lambda: 0.5)
         share = int(min(self._left() / _LIMITS, _MOST_ITERATIONS))
-        fine = LimitSteps(self._translation, self._archive, max(_LEAST_ITERATIONS, share))
-        return fine.wide_limits(_LIMITS, lambda: self._random.uniform(0.3, 0.7))
+        iterations = max(_LEAST_ITERATIONS, share)
+        return self._wide_limits(_LIMITS, iterations, lambda: self._random.uniform(0.3, 0.7))
+
+    def _every_limit(self, iterations: int) -> Iterator[Step]:
+        """Yield a search just below the longest route of each solution."""
+        done: set[int] = set()
+        while left := {self._limit(each) - 1 for each in self._lengths(self._maximum)} - done:
+            limit = max(left)
+            done.add(limit)
+            yield self._limited(limit, iterations)
+
+    def _wide_limits(
+        self, most: int, iterations: int, share: Callable[[], float]
+    ) -> Iterator[Step]:
+        """Yield `most` searches: first at the least possible limit, then at others.
+
+        Each further limit is at a share of an interval between two neighbours: the interval in
+        which the front may gain the most hypervolume.
+        """
+        least, greatest = self._least_limit(), self._limit(max(self._lengths(self._maximum)))
+        intervals = [(least, max(least, greatest))]
+        yield self._limited(least, iterations)
+        for _ in range(most - 1):
+            low, high = max(intervals, key=self._area)
+            intervals.remove((low, high))
+            limit = low + int(share() * (high - low))
+            yield self._limited(limit, iterations)
+            intervals += [(low, limit), (limit, high)]
+
+    def _area(self, interval: tuple[int, int]) -> float:
+        """Return the most hypervolume that solutions within an interval can gain."""
+        low, high = interval
+        return (high - low) * (self._sum_within(low) - self._sum_within(high))
+
+    def _sum_within(self, limit: int) -> float:
+        """Return the least sum within a limit; a high estimate if there is no solution."""
+        sums = self._lengths(1 - self._maximum)
+        index = self._best_within(limit)
+        if index is not None:
+            return sums[index]
+        most = max(sums)
+        return most + max(most - min(sums), _UNKNOWN * most)
+
+    def _limited(self, limit: int, iterations: int) -> Step:
+        """Return a search under a limit, from the best solution known within it."""
+        index = self._best_within(limit)
+        if index is None:  # start from the solution of the least maximum
+            index = 0 if self._maximum == 0 else -1
+        goal = Goal(weights=self._translation.sum_weights, limit=max(0, limit))
+        return Step(goal, self._archive.solutions[index], iterations)
+
+    def _best_within(self, limit: int) -> int | None:
+        return self._archive.best_within(self._maximum, (limit + 0.5) / self._limit_scale)
+
+    def _lengths(self, objective: int) -> list[float]:
+        return [guide[objective] for guide in self._archive.guides]
+
+    def _limit(self, length: float) -> int:
+        return round(length * self._limit_scale)
+
+    def _least_limit(self) -> int:
+        """Return an estimate of the least limit under which every stop can be visited."""
+        rules, costs = self._translation.fleet.rules, self._translation.squeezed.legs[self._maximum]
+        alone = np.full(rules.n, np.inf)
+        for vehicle in rules.vehicles:
+            there = 0.0 if vehicle.start is None else least_paths(costs, [vehicle.start])
+            back = 0.0 if vehicle.end is None else least_paths(costs.T, [vehicle.end])
+            alone = np.minimum(alone, there + back)
+        if rules.clock == self._maximum:
+            alone += [visit.service for visit in rules.visits]
+        required = [s for s in rules.clients if rules.visits[s].prize is None]
+        return min(UNBOUNDED, self._limit(float(alone[required].max(initial=0.0))) + _ROUNDED)
+
+    def _hull_weights(self, iterations: int) -> Iterator[Step]:
+        """Yield searches with the weights of both ends of the front, and of all edges of its hull.
+
+        No weight can outweigh huge numbers of the other objective. So with huge numbers, each end
+        is first searched with weight 0 for the other objective.
+        """
+        alone = [(1, 0), (0, 1)] if self._translation.squeezed.changed else []
+        for weights in [*alone, (STEEPEST, 1), (1, STEEPEST)]:
+            yield self._weighted(weights, iterations)
+        done: set[tuple[Point, Point]] = set()
+        while edges := [edge for edge in pairwise(_hull(self._points())) if edge not in done]:
+            edge = max(edges, key=_box)
+            done.add(edge)
+            (x1, y1), (x2, y2) = edge
+            yield self._weighted((y1 - y2, x2 - x1), iterations)
+
+    def _weighted(self, weights: tuple[float, float], iterations: int) -> Step:
+        """Return a search with these weights, from the solution that is best under them."""
+        index = int((np.array(self._points()) @ np.array(weights)).argmin())
+        first, second = (_whole(each / max(weights)) for each in weights)
+        whole = (first, second) if self._translation.distance == 0 else (second, first)
+        return Step(Goal(weights=whole), self._archive.solutions[index], iterations)
+
+    def _points(self) -> list[Point]:
+        """Return the lengths of all solutions in PyVRP's units: their products fit a double."""
+        first, second = self._translation.scales
+        return [(x * first, y * second) for x, y in self._archive.guides]
+
+
+def _whole(weight: float) -> int:
+    """Return a weight as a whole number, where the larger of both is 1; 0 only if it is 0."""
+    return max(1, round(STEEPEST * weight)) if weight else 0
+
+
+def _box(edge: tuple[Point, Point]) -> float:
+    """Return the area of the box between two neighbours on the hull."""
+    (x1, y1), (x2, y2) = edge
+    return (x2 - x1) * (y1 - y2)
+
+
+def _hull(points: list[Point]) -> list[Point]:
+    """Return the points of a front that lie on its lower left hull, from left to right."""
+    hull: list[Point] = []
+    for point in points:
+        while len(hull) > 1 and _above(hull[-2], hull[-1], point):
+            hull.pop()
+        hull.append(point)
+    return hull
+
+
+def _above(a: Point, b: Point, c: Point) -> bool:
+    """Return whether b is on or above the line from a to c."""
+    return (b[0] - a[0]) * (c[1] - a[1]) <= (c[0] - a[0]) * (b[1] - a[1])

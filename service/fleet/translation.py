@@ -15,17 +15,10 @@ import pyvrp
 from numpy.typing import NDArray
 
 from service.fleet.evaluation import unassigned
-from service.fleet.fleet import Array, Fleet, VehicleType
+from service.fleet.fleet import Fleet, VehicleType
 from service.fleet.plans import Plan, Route
-from service.fleet.scales import (
-    UNBOUNDED,
-    Horizon,
-    most_legs,
-    round_down,
-    round_up,
-    scales_of,
-)
-from service.fleet.squeezing import Squeezed
+from service.fleet.scales import UNBOUNDED, Horizon, Squeezed, round_down, round_up, scales_of
+from service.instance import OBJECTIVES
 
 _MOST_EXTRA = 2**50  # a prize or a fixed cost: 500 of them together do not overflow
 Weights = tuple[int, int]
@@ -42,27 +35,6 @@ class Goal:
 FREE = Goal(weights=(1, 1))  # the goal of solutions that were not found by a search
 
 
-@dataclass(frozen=True)
-class _Roles:
-    """The objectives that are PyVRP's distance and its duration, and the limited objective."""
-
-    distance: int
-    duration: int | None
-    limited: int | None
-
-    @classmethod
-    def of(cls, fleet: Fleet) -> "_Roles":
-        rules = fleet.rules
-        if rules.clock is not None:
-            return cls(1 - rules.clock, rules.clock, rules.maximum)
-        if rules.maximum is None:
-            return cls(0, 1, None)
-        summed = 1 - rules.maximum
-        if np.array_equal(fleet.costs[0], fleet.costs[1]):
-            return cls(summed, None, rules.maximum)
-        return cls(summed, rules.maximum, rules.maximum)
-
-
 class Translation:
     """Translates a fleet to PyVRP's data, and PyVRP's solutions back to plans.
 
@@ -70,117 +42,38 @@ class Translation:
         fleet: The fleet.
         loose: Whether times and lengths may exceed their bounds by as much as rounding adds. Then
             solutions may break rules.
+
+    Attributes:
+        distance: The objective that is PyVRP's distance.
+        duration: The objective that is its duration; None if a maximum and a sum have equal costs,
+            since the distance then serves both.
+        scales: The factor of lengths in each objective.
+        penalties: The greatest penalties.
     """
 
     def __init__(self, fleet: Fleet, loose: bool = False) -> None:
+        rules = fleet.rules
         self.fleet = fleet
         # Each leg and each service may be rounded up by one.
-        self._slack = 2 * (fleet.rules.n + 1) if loose else 0
-        self.roles = _Roles.of(fleet)
-        rules = fleet.rules
+        self._slack = 2 * (rules.n + 1) if loose else 0
+        duration = 1 if rules.limited is None else rules.limited
+        untimed_maximum = rules.clock is None and rules.maximum is not None
+        same = untimed_maximum and np.array_equal(fleet.costs[0], fleet.costs[1])
+        self.distance = 1 - duration
+        self.duration = None if same else duration
         # A location for each stop, and one more for "anywhere": open routes start or end there.
-        self.anywhere = rules.n
-        self._depots = [*sorted(rules.depots), self.anywhere]
+        self._depots = [*sorted(rules.depots), rules.n]
         self._singles = [stop for stop in rules.clients if stop not in rules.shipped]
-        self.squeezed = Squeezed.of(fleet, most_legs(rules))
-        clock = 0 if rules.clock is None else rules.clock
-        self._horizon = Horizon.of(rules, float(self.squeezed.largest[clock]))
+        self.squeezed = Squeezed.of(fleet)
+        self._horizon = Horizon.of(rules, float(self.squeezed.largest[rules.clock or 0]))
         scales, self.penalties = scales_of(fleet, self.squeezed, self._horizon)
-        duration = self.roles.duration
-        self.distance_scale = scales[self.roles.distance]
-        self.duration_scale = 1.0 if duration is None else scales[duration]
+        self.scales = [scales[self.distance]] * OBJECTIVES if same else scales
         self._unlimited: tuple[Weights, pyvrp.ProblemData] | None = None  # the latest
-
-    @cached_property
-    def _matrices(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        distance, duration = self.roles.distance, self.roles.duration
-        distances = self._matrix(self.squeezed.legs[distance], self.distance_scale)
-        if duration is None:
-            return distances, np.zeros_like(distances)
-        return distances, self._matrix(self.squeezed.legs[duration], self.duration_scale)
-
-    def _matrix(self, costs: Array, scale: float) -> NDArray[np.int64]:
-        padded = np.zeros((len(costs) + 1, len(costs) + 1), np.int64)
-        padded[:-1, :-1] = round_up(costs * scale)
-        return padded
-
-    @cached_property
-    def _locations(self) -> list[pyvrp.Location]:
-        return [pyvrp.Location(0, 0) for _ in range(self.anywhere + 1)]
-
-    def scale(self, objective: int) -> float:
-        """Return the factor of lengths in this objective."""
-        return self.duration_scale if objective == self.roles.duration else self.distance_scale
-
-    @property
-    def limit_scale(self) -> float:
-        """The factor of lengths in the limited objective."""
-        return self.duration_scale if self._limits_duration else self.distance_scale
-
-    @property
-    def _limits_duration(self) -> bool:
-        return self.roles.duration is not None and self.roles.limited == self.roles.duration
 
     @property
     def sum_weights(self) -> Weights:
         """The weights of distance and duration with which the sum is minimised."""
-        return (0, 1) if self.roles.limited == self.roles.distance and self._two else (1, 0)
-
-    @property
-    def _two(self) -> bool:
-        return self.roles.duration is not None
-
-    def data(self, goal: Goal) -> pyvrp.ProblemData:
-        """Return PyVRP's data for a goal."""
-        if self._unlimited is None or self._unlimited[0] != goal.weights:
-            self._unlimited = goal.weights, self._unlimited_data(Goal(weights=goal.weights))
-        return self._unlimited[1].replace(vehicle_types=self._vehicles(goal))
-
-    def _unlimited_data(self, goal: Goal) -> pyvrp.ProblemData:
-        distances, durations = self._matrices
-        return pyvrp.ProblemData(
-            self._locations,
-            [self._client(stop, goal) for stop in self._singles],
-            [pyvrp.Depot(location) for location in self._depots],
-            self._vehicles(goal),
-            [distances],  # type: ignore[list-item]  # PyVRP's stub means arrays of integers
-            [durations],  # type: ignore[list-item]
-            [],
-            self._shipments(goal),
-        )
-
-    def plan(self, solution: pyvrp.Solution) -> Plan:
-        """Return the plan of a solution."""
-        return Plan(
-            tuple(
-                Route(route.vehicle_type(), tuple(self._stop(each) for each in visits))
-                for route in solution.routes()
-                if (visits := [each for each in route.schedule() if not each.is_depot()])
-            )
-        )
-
-    def extras(self, plan: Plan) -> float:
-        """Return the prizes that a plan loses and its fixed costs, all squeezed."""
-        lost = self.squeezed.prizes[unassigned(self.fleet.rules, plan)]
-        used = self.squeezed.fixed[[route.vehicle for route in plan.routes]]
-        return float(lost.sum() + used.sum())
-
-    def solution(self, data: pyvrp.ProblemData, plan: Plan) -> pyvrp.Solution:
-        """Return a plan as a solution of data that `data` returned."""
-        routes = [
-            pyvrp.Route(data, [self._activities[stop] for stop in route.stops], route.vehicle)
-            for route in plan.routes
-        ]
-        return pyvrp.Solution(data, routes)
-
-    @cached_property
-    def _activities(self) -> dict[int, pyvrp.Activity]:
-        kinds = pyvrp.ActivityType
-        found = {s: pyvrp.Activity(kinds.CLIENT, i) for i, s in enumerate(self._singles)}
-        for index, each in enumerate(self.fleet.rules.shipments):
-            found[each.pickup] = pyvrp.Activity(kinds.PICKUP, index)
-            found[each.delivery] = pyvrp.Activity(kinds.DELIVERY, index)
-        return found
+        return (0, 1) if self.fleet.rules.maximum == self.distance else (1, 0)
 
     @cached_property
     def is_rounded(self) -> bool:
@@ -191,12 +84,71 @@ class Translation:
         changed = self.fleet.forbids or self.squeezed.changed
         return self._slack > 0 or changed or too_late
 
-    def _stop(self, activity: pyvrp.Activity) -> int:
-        if activity.is_client():
-            return self._singles[activity.idx]
-        shipment = self.fleet.rules.shipments[activity.idx]
-        is_pickup = activity.type == pyvrp.ActivityType.PICKUP
-        return shipment.pickup if is_pickup else shipment.delivery
+    def plan(self, solution: pyvrp.Solution) -> Plan:
+        """Return the plan of a solution."""
+        stops = self._stops
+        routes = (
+            Route(route.vehicle_type(), tuple(stops[each] for each in _visits(route)))
+            for route in solution.routes()
+        )
+        return Plan(tuple(route for route in routes if route.stops))
+
+    def moved(self, solution: pyvrp.Solution, data: pyvrp.ProblemData) -> pyvrp.Solution:
+        """Return a solution of other data of this fleet as a solution of these data."""
+        routes = [pyvrp.Route(data, _visits(r), r.vehicle_type()) for r in solution.routes()]
+        return pyvrp.Solution(data, routes)
+
+    def solution(self, data: pyvrp.ProblemData, plan: Plan) -> pyvrp.Solution:
+        """Return a plan as a solution of data that `data` returned."""
+        activities = {stop: activity for activity, stop in self._stops.items()}
+        routes = [
+            pyvrp.Route(data, [activities[stop] for stop in route.stops], route.vehicle)
+            for route in plan.routes
+        ]
+        return pyvrp.Solution(data, routes)
+
+    def extras(self, plan: Plan) -> float:
+        """Return the prizes that a plan loses and its fixed costs, all squeezed."""
+        lost = self.squeezed.prizes[unassigned(self.fleet.rules, plan)]
+        used = self.squeezed.fixed[[route.vehicle for route in plan.routes]]
+        return float(lost.sum() + used.sum())
+
+    def data(self, goal: Goal) -> pyvrp.ProblemData:
+        """Return PyVRP's data for a goal."""
+        if self._unlimited is None or self._unlimited[0] != goal.weights:
+            self._unlimited = goal.weights, self._unlimited_data(Goal(weights=goal.weights))
+        return self._unlimited[1].replace(vehicle_types=self._vehicles(goal))
+
+    def _unlimited_data(self, goal: Goal) -> pyvrp.ProblemData:
+        distances, durations = self._matrices
+        return pyvrp.ProblemData(
+            [pyvrp.Location(0, 0)] * len(distances),
+            [self._client(stop, goal) for stop in self._singles],
+            [pyvrp.Depot(location) for location in self._depots],
+            self._vehicles(goal),
+            [distances],  # type: ignore[list-item]  # PyVRP's stub means arrays of integers
+            [durations],  # type: ignore[list-item]
+            [],
+            self._shipments(goal),
+        )
+
+    @cached_property
+    def _matrices(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The distances and the durations, with a row and a column of zeros for "anywhere"."""
+        scales = np.reshape(self.scales, (OBJECTIVES, 1, 1))
+        padded = np.pad(round_up(self.squeezed.legs * scales), ((0, 0), (0, 1), (0, 1)))
+        whole = padded.astype(np.int64)
+        durations = np.zeros_like(whole[0]) if self.duration is None else whole[self.duration]
+        return whole[self.distance], durations
+
+    @cached_property
+    def _stops(self) -> dict[pyvrp.Activity, int]:
+        kinds = pyvrp.ActivityType
+        found = {pyvrp.Activity(kinds.CLIENT, i): stop for i, stop in enumerate(self._singles)}
+        for index, each in enumerate(self.fleet.rules.shipments):
+            found[pyvrp.Activity(kinds.PICKUP, index)] = each.pickup
+            found[pyvrp.Activity(kinds.DELIVERY, index)] = each.delivery
+        return found
 
     def _client(self, stop: int, goal: Goal) -> pyvrp.Client:
         visit = self.fleet.rules.visits[stop]
@@ -212,15 +164,17 @@ class Translation:
         )
 
     def _shipments(self, goal: Goal) -> list[pyvrp.Shipment]:
+        visits = self.fleet.rules.visits
         return [
             pyvrp.Shipment(
                 each.pickup,
                 each.delivery,
                 *self._times(each.pickup),
-                *self._times_after(each.delivery, each.pickup),
-                self._load(self.fleet.rules.visits[each.pickup].demand),
+                # In PyVRP a delivery may not end before its pick-up opens.
+                *self._times(each.delivery, least_late=self._times(each.pickup)[0]),
+                self._load(visits[each.pickup].demand),
                 self._extra(self.squeezed.prizes[each.pickup], goal),
-                self.fleet.rules.visits[each.pickup].prize is None,
+                visits[each.pickup].prize is None,
             )
             for each in self.fleet.rules.shipments
         ]
@@ -249,48 +203,50 @@ class Translation:
 
     def _longest(self, vehicle: VehicleType, limit: int) -> tuple[int, int]:
         """Return the longest distance and the longest duration of a route."""
-        timed = self.fleet.rules.clock is not None
-        scale = self.duration_scale if timed else self.limit_scale
+        rules = self.fleet.rules
+        scale = self.scales[rules.limited or 0]
         longest = UNBOUNDED
         if vehicle.longest < UNBOUNDED / scale:
             longest = int(round_down(vehicle.longest * scale)) + self._slack
-        if timed and not self._limits_duration:
+        limits_duration = self.duration is not None and rules.maximum == self.duration
+        if rules.clock is not None and not limits_duration:
             return limit, longest
         limit = min(limit, longest)
-        return (UNBOUNDED, limit) if self._limits_duration else (limit, UNBOUNDED)
+        return (UNBOUNDED, limit) if limits_duration else (limit, UNBOUNDED)
 
     def _extra(self, cost: float, goal: Goal) -> int:
         """Return a cost that is added to the first objective, under the weights of a goal."""
-        is_distance = self.roles.distance == 0
-        weight = goal.weights[0 if is_distance else 1]
-        scale = self.distance_scale if is_distance else self.duration_scale
-        return min(round(min(cost * scale, _MOST_EXTRA)) * weight, _MOST_EXTRA)
+        scaled = round(min(cost * self.scales[0], _MOST_EXTRA))
+        return min(scaled * goal.weights[self.distance], _MOST_EXTRA)
 
     def _load(self, demand: Sequence[int]) -> list[int]:
         return list(demand or (0,) * self.fleet.rules.dimensions)
 
     def _depot(self, stop: int | None) -> int:
-        return self._depots.index(self.anywhere if stop is None else stop)
+        return self._depots.index(self.fleet.rules.n if stop is None else stop)
 
-    def _times(self, stop: int) -> tuple[int, int, int]:
+    def _times(self, stop: int, least_late: int = 0) -> tuple[int, int, int]:
         """Return the earliest and latest begin of a visit, and how long it takes."""
         visit = self.fleet.rules.visits[stop]
-        service = int(round_up(visit.service * self.duration_scale))
-        early = self._early(visit.window[0])
-        return early, max(early, self._late(visit.window[1])), service
-
-    def _times_after(self, stop: int, earlier: int) -> tuple[int, int, int]:
-        """Return the same for a delivery; in PyVRP it may not end before its pick-up opens."""
-        early, late, service = self._times(stop)
-        return early, max(late, self._times(earlier)[0]), service
+        early, late = self._early(visit.window[0]), self._late(visit.window[1])
+        service = int(round_up(visit.service * self._time_scale))
+        return early, max(early, late, least_late), service
 
     def _early(self, time: float) -> int:
-        return int(round_up(self._since_begin(time) * self.duration_scale))
+        return int(round_up(self._scaled_time(time)))
 
     def _late(self, time: float) -> int:
         if time >= self._horizon.end:
             return UNBOUNDED
-        return int(round_down(self._since_begin(time) * self.duration_scale)) + self._slack
+        return int(round_down(self._scaled_time(time))) + self._slack
 
-    def _since_begin(self, time: float) -> float:
-        return max(0.0, time - self._horizon.begin)
+    def _scaled_time(self, time: float) -> float:
+        return max(0.0, time - self._horizon.begin) * self._time_scale
+
+    @property
+    def _time_scale(self) -> float:
+        return self.scales[self.fleet.rules.clock or 0]
+
+
+def _visits(route: pyvrp.Route) -> list[pyvrp.Activity]:
+    return [each for each in route.schedule() if not each.is_depot()]

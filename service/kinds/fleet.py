@@ -73,9 +73,9 @@ def plan_front(
 def warm_up() -> None:
     """Import PyVRP, which takes some tenths of a second, and compile the optimal split."""
     import service.fleet.planner  # noqa: F401
-    from service.fleet.splitting import cutter
+    from service.fleet import first_plans
 
-    cutter.warm_up()
+    first_plans.warm_up()
 
 
 def document_of_plans(

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from service.coverage.path import CoveragePath
+from service.coverage.frame import CoveragePath
 from service.fleet.plans import FleetFront
 from service.front import Front, Termination
 from service.instance import OBJECTIVES

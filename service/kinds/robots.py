@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from service.coverage.path import CoveragePath
-from service.coverage.robots import Robot
+from service.coverage.coverage import Robot
+from service.coverage.frame import CoveragePath
 from service.coverage.survey import Survey, survey
 from service.fleet.evaluation import route_lengths
 from service.fleet.fleet import Fleet, Over, Rules, VehicleType, Visit

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from service.coverage.path import CoveragePath
+from service.coverage.frame import CoveragePath
 from service.coverage.survey import Survey
 from service.front import Front
 from service.kinds.front_document import (

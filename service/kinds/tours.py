@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.coverage.coverage import Coverage
-from service.coverage.path import CoveragePath
+from service.coverage.frame import CoveragePath
 from service.coverage.survey import Survey, survey
 from service.errors import Cancelled, InvalidCoverage, NoTour
 from service.front import Front, reporting

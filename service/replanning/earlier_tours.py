@@ -8,21 +8,22 @@ from numpy.typing import NDArray
 from service.instance import Instance
 
 Tours = NDArray[np.int64]
-MOST_TRIED = 2**25  # places of cities that are inserted, each in some ten nanoseconds
+MOST_TRIED = 2**25  # places that are tried for new cities; each takes about ten nanoseconds
 
 
 @dataclass(frozen=True, eq=False)
 class EarlierTours:
-    """What is left of the tours of an earlier front.
+    """The rest of the tours of an earlier front.
 
     Args:
         tours: The cities of an instance that were in the earlier front already, in the order of
             each of its tours, shape (m, k), m at least 1. The first is the tour being driven. All
             begin and end at the fixed ends of the instance, if it has any.
-        min_kept: The least share of the driven tour's legs that a tour shall keep.
-        touched: The cities beside which another has gone from one of the tours, or to or from which
-            a cost has changed; None where that may be any.
-        balance: Of the tour being driven, in the earlier front; None where it was not of that.
+        min_kept: The least share of the driven tour's legs that a tour must keep.
+        touched: The cities next to which a city was removed from a tour, and the cities to or from
+            which a cost has changed; None if these may be any cities.
+        balance: The balance of the driven tour in the earlier front; None if it was not one of its
+            tours.
     """
 
     tours: Tours
@@ -32,19 +33,19 @@ class EarlierTours:
 
     @property
     def driven(self) -> NDArray[np.int64]:
-        """What is left of the tour being driven, shape (k,)."""
+        """The rest of the tour being driven, shape (k,)."""
         return self.tours[0]
 
 
 def few_enough(instance: Instance, earlier: EarlierTours, most: int = MOST_TRIED) -> EarlierTours:
-    """Return the earlier tours, or fewer of them, so that to complete them takes at most a second.
+    """Return the earlier tours, or as many of them as can be completed in at most a second.
 
-    Those that stay are the one being driven, and others evenly spread.
+    The driven tour stays, and others that are evenly spread.
 
     Args:
         instance: The instance.
         earlier: The earlier tours, shape (m, k).
-        most: The most places, of all cities in all tours, that are tried to insert them.
+        most: The most places that are tried for new cities in all tours together.
     """
     m, k = earlier.tours.shape
     fitting = max(1, most // max(1, instance.n * (instance.n - k)))
@@ -53,9 +54,9 @@ def few_enough(instance: Instance, earlier: EarlierTours, most: int = MOST_TRIED
 
 
 def touched_cities(instance: Instance, earlier: EarlierTours, tours: Tours) -> NDArray[np.int64]:
-    """Return the cities where the completed earlier tours may be improved at first, ascending.
+    """Return the cities, ascending, at which the search first tries to improve completed tours.
 
-    Those are the cities touched, the ones inserted, and those before and after these.
+    These are the touched cities, the inserted cities and the neighbours of the inserted cities.
     """
     if earlier.touched is None:
         return np.arange(instance.n)

@@ -1,4 +1,4 @@
-"""Insert the new cities into what is left of the tours of an earlier front."""
+"""Insert new cities into the rest of the tours of an earlier front. Partly compiled."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +15,10 @@ Array = NDArray[np.float64]
 def completed(instance: Instance, earlier: EarlierTours) -> Tours:
     """Return the earlier tours with the other cities of an instance inserted, shape (m, n).
 
-    Each city goes, one after another, where it costs least under a weighted sum of the lengths: of
-    the tour whose first length is the least, that is the first length, and so on to the second. A
-    route between two fixed ends is turned round first where that is shorter under its weights, but
-    for the driven one. O(m n (n - k)).
+    Each city in turn goes where it costs least under a weighted sum of the lengths. The weights
+    differ by tour: those of the tour with the least first length are (1, 0), and those of the tour
+    with the least second length (0, 1). A route between two fixed ends is first reversed if that is
+    shorter under its weights, except for the driven one. O(m n (n - k)).
     """
     costs = make_costs(instance)
     lengths = _scaled_lengths(instance, earlier.tours)
@@ -34,20 +34,20 @@ def completed(instance: Instance, earlier: EarlierTours) -> Tours:
 
 
 def _scaled_lengths(instance: Instance, tours: Tours) -> Array:
-    """Return lengths, shape (m, 2), finite where a leg has become forbidden, in units of scale."""
+    """Return lengths in units of scale, shape (m, 2); finite even if a leg is now forbidden."""
     steps = step_lengths(instance, *tour_steps(instance, tours))
     return steps.sum(axis=1) / instance.scale
 
 
 def _weights(lengths: Array) -> Array:
-    """Return weights of scaled lengths, shape (m, 2), by the rank of each route in balance."""
+    """Return the weights of scaled lengths, shape (m, 2), by the rank of each route in balance."""
     rank = (lengths[:, 0] - lengths[:, 1]).argsort(kind="stable").argsort(kind="stable")
     share = rank / max(1, len(lengths) - 1)
     return np.stack((1 - share, share), axis=1)
 
 
 def _better_way_round(instance: Instance, routes: Tours, sums: Array, weights: Array) -> Tours:
-    """Return the routes, those turned round whose weighted sum of lengths is less then."""
+    """Return the routes, reversed if that makes the weighted sum of their lengths less."""
     if instance.closed or not instance.symmetric:
         return routes
     begin = int(instance.start is not None)
@@ -61,7 +61,7 @@ def _better_way_round(instance: Instance, routes: Tours, sums: Array, weights: A
 
 @compiled
 def insert_cheapest(costs: Costs, tours: NDArray[np.int32], begun: int, weights: Array) -> None:
-    """Insert the last cities of closed tours, shape (m, n), into their first `begun`, in place."""
+    """Insert the cities after the first `begun` of closed tours, shape (m, n), in place."""
     for k in range(len(tours)):
         tour = tours[k]
         for size in range(begun, len(tour)):
@@ -84,7 +84,7 @@ def insert_cheapest(costs: Costs, tours: NDArray[np.int32], begun: int, weights:
 
 
 def warm_up() -> None:
-    """Compile what is compiled, or load it from the cache of an earlier process."""
+    """Compile the insertion, or load it from the cache of an earlier process."""
     cities = np.arange(4.0)
     coordinates = np.stack([cities, cities**2, cities**2, cities], axis=1)
     begun = EarlierTours(np.array([[0, 1, 2]]))

@@ -1,4 +1,4 @@
-"""The legs of a driven tour that other tours keep, and the choice of tours that keep many."""
+"""Count the legs of the driven tour that other tours keep, and choose tours that keep many."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,23 +10,23 @@ from service.pareto import balances
 Array = NDArray[np.float64]
 Tours = NDArray[np.integer]
 Indices = NDArray[np.intp]
-_MOST_COMPARED = 100  # tours of about one balance, some milliseconds at thousands of cities
-# By what a tour that keeps more may be longer, at most: a share of its length, and of a mean leg.
-# Of 1000 stops a thousandth alone would keep two legs in a hundred more, and cost all of it.
+_MOST_COMPARED = 100  # tours of about one balance: some milliseconds with thousands of cities
+# How much longer a tour may be if it keeps more legs: a share of its length, and a share of a mean
+# leg. With 1000 stops, a thousandth alone would gain two legs in a hundred and cost all of it.
 _LONGER, _LEG = 1e-3, 0.125
-_EQUAL = 1e-12  # lengths whose relative difference is less count as equal, as in the search
+_EQUAL = 1e-12  # lengths with a smaller relative difference count as equal, as in the search
 
 
 def kept_shares(instance: Instance, tours: Tours, driven: NDArray[np.int64]) -> Array:
     """Return the share of a driven tour's legs that each tour keeps, shape (m,). O(m n).
 
-    A leg leads from a city to the next one. Where costs are the same in both directions it is kept
-    in either. Of a driven tour without legs everything is kept.
+    A leg leads from a city to the next one. If costs are the same in both directions, a leg in the
+    other direction is kept too. The share is 1 if the driven tour has no legs.
 
     Args:
         instance: The instance.
         tours: Shape (m, n).
-        driven: The cities of the instance that the driven tour has, in its order, shape (k,).
+        driven: The cities of the driven tour that are in the instance, in order, shape (k,).
 
     >>> corners = np.array([[0, 0, 0, 0], [3, 0, 0, 1], [3, 4, 2, 1], [0, 4, 2, 0]])
     >>> square = Instance(coordinates=corners)
@@ -48,9 +48,10 @@ def kept_shares(instance: Instance, tours: Tours, driven: NDArray[np.int64]) -> 
 def most_like_driven(
     instance: Instance, tours: Tours, points: Array, others: Tours, driven: NDArray[np.int64]
 ) -> Tours:
-    """Return tours, each replaced by that of equal lengths among others which keeps more legs.
+    """Return tours, each replaced by another of equal lengths if that keeps more legs.
 
-    O(m n + m k) for m tours of n cities, whose lengths are points, and k others, at least one.
+    `points` are the lengths of the tours, and there is at least one other. O(m n + m k) for m tours
+    of n cities and k others.
     """
     differences = np.abs(tour_lengths(instance, others) - points[:, np.newaxis])
     equal = (differences <= _EQUAL * points[:, np.newaxis]).all(axis=2)
@@ -71,16 +72,16 @@ def with_most_kept_at(
     found: SearchResult,
     chosen: Indices,
 ) -> Indices:
-    """Return tours chosen of a front, that at a balance replaced by one that keeps more legs.
+    """Return the chosen tours of a front; one at a balance may be replaced.
 
-    Of the tours nearer to the balance than those chosen on either side, and longer than the
-    shortest of them by no more than a thousandth, and an eighth of a leg of mean length, that is
-    the one that keeps most of the driven tour's legs. The ends of the front stay.
+    Its replacement keeps most legs of the driven tour. Candidates are nearer to the balance than
+    the chosen tours on either side. They exceed the shortest of them by at most a thousandth, and
+    by at most an eighth of a mean leg. The ends of the front stay.
 
     Args:
         instance: The instance.
-        driven: As of kept_shares().
-        balance: In the box of the tours chosen.
+        driven: As in kept_shares().
+        balance: In the box of the chosen tours.
         found: The front.
         chosen: Indices in it, ascending.
     """
@@ -102,9 +103,9 @@ def with_most_kept_at(
 
 
 def _above_shortest(points: Array, before: int, after: int, between: Indices) -> Array:
-    """Return by what share of it points between two others exceed the shortest of them.
+    """Return by what share each point between two others exceeds the shortest of these points.
 
-    Lengths are added by the weights under which the two others are equal.
+    Lengths are added with the weights under which the two others are equal.
     """
     shares = points / points[[before, after]].max(axis=0)
     weights = np.abs(shares[after] - shares[before])[::-1]

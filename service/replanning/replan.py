@@ -1,4 +1,4 @@
-"""replan(...): the front of the rest of the way, from the tours of an earlier front."""
+"""replan(...): plan the front of the rest of the way from the tours of an earlier front."""
 
 import time
 from collections.abc import Callable
@@ -18,9 +18,9 @@ from service.replanning.insertion import completed
 from service.replanning.kept_legs import kept_shares, most_like_driven, with_most_kept_at
 from service.search.best_subset import best_subset
 
-_LEAST_SECONDS = 1e-3  # that are left for the search when the earlier tours took all of its time
+_LEAST_SECONDS = 1e-3  # for the search, even if completing the earlier tours took all of the time
 _ROUNDING = 1e-9  # of a share
-_MOST_CELLS = 2**22  # of all tours among which those that keep enough are looked for
+_MOST_CELLS = 2**22  # cities of all tours among which those that keep enough legs are chosen
 
 
 def replan(
@@ -31,42 +31,36 @@ def replan(
     stop: Callable[[], bool] = lambda: False,
     report: ReportOf[Front] = lambda *_: None,
 ) -> Front:
-    """Return the best front found for an instance whose cities were in an earlier front, mostly.
+    """Return the best front found for an instance most of whose cities were in an earlier front.
 
-    The search sets out from the earlier tours. Where it has time, the network builds tours only if
-    preferences are asked for: from tours that are nearly right the search gains nothing by more.
-    Of tours of equal lengths an earlier one that keeps more of the driven tour's legs is returned,
-    and at the driven tour's balance, of tours about as near to it and as short, the one that keeps
-    most.
+    The search starts from the earlier tours. With a time limit the network builds tours only if
+    preferences are asked for: the search gains nothing from them if its tours are nearly right.
+    Among tours of equal lengths, an earlier one that keeps more of the driven tour's legs is
+    returned. At the driven tour's balance, the tour that keeps most legs is returned among those
+    that are about as near to the balance and about as short.
 
     Args:
         constructor: Builds further tours.
         instance: The rest of the way.
-        options: What front is wanted, and how much may be spent on it.
-        earlier: What is left of the tours of the earlier front.
-        stop: As of plan(...).
-        report: As of plan(...).
+        options: The options of the front and the search.
+        earlier: The rest of the tours of the earlier front.
+        stop: As in plan(...).
+        report: As in plan(...).
 
     Raises:
-        Cancelled: As of plan(...).
-        Refusal: No tour found keeps as much of the driven tour as it shall.
+        Cancelled, NoTour: As in plan(...).
+        Refusal: No tour was found that keeps `min_kept` of the driven tour.
     """
     began = time.perf_counter()
     first = _first_tours(instance, earlier)
-    wanted = _as_remembered(options, instance, earlier, first) if len(first) else options
+    wanted = replace(_from_earlier(options, instance, earlier, first), initial_tours=first)
     spent = time.perf_counter() - began
     if wanted.time_limit > 0:
         wanted = replace(wanted, time_limit=max(_LEAST_SECONDS, wanted.time_limit - spent))
-    if earlier.min_kept > 0:
-        wanted = replace(wanted, size=max(options.size, _MOST_CELLS // instance.n))
-    elif earlier.balance is not None:
-        choose = partial(with_most_kept_at, instance, earlier.driven, earlier.balance)
-        wanted = replace(wanted, choose_again=choose)
 
     def with_kept(front: Front) -> Front:
         return replace(front, kept=kept_shares(instance, front.tours, earlier.driven))
 
-    wanted = replace(wanted, initial_tours=first)
     front = plan(constructor, instance, wanted, stop, reporting(report, with_kept))
     timings = {**front.timings, "construction": front.timings["construction"] + 1000 * spent}
     front = replace(front, timings=timings)
@@ -79,7 +73,7 @@ def replan(
 
 
 def _first_tours(instance: Instance, earlier: EarlierTours) -> Tours:
-    """Return the earlier tours, complete, those first that keep most of the driven one."""
+    """Return the completed earlier tours; those that keep most of the driven one come first."""
     if earlier.tours.shape[1] == 0:
         return np.empty((0, instance.n), np.int64)
     tours = completed(instance, few_enough(instance, earlier))
@@ -87,13 +81,20 @@ def _first_tours(instance: Instance, earlier: EarlierTours) -> Tours:
     return tours[np.argsort(-kept, kind="stable")]
 
 
-def _as_remembered(
+def _from_earlier(
     options: PlanOptions, instance: Instance, earlier: EarlierTours, first: Tours
 ) -> PlanOptions:
-    """Return the options of a plan that sets out from the earlier tours, and not from others."""
-    if options.fewer and options.time_limit > 0:
-        options = replace(options, angles=np.empty(0))
-    return replace(options, touched=touched_cities(instance, earlier, first))
+    """Return the options of a search from the earlier tours."""
+    if len(first):
+        options = replace(options, touched=touched_cities(instance, earlier, first))
+        if options.fewer and options.time_limit > 0:
+            options = replace(options, angles=np.empty(0))
+    if earlier.min_kept > 0:
+        return replace(options, size=max(options.size, _MOST_CELLS // instance.n))
+    if earlier.balance is None:
+        return options
+    choose = partial(with_most_kept_at, instance, earlier.driven, earlier.balance)
+    return replace(options, choose_again=choose)
 
 
 def _keeping(
@@ -105,9 +106,8 @@ def _keeping(
     kept = kept_shares(instance, tours, earlier.driven)
     enough = kept >= earlier.min_kept - _ROUNDING
     if not enough.any():
-        most = float(kept.max())
-        pointer = "/min_kept"
-        raise Refusal("too-different", pointer=pointer, limit=earlier.min_kept, actual=most)
+        least, most = earlier.min_kept, float(kept.max())
+        raise Refusal("too-different", pointer="/min_kept", limit=least, actual=most)
     tours = tours[enough]
     tours = tours[nondominated(tour_lengths(instance, tours))]
     chosen = best_subset(tour_lengths(instance, tours), size, front.reference_point)

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from service.coverage.coverage import Coverage
-from service.coverage.robots import Robot
+from service.coverage.coverage import Coverage, Robot
 from service.errors import invalid
 from service.fleet.fleet import Over
 from service.instance import CLOSED, RouteEnds

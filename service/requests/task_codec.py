@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from pydantic_core import from_json, to_json
 
 from service.actor_info import ActorInfo
-from service.coverage.coverage import Coverage
-from service.coverage.robots import Robot
+from service.coverage.coverage import Coverage, Robot
 from service.fleet.fleet import Rules, Shipment, VehicleType, Visit
 from service.front import PlanOptions
 from service.instance import RouteEnds

@@ -118,7 +118,7 @@ def swept_plainly(fleet: Fleet, seconds: float) -> list[Plan]:
     Scaled so that 1 is 10,000, which its penalties are made for.
     """
     translation = Translation(fleet)
-    translation.distance_scale = 1e4
+    translation.scales = [1e4, 1e4]
     return swept(translation, 2 * fleet.costs[0, 0].max(), seconds)
 
 
@@ -128,7 +128,7 @@ def swept(translation: Translation, least: float, seconds: float) -> list[Plan]:
     plans = [_solved(translation, UNBOUNDED, seconds / LIMITS)]
     longest = points_of(fleet, plans)[0, 1]
     for limit in np.linspace(longest, least, LIMITS)[1:]:
-        ceiling = int(np.ceil(translation.limit_scale * limit)) + fleet.rules.n
+        ceiling = int(np.ceil(translation.scales[1] * limit)) + fleet.rules.n
         plans.append(_solved(translation, ceiling, seconds / LIMITS))
     return [plan for plan in plans if not violations(fleet, plan)]
 

@@ -6,8 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.coverage.grid import regions
-from service.coverage.uncovered import UncoveredRegion, uncovered
+from service.coverage.grid import UncoveredRegion, regions, uncovered
 
 Cell = tuple[int, int]
 

@@ -89,17 +89,17 @@ BROKEN = [
     (
         {"shipments": (Shipment(3, 1),)},
         [(1, 2, 3, 4)],
-        "what is delivered at 1 was not picked up at 3",
+        "the load for 1 was not picked up at 3 before",
     ),
     (
         {"shipments": (Shipment(1, 3),)},
         [(1, 2), (3, 4)],
-        "what is delivered at 3 was not picked up at 1",
+        "the load for 3 was not picked up at 1 before",
     ),
     (
         {"shipments": (Shipment(1, 3),), "visits": (Visit(), Visit(prize=1), *(Visit(),) * 3)},
         [(1, 2, 4)],
-        "half is done",
+        "only half of the shipment",
     ),
     (
         {"visits": (Visit(), Visit(window=(0, 3)), *(Visit(),) * 3), "clock": 0},

@@ -1,1 +1,1 @@
-"""Joining: paths, the costs of edges between them, and what PA-One does with both."""
+"""Join paths to a tour by the costs of the edges between them: the parts of PA-One."""

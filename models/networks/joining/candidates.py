@@ -1,8 +1,8 @@
 """Candidate edges of PA-One: the cheapest edges from each open end of a path.
 
-Where costs differ by direction, a path is gone along in either, and which way is the cheaper one
-may change with every edge that is added to it. An edge then costs what the cheaper way through
-both paths and itself costs above the cheaper way through each.
+If costs differ by direction, a path can be used in both directions, and the cheaper one may change
+with every edge that is added. The cost of an edge is then a difference: the cheaper way through
+both joined paths, less the cheaper ways through each path alone.
 """
 
 from typing import NamedTuple
@@ -42,7 +42,7 @@ class Candidates(NamedTuple):
         return self.costs < NEVER / 2
 
     def theirs(self, of_ends: Float[Tensor, "r e"]) -> Float[Tensor, "r e c"]:
-        """Return what is known of ends for each of their candidates."""
+        """Return the entries of a table of ends for the candidates of each end."""
         return of_ends.gather(1, self.positions.flatten(1)).view_as(self.costs)
 
 
@@ -102,7 +102,7 @@ def no_more_possible(
 
 
 def _of_both(of_ends: Float[Tensor, "r e"], candidates: Candidates) -> Float[Tensor, "r e c"]:
-    """Return the sum of what is known of each end and of each of its candidates."""
+    """Return the sums of the entries of each end and of each of its candidates."""
     return of_ends[..., None] + candidates.theirs(of_ends)
 
 

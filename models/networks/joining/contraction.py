@@ -1,7 +1,7 @@
-"""Contraction: the problem that is left when few ends are open, and the joining of its solution.
+"""Contraction: make a smaller problem when few ends are open, and join its solution.
 
-It leaves out the cities inside paths. Its ends are numbered anew, and all pairs of them have a
-cost, so that the time of a round depends on the number of open ends only.
+The smaller problem has no cities inside paths. Its ends get new numbers, and every pair of ends has
+a cost. So the time of a round depends only on the number of open ends.
 """
 
 import torch
@@ -15,7 +15,7 @@ from models.networks.joining.fragments import Fragments
 def contracted(problem: Problem, fragments: Fragments) -> tuple[Costs, Fragments]:
     """Return the costs between the ends, and the fragments with ends for cities.
 
-    A path is an edge from one end of it to the other.
+    A path becomes an edge between its ends.
     """
     cities, partners = fragments.ends, fragments.partners
     index = torch.arange(cities.shape[1], device=cities.device).expand_as(cities)

@@ -1,6 +1,6 @@
-"""Costs of steps: in each objective, under the weights of each row, and less the prices of cities.
+"""Costs of steps: in each objective, under the weights of each row, and minus prices of cities.
 
-A row is one tour under construction, with costs of its own: those of its preference.
+A row is one tour under construction. Its costs depend on its preference.
 """
 
 from typing import NamedTuple
@@ -13,15 +13,15 @@ from models.data.instances import distance_matrices
 from models.networks.joining.fragments import NEVER
 from models.networks.rows import changed
 
-CANDIDATES = 8  # of an end of a path, at most
+CANDIDATES = 8  # the most candidates of an end of a path
 
 
 class Costs(NamedTuple):
-    """The mean cost of each step and the step back, and the lean: the cost there minus that mean.
+    """The mean cost of each step and the step back, and the lean: the step's cost minus the mean.
 
-    There is no lean where both cost the same. A table of all steps ends with extra columns, of
-    cities that are never reached: as many as an end may have candidates. Arrays of single steps may
-    have any shape.
+    Leans are None if steps back cost the same. A table of all steps ends with extra columns for
+    cities that are never reached, one for each candidate that an end may have. Arrays of single
+    steps may have any shape.
     """
 
     means: Float[Tensor, "r n m"]

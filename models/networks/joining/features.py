@@ -1,7 +1,7 @@
-"""Features of ends and of edges, as the network sees them: costs, against each other.
+"""The features of ends and edges that the network reads: relative costs.
 
-Costs are in units of their mean over the candidates of a row, so that no scale is left of them. An
-end's scale is the mean cost of the edges to its candidates.
+Costs are divided by their mean over the candidates of a row, so that the network does not see their
+scale. The scale of an end is the mean cost of the edges to its candidates.
 """
 
 from typing import NamedTuple
@@ -21,8 +21,8 @@ _LEAST_SCALE = 1e-3
 class Seen(NamedTuple):
     """Features of ends and of edges to candidates.
 
-    The relative cost of an edge is the sum of what it costs in the scales of both ends. Directions
-    are from -1 to 1; there are none where costs have no direction.
+    The relative cost of an edge is the sum of its costs in the scales of both ends. Directions are
+    from -1 to 1, and None if costs do not differ by direction.
     """
 
     of_ends: Float[Tensor, "r e i"]
@@ -32,7 +32,7 @@ class Seen(NamedTuple):
 
 
 class _Scales(NamedTuple):
-    """The unit of each row, the scale of each end in it, how many candidates it has, and costs."""
+    """The unit of each row; each end's scale in it, its number of candidates, and its costs."""
 
     unit: Float[Tensor, "r 1"]
     scale: Float[Tensor, "r e"]

@@ -1,10 +1,10 @@
 """Fragments: the paths that PA-One joins to a tour, and the operations that join them.
 
-A row is one tour. Its *ends* are the cities that still lack a neighbour: both ends of each path,
-and every city that is still alone, which is an end once and lacks two. Ends that have got all
-their neighbours are closed and, from time to time, cleared away. Paths have no direction; where
-costs differ by direction, each end has the cost that its path saves if it is left there. All is
-written so that the numbers of rows, ends and cities stay free when it is exported.
+A row is one tour. Its *ends* are the cities that still need a neighbour: both ends of each path,
+and every single city, which is one end but needs two neighbours. An end with all its neighbours is
+closed; closed ends are removed from time to time. Paths have no direction. If costs differ by
+direction, each end has a number: how much the path costs less if a tour leaves it at this end. The
+code can be exported with any numbers of rows, ends and cities.
 """
 
 from typing import NamedTuple
@@ -133,9 +133,9 @@ def joined(
     mates: Int[Tensor, "r e"],
     edge_leans: Float[Tensor, "r e"] | None = None,
 ) -> Fragments:
-    """Return the fragments with each end joined to its mate, where it has one.
+    """Return the fragments with each end joined to its mate, if it has one.
 
-    The lean of the edge to a mate is half of what it costs more than the edge from there.
+    The lean of the edge to a mate is half the difference between its cost and the cost back.
     """
     ends, partners, open_, links, left, leans = fragments
     at = mates >= 0

@@ -1,4 +1,4 @@
-"""Neighbours: what ends tell each other, by lookups in tables of features."""
+"""Look up the features of an end's candidates and partner in tables."""
 
 import torch
 from jaxtyping import Float, Int
@@ -10,7 +10,7 @@ EDGE = 4  # hidden features of an edge
 
 
 class Neighbours:
-    """Lookups of features of other ends of the same row; zeros where a candidate is impossible.
+    """Lookups of features of other ends of the same row; zeros for impossible candidates.
 
     Axis x is rows and ends, ends inner.
     """
@@ -30,7 +30,7 @@ class Neighbours:
     def summed(
         self, features: Float[Tensor, "x d"], own: Float[Tensor, "x d"]
     ) -> Float[Tensor, "x c d"]:
-        """Return the features of each end's candidates, to which what is the end's own is added.
+        """Return the features of each end's candidates, plus the features of the end itself.
 
         ONNX Runtime adds tables of one shape ten times as fast as it repeats rows so short.
         """
@@ -49,7 +49,7 @@ class Neighbours:
 def of_both_ends(
     of_ends: Float[Tensor, "x d"], near: Neighbours, directions: Float[Tensor, "r e c"] | None
 ) -> Float[Tensor, "x c f"]:
-    """Return the same for an edge seen from either of its ends: the sum of what both say.
+    """Return the same values for an edge from both its ends: the sum of the values of both.
 
     Where edges have directions, ends say another thing as well, that they start it or end it.
     """

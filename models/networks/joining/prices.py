@@ -1,12 +1,11 @@
 """Prices of cities, from the assignment problem with entropy.
 
-A tour leaves each city once and enters it once. So a price for each that is taken off the costs
-of its steps changes all tours by the same, and what is left of the costs says more about which
-steps a tour wants: after the best prices of the assignment problem, only those that an optimal
-assignment may take cost nothing. The prices here are of the assignment problem with entropy,
-which come from a few products of matrices (Sinkhorn's iteration; Cuturi, 2013, arXiv:1306.0895).
-They are found for some weights, the knots, and between these drawn in straight lines: wrong
-prices do no harm to any tour.
+A tour leaves each city once and enters it once. So if the steps of a city cost less by a price, all
+tours become shorter by the same amount. The remaining costs show better which steps a tour needs:
+with the best prices of the assignment problem, only steps of optimal assignments cost nothing. The
+prices here are those of the assignment problem with entropy, which a few products of matrices find
+(Sinkhorn's iteration; Cuturi, 2013, arXiv:1306.0895). They are computed for some weights, the
+knots, and interpolated between these: inexact prices do no harm.
 """
 
 import torch
@@ -66,7 +65,7 @@ def _prices(costs: Costs) -> Prices:
     kernel, back_kernel = (
         (-table[:, :, :n] / unit[..., None]).exp().clamp(min=_LEAST) for table in (there, back)
     )
-    # To leave, then to enter; what is on the other side of a step comes the other way round.
+    # First to leave, then to enter. The city at the other end of a step has them exchanged.
     kernels = torch.stack((kernel, back_kernel))
     both = kernels.sum(dim=3, keepdim=True).rsqrt()
     other_way = torch.tensor([1, 0], device=both.device)

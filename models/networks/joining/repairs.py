@@ -1,8 +1,8 @@
 """Repair problems: cities cut out of finished tours, and tours from the fragments joined again.
 
-A cut city loses both its edges. What is left of a tour is a few cities alone and the paths between
-them, a small problem of the kind that PA-One knows. Only the ends at the cuts are part of it; one
-scatter then lays out the whole tour. All is written so that it can be exported.
+A cut city loses both its edges. The tour becomes a few single cities and the paths between them: a
+small problem of the kind that PA-One solves. It has only the ends at the cuts; one scatter then
+lays out the whole tour. The code can be exported.
 """
 
 from typing import NamedTuple
@@ -106,7 +106,7 @@ def _costs_of_joining(
     ends: tuple[Int[Tensor, "r 1"], Int[Tensor, "r 1"]],
     others: Int[Tensor, "r 2"],
 ) -> Float[Tensor, "r 2"]:
-    """Return what a tour of two fragments costs, but for a constant, by the mate of the first end.
+    """Return the cost of a tour of two fragments, up to a constant, by the mate of the first end.
 
     The mate is one of the others; the second end is joined to the other one of them.
     """

@@ -1,11 +1,11 @@
 """Shortlists: for each city the few others to which a step may cost least, found once.
 
-They are found for intervals of weights between knots, not for each row. Under the weights of a
-knot a step and the step back cost S + A and S - A, where A is 0 in planes. Between two knots S,
-prices included, goes in a straight line, and so does A; hence the cheaper of both ways, S - |A|,
-is never below the lower one of its values at both knots, and cities are listed by that. The costs
-of a row are then exact, those of its own weights. Ends of paths choose their candidates among the
-open ends on the lists of their cities.
+They are found for intervals of weights between knots, not for each row. With the weights of a knot,
+a step costs S + A and the step back S - A, where A is 0 in planes. Between two knots, S (with
+prices) and A are linear in the weights. So the cheaper direction, S - |A|, is never below the lower
+one of its values at both knots, and cities are listed by that value. The costs of a row are exact:
+they use its own weights. Ends of paths choose their candidates among the open ends on the lists of
+their cities.
 """
 
 from typing import NamedTuple, cast
@@ -53,8 +53,7 @@ class Shortlists(NamedTuple):
     """The cities listed for each city in each interval, and the costs of the steps to them.
 
     Costs are those at the knot where an interval begins, and their change up to the next knot.
-    An unused place on a list costs NEVER. There are no leans where steps back cost the
-    same.
+    An unused place on a list costs NEVER. Leans are None if steps back cost the same.
     """
 
     cities: Int[Tensor, "g n l"]

@@ -1,10 +1,10 @@
-"""Walks: where on its tour each city comes, found for all cities at once.
+"""Walks: find the position of each city on its tour, for all cities at once.
 
-Each city is left for its first neighbour or for its second: departures are numbered like links,
-the first of every city and then the second of every one. From each the walk goes on to a departure
-from the next city, and so round the tour, in either direction. By pointer jumping (Wyllie, 1979)
-each departure sees twice as far ahead in every pass, so that a thousand cities take ten passes,
-not a thousand steps.
+A departure leaves a city for its first or its second neighbour. Departures are numbered like links:
+first those of all cities to their first neighbours, then those to their second. After each comes a
+departure from the next city, and so on round the tour, in both directions. With pointer jumping
+(Wyllie, 1979), each departure sees twice as far ahead in every pass: a thousand cities take ten
+passes, not a thousand steps.
 """
 
 from typing import NamedTuple

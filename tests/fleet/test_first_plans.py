@@ -9,17 +9,16 @@ import pytest
 
 from service.errors import Refusal
 from service.fleet.evaluation import plan_lengths, violations
+from service.fleet.first_plans import Cutter
 from service.fleet.fleet import Fleet, Rules, Shipment, VehicleType, Visit
+from service.fleet.optimal_split import Indices
 from service.fleet.plans import Plan
-from service.fleet.splitting.cutter import Cutter
-from service.fleet.splitting.first_plans import first_plans
-from service.fleet.splitting.route_table import Indices
 from service.pareto import nondominated
 from tests.helpers.fleets import Point, every_plan, hull_corners, random_fleet
 
 
 def cut(fleet: Fleet, *sequences: Indices) -> list[Plan]:
-    return list(first_plans(fleet, Cutter(fleet, sequences, lambda: False)))
+    return list(Cutter(fleet, sequences, lambda: False).plans())
 
 
 def follows(plan: Plan, sequence: Indices) -> bool:

@@ -1,0 +1,229 @@
+"""First plans of a fleet: the tours of a network, cut into routes without any search."""
+
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from math import inf
+
+import numpy as np
+
+from service.construction.first_tours import MIN_CONSTRUCTED, Constructor, construct
+from service.errors import Refusal
+from service.fleet.evaluation import plan_lengths
+from service.fleet.fleet import Array, Fleet, Rules, VehicleType, Visit
+from service.fleet.optimal_split import (
+    FleetArrays,
+    Indices,
+    RouteCosts,
+    arrays_of,
+    best_split,
+    most_stops,
+    plan_of,
+    route_table,
+    states_of,
+    stock_of,
+)
+from service.fleet.plans import Plan
+from service.fleet.scales import Horizon
+from service.instance import OBJECTIVES, Instance
+from service.preferences import fan
+
+_TOURS = 21  # the number of evenly spread preferences
+_MOST_ROUTES = 2**22  # routes in the tables of all sequences together: 64 MB
+_MOST_STEPS = 2e8  # steps of the dynamic program of a sequence: tenths of a second
+_CYCLIC_STEPS = 1e7  # most steps with which every begin is tried; else only the first is
+_ALL_STEPS = 5e9  # steps of all cuts together
+_FEWEST = 20  # the least number of limits or weights, even if cuts are slow
+_STEEPEST = 1e3  # weight of one scaled objective if the other has weight 1
+_LEAST_SCALE = 1e-290  # least scale relative to the other's: its weight must be finite
+_ROUNDING = 1e-9  # relative, for a gain
+
+
+def network_sequences(
+    fleet: Fleet, constructor: Constructor, within: float | None = None
+) -> list[Indices]:
+    """Return the different tours of a network through all stops to visit, shape (c,) each.
+
+    They begin after the depot of the first type of vehicles, if it has one.
+
+    Args:
+        fleet: The fleet.
+        constructor: The network, which must read matrices.
+        within: The seconds that it may take; there may be fewer tours then, or none. With None the
+            network builds all of them.
+
+    Raises:
+        Cancelled: The network was told to stop.
+        InvalidInstance: Costs are too far apart for it.
+    """
+    clients = np.array(fleet.rules.clients, np.int64)
+    vehicle = fleet.rules.vehicles[0]
+    depot = vehicle.end if vehicle.start is None else vehicle.start
+    places = clients if depot is None else np.concatenate(([depot], clients))
+    if len(places) < MIN_CONSTRUCTED:
+        return [clients]
+    costs = fleet.costs[:, places[:, np.newaxis], places]
+    if depot is not None and np.array_equal(costs[0], costs[1]):
+        # If both costs are equal, every preference leads to the same tour.
+        costs = np.stack((costs[0], _angular_costs(costs[0])))
+    tours = construct(constructor, Instance(matrices=costs), fan(_TOURS), within=within)
+    begun = [np.roll(tour, -int(tour.argmin())) for tour in tours]
+    different = np.unique(np.array(begun, np.int64).reshape(-1, len(places)), axis=0)
+    return [places[tour] for tour in (different if depot is None else different[:, 1:])]
+
+
+def _angular_costs(costs: Array) -> Array:
+    """Return costs that are small between stops in the same direction from the first, the depot.
+
+    They are the geometric mean of the cost and the sine of half the angle at the depot. The angle
+    is that of a triangle whose sides are three costs. Tours of small costs sweep round the depot.
+    """
+    away = (costs[0] + costs[:, 0]) / 2
+    sides = away[:, np.newaxis] * away
+    difference = away[:, np.newaxis] - away
+    with np.errstate(divide="ignore", invalid="ignore"):
+        squares = (costs**2 - difference**2) / (4 * sides)
+    sines = np.sqrt(np.where(sides > 0, squares, 1.0).clip(0.0, 1.0))
+    return np.sqrt(costs * sines)
+
+
+class Cutter:
+    """Cuts sequences of stops into routes, again and again, and finds the best of all cuts.
+
+    Args:
+        fleet: The fleet.
+        sequences: At least one sequence of all c stops to visit, shape (c,); c is at least 1.
+        stop: Called often; once it returns True, no further cuts are made.
+
+    Raises:
+        Refusal: The fleet has shipments, or too many types and numbers of vehicles.
+    """
+
+    def __init__(
+        self, fleet: Fleet, sequences: Sequence[Indices], stop: Callable[[], bool]
+    ) -> None:
+        if fleet.rules.shipments:
+            reason = "shipments need a time_limit over 0: no cut of a tour keeps them"
+            raise Refusal("no-plan", reason=reason)
+        self._fleet = fleet
+        self._stop = stop
+        arrays = _from_begin(fleet, arrays_of(fleet))
+        most = max(most_stops(arrays, sequence) for sequence in sequences)
+        routes = len(fleet.rules.vehicles) * len(sequences[0]) * most
+        if routes > _MOST_ROUTES or routes * states_of(fleet.rules) > _MOST_STEPS:
+            reason = "this many stops, types and numbers of vehicles need a time_limit over 0"
+            raise Refusal("no-plan", reason=reason)
+        self._stock = stock_of(fleet.rules)
+        self._sequences = sequences[: _MOST_ROUTES // routes]
+        self._tables = [route_table(arrays, sequence, most) for sequence in self._sequences]
+        steps = len(self._sequences) * routes * self._stock.states
+        self._begins = most if steps * most <= _CYCLIC_STEPS else 1
+        self._cuts = max(_FEWEST, int(_ALL_STEPS / (steps * self._begins)))  # there is time for
+
+    def plans(self) -> Iterator[Plan]:
+        """Yield the best cuts under many limits or weights; nothing if no cut keeps every rule."""
+        maximum = self._fleet.rules.maximum
+        return self._under_weights() if maximum is None else self._under_limits(maximum)
+
+    def _under_limits(self, maximum: int) -> Iterator[Plan]:
+        """Yield the plan of the least sum under each limit, from no limit to the least possible.
+
+        Each limit is just below the longest route of the plan before (the epsilon-constraint
+        method). If cuts are slow, limits are farther apart, so that there is time for all of them.
+        """
+        costs = self._costs(np.eye(OBJECTIVES)[1 - maximum], maximum)
+        least = float(np.nextafter(self._least_limit(maximum), inf))
+        limit, apart = inf, 0.0
+        while cut := self._best(costs, limit):
+            plan, longest = cut
+            yield plan
+            if not plan.routes:  # all stops are left out: no lower limit changes this plan
+                return
+            if limit == inf:
+                apart = (longest - least) / self._cuts
+            limit = min(longest, max(limit - apart, least))
+
+    def _under_weights(self) -> Iterator[Plan]:
+        """Yield the plans at both ends, and those on the hull between (Aneja and Nair, 1979)."""
+        scale = self._fleet.largest_legs
+        scale = np.maximum(scale / (scale.max() or 1.0), _LEAST_SCALE)
+        steepest = np.array([[_STEEPEST, 1.0], [1.0, _STEEPEST]]) / scale
+        ends = [cut[0] for weights in steepest if (cut := self._best(self._costs(weights)))]
+        yield from ends
+        edges = deque([tuple(ends)] if len(ends) == OBJECTIVES else [])
+        left = self._cuts
+        while edges and left:
+            left -= 1
+            a, b = edges.popleft()
+            lengths = np.array([plan_lengths(self._fleet, a), plan_lengths(self._fleet, b)])
+            weights = np.array([lengths[0, 1] - lengths[1, 1], lengths[1, 0] - lengths[0, 0]])
+            cut = self._best(self._costs(weights)) if (weights > 0).all() else None
+            if cut is None:
+                continue
+            plan, _ = cut
+            if weights @ plan_lengths(self._fleet, plan) < (1 - _ROUNDING) * (weights @ lengths[0]):
+                yield plan
+                edges += [(a, plan), (plan, b)]
+
+    def _best(self, costs: Sequence[RouteCosts], limit: float = inf) -> tuple[Plan, float] | None:
+        """Return the cheapest cut whose routes are all shorter than a limit, or None.
+
+        With the plan comes the length of its longest route in the objective to bound.
+        """
+        least, found = inf, None
+        for number, routes in enumerate(costs):
+            if self._stop():
+                return None
+            cost, chosen = best_split(self._stock, routes, self._begins, limit)
+            if cost < least:
+                least, found = cost, (number, chosen)
+        if found is None:
+            return None
+        number, chosen = found
+        vehicles, places, counts = chosen.T
+        longest = costs[number].bounded[vehicles, places, counts - 1].max(initial=0.0)
+        return (plan_of(self._sequences[number], chosen), float(longest))
+
+    def _least_limit(self, limited: int) -> float:
+        """Return the least limit that lets each required stop have a route of its own."""
+        alone = self._tables[0][:, :, 0, limited].min(axis=0)
+        required = [self._fleet.rules.visits[stop].prize is None for stop in self._sequences[0]]
+        return float(alone[required].max(initial=0.0))
+
+    def _costs(self, weights: Array, limited: int | None = None) -> list[RouteCosts]:
+        """Return the costs of all routes along each sequence, with weights of both lengths.
+
+        The first objective includes prizes and fixed costs. `limited` is the objective to bound, if
+        any.
+        """
+        rules = self._fleet.rules
+        fixed = np.array([vehicle.fixed for vehicle in rules.vehicles])[:, np.newaxis, np.newaxis]
+        found = []
+        for table, sequence in zip(self._tables, self._sequences, strict=True):
+            feasible = np.isfinite(table[..., 0])
+            lengths = np.where(feasible[..., np.newaxis], table, 0.0)
+            prizes = (rules.visits[stop].prize for stop in sequence)
+            skipping = [inf if prize is None else weights[0] * prize for prize in prizes]
+            bounded = np.zeros(feasible.shape) if limited is None else lengths[..., limited]
+            cost = np.where(feasible, lengths @ weights + weights[0] * fixed, inf)
+            # The compiled code expects this layout.
+            found.append(RouteCosts(cost, np.ascontiguousarray(bounded), np.array(skipping)))
+        return found
+
+
+def _from_begin(fleet: Fleet, arrays: FleetArrays) -> FleetArrays:
+    """Return arrays whose times count from the earliest departure.
+
+    The tolerance of lateness is relative to times: for seconds since 1970 it would be a second.
+    """
+    if fleet.rules.clock is None:
+        return arrays
+    begin = Horizon.of(fleet.rules, float(fleet.largest_legs[fleet.rules.clock])).begin
+    window, shift = (np.maximum(0.0, spans - begin) for spans in (arrays.window, arrays.shift))
+    return arrays._replace(window=window, shift=shift)
+
+
+def warm_up() -> None:
+    """Compile the optimal split, or load it from the cache."""
+    rules = Rules(visits=(Visit(), Visit()), vehicles=(VehicleType(start=0, end=0),))
+    fleet = Fleet(rules=rules, costs=np.ones((OBJECTIVES, rules.n, rules.n)))
+    list(Cutter(fleet, [np.array([1])], lambda: False).plans())

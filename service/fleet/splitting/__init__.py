@@ -1,1 +1,0 @@
-"""First plans of a fleet: a network's tours, cut into routes without any search."""
