@@ -10,7 +10,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 from paretour import Actor, Plan, RobotFront, coverage_plan
-from paretour.robots import parse_robots
+from paretour.plans import parse_robots
 from rich.console import Console
 
 from service.cli.fleets.plot import plot_robots

@@ -15,7 +15,6 @@ from paretour.choice import Choice, parameters
 from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
 from paretour.expect import Members, UnexpectedAnswer, each, members, parse_json, text, unexpected
-from paretour.fleets import FleetFront, parse_fleet
 from paretour.kinds import FrontOfAnyKind
 from paretour.members import (
     CoverageRequest,
@@ -24,6 +23,7 @@ from paretour.members import (
     ReplanRequest,
     RobotsRequest,
 )
+from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
 from paretour.requests import (
     Plan,
     coverage_plan,
@@ -32,7 +32,6 @@ from paretour.requests import (
     front_plan,
     replan_plan,
 )
-from paretour.robots import RobotFront, parse_robots
 from paretour.values import (
     FINAL_STATUSES,
     Actor,

@@ -9,9 +9,8 @@ import httpx
 from paretour.bodies import MOST_BYTES, Body
 from paretour.calls import AnyFront, Call, Calls, Parse, Submitted, client_headers
 from paretour.events import JobEvents
-from paretour.fleets import FleetFront, parse_fleet
 from paretour.kinds import FrontOfAnyKind, parse_any
-from paretour.robots import RobotFront, parse_robots
+from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
 from paretour.values import Front, Progress, parse_front
 
 P = ParamSpec("P")
