@@ -10,36 +10,7 @@ from typing import Annotated
 from typer import Argument, Exit, Option, Typer, echo
 
 from service import installed_version
-from service.cli.coverage import coverage
-from service.cli.fleets.command import fleet
-from service.cli.options import (
-    ActorName,
-    Angle,
-    Angles,
-    ApiKey,
-    AsCsv,
-    AsJson,
-    AsTable,
-    Augment,
-    Balance,
-    EndOrId,
-    File,
-    FirstAtMost,
-    Knee,
-    Open,
-    Plot,
-    Repairs,
-    SecondAtMost,
-    SecondFile,
-    Seed,
-    Size,
-    StartOrId,
-    TimeLimit,
-    Unrounded,
-    Url,
-    Workers,
-)
-from service.cli.replan import replan
+from service.cli import options
 
 app = Typer(
     name="paretour",
@@ -59,7 +30,7 @@ def _print_version(wanted: bool) -> None:
 
 
 @app.callback()
-def options(
+def before_the_command(
     _version: Annotated[
         bool,
         Option("--version", help="Print the version.", callback=_print_version, is_eager=True),
@@ -70,32 +41,32 @@ def options(
 
 @app.command()
 def front(  # noqa: PLR0913  an option each
-    file: File,
-    file2: SecondFile = None,
-    time_limit: TimeLimit = None,
-    angles: Angles = None,
-    size: Size = None,
-    start: StartOrId = None,
-    end: EndOrId = None,
-    open_routes: Open = None,
-    seed: Seed = None,
-    actor: ActorName = None,
-    repairs: Repairs = None,
-    augment: Augment = None,
-    unrounded: Unrounded = False,
-    as_json: AsJson = False,
-    as_csv: AsCsv = False,
-    as_table: AsTable = False,
-    plot: Plot = None,
-    url: Url = None,
-    api_key: ApiKey = None,
+    file: options.File,
+    file2: options.SecondFile = None,
+    time_limit: options.TimeLimit = None,
+    angles: options.Angles = None,
+    size: options.Size = None,
+    start: options.StartOrId = None,
+    end: options.EndOrId = None,
+    open_routes: options.Open = None,
+    seed: options.Seed = None,
+    actor: options.ActorName = None,
+    repairs: options.Repairs = None,
+    augment: options.Augment = None,
+    unrounded: options.Unrounded = False,
+    as_json: options.AsJson = False,
+    as_csv: options.AsCsv = False,
+    as_table: options.AsTable = False,
+    plot: options.Plot = None,
+    url: options.Url = None,
+    api_key: options.ApiKey = None,
 ) -> None:
     """Plan the front of tours through the cities of a file, or of one for each objective."""
     from service.cli.backends import backend_for
     from service.cli.fronts import OutputFormat, run_front
     from service.cli.plans import plan_cities
 
-    options = {
+    members = {
         "time_limit": time_limit,
         "size": size,
         "start": start,
@@ -107,7 +78,7 @@ def front(  # noqa: PLR0913  an option each
         "augment": augment,
     }
     run_front(
-        partial(plan_cities, file, file2, unrounded=unrounded, angles=angles, options=options),
+        partial(plan_cities, file, file2, unrounded=unrounded, angles=angles, options=members),
         backend_for(url, api_key),
         OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
     )
@@ -115,35 +86,35 @@ def front(  # noqa: PLR0913  an option each
 
 @app.command()
 def tour(  # noqa: PLR0913  an option each
-    file: File,
-    file2: SecondFile = None,
+    file: options.File,
+    file2: options.SecondFile = None,
     *,
-    angle: Angle = None,
-    balance: Balance = None,
-    first_at_most: FirstAtMost = None,
-    second_at_most: SecondAtMost = None,
-    knee: Knee = False,
-    time_limit: TimeLimit = None,
-    start: StartOrId = None,
-    end: EndOrId = None,
-    open_routes: Open = None,
-    seed: Seed = None,
-    actor: ActorName = None,
-    repairs: Repairs = None,
-    augment: Augment = None,
-    unrounded: Unrounded = False,
-    as_json: AsJson = False,
-    url: Url = None,
-    api_key: ApiKey = None,
+    angle: options.Angle = None,
+    balance: options.Balance = None,
+    first_at_most: options.FirstAtMost = None,
+    second_at_most: options.SecondAtMost = None,
+    knee: options.Knee = False,
+    time_limit: options.TimeLimit = None,
+    start: options.StartOrId = None,
+    end: options.EndOrId = None,
+    open_routes: options.Open = None,
+    seed: options.Seed = None,
+    actor: options.ActorName = None,
+    repairs: options.Repairs = None,
+    augment: options.Augment = None,
+    unrounded: options.Unrounded = False,
+    as_json: options.AsJson = False,
+    url: options.Url = None,
+    api_key: options.ApiKey = None,
 ) -> None:
     """Plan a front and print one of its tours: at an angle, at a balance, or within a budget."""
     from paretour import Choice
 
     from service.cli.backends import backend_for
-    from service.cli.output import run_tour
+    from service.cli.fronts import run_tour
     from service.cli.plans import plan_cities
 
-    options = {
+    members = {
         "time_limit": time_limit,
         "start": start,
         "end": end,
@@ -153,7 +124,7 @@ def tour(  # noqa: PLR0913  an option each
         "repairs": repairs,
         "augment": augment,
     }
-    build_plan = partial(plan_cities, file, file2, unrounded=unrounded, options=options)
+    build_plan = partial(plan_cities, file, file2, unrounded=unrounded, options=members)
     choice: Choice = {
         "balance": balance,
         "first_at_most": first_at_most,
@@ -163,16 +134,136 @@ def tour(  # noqa: PLR0913  an option each
     run_tour(build_plan, backend_for(url, api_key), angle, choice, as_json)
 
 
-app.command()(replan)
-app.command()(fleet)
-app.command()(coverage)
+@app.command()
+def replan(  # noqa: PLR0913  an option each
+    front_id: options.FrontId,
+    changes: options.Changes = None,
+    *,
+    url: options.ServiceUrl,
+    done: options.Done = None,
+    position: options.Position = None,
+    remove: options.Remove = None,
+    min_kept: options.MinKept = None,
+    time_limit: options.TimeLimit = None,
+    size: options.Size = None,
+    seed: options.Seed = None,
+    repairs: options.Repairs = None,
+    as_json: options.AsJson = False,
+    as_csv: options.AsCsv = False,
+    as_table: options.AsTable = False,
+    plot: options.Plot = None,
+    api_key: options.ApiKey = None,
+) -> None:
+    """Plan the rest of a tour when things have changed, from a front that a service has."""
+    from service.cli.backends import RemoteBackend
+    from service.cli.fronts import OutputFormat, run_front
+    from service.cli.plans import plan_rest
+
+    members = {
+        "position": position,
+        "min_kept": min_kept,
+        "time_limit": time_limit,
+        "size": size,
+        "seed": seed,
+        "repairs": repairs,
+    }
+    run_front(
+        partial(plan_rest, front_id, changes, {"done": done, "remove": remove}, members),
+        RemoteBackend(url, api_key),
+        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
+    )
 
 
 @app.command()
-def actors(as_json: AsJson = False, url: Url = None, api_key: ApiKey = None) -> None:
+def fleet(  # noqa: PLR0913  an option each
+    file: options.FleetFile,
+    vehicles: options.VehiclesFile = None,
+    time_limit: options.TimeLimit = None,
+    size: options.FleetSize = None,
+    seed: options.Seed = None,
+    as_json: options.AsJson = False,
+    as_csv: options.RoutesAsCsv = False,
+    as_table: options.PlansAsTable = False,
+    plot: options.Plot = None,
+    url: options.Url = None,
+    api_key: options.ApiKey = None,
+) -> None:
+    """Plan the front of plans for several vehicles."""
+    from service.cli.backends import backend_for
+    from service.cli.fronts import OutputFormat, run_front
+    from service.cli.plans import plan_fleet
+
+    members = {"time_limit": time_limit, "size": size, "seed": seed}
+    run_front(
+        partial(plan_fleet, file, vehicles, members),
+        backend_for(url, api_key),
+        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
+    )
+
+
+@app.command()
+def coverage(  # noqa: PLR0913  an option each
+    file: options.MapFile,
+    cell_size: options.CellSize = None,
+    robot_radius: options.RobotRadius = None,
+    spacing: options.Spacing = None,
+    cost_layer: options.CostLayer = None,
+    start_pose: options.StartPose = None,
+    end_pose: options.EndPose = None,
+    robots: options.Robots = None,
+    unknown: options.Unknown = None,
+    paths: options.Paths = None,
+    time_limit: options.TimeLimit = None,
+    size: options.Size = None,
+    start: options.Start = None,
+    end: options.End = None,
+    open_routes: options.Open = None,
+    seed: options.Seed = None,
+    actor: options.ActorName = None,
+    repairs: options.Repairs = None,
+    as_json: options.AsJson = False,
+    as_csv: options.AsCsv = False,
+    as_table: options.AsTable = False,
+    plot: options.PlotMap = None,
+    url: options.Url = None,
+    api_key: options.ApiKey = None,
+) -> None:
+    """Plan the front of tours of a robot through places all over a map, or of plans for several."""
+    from service.cli.backends import backend_for
+    from service.cli.fronts import OutputFormat, run_front
+    from service.cli.plans import plan_map
+
+    members = {
+        "cell_size": cell_size,
+        "robot_radius": robot_radius,
+        "spacing": spacing,
+        "unknown": unknown,
+        # The picture shows the paths of tours.
+        "paths": True if plot is not None else paths,
+        "time_limit": time_limit,
+        "size": size,
+        "start": start,
+        "end": end,
+        "closed": None if open_routes is None else not open_routes,
+        "seed": seed,
+        "actor": actor,
+        "repairs": repairs,
+    }
+    poses = {"start_pose": start_pose, "end_pose": end_pose}
+    run_front(
+        partial(plan_map, file, cost_layer, members, poses, robots or ()),
+        backend_for(url, api_key),
+        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
+    )
+
+
+@app.command()
+def actors(
+    as_json: options.AsJson = False, url: options.Url = None, api_key: options.ApiKey = None
+) -> None:
     """List the networks to choose from."""
     from service.cli.backends import backend_for
-    from service.cli.output import run_actors
+    from service.cli.fronts import run_actors
 
     run_actors(backend_for(url, api_key), as_json)
 
@@ -183,7 +274,7 @@ def serve(
     port: Annotated[
         int | None, Option(help="Port to listen on; 0 takes a free one.", show_default=False)
     ] = None,
-    workers: Workers = None,
+    workers: options.Workers = None,
 ) -> None:
     """Answer requests over HTTP; other settings come from PARETOUR_* variables."""
     from service.cli.admin import run_serve
@@ -193,7 +284,7 @@ def serve(
 
 @app.command()
 def work(
-    workers: Workers = None,
+    workers: options.Workers = None,
     alive: Annotated[
         bool,
         Option(

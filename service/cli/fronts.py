@@ -1,13 +1,16 @@
 """Plan, print and draw a front of any kind for the command; a table has what differs by kind."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from paretour import Front, FrontOfAnyKind, Plan, RobotFront
+from paretour import Choice, Front, FrontOfAnyKind, Plan, RobotFront
+from paretour.choice import the_way
+from paretour.expect import unexpected
 from paretour.kinds import kind_of
 from rich.console import Console
 from rich.table import Table
@@ -15,21 +18,30 @@ from rich.table import Table
 from service.cli.backends import Backend
 from service.cli.data import print_csv, print_data
 from service.cli.errors import UsageError, exit_on_error
-from service.cli.fleets.output import ROBOTS, VEHICLES, Movers, plans_as_rows, plans_as_table
 from service.cli.inputs import Ids
-from service.cli.labels import ids_of
 from service.cli.output import (
-    BuildPlan,
+    ROBOTS,
+    VEHICLES,
+    Movers,
+    Rows,
+    actors_as_table,
     front_as_rows,
     front_as_table,
     front_summary,
+    ids_of,
+    labels_of,
     named_tours,
-    print_chart,
-    print_uncovered,
+    plans_as_rows,
+    plans_as_table,
+    stops_of,
     three_tours,
+    tour_as_json,
+    tour_summary,
+    uncovered_summary,
 )
+from service.cli.terminal_chart import LABELS, draw_front
 
-Rows = list[tuple[object, ...]]
+BuildPlan = Callable[[], tuple[Plan, Ids | None]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,20 +75,14 @@ def _draw_lengths(noun: str) -> Callable[[FrontOfAnyKind, Plan, Path], None]:
     return draw
 
 
-def _draw_map(front: Front, plan: Plan, path: Path) -> None:
-    """Draw three tours over the map of a plan; only the lengths if it has no paths or no map."""
-    if front.paths is None or plan.path != "/coverage":
+def _draw_map(front: Front | RobotFront, plan: Plan, path: Path) -> None:
+    """Draw three tours or plans over the map; only the lengths if there are no paths or no map."""
+    if isinstance(front, Front) and (front.paths is None or plan.path != "/coverage"):
         return _draw_lengths("tours")(front, plan, path)
-    from service.cli.plot_map import plot_map
+    from service.cli.plot import plot_map
 
-    return plot_map(front, plan, path, three_tours(front.lengths))
-
-
-def _draw_robots(front: RobotFront, plan: Plan, path: Path) -> None:
-    from service.cli.fleets.plot import plot_robots
-
-    names = [each.name for each in front.objectives]
-    plot_robots(front, plan, path, three_tours(front.lengths, names))
+    names = [each.name for each in front.objectives or ()] or LABELS
+    return plot_map(front, plan, path, three_tours(front.lengths, names))
 
 
 def _kind_of_tours(draw: Callable[[Front, Plan, Path], None]) -> _Kind:
@@ -106,7 +112,7 @@ _KINDS: Mapping[str, _Kind] = {
     "front": _kind_of_tours(_draw_lengths("tours")),
     "coverage": _kind_of_tours(_draw_map),
     "fleet": _kind_of_plans(VEHICLES, _draw_lengths("plans")),
-    "robots": _kind_of_plans(ROBOTS, _draw_robots),
+    "robots": _kind_of_plans(ROBOTS, _draw_map),
 }
 
 
@@ -133,17 +139,56 @@ class OutputFormat:
 
 def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> None:
     """Plan a front, print it and draw it."""
-    stderr = Console(stderr=True)
     with exit_on_error():
         output.check()
         plan, ids = build_plan()
-        front = backend.front(plan, stderr)
+        front = backend.front(plan, Console(stderr=True))
         kind = _KINDS[kind_of(front.document)]
         _print(front, kind, ids, output)
         if output.plot is not None:
             kind.draw(front, plan, output.plot)
-    stderr.print(front_summary(front, kind.noun), highlight=False, markup=False)
-    print_uncovered(front, stderr)
+    _print_line(front_summary(front, kind.noun))
+    if line := uncovered_summary(front):
+        _print_line(line)
+
+
+def run_tour(
+    build_plan: BuildPlan, backend: Backend, angle: float | None, choice: Choice, as_json: bool
+) -> None:
+    """Plan a front and print one of its tours, at an angle in degrees or by another choice."""
+    with exit_on_error():
+        with _usage_errors():
+            the_way(angle, choice)
+        plan, ids = build_plan()
+        front = backend.front(plan, Console(stderr=True))
+        if not isinstance(front, Front):
+            raise unexpected("answer/kind", "of tours", front.document["kind"])
+        with _usage_errors():
+            tour = front.choose(angle, **choice)
+    if as_json:
+        print_data(tour_as_json(tour))
+    else:
+        print_csv([stops_of(tour.tour, ids or ids_of(front))], delimiter=" ")
+    _print_line(tour_summary(front, tour))
+
+
+def run_actors(backend: Backend, as_json: bool) -> None:
+    """Print the actors to choose from."""
+    with exit_on_error():
+        actors = backend.actors()
+    if as_json:
+        print_data(json.dumps({"actors": [vars(actor) for actor in actors]}))
+    else:
+        Console().print(actors_as_table(actors))
+
+
+@contextmanager
+def _usage_errors() -> Iterator[None]:
+    """Turn a ValueError of the block into a UsageError."""
+    try:
+        yield
+    except ValueError as error:
+        raise UsageError(str(error)) from None
 
 
 def _print(front: FrontOfAnyKind, kind: _Kind, ids: Ids | None, output: OutputFormat) -> None:
@@ -155,9 +200,21 @@ def _print(front: FrontOfAnyKind, kind: _Kind, ids: Ids | None, output: OutputFo
     elif console.is_terminal and len(front.lengths) and not output.as_table:
         print_chart(front, console)
         console.print(kind.under_chart(front))
-        Console(stderr=True).print(kind.hint, highlight=False)
+        _print_line(kind.hint)
     else:
         console.print(kind.table(front))
+
+
+def print_chart(front: FrontOfAnyKind, console: Console) -> None:
+    """Print a chart of a front on a console."""
+    point = "•" if console.encoding.startswith("utf") else "o"
+    chart = draw_front(front.lengths, point, labels_of(front))
+    console.print(chart, highlight=False, markup=False)
+
+
+def _print_line(line: str) -> None:
+    """Print a line about the results on stderr."""
+    Console(stderr=True).print(line, highlight=False, markup=False)
 
 
 def _check_plot(path: Path) -> None:

@@ -84,12 +84,17 @@ Unrounded = Annotated[
         help="Plan in the planes of two EUC_2D files, without rounding distances as TSPLIB does.",
     ),
 ]
+FleetSize = Annotated[int | None, Option(help="The most plans to return.", show_default="100")]
 AsJson = Annotated[bool, Option("--json", help="Print the answer as the service gives it.")]
 AsTable = Annotated[
     bool,
     Option("--table", help="On a terminal, print all tours instead of a chart and three tours."),
 ]
 AsCsv = Annotated[bool, Option("--csv", help="Print a line for each tour.")]
+RoutesAsCsv = Annotated[bool, Option("--csv", help="Print a line for each route.")]
+PlansAsTable = Annotated[
+    bool, Option("--table", help="On a terminal, print all plans without a chart.")
+]
 Angle = Annotated[
     float | None,
     Option(

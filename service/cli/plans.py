@@ -6,10 +6,12 @@ from typing import Any, cast
 
 from paretour import (
     CoverageRequest,
+    FleetRequest,
     FrontRequest,
     Plan,
     ReplanRequest,
     coverage_plan,
+    fleet_plan,
     front_plan,
     replan_plan,
 )
@@ -64,6 +66,18 @@ def plan_rest(
     named = {name: text and text.split(",") for name, text in stops.items()}
     given = _without_none({**named, **options})
     return replan_plan(front, cast(ReplanRequest, {**request, **given})), None
+
+
+def plan_fleet(file: Path, vehicles: Path | None, options: Options) -> tuple[Plan, None]:
+    """Return the plan for a fleet in a file, or in one of stops and one of vehicles; and no ids.
+
+    Raises:
+        UnreadableFile: A file cannot be read.
+        UsageError: It is a request for another command.
+        OSError: There is no such file.
+    """
+    request, _ = read_request([file] if vehicles is None else [file, vehicles], "fleet")
+    return fleet_plan(cast(FleetRequest, {**request, **_without_none(options)})), None
 
 
 def plan_map(

@@ -176,7 +176,7 @@ WRONG = [
     (["front", EXAMPLE, "--angles", "1,b"], "--angles must be numbers"),
     (["front", EXAMPLE, "--json", "--csv"], "not as both"),
     (["front", EXAMPLE, "--plot", "front.txt"], "--plot must end in one of"),
-    (["front", EXAMPLE, "--plot", "none/front.png"], "in a directory that is there"),
+    (["front", EXAMPLE, "--plot", "none/front.png"], "in a directory that exists"),
     (["tour", EXAMPLE], "one of angle, balance, first_at_most, second_at_most and knee"),
     (["tour", EXAMPLE, "--angle", "3", "--knee"], "is wanted, got angle and knee"),
     (["tour", EXAMPLE, "--balance", "1.1"], "Invalid value for '--balance'"),

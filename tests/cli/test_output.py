@@ -12,15 +12,13 @@ from rich.console import Console
 
 from service.cli.data import csv_text
 from service.cli.errors import UsageError
-from service.cli.fronts import OutputFormat, run_front
-from service.cli.labels import ids_of
+from service.cli.fronts import OutputFormat, print_chart, run_front, run_tour
 from service.cli.output import (
     front_as_rows,
     front_as_table,
     front_summary,
+    ids_of,
     named_tours,
-    print_chart,
-    run_tour,
     stops_of,
     tour_as_json,
     tour_summary,
