@@ -185,7 +185,7 @@ def _second(columns: Columns, stops: list[Stop]) -> dict[str, Any]:
         weights = np.array([each for (each,) in columns.numbers([cost])])
         if (weights < 0).any():
             row = int(np.argmax(weights < 0))
-            raise source.refusal(f"{columns.where(row, cost)} must not be negative")
+            raise columns.refusal(row, cost, "must not be negative")
         name = quoted(columns.names[cost])
         source.note(
             "objectives", f"{name} is what a metre costs near a stop: the second objective."

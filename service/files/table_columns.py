@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 
 from service.files.columns import fields_of
-from service.files.reading import Column, Source, quoted
+from service.files.reading import Column, Source, UnreadableFile, quoted
 from service.files.tables import Table, number_in, plain_numbers
 
 _DEGREES = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)"
@@ -38,6 +38,16 @@ class Columns:
         """Return the position of a field, for sentences."""
         return f"row {self.table.rows[row][0]}, column {quoted(self.names[column])}"
 
+    def refusal(self, row: int, column: int, demand: str, *came: object) -> UnreadableFile:
+        """Return the exception that says what a field must be, and quotes what came instead."""
+        return self.source.refusal(f"{self.where(row, column)} {demand}", *came)
+
+    def leave_out(self, field: str, when: str = "") -> None:
+        """Note that a column, if there is one for a field, is not used."""
+        if (at := self.find(field)) is not None:
+            self.fields[at] = None
+            self.source.note_left_out(quoted(self.names[at]) + when)
+
     def number(self, row: int, column: int) -> float:
         """Return the number in a field.
 
@@ -47,8 +57,7 @@ class Columns:
         text = self.text(row, column)
         number = number_in(text)
         if number is None:
-            demand = f"{self.where(row, column)} must be a number"
-            raise self.source.refusal(f"{demand}, got {quoted(text)}")
+            raise self.refusal(row, column, "must be a number", text)
         return number
 
     def numbers(self, columns: list[int]) -> list[list[float]]:
@@ -135,13 +144,12 @@ def ids_of(columns: Columns) -> list[str]:
     """
     at = columns.fields.index("id")
     seen: dict[str, int] = {}
-    for number, row in columns.table.rows:
-        name = " ".join(row[at].split())
-        where = f"row {number}, column {quoted(columns.names[at])}"
+    for row, (number, texts) in enumerate(columns.table.rows):
+        name = " ".join(texts[at].split())
         if not name:
-            raise columns.source.refusal(f"{where} must be an id, got none")
+            raise columns.refusal(row, at, "must be an id, got none")
         if name in seen:
-            demand = f"{where} must be an id that no other row has"
-            raise columns.source.refusal(f"{demand}, got {quoted(name)} as in row {seen[name]}")
+            came = f"got {quoted(name)} as in row {seen[name]}"
+            raise columns.refusal(row, at, f"must be an id that no other row has, {came}")
         seen[name] = number
     return list(seen)
