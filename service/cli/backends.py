@@ -12,6 +12,7 @@ from paretour.kinds import parse_any
 from rich.console import Console
 
 from service.cli.errors import UsageError
+from service.cli.options import Service
 from service.cli.progress import interrupt_flag, progress_bar, until_done
 
 LOADING = "loading the search; the first time it is compiled, for a minute or two"
@@ -34,9 +35,9 @@ class Backend(Protocol):
         """Return the actors to choose from."""
 
 
-def backend_for(url: str | None, api_key: str | None) -> Backend:
-    """Return the service at a URL as a backend, or without a URL this process."""
-    return LocalBackend() if url is None else RemoteBackend(url, api_key)
+def backend_for(service: Service) -> Backend:
+    """Return a service as a backend, or without a URL this process."""
+    return LocalBackend() if service.url is None else RemoteBackend(service.url, service.api_key)
 
 
 @dataclass(frozen=True)
@@ -154,7 +155,7 @@ def _with_scheme(url: str) -> str:
     """Return a URL, whose scheme is http where it has none, as localhost:8000.
 
     Raises:
-        UsageError: It is no URL of a service.
+        UsageError: It is not the URL of a service.
     """
     whole = url if "://" in url else f"http://{url}"
     try:

@@ -11,6 +11,7 @@ from typer import Argument, Exit, Option, Typer, echo
 
 from service import installed_version
 from service.cli import options
+from service.cli.options import with_groups
 
 app = Typer(
     name="paretour",
@@ -40,232 +41,155 @@ def before_the_command(
 
 
 @app.command()
-def front(  # noqa: PLR0913  an option each
+@with_groups
+def front(  # noqa: PLR0913  a group of options, or one, each
     file: options.File,
     file2: options.SecondFile = None,
-    time_limit: options.TimeLimit = None,
-    angles: options.Angles = None,
+    *,
+    search: options.Search,
     size: options.Size = None,
-    start: options.StartOrId = None,
-    end: options.EndOrId = None,
-    open_routes: options.Open = None,
-    seed: options.Seed = None,
-    actor: options.ActorName = None,
-    repairs: options.Repairs = None,
+    angles: options.Angles = None,
+    network: options.Network,
     augment: options.Augment = None,
+    ends: options.Ends,
     unrounded: options.Unrounded = False,
-    as_json: options.AsJson = False,
-    as_csv: options.AsCsv = False,
-    as_table: options.AsTable = False,
-    plot: options.Plot = None,
-    url: options.Url = None,
-    api_key: options.ApiKey = None,
+    output: options.OutputFormat,
+    service: options.Service,
 ) -> None:
     """Plan the front of tours through the cities of a file, or of one for each objective."""
     from service.cli.backends import backend_for
-    from service.cli.fronts import OutputFormat, run_front
+    from service.cli.fronts import run_front
     from service.cli.plans import plan_cities
 
-    members = {
-        "time_limit": time_limit,
-        "size": size,
-        "start": start,
-        "end": end,
-        "closed": None if open_routes is None else not open_routes,
-        "seed": seed,
-        "actor": actor,
-        "repairs": repairs,
-        "augment": augment,
-    }
+    members = {**vars(search), **vars(network), **vars(ends), "size": size, "augment": augment}
     run_front(
         partial(plan_cities, file, file2, unrounded=unrounded, angles=angles, options=members),
-        backend_for(url, api_key),
-        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
+        backend_for(service),
+        output,
     )
 
 
 @app.command()
-def tour(  # noqa: PLR0913  an option each
-    file: options.File,
+@with_groups
+def tour(  # noqa: PLR0913  a group of options, or one, each
+    file: options.FileOrMap,
     file2: options.SecondFile = None,
     *,
-    angle: options.Angle = None,
-    balance: options.Balance = None,
-    first_at_most: options.FirstAtMost = None,
-    second_at_most: options.SecondAtMost = None,
-    knee: options.Knee = False,
-    time_limit: options.TimeLimit = None,
-    start: options.StartOrId = None,
-    end: options.EndOrId = None,
-    open_routes: options.Open = None,
-    seed: options.Seed = None,
-    actor: options.ActorName = None,
-    repairs: options.Repairs = None,
+    choice: options.Ways,
+    search: options.Search,
+    network: options.Network,
     augment: options.Augment = None,
+    ends: options.Ends,
     unrounded: options.Unrounded = False,
+    area: options.Area,
+    cost_layer: options.CostLayer = None,
     as_json: options.AsJson = False,
-    url: options.Url = None,
-    api_key: options.ApiKey = None,
+    service: options.Service,
 ) -> None:
     """Plan a front and print one of its tours: at an angle, at a balance, or within a budget."""
-    from paretour import Choice
-
     from service.cli.backends import backend_for
     from service.cli.fronts import run_tour
-    from service.cli.plans import plan_cities
+    from service.cli.plans import plan_tour
 
-    members = {
-        "time_limit": time_limit,
-        "start": start,
-        "end": end,
-        "closed": None if open_routes is None else not open_routes,
-        "seed": seed,
-        "actor": actor,
-        "repairs": repairs,
-        "augment": augment,
-    }
-    build_plan = partial(plan_cities, file, file2, unrounded=unrounded, options=members)
-    choice: Choice = {
-        "balance": balance,
-        "first_at_most": first_at_most,
-        "second_at_most": second_at_most,
-        "knee": knee,
-    }
-    run_tour(build_plan, backend_for(url, api_key), angle, choice, as_json)
+    of_search = {**vars(search), **vars(network), **vars(ends)}
+    members = {**of_search, **vars(area), "augment": augment}
+    run_tour(
+        partial(plan_tour, file, file2, cost_layer, unrounded=unrounded, options=members),
+        backend_for(service),
+        choice,
+        as_json,
+    )
 
 
 @app.command()
-def replan(  # noqa: PLR0913  an option each
+@with_groups
+def replan(  # noqa: PLR0913  a group of options, or one, each
     front_id: options.FrontId,
     changes: options.Changes = None,
     *,
     url: options.ServiceUrl,
+    api_key: options.ApiKey = None,
     done: options.Done = None,
     position: options.Position = None,
     remove: options.Remove = None,
     min_kept: options.MinKept = None,
-    time_limit: options.TimeLimit = None,
+    search: options.Search,
     size: options.Size = None,
-    seed: options.Seed = None,
     repairs: options.Repairs = None,
-    as_json: options.AsJson = False,
-    as_csv: options.AsCsv = False,
-    as_table: options.AsTable = False,
-    plot: options.Plot = None,
-    api_key: options.ApiKey = None,
+    output: options.OutputFormat,
 ) -> None:
     """Plan the rest of a tour when things have changed, from a front that a service has."""
     from service.cli.backends import RemoteBackend
-    from service.cli.fronts import OutputFormat, run_front
+    from service.cli.fronts import run_front
     from service.cli.plans import plan_rest
 
-    members = {
-        "position": position,
-        "min_kept": min_kept,
-        "time_limit": time_limit,
-        "size": size,
-        "seed": seed,
-        "repairs": repairs,
-    }
+    changed = {"position": position, "min_kept": min_kept}
+    members = {**changed, **vars(search), "size": size, "repairs": repairs}
     run_front(
         partial(plan_rest, front_id, changes, {"done": done, "remove": remove}, members),
         RemoteBackend(url, api_key),
-        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
+        output,
     )
 
 
 @app.command()
-def fleet(  # noqa: PLR0913  an option each
+@with_groups
+def fleet(
     file: options.FleetFile,
     vehicles: options.VehiclesFile = None,
-    time_limit: options.TimeLimit = None,
-    size: options.FleetSize = None,
-    seed: options.Seed = None,
-    as_json: options.AsJson = False,
-    as_csv: options.RoutesAsCsv = False,
-    as_table: options.PlansAsTable = False,
-    plot: options.Plot = None,
-    url: options.Url = None,
-    api_key: options.ApiKey = None,
+    *,
+    search: options.Search,
+    size: options.Size = None,
+    output: options.OutputFormat,
+    service: options.Service,
 ) -> None:
     """Plan the front of plans for several vehicles."""
     from service.cli.backends import backend_for
-    from service.cli.fronts import OutputFormat, run_front
+    from service.cli.fronts import run_front
     from service.cli.plans import plan_fleet
 
-    members = {"time_limit": time_limit, "size": size, "seed": seed}
-    run_front(
-        partial(plan_fleet, file, vehicles, members),
-        backend_for(url, api_key),
-        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
-    )
+    members = {**vars(search), "size": size}
+    run_front(partial(plan_fleet, file, vehicles, members), backend_for(service), output)
 
 
 @app.command()
-def coverage(  # noqa: PLR0913  an option each
+@with_groups
+def coverage(  # noqa: PLR0913  a group of options, or one, each
     file: options.MapFile,
-    cell_size: options.CellSize = None,
-    robot_radius: options.RobotRadius = None,
-    spacing: options.Spacing = None,
+    *,
+    area: options.Area,
     cost_layer: options.CostLayer = None,
-    start_pose: options.StartPose = None,
-    end_pose: options.EndPose = None,
     robots: options.Robots = None,
-    unknown: options.Unknown = None,
     paths: options.Paths = None,
-    time_limit: options.TimeLimit = None,
+    search: options.Search,
     size: options.Size = None,
-    start: options.Start = None,
-    end: options.End = None,
-    open_routes: options.Open = None,
-    seed: options.Seed = None,
-    actor: options.ActorName = None,
-    repairs: options.Repairs = None,
-    as_json: options.AsJson = False,
-    as_csv: options.AsCsv = False,
-    as_table: options.AsTable = False,
-    plot: options.PlotMap = None,
-    url: options.Url = None,
-    api_key: options.ApiKey = None,
+    network: options.Network,
+    ends: options.Ends,
+    output: options.OutputFormat,
+    service: options.Service,
 ) -> None:
     """Plan the front of tours of a robot through places all over a map, or of plans for several."""
     from service.cli.backends import backend_for
-    from service.cli.fronts import OutputFormat, run_front
+    from service.cli.fronts import run_front
     from service.cli.plans import plan_map
 
-    members = {
-        "cell_size": cell_size,
-        "robot_radius": robot_radius,
-        "spacing": spacing,
-        "unknown": unknown,
-        # The picture shows the paths of tours.
-        "paths": True if plot is not None else paths,
-        "time_limit": time_limit,
-        "size": size,
-        "start": start,
-        "end": end,
-        "closed": None if open_routes is None else not open_routes,
-        "seed": seed,
-        "actor": actor,
-        "repairs": repairs,
-    }
-    poses = {"start_pose": start_pose, "end_pose": end_pose}
+    if output.plot is not None:  # the picture shows the paths of tours
+        paths = True
+    of_search = {**vars(search), **vars(network), **vars(ends)}
+    members = {**of_search, **vars(area), "paths": paths, "size": size}
     run_front(
-        partial(plan_map, file, cost_layer, members, poses, robots or ()),
-        backend_for(url, api_key),
-        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
+        partial(plan_map, file, cost_layer, members, robots or ()), backend_for(service), output
     )
 
 
 @app.command()
-def actors(
-    as_json: options.AsJson = False, url: options.Url = None, api_key: options.ApiKey = None
-) -> None:
+@with_groups
+def actors(*, as_json: options.AsJson = False, service: options.Service) -> None:
     """List the networks to choose from."""
     from service.cli.backends import backend_for
     from service.cli.fronts import run_actors
 
-    run_actors(backend_for(url, api_key), as_json)
+    run_actors(backend_for(service), as_json)
 
 
 @app.command()

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from paretour import Choice, Front, FrontOfAnyKind, Plan, RobotFront
+from paretour import Front, FrontOfAnyKind, Plan, RobotFront
 from paretour.choice import the_way
 from paretour.expect import unexpected
 from paretour.kinds import kind_of
@@ -19,6 +19,7 @@ from service.cli.backends import Backend
 from service.cli.data import print_csv, print_data
 from service.cli.errors import UsageError, exit_on_error
 from service.cli.inputs import Ids
+from service.cli.options import OutputFormat, Ways
 from service.cli.output import (
     ROBOTS,
     VEHICLES,
@@ -116,31 +117,10 @@ _KINDS: Mapping[str, _Kind] = {
 }
 
 
-@dataclass(frozen=True, kw_only=True)
-class OutputFormat:
-    """The format to print a front in, and the file to draw it into.
-
-    By default it is a chart with three tours, or all plans, on a terminal, and a table of all
-    elsewhere.
-    """
-
-    as_json: bool = False
-    as_csv: bool = False
-    as_table: bool = False
-    plot: Path | None = None
-
-    def check(self) -> None:
-        """Raise UsageError if two formats are asked for, or nothing can be drawn into the file."""
-        if self.as_json + self.as_csv + self.as_table > 1:
-            raise UsageError("a front is printed as --json, --csv or --table, not as both")
-        if self.plot is not None:
-            _check_plot(self.plot)
-
-
 def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> None:
     """Plan a front, print it and draw it."""
     with exit_on_error():
-        output.check()
+        _check_output(output)
         plan, ids = build_plan()
         front = backend.front(plan, Console(stderr=True))
         kind = _KINDS[kind_of(front.document)]
@@ -152,19 +132,18 @@ def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> 
         _print_line(line)
 
 
-def run_tour(
-    build_plan: BuildPlan, backend: Backend, angle: float | None, choice: Choice, as_json: bool
-) -> None:
-    """Plan a front and print one of its tours, at an angle in degrees or by another choice."""
+def run_tour(build_plan: BuildPlan, backend: Backend, choice: Ways, as_json: bool = False) -> None:
+    """Plan a front and print one of its tours."""
+    ways = vars(choice)
     with exit_on_error():
         with _usage_errors():
-            the_way(angle, choice)
+            the_way(ways)
         plan, ids = build_plan()
         front = backend.front(plan, Console(stderr=True))
         if not isinstance(front, Front):
             raise unexpected("answer/kind", "of tours", front.document["kind"])
         with _usage_errors():
-            tour = front.choose(angle, **choice)
+            tour = front.choose(**ways)
     if as_json:
         print_data(tour_as_json(tour))
     else:
@@ -217,10 +196,14 @@ def _print_line(line: str) -> None:
     Console(stderr=True).print(line, highlight=False, markup=False)
 
 
-def _check_plot(path: Path) -> None:
-    """Raise UsageError if no picture can be drawn into a file, or matplotlib is not installed."""
+def _check_output(output: OutputFormat) -> None:
+    """Raise UsageError if two formats are asked for, or nothing can be drawn into the file."""
+    if output.as_json + output.as_csv + output.as_table > 1:
+        raise UsageError("a front is printed as one of --json, --csv and --table")
+    if output.plot is None:
+        return
     try:
         from service.cli.plot import check_path
     except ModuleNotFoundError:
         raise UsageError("--plot needs matplotlib: pip install 'paretour[plot]'") from None
-    check_path(path)
+    check_path(output.plot)

@@ -17,7 +17,14 @@ from paretour import (
 )
 
 from service.cli.errors import UsageError
-from service.cli.inputs import Ids, check_inputs, read_layer, read_map, read_object, read_request
+from service.cli.inputs import (
+    FileRequest,
+    Ids,
+    check_inputs,
+    read_layer,
+    read_object,
+    read_request,
+)
 from service.cli.options import ANY
 
 _SECOND_OBJECTIVES = ("second_matrix", "cost_layer", "second_coordinates")
@@ -37,14 +44,40 @@ def plan_cities(
 
     Raises:
         UnreadableFile: A file cannot be read.
+        UsageError: It is a request for another command, or `angles` are not numbers with commas
+            between.
         OSError: There is no such file.
-        UsageError: `angles` are not numbers with commas between.
     """
-    request, ids = read_request([file] if file2 is None else [file, file2], unrounded=unrounded)
-    ends = {name: _parse_end(options.get(name), ids or ()) for name in ("start", "end")}
+    found = read_request([file, *([file2] if file2 else [])], "front", unrounded=unrounded)
+    return _cities(found, options, angles), found.ids
+
+
+def _cities(found: FileRequest, options: Options, angles: str | None = None) -> Plan:
     preferences = _parse_numbers(angles, "--angles")
-    given = _without_none({**options, **ends, "preferences": preferences})
-    return front_plan(cast(FrontRequest, {**request, **given})), ids
+    given = _without_none({**options, **_ends(options, found.ids), "preferences": preferences})
+    return front_plan(cast(FrontRequest, {**found.request, **given}))
+
+
+def plan_tour(
+    file: Path,
+    file2: Path | None,
+    cost_layer: Path | None,
+    *,
+    unrounded: bool = False,
+    options: Options,
+) -> tuple[Plan, Ids | None]:
+    """Return the plan of one tour, of cities as by `plan_cities` or on a map as by `plan_map`."""
+    check_inputs(file, file2, cost_layer)
+    options = _with_poses(options)
+    files = [file, *([file2] if file2 else [])]
+    found = read_request(files, "front", "coverage", unrounded=unrounded)
+    if found.request.get("robots"):
+        raise UsageError(f"{file} is about several robots: `paretour coverage` plans that")
+    if found.kind == "coverage":
+        return _map(found, cost_layer, options), None
+    if cost_layer is not None:
+        raise UsageError(f"--cost-layer is for a map, and {file} is not one")
+    return _cities(found, options), found.ids
 
 
 def plan_rest(
@@ -76,24 +109,19 @@ def plan_fleet(file: Path, vehicles: Path | None, options: Options) -> tuple[Pla
         UsageError: It is a request for another command.
         OSError: There is no such file.
     """
-    request, _ = read_request([file] if vehicles is None else [file, vehicles], "fleet")
-    return fleet_plan(cast(FleetRequest, {**request, **_without_none(options)})), None
+    found = read_request([file, *([vehicles] if vehicles else [])], "fleet")
+    return fleet_plan(cast(FleetRequest, {**found.request, **_without_none(options)})), None
 
 
 def plan_map(
-    file: Path,
-    cost_layer: Path | None,
-    options: Options,
-    poses: Mapping[str, str | None] | None = None,
-    robots: Sequence[str] = (),
+    file: Path, cost_layer: Path | None, options: Options, robots: Sequence[str] = ()
 ) -> tuple[Plan, None]:
     """Return the plan for places on the map in a file, maybe with costs in another; and no ids.
 
     Args:
         file: The map, or a request.
         cost_layer: A file of costs.
-        options: Members of the request.
-        poses: Members that are poses, as numbers with commas between.
+        options: Members of the request; poses are numbers with commas between.
         robots: The poses where several robots start, in the same form. They share the places.
 
     Raises:
@@ -102,18 +130,29 @@ def plan_map(
         UsageError: Something that a plan needs is missing (the message names everything that is),
             or a pose is not numbers with commas between.
     """
-    parsed = {
-        name: _parse_numbers(pose, f"--{name.replace('_', '-')}")
-        for name, pose in (poses or {}).items()
-    }
     check_inputs(file, cost_layer)
-    request, picture = read_map(file)
+    parsed = _with_poses(options)
+    return _map(read_request([file], "coverage"), cost_layer, parsed, robots), None
+
+
+def _map(
+    found: FileRequest, cost_layer: Path | None, options: Options, robots: Sequence[str] = ()
+) -> Plan:
     costs = None if cost_layer is None else read_layer(cost_layer)
     members = {"cost_layer": costs, "robots": _parse_robots(robots)}
-    given = _without_none({**options, **parsed, **members})
-    whole = {**request, **given}
+    given = _without_none({**options, **_ends(options, None), **members})
+    whole = {**found.request, **given}
     _check_complete(whole)
-    return coverage_plan(cast(CoverageRequest, whole), picture), None
+    return coverage_plan(cast(CoverageRequest, whole), found.picture)
+
+
+def _with_poses(options: Options) -> Options:
+    """Return options with poses as lists of numbers."""
+    poses = {
+        name: _parse_numbers(options.get(name), f"--{name.replace('_', '-')}")
+        for name in ("start_pose", "end_pose")
+    }
+    return {**options, **poses}
 
 
 def _parse_robots(poses: Sequence[str]) -> list[dict[str, Any]] | None:
@@ -138,11 +177,16 @@ def _check_complete(request: Mapping[str, Any]) -> None:
         raise UsageError(f"a map cannot be covered without {', '.join(missing)}")
 
 
-def _parse_end(text: str | None, ids: Sequence[str]) -> int | str | None:
-    """Return the index of a city, given as an index or as an id in the file; else the text."""
-    if text is None or text in ids:
-        return None if text is None else ids.index(text)
-    return int(text) if text.isdecimal() else text
+def _ends(options: Options, ids: Ids | None) -> dict[str, int | str | None]:
+    """Return start and end as indexes, given as indexes or as ids in the file; else as they are."""
+    ends: dict[str, int | str | None] = {}
+    for name in ("start", "end"):
+        text = options.get(name)
+        if text is None or text in (ids or ()):
+            ends[name] = None if text is None or ids is None else ids.index(text)
+        else:
+            ends[name] = int(text) if text.isdecimal() else text
+    return ends
 
 
 def _parse_numbers(text: str | None, option: str) -> list[float] | None:

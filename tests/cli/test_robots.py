@@ -13,7 +13,8 @@ from paretour import Actor, Plan, RobotFront, coverage_plan
 from paretour.plans import parse_robots
 from rich.console import Console
 
-from service.cli.fronts import OutputFormat, run_front
+from service.cli.fronts import run_front
+from service.cli.options import OutputFormat
 from service.cli.plot import plot_map
 from tests.helpers.command import paretour
 
