@@ -18,7 +18,7 @@ from service.roads.client import RoadClient
 from service.roads.great_circle import great_circle_distances
 from service.roads.reachability import missing_ways
 from service.roads.router import Line, RouterSettings
-from service.roads.trails import Leg
+from service.roads.streets import Leg
 
 Array = NDArray[np.float64]
 STOPS = 60

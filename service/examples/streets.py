@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from service.roads.polyline import decode_polyline
 from service.roads.router import Array, Line
-from service.roads.trails import Leg
+from service.roads.streets import Leg
 
 Place = tuple[int, int]  # steps east and north of the origin
 Way = list[int]  # nodes; the first and the last are stops

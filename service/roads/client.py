@@ -21,8 +21,7 @@ from service.roads.cache import ArrayCache
 from service.roads.osrm import Osrm
 from service.roads.questions import Questions
 from service.roads.router import Array, Line, RouterInterface, RouterSettings
-from service.roads.streets import Indices, LegLines, count_legs, join_legs
-from service.roads.trails import Leg
+from service.roads.streets import Indices, Leg, LegLines, count_legs, join_legs
 from service.roads.transport import Observe, RouterTransport
 from service.roads.valhalla import Valhalla
 

@@ -13,7 +13,7 @@ from service.errors import NoRoad, OffRoad, RouterUnusable
 from service.roads.great_circle import great_circle_distances
 from service.roads.reachability import MissingWay, missing_ways, ways_of_isolated
 from service.roads.router import Array, Line, Location, NoWay, RouterInterface, Unintelligible
-from service.roads.trails import Leg, trails
+from service.roads.streets import Leg, trails
 from service.roads.transport import AT_ONCE, RouterTransport
 
 _PLACES_AT_ONCE = 100  # places in one question about the nearest roads
