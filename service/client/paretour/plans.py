@@ -7,17 +7,18 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.expect import Members, Read, count, each, floats, indexes, members, number, text
+from paretour.expect import Read, each, floats, indexes, members, number, text
 from paretour.values import (
     PAIR,
     Array,
     Objective,
     Path,
+    StoredFront,
     Uncovered,
-    lengths_of,
     objectives_of,
     parse_path,
     parse_uncovered,
+    stored_members,
 )
 
 
@@ -85,50 +86,26 @@ class RobotPlan(_Plan):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _FrontOfPlans:
-    """The plans of a front, in order of their first length.
-
-    Attributes:
-        id: The id under which the service stores the front.
-        status: The status of its job.
-        lengths: The lengths of the m plans, shape (m, 2).
-        points: The number of nondominated plans found; the front is a subset of these.
-        hypervolume: The share of the box at the reference point that the plans dominate.
-        reference_point: The reference point of the hypervolume, shape (2,); None while it is not
-            known.
-        objectives: Both objectives, as the request or the service named them.
-        terminated: Why the search ended; None while it runs.
-        document: The whole answer, with every member.
-    """
-
-    id: str
-    status: str
-    lengths: Array
-    points: int
-    hypervolume: float
-    reference_point: Array | None
-    objectives: tuple[Objective, ...]
-    terminated: str | None
-    document: Mapping[str, Any]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class FleetFront(_FrontOfPlans):
-    """The plans of a front for a fleet, in order of their first length."""
+class FleetFront(StoredFront):
+    """A front of plans for a fleet, with both objectives as the request named them."""
 
     plans: tuple[FleetPlan, ...]
+    objectives: tuple[Objective, ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class RobotFront(_FrontOfPlans):
-    """The plans of a front for several robots on a map, in order of their first length.
+class RobotFront(StoredFront):
+    """A front of plans for several robots on a map.
 
     Attributes:
+        plans: The plans.
+        objectives: Both objectives, as the service names them.
         places: The row and column of each place, shape (n, 2).
         uncovered: The free cells of the map that no path leads to.
     """
 
     plans: tuple[RobotPlan, ...]
+    objectives: tuple[Objective, ...]
     places: NDArray[np.int64]
     uncovered: Uncovered | None = None
 
@@ -140,7 +117,11 @@ def parse_fleet(document: Mapping[str, Any]) -> FleetFront:
         UnexpectedAnswer: A member is missing or wrong; so does `parse_robots`.
     """
     answer = members(document, "answer")
-    return FleetFront(plans=answer.read("front", each(_parse_fleet_plan)), **_shared(answer))
+    return FleetFront(
+        **stored_members(answer, answer.read("front", each(members))),
+        plans=answer.read("front", each(_parse_fleet_plan)),
+        objectives=objectives_of(answer) or (),
+    )
 
 
 def parse_robots(document: Mapping[str, Any]) -> RobotFront:
@@ -149,26 +130,12 @@ def parse_robots(document: Mapping[str, Any]) -> RobotFront:
     places = indexes(None, PAIR)(answer.document.get("places") or [], "answer/places")
     route = partial(_parse_robot_route, places=len(places))
     return RobotFront(
+        **stored_members(answer, answer.read("front", each(members))),
         plans=answer.read("front", each(partial(_parse_robot_plan, route=route))),
+        objectives=objectives_of(answer) or (),
         places=places,
         uncovered=answer.maybe("uncovered", parse_uncovered),
-        **_shared(answer),
     )
-
-
-def _shared(answer: Members) -> dict[str, Any]:
-    """Return the members that fronts of both kinds have."""
-    return {
-        "id": answer.read("id", text),
-        "status": answer.read("status", text),
-        "lengths": lengths_of(answer.read("front", each(members))),
-        "points": answer.read("points", count),
-        "hypervolume": answer.read("hypervolume", number),
-        "reference_point": answer.maybe("reference_point", floats(PAIR)),
-        "objectives": objectives_of(answer) or (),
-        "terminated": answer.maybe("terminated", text),
-        "document": answer.document,
-    }
 
 
 def _parse_fleet_plan(value: Any, where: str) -> FleetPlan:
