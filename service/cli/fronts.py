@@ -3,17 +3,14 @@
 import json
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
-from paretour import Front, FrontOfAnyKind, Plan, RobotFront
+from paretour import Front, FrontOfAnyKind, Plan
 from paretour.choice import the_way
 from paretour.expect import unexpected
 from paretour.kinds import kind_of
 from rich.console import Console
-from rich.table import Table
 
 from service.cli.backends import Backend
 from service.cli.data import print_csv, print_data
@@ -24,7 +21,6 @@ from service.cli.output import (
     ROBOTS,
     VEHICLES,
     Movers,
-    Rows,
     actors_as_table,
     front_as_rows,
     front_as_table,
@@ -42,78 +38,17 @@ from service.cli.output import (
 )
 from service.cli.terminal_chart import LABELS, draw_front
 
+_MORE_TOURS = "--table prints every tour, --csv its cities too"
+_MORE_PLANS = "--csv prints every route"
 BuildPlan = Callable[[], tuple[Plan, Ids | None]]
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Kind:
-    """How to print and draw fronts of a kind.
-
-    Args:
-        noun: The name of what they hold.
-        rows: Returns the rows of a front for CSV, with the ids of its stops, if they have any.
-        table: Returns a table of a front, with a row for each tour or plan.
-        under_chart: Returns the table to print under the chart on a terminal.
-        hint: The options that print more.
-        draw: Draws a front, the answer to a plan, into a file. It imports matplotlib when it is
-            called.
-    """
-
-    noun: str
-    rows: Callable[[Any, Ids | None], Rows]
-    table: Callable[[Any], Table]
-    under_chart: Callable[[Any], Table]
-    hint: str
-    draw: Callable[[Any, Plan, Path], None]
-
-
-def _draw_lengths(noun: str) -> Callable[[FrontOfAnyKind, Plan, Path], None]:
-    def draw(front: FrontOfAnyKind, _: Plan, path: Path) -> None:
-        from service.cli.plot import plot_front
-
-        plot_front(front, path, noun)
-
-    return draw
-
-
-def _draw_map(front: Front | RobotFront, plan: Plan, path: Path) -> None:
-    """Draw three tours or plans over the map; only the lengths if there are no paths or no map."""
-    if isinstance(front, Front) and (front.paths is None or plan.path != "/coverage"):
-        return _draw_lengths("tours")(front, plan, path)
-    from service.cli.plot import plot_map
-
-    names = [each.name for each in front.objectives or ()] or LABELS
-    return plot_map(front, plan, path, three_tours(front.lengths, names))
-
-
-def _kind_of_tours(draw: Callable[[Front, Plan, Path], None]) -> _Kind:
-    return _Kind(
-        noun="tours",
-        rows=lambda front, ids: front_as_rows(front, ids or ids_of(front)),
-        table=front_as_table,
-        under_chart=named_tours,
-        hint="--table prints every tour, --csv its cities too",
-        draw=draw,
-    )
-
-
-def _kind_of_plans(movers: Movers, draw: Callable[[Any, Plan, Path], None]) -> _Kind:
-    table = partial(plans_as_table, movers=movers)
-    return _Kind(
-        noun="plans",
-        rows=lambda front, _: plans_as_rows(front, movers),
-        table=table,
-        under_chart=table,
-        hint="--csv prints every route",
-        draw=draw,
-    )
-
-
-_KINDS: Mapping[str, _Kind] = {
-    "front": _kind_of_tours(_draw_lengths("tours")),
-    "coverage": _kind_of_tours(_draw_map),
-    "fleet": _kind_of_plans(VEHICLES, _draw_lengths("plans")),
-    "robots": _kind_of_plans(ROBOTS, _draw_map),
+# The movers on the routes of a kind's plans; None for fronts of tours.
+_MOVERS: Mapping[str, Movers | None] = {
+    "front": None,
+    "coverage": None,
+    "fleet": VEHICLES,
+    "robots": ROBOTS,
 }
 
 
@@ -123,11 +58,12 @@ def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> 
         _check_output(output)
         plan, ids = build_plan()
         front = backend.front(plan, Console(stderr=True))
-        kind = _KINDS[kind_of(front.document)]
-        _print(front, kind, ids, output)
+        movers = _MOVERS[kind_of(front.document)]
+        noun = "tours" if movers is None else "plans"
+        _print(front, movers, ids, output)
         if output.plot is not None:
-            kind.draw(front, plan, output.plot)
-    _print_line(front_summary(front, kind.noun))
+            _draw(front, plan, output.plot, noun)
+    _print_line(front_summary(front, noun))
     if line := uncovered_summary(front):
         _print_line(line)
 
@@ -170,18 +106,31 @@ def _usage_errors() -> Iterator[None]:
         raise UsageError(str(error)) from None
 
 
-def _print(front: FrontOfAnyKind, kind: _Kind, ids: Ids | None, output: OutputFormat) -> None:
+def _print(front: Any, movers: Movers | None, ids: Ids | None, output: OutputFormat) -> None:
+    """Print a front of any kind: on a terminal as a chart, unless another format is asked for."""
     console = Console()
+    chart = console.is_terminal and len(front.lengths) and not output.as_table
     if output.as_json:
         print_data(json.dumps(front.document))
     elif output.as_csv:
-        print_csv(kind.rows(front, ids))
-    elif console.is_terminal and len(front.lengths) and not output.as_table:
-        print_chart(front, console)
-        console.print(kind.under_chart(front))
-        _print_line(kind.hint)
+        ids = ids or ids_of(front) if movers is None else None
+        print_csv(front_as_rows(front, ids) if movers is None else plans_as_rows(front, movers))
+    elif not chart:
+        console.print(front_as_table(front) if movers is None else plans_as_table(front, movers))
     else:
-        console.print(kind.table(front))
+        print_chart(front, console)
+        console.print(named_tours(front) if movers is None else plans_as_table(front, movers))
+        _print_line(_MORE_TOURS if movers is None else _MORE_PLANS)
+
+
+def _draw(front: Any, plan: Plan, path: Path, noun: str) -> None:
+    """Draw a front of any kind into a file; if it has paths over a map, three of them as well."""
+    from service.cli.plot import plot_front, plot_map
+
+    if plan.path != "/coverage" or (noun == "tours" and front.paths is None):
+        return plot_front(front, path, noun)
+    names = [each.name for each in front.objectives or ()] or LABELS
+    return plot_map(front, plan, path, three_tours(front.lengths, names))
 
 
 def print_chart(front: FrontOfAnyKind, console: Console) -> None:
