@@ -7,7 +7,7 @@ from http import HTTPStatus
 from typing import Protocol, cast
 
 import httpx
-from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Refused
+from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Progress, Refused
 from paretour.kinds import parse_any
 from rich.console import Console
 
@@ -109,7 +109,9 @@ class LocalBackend:
                 with console.status(LOADING):
                     warm_up()
             with interrupt_flag() as interrupted, progress_bar(console, plan.seconds) as show:
-                run = partial(runner.run, task, interrupted, lambda progress, _: show(progress))
+                run = partial(
+                    runner.run, task, interrupted, lambda found, _: show(Progress(**asdict(found)))
+                )
                 document = until_done(run, interrupted, runner.terminate)
         except Cancelled:
             raise KeyboardInterrupt from None

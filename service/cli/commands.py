@@ -4,6 +4,7 @@ Each command imports the modules that it needs when it runs, so that --help and 
 are fast.
 """
 
+import sys
 from functools import partial
 from typing import Annotated
 
@@ -201,9 +202,15 @@ def serve(
     workers: options.Workers = None,
 ) -> None:
     """Answer requests over HTTP; other settings come from PARETOUR_* variables."""
-    from service.cli.admin import run_serve
+    from service import server
+    from service.cli.configuration import load_settings, load_with
+    from service.cli.errors import exit_on_error
 
-    run_serve(host, port, workers)
+    with exit_on_error():
+        settings = load_settings(host=host, port=port, workers=workers)
+        ending = server.Ending()
+        built = load_with(partial(server.build, ending=ending), settings)
+    server.serve(built, settings, ending)
 
 
 @app.command()
@@ -218,12 +225,19 @@ def work(
     ] = False,
 ) -> None:
     """Plan tasks of services with the same PARETOUR_REDIS_URL; needs the extra cluster."""
-    from service.cli.admin import run_alive, run_work
+    from service import server
+    from service.cli.configuration import load_settings, load_with
+    from service.cli.errors import EXIT_STALLED, exit_on_error, exit_with
 
-    if alive:
-        run_alive()
-    else:
-        run_work(workers)
+    with exit_on_error():
+        settings = load_settings(workers=workers)
+        if not alive:
+            run = load_with(server.build_worker, settings)
+        elif load_with(server.takes_work, settings):
+            return
+        else:
+            raise exit_with("no worker on this machine takes waiting tasks", EXIT_STALLED)
+    sys.exit(run())
 
 
 @app.command()
@@ -231,6 +245,14 @@ def key(
     caller: Annotated[str, Argument(help="The name of the caller who will use the key.")],
 ) -> None:
     """Make an API key for a caller, and the entry for PARETOUR_API_KEYS that lets it in."""
-    from service.cli.admin import run_key
+    from service.api.auth import KeyHash, new_key
+    from service.cli.errors import UsageError, exit_on_error
 
-    run_key(caller)
+    made, digest = new_key()
+    with exit_on_error():
+        try:
+            KeyHash(caller=caller, digest=digest)
+        except ValueError as error:
+            raise UsageError(str(error)) from None
+    echo(f"{made}\n{caller}:{digest}")
+    echo("The key, for its caller alone; then its entry for PARETOUR_API_KEYS.", err=True)
