@@ -1,4 +1,4 @@
-"""The two backends that plan for the command: this process, and a service at a URL."""
+"""Plan for the command: in this process, or by a service at a URL."""
 
 import json
 from dataclasses import asdict, dataclass
@@ -25,7 +25,7 @@ class Backend(Protocol):
     """
 
     def front(self, plan: Plan, console: Console) -> FrontOfAnyKind:
-        """Plan a front, whatever its kind.
+        """Plan a front of any kind.
 
         Raises:
             KeyboardInterrupt: Ctrl-C was pressed before there was a front.
@@ -48,7 +48,7 @@ class RemoteBackend:
     api_key: str | None
 
     def front(self, plan: Plan, console: Console) -> FrontOfAnyKind:
-        """Plan a front, whatever its kind.
+        """Plan a front of any kind.
 
         Raises:
             Refused: The service does not plan it.
@@ -74,7 +74,7 @@ class LocalBackend:
     """
 
     def front(self, plan: Plan, console: Console) -> FrontOfAnyKind:
-        """Plan a front, whatever its kind, and answer as the service does.
+        """Plan a front of any kind, and answer as the service does.
 
         Raises:
             UsageError: The request cannot be planned.

@@ -127,13 +127,13 @@ Workers = Annotated[
 
 
 def _closed(is_open: bool | None) -> bool | None:
-    """Return the member `closed` of a request for --open, which may not be given."""
+    """Return the member `closed` of a request: False with --open, else None."""
     return None if is_open is None else not is_open
 
 
 @dataclass(frozen=True, kw_only=True)
 class Search:
-    """The search, by members of a request."""
+    """The search, as members of a request."""
 
     time_limit: Annotated[
         float | None,
@@ -146,7 +146,7 @@ class Search:
 
 @dataclass(frozen=True, kw_only=True)
 class Network:
-    """The network that builds the first tours, by members of a request."""
+    """The network that builds the first tours, as members of a request."""
 
     actor: Annotated[
         str | None, Option("--actor", help="The network, one of `paretour actors`.")
@@ -156,7 +156,7 @@ class Network:
 
 @dataclass(frozen=True, kw_only=True)
 class Ends:
-    """Where tours begin and end, by members of a request."""
+    """Where tours begin and end, as members of a request."""
 
     closed: Annotated[
         bool | None,
@@ -187,7 +187,7 @@ class Ends:
 
 @dataclass(frozen=True, kw_only=True)
 class Area:
-    """How a robot covers a map, by members of a request."""
+    """The map and how a robot covers it, as members of a request."""
 
     cell_size: Annotated[
         float | None, Option(help="The width of a pixel in metres, if the map does not say it.")
@@ -239,7 +239,7 @@ class OutputFormat:
 
 @dataclass(frozen=True, kw_only=True)
 class Ways:
-    """The ways to choose a tour, of which one is given."""
+    """The ways to choose a tour. Exactly one must be given."""
 
     angle: Annotated[
         float | None,

@@ -1,4 +1,4 @@
-"""Say what a front holds: rows for CSV, tables, and sentences with names, units and ids."""
+"""Make rows for CSV, tables and sentences from fronts, with names, units and ids."""
 
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence

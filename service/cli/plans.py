@@ -1,4 +1,8 @@
-"""Build the plan that files and options ask for together."""
+"""Build the request that files and options ask for together.
+
+Functions that read files raise OSError if one does not exist, UnreadableFile if one cannot be read,
+and UsageError if one is for another command, or if numbers are not written with commas between.
+"""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -40,14 +44,7 @@ def plan_cities(
     angles: str | None = None,
     options: Options,
 ) -> tuple[Plan, Ids | None]:
-    """Return the plan for the cities in a file, or in one for each objective; and the cities' ids.
-
-    Raises:
-        UnreadableFile: A file cannot be read.
-        UsageError: It is a request for another command, or `angles` are not numbers with commas
-            between.
-        OSError: There is no such file.
-    """
+    """Return the plan for the cities in a file, or in one for each objective; and their ids."""
     found = read_request([file, *([file2] if file2 else [])], "front", unrounded=unrounded)
     return _cities(found, options, angles), found.ids
 
@@ -90,10 +87,6 @@ def plan_rest(
         changes: A file of members of the request, as JSON.
         stops: Members that are stops, by their ids with commas between.
         options: Further members.
-
-    Raises:
-        UnreadableFile: The file is not a JSON object.
-        OSError: There is no such file.
     """
     request = {} if changes is None else read_object(changes)
     named = {name: text and text.split(",") for name, text in stops.items()}
@@ -102,13 +95,7 @@ def plan_rest(
 
 
 def plan_fleet(file: Path, vehicles: Path | None, options: Options) -> tuple[Plan, None]:
-    """Return the plan for a fleet in a file, or in one of stops and one of vehicles; and no ids.
-
-    Raises:
-        UnreadableFile: A file cannot be read.
-        UsageError: It is a request for another command.
-        OSError: There is no such file.
-    """
+    """Return the plan for a fleet in a file, or in one of stops and one of vehicles; and no ids."""
     found = read_request([file, *([vehicles] if vehicles else [])], "fleet")
     return fleet_plan(cast(FleetRequest, {**found.request, **_without_none(options)})), None
 
@@ -125,10 +112,7 @@ def plan_map(
         robots: The poses where several robots start, in the same form. They share the places.
 
     Raises:
-        UnreadableFile: A file cannot be read.
-        OSError: There is no such file.
-        UsageError: Something that a plan needs is missing (the message names everything that is),
-            or a pose is not numbers with commas between.
+        UsageError: Something that a plan needs is missing; the message names everything that is.
     """
     check_inputs(file, cost_layer)
     parsed = _with_poses(options)

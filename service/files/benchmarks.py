@@ -1,4 +1,4 @@
-"""Benchmarks of vehicle routing: CVRPLIB, Solomon, Gehring and Homberger, Li and Lim."""
+"""Read benchmarks of vehicle routing: CVRPLIB, Solomon, Gehring and Homberger, Li and Lim."""
 
 import re
 from typing import Any

@@ -1,4 +1,4 @@
-"""Requests for fleets: their objectives, and one vehicle if a file names none."""
+"""Make requests for fleets: their objectives, depots, and one vehicle if a file names none."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""Requests of JSON: our own bodies, GeoJSON, records with columns by name, and rows of cities."""
+"""Read JSON: requests, GeoJSON, records with columns by name, and rows of cities."""
 
 import json
 import re

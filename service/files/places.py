@@ -1,4 +1,4 @@
-"""Distances between places on the earth, and places that look mistaken."""
+"""Check places on the earth: degrees out of range, and places that look mistaken."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,7 +10,7 @@ from service.files.reading import Source, quoted
 from service.roads.great_circle import great_circle_distances, great_circle_matrix
 
 Array = NDArray[np.float64]
-_FAR = 1_000_000.0  # metres: no van drives so far
+_FAR = 1_000_000.0  # metres: farther than a van drives
 _NEAR = 300_000.0
 _MOST_NAMED = 3
 

@@ -1,4 +1,4 @@
-"""Read one file or two: recognise their format by their content, then by the ending of the name."""
+"""Read one file or two. The content of a file tells its format; if not, the end of its name."""
 
 from collections.abc import Sequence
 

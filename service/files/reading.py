@@ -1,4 +1,4 @@
-"""A file that is read, its bounds and its errors; and the reading: a request, notes and columns."""
+"""A file that is being read, its bounds and errors; and the result: a request with notes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -14,11 +14,11 @@ _LONGEST_SHOWN = 80  # characters of a file that a sentence quotes
 
 
 class UnreadableFile(ValueError):
-    """A file that is not of its format, or of a kind that is not supported."""
+    """A file that does not follow its format, or whose format is not supported."""
 
 
 class FileTooLarge(UnreadableFile):
-    """A file that holds more than the reader takes."""
+    """A file with more content than its bounds allow."""
 
 
 @dataclass(frozen=True, kw_only=True)

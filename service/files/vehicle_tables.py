@@ -2,7 +2,15 @@
 
 import re
 
-from service.files.columns import amount_of, fields_of, fields_of_vehicles, is_about_vehicles
+from service.files.columns import (
+    Columns,
+    amount_of,
+    columns_of,
+    fields_of,
+    fields_of_vehicles,
+    ids_of,
+    is_about_vehicles,
+)
 from service.files.fleets import (
     Stop,
     Vehicle,
@@ -16,7 +24,6 @@ from service.files.fleets import (
 from service.files.places import check_range
 from service.files.reading import Reading, Source, quoted, reading_of_both
 from service.files.stop_tables import visits_of
-from service.files.table_columns import Columns, columns_of, ids_of
 from service.files.tables import Table
 from service.files.visits import add_visits, is_time, seconds_in, span_in
 
@@ -40,7 +47,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     visits = columns_of(*of_stops)
     stops, plane = visits_of(visits)
     units = add_visits(visits, stops)
-    visits.tell()
+    visits.report()
     columns = _columns_of_vehicles(other, of_vehicles[1], stops)
     vehicles = _Vehicles(columns, stops, located=plane is None).read()
     _add_capacities(columns, vehicles, visits, stops, units)
@@ -49,7 +56,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     objectives = planar({"coordinates": plane}) if plane else measured(source, stops, clock)
     _add_limits(columns, vehicles, clock)
     _add_fixed(columns, vehicles, located=plane is None)
-    columns.tell()
+    columns.report()
     request = fleet_request(stops, vehicles, objectives)
     return reading_of_both("fleet", request, (source, other))
 

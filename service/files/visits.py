@@ -1,13 +1,12 @@
-"""Visits in a table: demands, windows, service times and prizes, from their columns."""
+"""Read the columns of a table that are about visits: demands, windows, service, prizes."""
 
 import re
 from functools import partial
 
 import numpy as np
 
-from service.files.columns import seconds_of
+from service.files.columns import Columns, seconds_of
 from service.files.fleets import Stop
-from service.files.table_columns import Columns
 from service.files.tables import number_in
 
 _TIME = re.compile(

@@ -1,4 +1,4 @@
-"""Problems of VROOM, as its API takes them: jobs, shipments and vehicles, times in seconds."""
+"""Read problems of VROOM, in the JSON of its API: jobs, shipments and vehicles."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field

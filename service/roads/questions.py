@@ -1,4 +1,4 @@
-"""The questions of one request to a routing engine, and the results of their answers."""
+"""Ask a routing engine all that one request needs, and put its answers together."""
 
 from asyncio import TaskGroup, to_thread
 from collections.abc import Awaitable, Callable, Iterable, Iterator, Sequence
@@ -191,7 +191,7 @@ def _parts(n: int, most: int) -> list[_Indices]:
 
 
 def _understood(read: Callable[[], _Result]) -> _Result:
-    """Return an answer once read; raise RouterUnusable if it cannot be understood."""
+    """Return the result of reading an answer; raise RouterUnusable if it cannot be read."""
     try:
         return read()
     except Unintelligible as error:

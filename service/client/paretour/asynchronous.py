@@ -92,15 +92,15 @@ class AsyncClient:
         return AsyncJob(front, parse_front, self._connection, self._calls)
 
     def fleet_job(self, front: str) -> "AsyncJob[FleetFront]":
-        """Return the job of a front of plans, in the same way."""
+        """Return the job of a front of plans for a fleet, as `job` does."""
         return AsyncJob(front, parse_fleet, self._connection, self._calls)
 
     def robots_job(self, front: str) -> "AsyncJob[RobotFront]":
-        """Return the job of a front of plans for several robots, in the same way."""
+        """Return the job of a front of plans for several robots, as `job` does."""
         return AsyncJob(front, parse_robots, self._connection, self._calls)
 
     def any_job(self, front: str) -> "AsyncJob[FrontOfAnyKind]":
-        """Return the job of a front of whatever kind, in the same way."""
+        """Return the job of a front whose kind is not known, as `job` does."""
         return AsyncJob(front, parse_any, self._connection, self._calls)
 
     async def close(self) -> None:

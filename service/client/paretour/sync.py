@@ -97,15 +97,15 @@ class Client:
         return Job(front, parse_front, self._connection, self._calls)
 
     def fleet_job(self, front: str) -> "Job[FleetFront]":
-        """Return the job of a front of plans, in the same way."""
+        """Return the job of a front of plans for a fleet, as `job` does."""
         return Job(front, parse_fleet, self._connection, self._calls)
 
     def robots_job(self, front: str) -> "Job[RobotFront]":
-        """Return the job of a front of plans for several robots, in the same way."""
+        """Return the job of a front of plans for several robots, as `job` does."""
         return Job(front, parse_robots, self._connection, self._calls)
 
     def any_job(self, front: str) -> "Job[FrontOfAnyKind]":
-        """Return the job of a front of whatever kind, in the same way."""
+        """Return the job of a front whose kind is not known, as `job` does."""
         return Job(front, parse_any, self._connection, self._calls)
 
     def close(self) -> None:
