@@ -2,12 +2,11 @@
 
 import asyncio
 from collections.abc import AsyncIterator, Callable, Coroutine
-from functools import wraps
 from typing import Any, Concatenate, Generic, ParamSpec, Self, TypeVar
 
 import httpx
 from paretour.bodies import MOST_BYTES, Body
-from paretour.calls import AnyFront, Call, Calls, Parse, Submitted, client_headers
+from paretour.calls import AnyFront, Call, Calls, Parse, Submitted, client_headers, described_as
 from paretour.events import JobEvents
 from paretour.kinds import FrontOfAnyKind, parse_any
 from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
@@ -22,7 +21,7 @@ def _result(
 ) -> Callable[Concatenate["AsyncClient", P], Coroutine[Any, Any, T]]:
     """Return the method of the client that makes a call and returns its result."""
 
-    @wraps(call)
+    @described_as(call)
     async def method(self: "AsyncClient", *args: P.args, **kwargs: P.kwargs) -> T:
         return await self._connection.run(call(self._calls, *args, **kwargs))
 
@@ -34,7 +33,7 @@ def _job(
 ) -> Callable[Concatenate["AsyncClient", P], Coroutine[Any, Any, "AsyncJob[AnyFront]"]]:
     """Return the method of the client that submits a job and returns it."""
 
-    @wraps(call)
+    @described_as(call)
     async def method(
         self: "AsyncClient", *args: P.args, **kwargs: P.kwargs
     ) -> "AsyncJob[AnyFront]":

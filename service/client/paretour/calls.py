@@ -7,7 +7,9 @@ them.
 
 from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal, TypeVar, Unpack
+from functools import wraps
+from inspect import Signature, signature
+from typing import Any, Literal, TypeVar, Unpack, cast
 
 import httpx
 from paretour.bodies import ACCEPTED
@@ -44,6 +46,7 @@ from paretour.values import (
 
 T = TypeVar("T")
 AnyFront = TypeVar("AnyFront", bound=FrontOfAnyKind)
+Method = TypeVar("Method", bound=Callable[..., Any])
 Parse = Callable[[Mapping[str, Any]], AnyFront]
 Submitted = tuple[str, Parse[AnyFront]]  # the id of a job's front, and the parser of that front
 Geometry = Literal["straight", "roads"]
@@ -263,6 +266,18 @@ class Calls:
         content = {**body, "headers": {**body.get("headers", {}), **headers}}
         request = HttpRequest(method="POST", path=plan.path, content=content, timeout=timeout)
         return (yield from self._send(request))
+
+
+def described_as(call: Callable[..., Any]) -> Callable[[Method], Method]:
+    """Return a decorator that gives a client's method the name, help and parameters of a call."""
+
+    def decorate(method: Method) -> Method:
+        described = wraps(call)(method)
+        parameters = signature(call).replace(return_annotation=Signature.empty)
+        described.__signature__ = parameters  # type: ignore[attr-defined]
+        return cast(Method, described)
+
+    return decorate
 
 
 def client_headers(api_key: str | None) -> dict[str, str]:

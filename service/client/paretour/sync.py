@@ -2,12 +2,11 @@
 
 import time
 from collections.abc import Callable, Iterator
-from functools import wraps
 from typing import Concatenate, Generic, ParamSpec, Self, TypeVar
 
 import httpx
 from paretour.bodies import MOST_BYTES, Body
-from paretour.calls import AnyFront, Call, Calls, Parse, Submitted, client_headers
+from paretour.calls import AnyFront, Call, Calls, Parse, Submitted, client_headers, described_as
 from paretour.events import JobEvents
 from paretour.kinds import FrontOfAnyKind, parse_any
 from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
@@ -22,7 +21,7 @@ def _result(
 ) -> Callable[Concatenate["Client", P], T]:
     """Return the method of the client that makes a call and returns its result."""
 
-    @wraps(call)
+    @described_as(call)
     def method(self: "Client", *args: P.args, **kwargs: P.kwargs) -> T:
         return self._connection.run(call(self._calls, *args, **kwargs))
 
@@ -34,7 +33,7 @@ def _job(
 ) -> Callable[Concatenate["Client", P], "Job[AnyFront]"]:
     """Return the method of the client that submits a job and returns it."""
 
-    @wraps(call)
+    @described_as(call)
     def method(self: "Client", *args: P.args, **kwargs: P.kwargs) -> "Job[AnyFront]":
         submitted = self._connection.run(call(self._calls, *args, **kwargs))
         return Job(*submitted, self._connection, self._calls)
