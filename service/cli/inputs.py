@@ -41,7 +41,9 @@ class FileRequest(NamedTuple):
     picture: bytes | None = None
 
 
-def read_request(files: Sequence[Path], *kinds: Kind, unrounded: bool = False) -> FileRequest:
+def read_request(
+    paths: Sequence[Path | None], *kinds: Kind, unrounded: bool = False
+) -> FileRequest:
     """Return the request in one file, in two with an objective each, or in stops and vehicles.
 
     A map is a PNG or PGM file, or a map.yaml of ROS, which names its picture and says how to read
@@ -49,9 +51,9 @@ def read_request(files: Sequence[Path], *kinds: Kind, unrounded: bool = False) -
     stderr. A file named - is standard input.
 
     Args:
-        files: The files.
-        kinds: The kinds of plan that it may ask for; JSON that does not show its kind is of the
-            first.
+        paths: The files; None is left out.
+        kinds: The kinds of plan that they may ask for. JSON that does not show its kind is taken
+            for the first of them.
         unrounded: Whether EUC_2D of TSPLIB means planes, not rounded distances.
 
     Raises:
@@ -59,6 +61,7 @@ def read_request(files: Sequence[Path], *kinds: Kind, unrounded: bool = False) -
         UsageError: It holds what another command plans.
         OSError: There is no such file.
     """
+    files = [path for path in paths if path is not None]
     check_inputs(*files)
     is_map = "coverage" in kinds and len(files) == 1
     if is_map and NamedFile(files[0].name, b"").is_yaml:

@@ -45,7 +45,7 @@ def plan_cities(
     options: Options,
 ) -> tuple[Plan, Ids | None]:
     """Return the plan for the cities in a file, or in one for each objective; and their ids."""
-    found = read_request([file, *([file2] if file2 else [])], "front", unrounded=unrounded)
+    found = read_request([file, file2], "front", unrounded=unrounded)
     return _cities(found, options, angles), found.ids
 
 
@@ -66,8 +66,7 @@ def plan_tour(
     """Return the plan of one tour, of cities as by `plan_cities` or on a map as by `plan_map`."""
     check_inputs(file, file2, cost_layer)
     options = _with_poses(options)
-    files = [file, *([file2] if file2 else [])]
-    found = read_request(files, "front", "coverage", unrounded=unrounded)
+    found = read_request([file, file2], "front", "coverage", unrounded=unrounded)
     if found.request.get("robots"):
         raise UsageError(f"{file} is about several robots: `paretour coverage` plans that")
     if found.kind == "coverage":
@@ -96,7 +95,7 @@ def plan_rest(
 
 def plan_fleet(file: Path, vehicles: Path | None, options: Options) -> tuple[Plan, None]:
     """Return the plan for a fleet in a file, or in one of stops and one of vehicles; and no ids."""
-    found = read_request([file, *([vehicles] if vehicles else [])], "fleet")
+    found = read_request([file, vehicles], "fleet")
     return fleet_plan(cast(FleetRequest, {**found.request, **_without_none(options)})), None
 
 
