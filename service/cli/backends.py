@@ -1,4 +1,4 @@
-"""The two backends that plan for the command: this process, and a service at a URL."""
+"""Plan for the command: in this process, or by a service at a URL."""
 
 import json
 from dataclasses import asdict, dataclass
@@ -7,11 +7,12 @@ from http import HTTPStatus
 from typing import Protocol, cast
 
 import httpx
-from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Refused
+from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Progress, Refused
 from paretour.kinds import parse_any
 from rich.console import Console
 
 from service.cli.errors import UsageError
+from service.cli.options import Service
 from service.cli.progress import interrupt_flag, progress_bar, until_done
 
 LOADING = "loading the search; the first time it is compiled, for a minute or two"
@@ -24,7 +25,7 @@ class Backend(Protocol):
     """
 
     def front(self, plan: Plan, console: Console) -> FrontOfAnyKind:
-        """Plan a front, whatever its kind.
+        """Plan a front of any kind.
 
         Raises:
             KeyboardInterrupt: Ctrl-C was pressed before there was a front.
@@ -34,9 +35,9 @@ class Backend(Protocol):
         """Return the actors to choose from."""
 
 
-def backend_for(url: str | None, api_key: str | None) -> Backend:
-    """Return the service at a URL as a backend, or without a URL this process."""
-    return LocalBackend() if url is None else RemoteBackend(url, api_key)
+def backend_for(service: Service) -> Backend:
+    """Return a service as a backend, or without a URL this process."""
+    return LocalBackend() if service.url is None else RemoteBackend(service.url, service.api_key)
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class RemoteBackend:
     api_key: str | None
 
     def front(self, plan: Plan, console: Console) -> FrontOfAnyKind:
-        """Plan a front, whatever its kind.
+        """Plan a front of any kind.
 
         Raises:
             Refused: The service does not plan it.
@@ -73,7 +74,7 @@ class LocalBackend:
     """
 
     def front(self, plan: Plan, console: Console) -> FrontOfAnyKind:
-        """Plan a front, whatever its kind, and answer as the service does.
+        """Plan a front of any kind, and answer as the service does.
 
         Raises:
             UsageError: The request cannot be planned.
@@ -108,7 +109,9 @@ class LocalBackend:
                 with console.status(LOADING):
                     warm_up()
             with interrupt_flag() as interrupted, progress_bar(console, plan.seconds) as show:
-                run = partial(runner.run, task, interrupted, lambda progress, _: show(progress))
+                run = partial(
+                    runner.run, task, interrupted, lambda found, _: show(Progress(**asdict(found)))
+                )
                 document = until_done(run, interrupted, runner.terminate)
         except Cancelled:
             raise KeyboardInterrupt from None
@@ -154,7 +157,7 @@ def _with_scheme(url: str) -> str:
     """Return a URL, whose scheme is http where it has none, as localhost:8000.
 
     Raises:
-        UsageError: It is no URL of a service.
+        UsageError: It is not the URL of a service.
     """
     whole = url if "://" in url else f"http://{url}"
     try:

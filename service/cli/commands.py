@@ -4,42 +4,15 @@ Each command imports the modules that it needs when it runs, so that --help and 
 are fast.
 """
 
+import sys
 from functools import partial
 from typing import Annotated
 
 from typer import Argument, Exit, Option, Typer, echo
 
 from service import installed_version
-from service.cli.coverage import coverage
-from service.cli.fleets.command import fleet
-from service.cli.options import (
-    ActorName,
-    Angle,
-    Angles,
-    ApiKey,
-    AsCsv,
-    AsJson,
-    AsTable,
-    Augment,
-    Balance,
-    EndOrId,
-    File,
-    FirstAtMost,
-    Knee,
-    Open,
-    Plot,
-    Repairs,
-    SecondAtMost,
-    SecondFile,
-    Seed,
-    Size,
-    StartOrId,
-    TimeLimit,
-    Unrounded,
-    Url,
-    Workers,
-)
-from service.cli.replan import replan
+from service.cli import options
+from service.cli.options import with_groups
 
 app = Typer(
     name="paretour",
@@ -59,7 +32,7 @@ def _print_version(wanted: bool) -> None:
 
 
 @app.callback()
-def options(
+def before_the_command(
     _version: Annotated[
         bool,
         Option("--version", help="Print the version.", callback=_print_version, is_eager=True),
@@ -69,112 +42,155 @@ def options(
 
 
 @app.command()
-def front(  # noqa: PLR0913  an option each
-    file: File,
-    file2: SecondFile = None,
-    time_limit: TimeLimit = None,
-    angles: Angles = None,
-    size: Size = None,
-    start: StartOrId = None,
-    end: EndOrId = None,
-    open_routes: Open = None,
-    seed: Seed = None,
-    actor: ActorName = None,
-    repairs: Repairs = None,
-    augment: Augment = None,
-    unrounded: Unrounded = False,
-    as_json: AsJson = False,
-    as_csv: AsCsv = False,
-    as_table: AsTable = False,
-    plot: Plot = None,
-    url: Url = None,
-    api_key: ApiKey = None,
+@with_groups
+def front(  # noqa: PLR0913  a group of options, or one, each
+    file: options.File,
+    file2: options.SecondFile = None,
+    *,
+    search: options.Search,
+    size: options.Size = None,
+    angles: options.Angles = None,
+    network: options.Network,
+    augment: options.Augment = None,
+    ends: options.Ends,
+    unrounded: options.Unrounded = False,
+    output: options.OutputFormat,
+    service: options.Service,
 ) -> None:
     """Plan the front of tours through the cities of a file, or of one for each objective."""
     from service.cli.backends import backend_for
-    from service.cli.fronts import OutputFormat, run_front
+    from service.cli.fronts import run_front
     from service.cli.plans import plan_cities
 
-    options = {
-        "time_limit": time_limit,
-        "size": size,
-        "start": start,
-        "end": end,
-        "closed": None if open_routes is None else not open_routes,
-        "seed": seed,
-        "actor": actor,
-        "repairs": repairs,
-        "augment": augment,
-    }
+    members = {**vars(search), **vars(network), **vars(ends), "size": size, "augment": augment}
     run_front(
-        partial(plan_cities, file, file2, unrounded=unrounded, angles=angles, options=options),
-        backend_for(url, api_key),
-        OutputFormat(as_json=as_json, as_csv=as_csv, as_table=as_table, plot=plot),
+        partial(plan_cities, file, file2, unrounded=unrounded, angles=angles, options=members),
+        backend_for(service),
+        output,
     )
 
 
 @app.command()
-def tour(  # noqa: PLR0913  an option each
-    file: File,
-    file2: SecondFile = None,
+@with_groups
+def tour(  # noqa: PLR0913  a group of options, or one, each
+    file: options.FileOrMap,
+    file2: options.SecondFile = None,
     *,
-    angle: Angle = None,
-    balance: Balance = None,
-    first_at_most: FirstAtMost = None,
-    second_at_most: SecondAtMost = None,
-    knee: Knee = False,
-    time_limit: TimeLimit = None,
-    start: StartOrId = None,
-    end: EndOrId = None,
-    open_routes: Open = None,
-    seed: Seed = None,
-    actor: ActorName = None,
-    repairs: Repairs = None,
-    augment: Augment = None,
-    unrounded: Unrounded = False,
-    as_json: AsJson = False,
-    url: Url = None,
-    api_key: ApiKey = None,
+    choice: options.Ways,
+    search: options.Search,
+    network: options.Network,
+    augment: options.Augment = None,
+    ends: options.Ends,
+    unrounded: options.Unrounded = False,
+    area: options.Area,
+    cost_layer: options.CostLayer = None,
+    as_json: options.AsJson = False,
+    service: options.Service,
 ) -> None:
     """Plan a front and print one of its tours: at an angle, at a balance, or within a budget."""
-    from paretour import Choice
-
     from service.cli.backends import backend_for
-    from service.cli.output import run_tour
-    from service.cli.plans import plan_cities
+    from service.cli.fronts import run_tour
+    from service.cli.plans import plan_tour
 
-    options = {
-        "time_limit": time_limit,
-        "start": start,
-        "end": end,
-        "closed": None if open_routes is None else not open_routes,
-        "seed": seed,
-        "actor": actor,
-        "repairs": repairs,
-        "augment": augment,
-    }
-    build_plan = partial(plan_cities, file, file2, unrounded=unrounded, options=options)
-    choice: Choice = {
-        "balance": balance,
-        "first_at_most": first_at_most,
-        "second_at_most": second_at_most,
-        "knee": knee,
-    }
-    run_tour(build_plan, backend_for(url, api_key), angle, choice, as_json)
-
-
-app.command()(replan)
-app.command()(fleet)
-app.command()(coverage)
+    of_search = {**vars(search), **vars(network), **vars(ends)}
+    members = {**of_search, **vars(area), "augment": augment}
+    run_tour(
+        partial(plan_tour, file, file2, cost_layer, unrounded=unrounded, options=members),
+        backend_for(service),
+        choice,
+        as_json,
+    )
 
 
 @app.command()
-def actors(as_json: AsJson = False, url: Url = None, api_key: ApiKey = None) -> None:
+@with_groups
+def replan(  # noqa: PLR0913  a group of options, or one, each
+    front_id: options.FrontId,
+    changes: options.Changes = None,
+    *,
+    url: options.ServiceUrl,
+    api_key: options.ApiKey = None,
+    done: options.Done = None,
+    position: options.Position = None,
+    remove: options.Remove = None,
+    min_kept: options.MinKept = None,
+    search: options.Search,
+    size: options.Size = None,
+    repairs: options.Repairs = None,
+    output: options.OutputFormat,
+) -> None:
+    """Plan the rest of a tour when things have changed, from a front that a service has."""
+    from service.cli.backends import RemoteBackend
+    from service.cli.fronts import run_front
+    from service.cli.plans import plan_rest
+
+    changed = {"position": position, "min_kept": min_kept}
+    members = {**changed, **vars(search), "size": size, "repairs": repairs}
+    run_front(
+        partial(plan_rest, front_id, changes, {"done": done, "remove": remove}, members),
+        RemoteBackend(url, api_key),
+        output,
+    )
+
+
+@app.command()
+@with_groups
+def fleet(
+    file: options.FleetFile,
+    vehicles: options.VehiclesFile = None,
+    *,
+    search: options.Search,
+    size: options.Size = None,
+    output: options.OutputFormat,
+    service: options.Service,
+) -> None:
+    """Plan the front of plans for several vehicles."""
+    from service.cli.backends import backend_for
+    from service.cli.fronts import run_front
+    from service.cli.plans import plan_fleet
+
+    members = {**vars(search), "size": size}
+    run_front(partial(plan_fleet, file, vehicles, members), backend_for(service), output)
+
+
+@app.command()
+@with_groups
+def coverage(  # noqa: PLR0913  a group of options, or one, each
+    file: options.MapFile,
+    *,
+    area: options.Area,
+    cost_layer: options.CostLayer = None,
+    robots: options.Robots = None,
+    paths: options.Paths = None,
+    search: options.Search,
+    size: options.Size = None,
+    network: options.Network,
+    ends: options.Ends,
+    output: options.OutputFormat,
+    service: options.Service,
+) -> None:
+    """Plan the front of tours of a robot through places all over a map, or of plans for several."""
+    from service.cli.backends import backend_for
+    from service.cli.fronts import run_front
+    from service.cli.plans import plan_map
+
+    if output.plot is not None:  # the picture shows the paths of tours
+        paths = True
+    of_search = {**vars(search), **vars(network), **vars(ends)}
+    members = {**of_search, **vars(area), "paths": paths, "size": size}
+    run_front(
+        partial(plan_map, file, cost_layer, members, robots or ()), backend_for(service), output
+    )
+
+
+@app.command()
+@with_groups
+def actors(*, as_json: options.AsJson = False, service: options.Service) -> None:
     """List the networks to choose from."""
     from service.cli.backends import backend_for
-    from service.cli.output import run_actors
+    from service.cli.fronts import run_actors
 
-    run_actors(backend_for(url, api_key), as_json)
+    run_actors(backend_for(service), as_json)
 
 
 @app.command()
@@ -183,17 +199,23 @@ def serve(
     port: Annotated[
         int | None, Option(help="Port to listen on; 0 takes a free one.", show_default=False)
     ] = None,
-    workers: Workers = None,
+    workers: options.Workers = None,
 ) -> None:
     """Answer requests over HTTP; other settings come from PARETOUR_* variables."""
-    from service.cli.admin import run_serve
+    from service import server
+    from service.cli.configuration import load_settings, load_with
+    from service.cli.errors import exit_on_error
 
-    run_serve(host, port, workers)
+    with exit_on_error():
+        settings = load_settings(host=host, port=port, workers=workers)
+        ending = server.Ending()
+        built = load_with(partial(server.build, ending=ending), settings)
+    server.serve(built, settings, ending)
 
 
 @app.command()
 def work(
-    workers: Workers = None,
+    workers: options.Workers = None,
     alive: Annotated[
         bool,
         Option(
@@ -203,12 +225,19 @@ def work(
     ] = False,
 ) -> None:
     """Plan tasks of services with the same PARETOUR_REDIS_URL; needs the extra cluster."""
-    from service.cli.admin import run_alive, run_work
+    from service import server
+    from service.cli.configuration import load_settings, load_with
+    from service.cli.errors import EXIT_STALLED, exit_on_error, exit_with
 
-    if alive:
-        run_alive()
-    else:
-        run_work(workers)
+    with exit_on_error():
+        settings = load_settings(workers=workers)
+        if not alive:
+            run = load_with(server.build_worker, settings)
+        elif load_with(server.takes_work, settings):
+            return
+        else:
+            raise exit_with("no worker on this machine takes waiting tasks", EXIT_STALLED)
+    sys.exit(run())
 
 
 @app.command()
@@ -216,6 +245,14 @@ def key(
     caller: Annotated[str, Argument(help="The name of the caller who will use the key.")],
 ) -> None:
     """Make an API key for a caller, and the entry for PARETOUR_API_KEYS that lets it in."""
-    from service.cli.admin import run_key
+    from service.api.auth import KeyHash, new_key
+    from service.cli.errors import UsageError, exit_on_error
 
-    run_key(caller)
+    made, digest = new_key()
+    with exit_on_error():
+        try:
+            KeyHash(caller=caller, digest=digest)
+        except ValueError as error:
+            raise UsageError(str(error)) from None
+    echo(f"{made}\n{caller}:{digest}")
+    echo("The key, for its caller alone; then its entry for PARETOUR_API_KEYS.", err=True)

@@ -1,4 +1,4 @@
-"""Print data on stdout: unchanged for another program, and harmless on a terminal."""
+"""Print data on stdout: unchanged into files and pipes, and harmless on a terminal."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""The errors that a caller can cause, and the exit codes of the command."""
+"""End the command with a sentence and an exit code when an expected error is raised."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -5,7 +5,7 @@ import stat
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,21 +25,64 @@ _MOST_BYTES = 2**28  # in a file
 _MATRIX_CITIES = 3000  # the most cities with a matrix here; the service may allow fewer
 
 
-def read_request(
-    files: Sequence[Path], kind: Kind = "front", *, unrounded: bool = False
-) -> tuple[Request, Ids | None]:
-    """Return the request in one file, or in two with an objective each; and the ids of its stops.
+class FileRequest(NamedTuple):
+    """The request in files.
 
-    Notes on what was assumed go to stderr. A file named - is standard input.
+    Attributes:
+        request: Its members.
+        ids: The ids of its stops; None if it has none.
+        kind: The kind of plan that it asks for.
+        picture: The picture of its map, PNG or PGM, if it has one.
+    """
+
+    request: Request
+    ids: Ids | None
+    kind: Kind
+    picture: bytes | None = None
+
+
+def read_request(
+    paths: Sequence[Path | None], *kinds: Kind, unrounded: bool = False
+) -> FileRequest:
+    """Return the request in one file, in two with an objective each, or in stops and vehicles.
+
+    A map is a PNG or PGM file, or a map.yaml of ROS, which names its picture and says how to read
+    it; or JSON, a request or a message nav_msgs/OccupancyGrid. Notes on what was assumed go to
+    stderr. A file named - is standard input.
+
+    Args:
+        paths: The files; None is left out.
+        kinds: The kinds of plan that they may ask for. JSON that does not show its kind is taken
+            for the first of them.
+        unrounded: Whether EUC_2D of TSPLIB means planes, not rounded distances.
 
     Raises:
         UnreadableFile: A file cannot be read; the message names it.
         UsageError: It holds what another command plans.
         OSError: There is no such file.
     """
+    files = [path for path in paths if path is not None]
     check_inputs(*files)
-    request = _request_in([_content(path) for path in files], kind, unrounded)
-    return request, ids_in(request.get("stops"))
+    is_map = "coverage" in kinds and len(files) == 1
+    if is_map and NamedFile(files[0].name, b"").is_yaml:
+        try:
+            members, picture = read_ros_map(files[0])
+        except ValueError as error:
+            raise UnreadableFile(f"{files[0]}: {error}") from None
+        return FileRequest({**members}, None, "coverage", picture)
+    contents = [_content(path) for path in files]
+    if is_map and contents[0].is_picture:
+        return FileRequest({}, None, "coverage", contents[0].data)
+    reading = read_files(contents, _bounds(), wanted=kinds[0], unrounded=unrounded)
+    for note in reading.notes:
+        echo(f"{note.file}: {note.text}", err=True)
+    if reading.kind not in kinds:
+        noun = {"front": "one tour", "fleet": "vehicles", "coverage": "a map"}[reading.kind]
+        raise UsageError(f"{reading.name} is about {noun}: `paretour {reading.kind}` plans that")
+    request = reading.request
+    if "matrices" in request:
+        request = {**request, "matrices": _as_arrays(request["matrices"])}
+    return FileRequest(request, ids_in(request.get("stops")), reading.kind)
 
 
 def check_inputs(*files: Path | None) -> None:
@@ -54,44 +97,6 @@ def ids_in(stops: object) -> Ids | None:
         return None
     ids = [stop.get("id") if isinstance(stop, dict) else None for stop in stops]
     return tuple(map(str, ids)) if all(isinstance(each, str) for each in ids) else None
-
-
-def _request_in(files: Sequence[NamedFile], kind: Kind, unrounded: bool = False) -> Request:
-    """Return the request in files, and print what was assumed about them."""
-    reading = read_files(files, _bounds(), wanted=kind, unrounded=unrounded)
-    for note in reading.notes:
-        echo(f"{note.file}: {note.text}", err=True)
-    if reading.kind != kind:
-        noun = {"front": "one tour", "fleet": "vehicles", "coverage": "a map"}[reading.kind]
-        raise UsageError(f"{reading.name} is about {noun}: `paretour {reading.kind}` plans that")
-    request = reading.request
-    if "matrices" in request:
-        return {**request, "matrices": _as_arrays(request["matrices"])}
-    return request
-
-
-def read_map(path: Path) -> tuple[Request, bytes | None]:
-    """Return the request in a JSON file, or the members and the picture of a map.
-
-    A picture is a PNG or PGM file, or is named by a map.yaml of ROS, which says how to read it.
-    JSON may also be a message nav_msgs/OccupancyGrid. Standard input, a file named -, is a picture
-    or JSON.
-
-    Raises:
-        UnreadableFile: The file is none of these; the message names it.
-        UsageError: It holds what another command plans.
-        OSError: There is no such file.
-    """
-    if NamedFile(path.name, b"").is_yaml:
-        try:
-            request, picture = read_ros_map(path)
-        except ValueError as error:
-            raise UnreadableFile(f"{path}: {error}") from None
-        return {**request}, picture
-    file = _content(path)
-    if file.is_picture:
-        return {}, file.data
-    return _request_in([file], "coverage"), None
 
 
 def read_object(path: Path) -> Request:

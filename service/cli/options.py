@@ -1,12 +1,18 @@
-"""Arguments and options of the commands. The defaults shown are those of the service."""
+"""The arguments and options of the commands. The defaults shown are those of the service.
 
+The options that several commands have are groups: dataclasses with a field for each option. A
+parameter of a command whose type is a group stands for all its options; see `with_groups`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, is_dataclass
+from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from typer import Argument, Option
 
 ANY = "any"  # --start at any city; in a request this is null
-
 
 File = Annotated[
     Path,
@@ -21,6 +27,13 @@ SecondFile = Annotated[
     Argument(
         help="The second objective. Each file is a table (x and y for each city, or a matrix of"
         " costs) or a file of TSPLIB."
+    ),
+]
+FileOrMap = Annotated[
+    Path,
+    Argument(
+        metavar="FILE",
+        help="As of `paretour front`, or a map as of `paretour coverage`. - is standard input.",
     ),
 ]
 FleetFile = Annotated[
@@ -39,35 +52,11 @@ VehiclesFile = Annotated[
         " table of stops.",
     ),
 ]
-TimeLimit = Annotated[
-    float | None,
-    Option(help="Seconds of search; 0 takes the tours of the network.", show_default="1.0"),
-]
 Angles = Annotated[
     str | None,
     Option(help="Angles in degrees for which the network builds tours, such as 10,45,80."),
 ]
-Size = Annotated[int | None, Option(help="The most tours to return.", show_default="100")]
-Start = Annotated[
-    int | None, Option(help="The city at which reported tours begin.", show_default="0")
-]
-StartOrId = Annotated[
-    str | None,
-    Option(
-        "--start",
-        help="The city at which reported tours begin, by index or id; with --open also `any`.",
-        show_default="0",
-    ),
-]
-Open = Annotated[
-    bool | None, Option("--open", help="Plan open routes, which do not return to their start.")
-]
-End = Annotated[int | None, Option(help="The city at which open routes end.", show_default="any")]
-EndOrId = Annotated[
-    str | None,
-    Option("--end", help="The city at which open routes end, by index or id.", show_default="any"),
-]
-Augment = Annotated[int | None, Option(help="Deprecated: without effect.", hidden=True)]
+Size = Annotated[int | None, Option(help="The most tours or plans to return.", show_default="100")]
 Repairs = Annotated[
     int | None,
     Option(
@@ -75,8 +64,7 @@ Repairs = Annotated[
         show_default="depends on the number of cities with --time-limit 0, else 0",
     ),
 ]
-Seed = Annotated[int | None, Option(help="The seed of all random choices.", show_default="0")]
-ActorName = Annotated[str | None, Option("--actor", help="The network, one of `paretour actors`.")]
+Augment = Annotated[int | None, Option(help="Deprecated: without effect.", hidden=True)]
 Unrounded = Annotated[
     bool,
     Option(
@@ -84,49 +72,6 @@ Unrounded = Annotated[
         help="Plan in the planes of two EUC_2D files, without rounding distances as TSPLIB does.",
     ),
 ]
-AsJson = Annotated[bool, Option("--json", help="Print the answer as the service gives it.")]
-AsTable = Annotated[
-    bool,
-    Option("--table", help="On a terminal, print all tours instead of a chart and three tours."),
-]
-AsCsv = Annotated[bool, Option("--csv", help="Print a line for each tour.")]
-Angle = Annotated[
-    float | None,
-    Option(
-        min=0, max=90, help="The tour nearest to this angle: near 0 the second length is small."
-    ),
-]
-Balance = Annotated[
-    float | None,
-    Option(
-        min=0,
-        max=1,
-        help="The tour nearest to this balance: 0 at the least first length, 1 at the second.",
-    ),
-]
-FirstAtMost = Annotated[
-    float | None, Option(help="The least second length, with at most this first length.")
-]
-SecondAtMost = Annotated[
-    float | None, Option(help="The least first length, with at most this second length.")
-]
-Knee = Annotated[
-    bool,
-    Option("--knee", help="The least sum of both lengths, each scaled to 0 to 1 over the front."),
-]
-Plot = Annotated[Path | None, Option(help="Draw the front into this file.")]
-PlotMap = Annotated[
-    Path | None,
-    Option("--plot", help="Draw the map with three tours or plans, and the front, into a file."),
-]
-Url = Annotated[
-    str | None,
-    Option(help="The URL of a service that plans in place of this process: localhost:8000."),
-]
-ApiKey = Annotated[
-    str | None, Option(help="The key for a service that requires one.", envvar="PARETOUR_API_KEY")
-]
-
 MapFile = Annotated[
     Path,
     Argument(
@@ -134,13 +79,6 @@ MapFile = Annotated[
         help="A map.yaml of ROS; PNG or PGM, dark where there are obstacles; or JSON, a whole"
         " request or a message nav_msgs/OccupancyGrid. - is standard input.",
     ),
-]
-CellSize = Annotated[
-    float | None, Option(help="The width of a pixel in metres, if the map does not say it.")
-]
-StartPose = Annotated[
-    str | None,
-    Option(help="Where the robot is: x and y in the frame of the map, such as -2.0,-0.5."),
 ]
 Robots = Annotated[
     list[str] | None,
@@ -150,18 +88,6 @@ Robots = Annotated[
         help="Where one of several robots starts, in the frame of the map; once for each robot."
         " They share the places: total distance against longest route.",
     ),
-]
-EndPose = Annotated[
-    str | None, Option(help="Where the robot must end, in the same form; with --open.")
-]
-Unknown = Annotated[
-    str | None,
-    Option(help="free: the robot may go through unknown cells.", show_default="blocked"),
-]
-RobotRadius = Annotated[float | None, Option(help="In metres.", show_default="0")]
-Spacing = Annotated[
-    float | None,
-    Option(help="The distance of places in metres: one is visited in each square of this width."),
 ]
 CostLayer = Annotated[Path | None, Option(help="The second objective: CSV, a cost for each pixel.")]
 Paths = Annotated[
@@ -191,6 +117,192 @@ MinKept = Annotated[
 ServiceUrl = Annotated[
     str, Option("--url", help="The URL of the service that has the front, such as localhost:8000.")
 ]
+AsJson = Annotated[bool, Option("--json", help="Print the answer as the service gives it.")]
+ApiKey = Annotated[
+    str | None, Option(help="The key for a service that requires one.", envvar="PARETOUR_API_KEY")
+]
 Workers = Annotated[
     int | None, Option(help="How many tasks are planned at a time.", show_default=False)
 ]
+
+
+def _closed(is_open: bool | None) -> bool | None:
+    """Return the member `closed` of a request: False with --open, else None."""
+    return None if is_open is None else not is_open
+
+
+@dataclass(frozen=True, kw_only=True)
+class Search:
+    """The search, as members of a request."""
+
+    time_limit: Annotated[
+        float | None,
+        Option(help="Seconds of search; 0 takes the tours of the network.", show_default="1.0"),
+    ] = None
+    seed: Annotated[
+        int | None, Option(help="The seed of all random choices.", show_default="0")
+    ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Network:
+    """The network that builds the first tours, as members of a request."""
+
+    actor: Annotated[
+        str | None, Option("--actor", help="The network, one of `paretour actors`.")
+    ] = None
+    repairs: Repairs = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ends:
+    """Where tours begin and end, as members of a request."""
+
+    closed: Annotated[
+        bool | None,
+        Option(
+            "--open",
+            callback=_closed,
+            help="Plan open routes, which do not return to their start.",
+        ),
+    ] = None
+    start: Annotated[
+        str | None,
+        Option(
+            "--start",
+            help="The city or place at which reported tours begin, by index or id; with --open also"
+            " `any`.",
+            show_default="0",
+        ),
+    ] = None
+    end: Annotated[
+        str | None,
+        Option(
+            "--end",
+            help="The city or place at which open routes end, by index or id.",
+            show_default="any",
+        ),
+    ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Area:
+    """The map and how a robot covers it, as members of a request."""
+
+    cell_size: Annotated[
+        float | None, Option(help="The width of a pixel in metres, if the map does not say it.")
+    ] = None
+    robot_radius: Annotated[float | None, Option(help="In metres.", show_default="0")] = None
+    spacing: Annotated[
+        float | None,
+        Option(
+            help="The distance of places in metres: one is visited in each square of this width."
+        ),
+    ] = None
+    unknown: Annotated[
+        str | None,
+        Option(help="free: the robot may go through unknown cells.", show_default="blocked"),
+    ] = None
+    start_pose: Annotated[
+        str | None,
+        Option(help="Where the robot is: x and y in the frame of the map, such as -2.0,-0.5."),
+    ] = None
+    end_pose: Annotated[
+        str | None, Option(help="Where the robot must end, in the same form; with --open.")
+    ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputFormat:
+    """The format to print a front in, and the file to draw it into.
+
+    By default it is a chart with three tours, or all plans, on a terminal, and a table of all
+    elsewhere.
+    """
+
+    as_json: AsJson = False
+    as_csv: Annotated[
+        bool, Option("--csv", help="Print a line for each tour, or each route of a plan.")
+    ] = False
+    as_table: Annotated[
+        bool,
+        Option(
+            "--table",
+            help="On a terminal, print all tours or plans instead of a chart and three tours.",
+        ),
+    ] = False
+    plot: Annotated[
+        Path | None,
+        Option(help="Draw the front into this file; also its map, with three tours or plans."),
+    ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ways:
+    """The ways to choose a tour. Exactly one must be given."""
+
+    angle: Annotated[
+        float | None,
+        Option(
+            min=0, max=90, help="The tour nearest to this angle: near 0 the second length is small."
+        ),
+    ] = None
+    balance: Annotated[
+        float | None,
+        Option(
+            min=0,
+            max=1,
+            help="The tour nearest to this balance: 0 at the least first length, 1 at the second.",
+        ),
+    ] = None
+    first_at_most: Annotated[
+        float | None, Option(help="The least second length, with at most this first length.")
+    ] = None
+    second_at_most: Annotated[
+        float | None, Option(help="The least first length, with at most this second length.")
+    ] = None
+    knee: Annotated[
+        bool,
+        Option(
+            "--knee", help="The least sum of both lengths, each scaled to 0 to 1 over the front."
+        ),
+    ] = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Service:
+    """The service that plans; without a URL this process does."""
+
+    url: Annotated[
+        str | None,
+        Option(help="The URL of a service that plans in place of this process: localhost:8000."),
+    ] = None
+    api_key: ApiKey = None
+
+
+def with_groups(command: Callable[..., None]) -> Callable[..., None]:
+    """Return a command for Typer, with a parameter for each option in place of each group."""
+    given = signature(command).parameters.values()
+    groups: dict[str, Any] = {
+        each.name: each.annotation for each in given if is_dataclass(each.annotation)
+    }
+    parameters = [each for each in given if each.name not in groups]
+    parameters += [
+        Parameter(
+            option.name, Parameter.KEYWORD_ONLY, default=option.default, annotation=option.type
+        )
+        for group in groups.values()
+        for option in fields(group)
+    ]
+
+    def run(**options: Any) -> None:
+        made = {
+            name: group(**{each.name: options.pop(each.name) for each in fields(group)})
+            for name, group in groups.items()
+        }
+        command(**options, **made)
+
+    run.__name__, run.__doc__ = command.__name__, command.__doc__
+    run.__annotations__ = {each.name: each.annotation for each in parameters}
+    run.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
+    return run

@@ -1,4 +1,8 @@
-"""Build the plan that files and options ask for together."""
+"""Build the request that files and options ask for together.
+
+Functions that read files raise OSError if one does not exist, UnreadableFile if one cannot be read,
+and UsageError if one is for another command, or if numbers are not written with commas between.
+"""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -6,16 +10,25 @@ from typing import Any, cast
 
 from paretour import (
     CoverageRequest,
+    FleetRequest,
     FrontRequest,
     Plan,
     ReplanRequest,
     coverage_plan,
+    fleet_plan,
     front_plan,
     replan_plan,
 )
 
 from service.cli.errors import UsageError
-from service.cli.inputs import Ids, check_inputs, read_layer, read_map, read_object, read_request
+from service.cli.inputs import (
+    FileRequest,
+    Ids,
+    check_inputs,
+    read_layer,
+    read_object,
+    read_request,
+)
 from service.cli.options import ANY
 
 _SECOND_OBJECTIVES = ("second_matrix", "cost_layer", "second_coordinates")
@@ -31,18 +44,36 @@ def plan_cities(
     angles: str | None = None,
     options: Options,
 ) -> tuple[Plan, Ids | None]:
-    """Return the plan for the cities in a file, or in one for each objective; and the cities' ids.
+    """Return the plan for the cities in a file, or in one for each objective; and their ids."""
+    found = read_request([file, file2], "front", unrounded=unrounded)
+    return _cities(found, options, angles), found.ids
 
-    Raises:
-        UnreadableFile: A file cannot be read.
-        OSError: There is no such file.
-        UsageError: `angles` are not numbers with commas between.
-    """
-    request, ids = read_request([file] if file2 is None else [file, file2], unrounded=unrounded)
-    ends = {name: _parse_end(options.get(name), ids or ()) for name in ("start", "end")}
+
+def _cities(found: FileRequest, options: Options, angles: str | None = None) -> Plan:
     preferences = _parse_numbers(angles, "--angles")
-    given = _without_none({**options, **ends, "preferences": preferences})
-    return front_plan(cast(FrontRequest, {**request, **given})), ids
+    given = _without_none({**options, **_ends(options, found.ids), "preferences": preferences})
+    return front_plan(cast(FrontRequest, {**found.request, **given}))
+
+
+def plan_tour(
+    file: Path,
+    file2: Path | None,
+    cost_layer: Path | None,
+    *,
+    unrounded: bool = False,
+    options: Options,
+) -> tuple[Plan, Ids | None]:
+    """Return the plan of one tour, of cities as by `plan_cities` or on a map as by `plan_map`."""
+    check_inputs(file, file2, cost_layer)
+    options = _with_poses(options)
+    found = read_request([file, file2], "front", "coverage", unrounded=unrounded)
+    if found.request.get("robots"):
+        raise UsageError(f"{file} is about several robots: `paretour coverage` plans that")
+    if found.kind == "coverage":
+        return _map(found, cost_layer, options), None
+    if cost_layer is not None:
+        raise UsageError(f"--cost-layer is for a map, and {file} is not one")
+    return _cities(found, options), found.ids
 
 
 def plan_rest(
@@ -55,10 +86,6 @@ def plan_rest(
         changes: A file of members of the request, as JSON.
         stops: Members that are stops, by their ids with commas between.
         options: Further members.
-
-    Raises:
-        UnreadableFile: The file is not a JSON object.
-        OSError: There is no such file.
     """
     request = {} if changes is None else read_object(changes)
     named = {name: text and text.split(",") for name, text in stops.items()}
@@ -66,40 +93,49 @@ def plan_rest(
     return replan_plan(front, cast(ReplanRequest, {**request, **given})), None
 
 
+def plan_fleet(file: Path, vehicles: Path | None, options: Options) -> tuple[Plan, None]:
+    """Return the plan for a fleet in a file, or in one of stops and one of vehicles; and no ids."""
+    found = read_request([file, vehicles], "fleet")
+    return fleet_plan(cast(FleetRequest, {**found.request, **_without_none(options)})), None
+
+
 def plan_map(
-    file: Path,
-    cost_layer: Path | None,
-    options: Options,
-    poses: Mapping[str, str | None] | None = None,
-    robots: Sequence[str] = (),
+    file: Path, cost_layer: Path | None, options: Options, robots: Sequence[str] = ()
 ) -> tuple[Plan, None]:
     """Return the plan for places on the map in a file, maybe with costs in another; and no ids.
 
     Args:
         file: The map, or a request.
         cost_layer: A file of costs.
-        options: Members of the request.
-        poses: Members that are poses, as numbers with commas between.
+        options: Members of the request; poses are numbers with commas between.
         robots: The poses where several robots start, in the same form. They share the places.
 
     Raises:
-        UnreadableFile: A file cannot be read.
-        OSError: There is no such file.
-        UsageError: Something that a plan needs is missing (the message names everything that is),
-            or a pose is not numbers with commas between.
+        UsageError: Something that a plan needs is missing; the message names everything that is.
     """
-    parsed = {
-        name: _parse_numbers(pose, f"--{name.replace('_', '-')}")
-        for name, pose in (poses or {}).items()
-    }
     check_inputs(file, cost_layer)
-    request, picture = read_map(file)
+    parsed = _with_poses(options)
+    return _map(read_request([file], "coverage"), cost_layer, parsed, robots), None
+
+
+def _map(
+    found: FileRequest, cost_layer: Path | None, options: Options, robots: Sequence[str] = ()
+) -> Plan:
     costs = None if cost_layer is None else read_layer(cost_layer)
     members = {"cost_layer": costs, "robots": _parse_robots(robots)}
-    given = _without_none({**options, **parsed, **members})
-    whole = {**request, **given}
+    given = _without_none({**options, **_ends(options, None), **members})
+    whole = {**found.request, **given}
     _check_complete(whole)
-    return coverage_plan(cast(CoverageRequest, whole), picture), None
+    return coverage_plan(cast(CoverageRequest, whole), found.picture)
+
+
+def _with_poses(options: Options) -> Options:
+    """Return options with poses as lists of numbers."""
+    poses = {
+        name: _parse_numbers(options.get(name), f"--{name.replace('_', '-')}")
+        for name in ("start_pose", "end_pose")
+    }
+    return {**options, **poses}
 
 
 def _parse_robots(poses: Sequence[str]) -> list[dict[str, Any]] | None:
@@ -124,11 +160,16 @@ def _check_complete(request: Mapping[str, Any]) -> None:
         raise UsageError(f"a map cannot be covered without {', '.join(missing)}")
 
 
-def _parse_end(text: str | None, ids: Sequence[str]) -> int | str | None:
-    """Return the index of a city, given as an index or as an id in the file; else the text."""
-    if text is None or text in ids:
-        return None if text is None else ids.index(text)
-    return int(text) if text.isdecimal() else text
+def _ends(options: Options, ids: Ids | None) -> dict[str, int | str | None]:
+    """Return start and end as indexes, given as indexes or as ids in the file; else as they are."""
+    ends: dict[str, int | str | None] = {}
+    for name in ("start", "end"):
+        text = options.get(name)
+        if text is None or text in (ids or ()):
+            ends[name] = None if text is None or ids is None else ids.index(text)
+        else:
+            ends[name] = int(text) if text.isdecimal() else text
+    return ends
 
 
 def _parse_numbers(text: str | None, option: str) -> list[float] | None:

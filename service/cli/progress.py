@@ -6,49 +6,34 @@ from concurrent.futures import Future, wait
 from contextlib import contextmanager
 from threading import Event, Thread
 from types import FrameType
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
+from paretour import Progress
+from rich import progress as bars
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 T = TypeVar("T")
 _POLL_SECONDS = 0.02
 
 
-class SearchProgress(Protocol):
-    """The progress of a search, in this process or in the service."""
-
-    @property
-    def seconds(self) -> float:
-        """Seconds since the search began."""
-
-    @property
-    def hypervolume(self) -> float:
-        """The hypervolume of all points found."""
-
-    @property
-    def points(self) -> int:
-        """The number of points found."""
-
-
 @contextmanager
-def progress_bar(console: Console, seconds: float) -> Iterator[Callable[[SearchProgress], None]]:
+def progress_bar(console: Console, seconds: float) -> Iterator[Callable[[Progress], None]]:
     """Show a bar over the seconds that a plan may take, if the console is a terminal.
 
     Yields:
         A function that shows progress in it.
     """
     columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.fields[found]}"),
-        TimeElapsedColumn(),
+        bars.TextColumn("{task.description}"),
+        bars.BarColumn(),
+        bars.TextColumn("{task.fields[found]}"),
+        bars.TimeElapsedColumn(),
     )
     hidden = not console.is_terminal
-    with Progress(*columns, console=console, transient=True, disable=hidden) as bar:
+    with bars.Progress(*columns, console=console, transient=True, disable=hidden) as bar:
         task = bar.add_task("planning", total=seconds, found="")
 
-        def show(progress: SearchProgress) -> None:
+        def show(progress: Progress) -> None:
             found = f"hypervolume {progress.hypervolume:.2%}, {progress.points} found"
             bar.update(task, completed=progress.seconds, found=found)
 

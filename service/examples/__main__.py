@@ -6,11 +6,11 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from service.examples.deliveries import deliveries
-from service.examples.helsinki import helsinki
-from service.examples.legs import legs
-from service.examples.streets import streets
-from service.examples.vans import vans
+from service.examples.helsinki import helsinki, vans
+from service.examples.streets import legs, streets
 from service.examples.warehouse import cleaning, shared
 
 _NO_ROUTER = (
@@ -37,9 +37,11 @@ def write(directory: Path, router_url: str | None) -> None:
         sys.stderr.write(_NO_ROUTER)
         one_van = json.loads((Path(__file__).parent / "helsinki-deliveries.json").read_text())
     else:
-        files["helsinki-deliveries"] = one_van = helsinki(router_url)
+        one_van, lines = helsinki(router_url)
+        places = np.array([stop["location"] for stop in one_van["stops"]])
+        files["helsinki-deliveries"] = one_van
         files["helsinki-streets"] = streets(router_url)
-        files["helsinki-legs"] = legs(router_url, one_van["stops"])
+        files["helsinki-legs"] = legs(places, lines)
     files["helsinki-vans"] = vans(one_van)
     for name, content in files.items():
         (directory / f"{name}.json").write_text(_formatted(content))

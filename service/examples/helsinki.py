@@ -1,4 +1,4 @@
-"""Deliveries in central Helsinki by road: the time of driving beside the people met.
+"""Deliveries in central Helsinki by road: the time of driving beside the people met, or by vans.
 
 Times and streets are those of a Valhalla whose tiles are built of OpenStreetMap's data,
 (c) OpenStreetMap contributors, under the Open Database License (ODbL).
@@ -18,7 +18,7 @@ from service.roads.client import RoadClient
 from service.roads.great_circle import great_circle_distances
 from service.roads.reachability import missing_ways
 from service.roads.router import Line, RouterSettings
-from service.roads.trails import Leg
+from service.roads.streets import Leg
 
 Array = NDArray[np.float64]
 STOPS = 60
@@ -34,10 +34,15 @@ CROWDS = np.array(
     ]
 )
 USUAL = 0.004  # people on a metre of any other street
+VANS = 6
+CAPACITY = 24  # parcels
+OPENS, CLOSES = 8 * 3600, 12 * 3600  # when the first van may leave, and the last must be back
+_SERVICE = 240  # seconds at a customer
+_TIMED = 3  # every third customer has named an hour
 
 
-def helsinki(router_url: str) -> dict[str, Any]:
-    """Return the request, of the times and streets that the Valhalla at this address tells."""
+def helsinki(router_url: str) -> tuple[dict[str, Any], Mapping[Leg, Line]]:
+    """Return the request, and the line of each leg, as the Valhalla at this address tells them."""
     return asyncio.run(_request(router_url))
 
 
@@ -64,7 +69,7 @@ async def reachable_places(router_url: str, n: int, seed: int) -> Array:
         await client.close()
 
 
-async def _request(router_url: str) -> dict[str, Any]:
+async def _request(router_url: str) -> tuple[dict[str, Any], Mapping[Leg, Line]]:
     places = await reachable_places(router_url, STOPS, SEED)
     ids = _ids(STOPS)
     client = RoadClient(RouterSettings(url=router_url, seconds=120.0))
@@ -74,7 +79,7 @@ async def _request(router_url: str) -> dict[str, Any]:
     finally:
         await client.close()
     located = zip(ids, places.tolist(), strict=True)
-    return {
+    request = {
         "stops": [{"id": id_, "location": place} for id_, place in located],
         "objectives": [
             {"name": "time", "unit": "s", "matrix": costs.seconds.astype(np.int64).tolist()},
@@ -83,6 +88,7 @@ async def _request(router_url: str) -> dict[str, Any]:
         "time_limit": 1.0,
         "seed": 1,
     }
+    return request, streets
 
 
 def _ids(n: int) -> list[str]:
@@ -106,3 +112,37 @@ def people_along(line: Array) -> float:
         squared = great_circle_distances(middles, crowd) ** 2
         people += most * np.exp(-squared / (2 * reach**2))
     return float(people @ great_circle_distances(line[:-1], line[1:]))
+
+
+def vans(one_van: dict[str, Any]) -> dict[str, Any]:
+    """Return the request for several vans at the stops of a request for one; some name an hour."""
+    random = np.random.default_rng(6)
+    depot, *customers = one_van["stops"]
+    seconds = one_van["objectives"][0]["matrix"]
+    return {
+        "stops": [depot, *(_order(each, at, random) for at, each in enumerate(customers))],
+        "vehicles": [
+            {
+                "id": "van",
+                "count": VANS,
+                "start": depot["id"],
+                "end": depot["id"],
+                "capacity": [CAPACITY],
+                "shift": [OPENS, CLOSES],
+            }
+        ],
+        "objectives": [
+            {"name": "driving", "unit": "s", "matrix": seconds},
+            {"name": "longest route", "unit": "s", "matrix": seconds, "over": "max"},
+        ],
+        "clock": "longest route",
+        "time_limit": 3,
+    }
+
+
+def _order(customer: dict[str, Any], number: int, random: np.random.Generator) -> dict[str, Any]:
+    """Return a customer with an order of one to three parcels, and maybe an hour."""
+    begin = OPENS + 1800 * int(random.integers(1, 5))
+    window = {"window": [begin, begin + 3600]} if number % _TIMED == 0 else {}
+    parcels = int(random.integers(1, 4))
+    return {**customer, "demand": [parcels], "service": _SERVICE, **window}

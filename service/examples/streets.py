@@ -1,11 +1,11 @@
-"""The streets of central Helsinki, which the page draws under the tours of the examples there.
+"""The streets of central Helsinki, and the ways along them between stops, which the page draws.
 
 Lines are those of a Valhalla whose tiles are built of OpenStreetMap's data, (c) OpenStreetMap
 contributors, under the Open Database License (ODbL).
 """
 
-from collections.abc import Iterator
-from itertools import islice
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import islice, pairwise
 from typing import Any
 
 import httpx
@@ -13,7 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.roads.polyline import decode_polyline
+from service.roads.router import Array, Line
+from service.roads.streets import Leg
 
+Place = tuple[int, int]  # steps east and north of the origin
+Way = list[int]  # nodes; the first and the last are stops
 CREDIT = "Streets © OpenStreetMap contributors (ODbL)"
 STEP = 1e-5  # degrees: half a metre to the east, one to the north
 KINDS = ("main", "side", "path")
@@ -75,3 +79,59 @@ def _line(shape: str) -> NDArray[np.int64]:
 
 def _row(line: NDArray[np.int64]) -> tuple[int, ...]:
     return tuple(np.diff(line, axis=0, prepend=0).ravel().tolist())
+
+
+def legs(places: Array, lines: Mapping[Leg, Line]) -> dict[str, Any]:
+    """Return the ways between all stops, at places of shape (n, 2), from the lines of all legs.
+
+    Members: `nodes`, places in steps from the origin, those of the stops first; `next`, for each
+    node those to which ways lead from it; `legs`, for each stop the ways to all of them, each as
+    digits: at a node that leads to several, the next digit says to which.
+    """
+    nodes, ways = _ways(lines, _steps(places))
+    ahead = _ahead(ways.values(), len(nodes))
+    stops = range(len(places))
+    pairs = [[ways.get((i, j), []) for j in stops] for i in stops]
+    return {
+        "credit": CREDIT,
+        "origin": list(ORIGIN),
+        "step": STEP,
+        "nodes": [list(place) for place in nodes],
+        "next": ahead,
+        "legs": [[_digits(way, ahead) for way in row] for row in pairs],
+    }
+
+
+def _steps(places: Array) -> list[Place]:
+    """Return places of longitude and latitude, shape (m, 2), in steps from the origin."""
+    return [(x, y) for x, y in ((places - ORIGIN) / STEP).round().astype(int).tolist()]
+
+
+def _ways(lines: Mapping[Leg, Line], stops: list[Place]) -> tuple[list[Place], dict[Leg, Way]]:
+    """Return the places of all nodes, and the nodes of each way, from its stop to the other."""
+    numbers: dict[Place, int] = {}
+
+    def number(place: Place) -> int:
+        return len(stops) + numbers.setdefault(place, len(numbers))
+
+    ways = {}
+    for (i, j), line in sorted(lines.items(), key=lambda item: item[0]):
+        along = [number(place) for place in _steps(line)]
+        moves = [node for node, after in pairwise([*along, j]) if node != after]
+        ways[i, j] = [i, *moves, j]
+    return [*stops, *numbers], ways
+
+
+def _ahead(ways: Iterable[Way], nodes: int) -> list[list[int]]:
+    """Return the nodes to which ways lead from each node."""
+    found: list[set[int]] = [set() for _ in range(nodes)]
+    for way in ways:
+        for node, after in pairwise(way):
+            found[node].add(after)
+    return [sorted(each) for each in found]
+
+
+def _digits(way: Way, ahead: list[list[int]]) -> str:
+    """Return which way is taken at each node that leads to several."""
+    choices = [ahead[node].index(after) for node, after in pairwise(way) if len(ahead[node]) > 1]
+    return "".join(map(str, choices))

@@ -1,10 +1,10 @@
-"""Benchmarks of vehicle routing: CVRPLIB, Solomon, Gehring and Homberger, Li and Lim."""
+"""Read benchmarks of vehicle routing: CVRPLIB, Solomon, Gehring and Homberger, Li and Lim."""
 
 import re
 from typing import Any
 
 from service.files.fleets import fleet_request, planar
-from service.files.reading import Reading, Request, Source, quoted
+from service.files.reading import Reading, Request, Source
 from service.files.tables import number_in
 from service.files.tsplib import TsplibFile, costs, plain
 
@@ -29,7 +29,7 @@ def read_cvrp(file: TsplibFile) -> Reading:
     demands = file.numbers(_DEMAND, n, 2)[:, 1].tolist()
     words = [word for word in file.sections.get("DEPOT_SECTION", ["1"]) if word != "-1"]
     if len(words) != 1 or not words[0].isdecimal() or not 1 <= int(words[0]) <= n:
-        raise source.refusal(f"DEPOT_SECTION must have one depot, got {quoted(' '.join(words))}")
+        raise source.refusal("DEPOT_SECTION must have one depot", " ".join(words))
     depot = int(words[0]) - 1
     windows = _optional(file, "TIME_WINDOW_SECTION", 3)
     services = _optional(file, "SERVICE_TIME_SECTION", 2)
@@ -58,7 +58,7 @@ def _optional(file: TsplibFile, section: str, columns: int) -> list[list[float]]
 def _header(file: TsplibFile, name: str) -> Any:
     number = number_in(file.word(name))
     if number is None:
-        raise file.source.refusal(f"{name} must be a number, got {quoted(file.word(name))}")
+        raise file.source.refusal(f"{name} must be a number", file.word(name))
     return int(number) if number.is_integer() else number
 
 
@@ -124,7 +124,7 @@ def _customer(source: Source, row: list[float]) -> dict[str, Any]:
 
 
 def _whole(source: Source, number: float, what: str) -> int:
-    if not number.is_integer() if isinstance(number, float) else False:
+    if not number.is_integer():
         raise source.refusal(f"{what} must be a whole number, got {number:g}")
     return int(number)
 

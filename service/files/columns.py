@@ -1,8 +1,12 @@
-"""Headings of columns: the field of a stop or a vehicle that each stands for, and its unit."""
+"""The columns of a table, and the fields of stops or vehicles that they are taken for."""
 
 import re
 import unicodedata
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from service.files.reading import Column, Source, UnreadableFile, quoted
+from service.files.tables import Table, number_in, plain_numbers
 
 # By field, the names that people give it, the best names first; without accents, units and signs.
 _NAMES = {
@@ -29,7 +33,7 @@ _NAMES = {
     "cost": "cost costs risk danger exposure co2 emissions kosten risiko",
 }
 _AMOUNTS = _NAMES["demand"].split()
-_TOLD_BY = {
+_OF_VEHICLES_ONLY = {
     "id": "vehicleid vehicle vehiclename vehicletype truckid truck driverid driver van fahrzeug"
     " fahrer",
     "capacity": "capacity vehiclecapacity maxcapacity payload kapazitaet kapazitat nutzlast "
@@ -53,12 +57,12 @@ _NAMES_OF_VEHICLES = {
     "depot_latitude": "depotlatitude depotlat homelatitude homelat latitude lat",
     "depot_longitude": "depotlongitude depotlon depotlng homelongitude homelon homelng longitude"
     " lon lng",
-    **_TOLD_BY,
-    "id": f"{_TOLD_BY['id']} id name type",
-    "capacity": f"{_TOLD_BY['capacity']} {_NAMES['demand']}",
-    "shift_from": f"{_TOLD_BY['shift_from']} {_NAMES['window_from']}",
-    "shift_to": f"{_TOLD_BY['shift_to']} {_NAMES['window_to']}",
-    "shift": f"{_TOLD_BY['shift']} {_NAMES['window']}",
+    **_OF_VEHICLES_ONLY,
+    "id": f"{_OF_VEHICLES_ONLY['id']} id name type",
+    "capacity": f"{_OF_VEHICLES_ONLY['capacity']} {_NAMES['demand']}",
+    "shift_from": f"{_OF_VEHICLES_ONLY['shift_from']} {_NAMES['window_from']}",
+    "shift_to": f"{_OF_VEHICLES_ONLY['shift_to']} {_NAMES['window_to']}",
+    "shift": f"{_OF_VEHICLES_ONLY['shift']} {_NAMES['window']}",
     "count": "count vehicles available anzahl",
     "skills": "skills skill",
 }
@@ -69,15 +73,145 @@ _UNIT = re.compile(r"[\[(](.*?)[\])]")
 _SECONDS = {"s": 1, "sec": 1, "min": 60, "mins": 60, "minutes": 60, "h": 3600, "hours": 3600}
 _SEVERAL = ("demand", "capacity")  # fields that a table may have several times
 FLEET = ("demand", "window_from", "window_to", "window", "service", "skills", "prize")
+_DEGREES = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d{1,2})?)"
+_POINT = re.compile(
+    rf"(?:SRID=4326;)?\s*POINT\s*Z?M?\s*\(\s*{_DEGREES}\s+{_DEGREES}(?:\s+{_DEGREES}){{0,2}}\s*\)",
+    re.ASCII | re.IGNORECASE,
+)
+# As web maps show a place: latitude first.
+_PAIR = re.compile(rf"\(?\s*{_DEGREES}°?\s*,\s*{_DEGREES}°?\s*\)?", re.ASCII | re.IGNORECASE)
+_INDEX = ("", "index", "unnamed: 0")
 
 
-def fields_of(heading: Sequence[str]) -> list[str | None]:
-    """Return the field of stops that each column may be, or None.
+@dataclass
+class Columns:
+    """The columns of a table, with the field that each is taken for."""
 
-    Only demand may come several times. Of two columns for any other field, the one whose name
-    comes first in `_NAMES` gets it, and the other one gets None.
+    source: Source
+    table: Table
+    names: list[str]
+    fields: list[str | None]
+
+    def find(self, field: str) -> int | None:
+        """Return the column that is taken for a field, or None."""
+        return self.fields.index(field) if field in self.fields else None
+
+    def text(self, row: int, column: int) -> str:
+        """Return a field."""
+        return self.table.rows[row][1][column]
+
+    def where(self, row: int, column: int) -> str:
+        """Return the position of a field, for sentences."""
+        return f"row {self.table.rows[row][0]}, column {quoted(self.names[column])}"
+
+    def refusal(self, row: int, column: int, demand: str, *came: object) -> UnreadableFile:
+        """Return the exception that says what a field must be, and quotes what came instead."""
+        return self.source.refusal(f"{self.where(row, column)} {demand}", *came)
+
+    def leave_out(self, field: str, when: str = "") -> None:
+        """Note that a column, if there is one for a field, is not used."""
+        if (at := self.find(field)) is not None:
+            self.fields[at] = None
+            self.source.note_left_out(quoted(self.names[at]) + when)
+
+    def number(self, row: int, column: int) -> float:
+        """Return the number in a field.
+
+        Raises:
+            UnreadableFile: The field is not a number.
+        """
+        text = self.text(row, column)
+        number = number_in(text)
+        if number is None:
+            raise self.refusal(row, column, "must be a number", text)
+        return number
+
+    def numbers(self, columns: list[int]) -> list[list[float]]:
+        """Return the numbers of columns, row by row."""
+        rows = enumerate(self.table.rows)
+        return [
+            plain_numbers([texts[at] for at in columns]) or [self.number(row, at) for at in columns]
+            for row, (_, texts) in rows
+        ]
+
+    def are_numbers(self, column: int) -> bool:
+        """Return whether all fields of a column are numbers."""
+        return all(number_in(row[column]) is not None for _, row in self.table.rows)
+
+    def report(self) -> None:
+        """If there is a heading, note what each column is taken for."""
+        if self.table.heading is None:
+            return
+        pairs = list(zip(self.names, self.fields, strict=True))
+        self.source.columns.extend(Column(name[:200], each or "ignored") for name, each in pairs)
+        used = [f"{quoted(name)} ({each})" for name, each in pairs if each is not None]
+        unused = [quoted(name) for name, each in pairs if each is None]
+        not_used = f" Not used: {', '.join(unused)}." if unused else ""
+        self.source.note("columns", f"Columns were taken for: {', '.join(used)}.{not_used}"[:1000])
+
+
+def columns_of(source: Source, table: Table) -> Columns:
+    """Return the columns of a table, recognised by its heading or by their contents."""
+    names = table.heading or [f"{number}" for number in range(1, table.width + 1)]
+    fields: list[str | None] = fields_of(names) if table.heading else [None] * table.width
+    columns = Columns(source, table, names, fields)
+    for at in range(table.width):
+        if fields[at] in (None, "place"):
+            fields[at] = _place_column(columns, at)
+    if "id" not in fields and fields[0] is None and table.width > 1:
+        first = table.rows[0][1][0]
+        # Without a heading, or if a square of costs has named rows, the first row decides.
+        named = table.heading is None or len(table.rows) == table.width - 1
+        if (named and number_in(first) is None) or _is_index(table):
+            fields[0] = "id"
+    return columns
+
+
+def _place_column(columns: Columns, at: int) -> str | None:
+    """Return `place` for a column of points in WKT, or of pairs under such a heading; else None."""
+    texts = [row[at] for _, row in columns.table.rows]
+    if all(map(_POINT.fullmatch, texts)):
+        return "place"
+    located = {"longitude", "latitude"} <= set(columns.fields)
+    paired = columns.fields[at] == "place" and all("." in text for text in texts)
+    if located or not paired or not all(map(_PAIR.fullmatch, texts)):
+        return None
+    name = quoted(columns.names[at])
+    columns.source.note("place", f"{name} is taken to be latitude, then longitude.")
+    return "place"
+
+
+def place_in(text: str) -> list[float]:
+    """Return the longitude and latitude in a point of WKT, or in a pair, latitude first."""
+    if point := _POINT.fullmatch(text):
+        return [float(each) for each in point.group(1, 2)]
+    pair = _PAIR.fullmatch(text)
+    assert pair is not None
+    return [float(each) for each in pair.group(2, 1)]
+
+
+def _is_index(table: Table) -> bool:
+    """Return whether the first column is the index that pandas writes, or names of rows."""
+    return table.heading is not None and table.heading[0].strip().casefold() in _INDEX
+
+
+def ids_of(columns: Columns) -> list[str]:
+    """Return the id of each row.
+
+    Raises:
+        UnreadableFile: An id is missing, or comes twice.
     """
-    return _taken(heading, _NAMES)
+    at = columns.fields.index("id")
+    seen: dict[str, int] = {}
+    for row, (number, texts) in enumerate(columns.table.rows):
+        name = " ".join(texts[at].split())
+        if not name:
+            raise columns.refusal(row, at, "must be an id, got none")
+        if name in seen:
+            came = f"got {quoted(name)} as in row {seen[name]}"
+            raise columns.refusal(row, at, f"must be an id that no other row has, {came}")
+        seen[name] = number
+    return list(seen)
 
 
 def fields_of_vehicles(heading: Sequence[str]) -> list[str | None]:
@@ -85,14 +219,14 @@ def fields_of_vehicles(heading: Sequence[str]) -> list[str | None]:
 
     Columns `start` and `end` may be times of a shift instead: their contents decide.
     """
-    return _taken(heading, _NAMES_OF_VEHICLES)
+    return fields_of(heading, _NAMES_OF_VEHICLES)
 
 
 def is_about_vehicles(heading: Sequence[str]) -> bool:
     """Return whether a heading has columns of vehicles alone, and none of stops alone."""
-    stops, told = fields_of(heading), set(_taken(heading, _TOLD_BY))
+    stops, found = fields_of(heading), set(fields_of(heading, _OF_VEHICLES_ONLY))
     located = {"latitude", "x", "place"} & set(stops)
-    return bool(told - ({"id", None} if located else {None})) and "demand" not in stops
+    return bool(found - ({"id", None} if located else {None})) and "demand" not in stops
 
 
 def amount_of(name: str) -> str:
@@ -102,7 +236,12 @@ def amount_of(name: str) -> str:
     return next((each for each in _AMOUNTS for form in forms if form.format(each) == plain), "")
 
 
-def _taken(heading: Sequence[str], names: Mapping[str, str]) -> list[str | None]:
+def fields_of(heading: Sequence[str], names: Mapping[str, str] = _NAMES) -> list[str | None]:
+    """Return the field that each column may be, by default of stops, or None.
+
+    Only demand and capacity may come several times. Of two columns for any other field, the one
+    whose name comes first in `names` gets it, and the other one gets None.
+    """
     ranks = [_rank(plain_name(name), names) for name in heading]
     taken: list[str | None] = [None] * len(heading)
     for at in sorted(range(len(heading)), key=lambda at: (ranks[at][1], at)):

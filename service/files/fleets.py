@@ -1,12 +1,12 @@
-"""Requests for fleets: their objectives, and one vehicle if a file names none."""
+"""Make requests for fleets: their objectives, depots, and one vehicle if a file names none."""
 
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from service.files.places import great_circle
 from service.files.reading import Request, Source, quoted
+from service.roads.great_circle import great_circle_matrix
 
 Stop = dict[str, Any]
 Vehicle = dict[str, Any]
@@ -29,7 +29,7 @@ def measured(source: Source, stops: Sequence[Stop], timed: bool) -> list[dict[st
         return [distance, {"name": "longest route", "from": "great_circle", "over": "max"}]
     else:
         source.check_count("stops with times", source.bounds.matrix_cities, len(stops))
-        metres = great_circle(np.array([stop["location"] for stop in stops]))
+        metres = great_circle_matrix(np.array([stop["location"] for stop in stops]))
         seconds = np.rint(metres / _SPEED).astype(int).tolist()
         time = {"name": "time", "unit": "s", "matrix": seconds, "over": "max"}
         text = (
@@ -42,11 +42,6 @@ def measured(source: Source, stops: Sequence[Stop], timed: bool) -> list[dict[st
 def timed(stops: Sequence[Stop]) -> bool:
     """Return whether stops have times."""
     return any(stop.keys() & {"service", "window"} for stop in stops)
-
-
-def note_left_out(source: Source, what: str) -> None:
-    """Note something in a file that this service does not support."""
-    source.note("left-out", f"{what} was not used: it is not supported for fleets.")
 
 
 def at_depots(

@@ -1,4 +1,4 @@
-"""Requests of JSON: our own bodies, GeoJSON, records with columns by name, and rows of cities."""
+"""Read JSON: requests, GeoJSON, records with columns by name, and rows of cities."""
 
 import json
 import re
@@ -15,7 +15,6 @@ _STRUCTURE = ("type", "features", "bbox", "name", "crs", "metadata", "xy_coordin
 _OBJECTS = {"stops", "vehicles", "robots", "shipments", "objectives"}
 _ROWS = {"coordinates", "grid", "cost_layer"}
 _DEGREES = re.compile(r"(OGC:.*CRS84$|EPSG:+4326$|CRS84$|WGS ?84)", re.IGNORECASE)
-_PAIRS = {"latitude": ("lat", "latitude"), "longitude": ("lon", "lng", "long", "longitude")}
 
 
 def looks_like_json(text: str) -> bool:
@@ -90,13 +89,12 @@ def _check_lists(source: Source, request: dict[str, Any]) -> None:
         for name in names & request.keys():
             items = request[name]
             if not isinstance(items, list) or not all(isinstance(each, kind) for each in items):
-                raise source.refusal(f"{name} must be a list of {what}, got {quoted(items)}")
+                raise source.refusal(f"{name} must be a list of {what}", items)
     for name in {"grid", "cost_layer"} & request.keys():
         if not request[name] or not request[name][0]:
             raise source.refusal(f"{name} must have a cell or more")
-    if "grid" in request and len(request.get("cost_layer", request["grid"])) != len(
-        request["grid"]
-    ):
+    rows = {len(request[name]) for name in ("grid", "cost_layer") if name in request}
+    if "grid" in request and len(rows) > 1:
         raise source.refusal("cost_layer and grid must have as many rows")
 
 
@@ -161,11 +159,8 @@ def _read_geojson(source: Source, value: dict[str, Any]) -> Reading:
         source.note("ids", "Features without an id, or a property id or name, are numbered from 1.")
     if not records:
         raise source.refusal("a FeatureCollection must have a point for each stop, got none")
-    rest = (
-        {}
-        if value["type"] == "Feature"
-        else {k: v for k, v in value.items() if k not in _STRUCTURE}
-    )
+    structure = value.keys() if value["type"] == "Feature" else _STRUCTURE
+    rest = {name: member for name, member in value.items() if name not in structure}
     _check_lists(source, rest)
     if "objectives" in rest and "vehicles" not in rest:
         stops = [{"id": each["id"], "location": each["location"]} for each in records]
@@ -197,13 +192,13 @@ def _points(source: Source, feature: Any, at: int) -> Iterator[dict[str, Any]]:
         case {"geometry": {"type": "MultiPoint", "coordinates": [*several]}} if several:
             places = [tuple(each[:2]) if isinstance(each, list) else () for each in several]
         case {"geometry": {"type": kind}}:
-            raise source.refusal(f"features/{at} must be a Point, got {quoted(kind)}")
+            raise source.refusal(f"features/{at} must be a Point", kind)
         case _:
             raise source.refusal(f"features/{at} must be a Point with a longitude and a latitude")
     named = _properties(feature)
     for number, place in enumerate(places, 1):
         if not _is_place(list(place)):
-            raise source.refusal(f"features/{at} must have a place of numbers, got {quoted(place)}")
+            raise source.refusal(f"features/{at} must have a place of numbers", place)
         name = _id(feature, named) or str(at + 1)
         kept = {k: v for k, v in named.items() if k != "id"}
         several_id = name if len(places) == 1 else f"{name}-{number}"

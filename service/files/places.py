@@ -1,4 +1,4 @@
-"""Distances between places on the earth, and places that look mistaken."""
+"""Check places on the earth: degrees out of range, and places that look mistaken."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -7,25 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.files.reading import Source, quoted
+from service.roads.great_circle import great_circle_distances, great_circle_matrix
 
 Array = NDArray[np.float64]
-_RADIUS = 6371008.8  # metres: the mean radius of the earth, as elsewhere in the service
-_FAR = 1_000_000.0  # metres: no van drives so far
+_FAR = 1_000_000.0  # metres: farther than a van drives
 _NEAR = 300_000.0
 _MOST_NAMED = 3
 
 
-def great_circle(places: Array, other: Array | None = None) -> Array:
-    """Return the metres from each place (longitude, latitude) to all of them, or of `other`."""
-    from_, to = np.radians(places)[:, np.newaxis], np.radians(places if other is None else other)
-    half = np.sin((from_ - to) / 2) ** 2
-    level = np.cos(from_[..., 1]) * np.cos(to[..., 1])
-    return 2 * _RADIUS * np.arcsin(np.sqrt(np.minimum(1, half[..., 1] + level * half[..., 0])))
-
-
 def weighted(places: Array, weights: Array) -> list[list[float]]:
     """Return the metres between all places, times the mean of the weights of both ends."""
-    costs = great_circle(places) * (weights[:, np.newaxis] + weights) / 2
+    costs = great_circle_matrix(places) * (weights[:, np.newaxis] + weights) / 2
     return [[float(f"{cost:.7g}") for cost in row] for row in costs.tolist()]
 
 
@@ -55,18 +47,17 @@ def note_places(source: Source, stops: Sequence[dict[str, Any]]) -> None:
         return
     swapped = places[:, ::-1]
     possible = np.abs(places[:, 0]) <= 90
-    middle = np.median(places, axis=0)[np.newaxis]
-    for anchor, whose in ((middle, "most others"), (places[:1], "the first stop")):
-        far = great_circle(places, anchor)[:, 0] > _FAR
-        near = (
-            great_circle(np.where(possible[:, np.newaxis], swapped, places), anchor)[:, 0] < _NEAR
-        )
+    middle = np.median(places, axis=0)
+    for anchor, whose in ((middle, "most others"), (places[0], "the first stop")):
+        far = great_circle_distances(places, anchor) > _FAR
+        on_earth = np.where(possible[:, np.newaxis], swapped, places)
+        near = great_circle_distances(on_earth, anchor) < _NEAR
         mistaken = far & near & possible
         if mistaken.any():
             text = f"{_named(ids, mistaken)} far from {whose}, and near with latitude and longitude"
             source.note("swapped", f"{text} swapped: compare them on the map.")
             return
-    far = ~nowhere & (great_circle(places, middle)[:, 0] > _FAR)
+    far = ~nowhere & (great_circle_distances(places, middle) > _FAR)
     if far.any():
         text = f"{_named(ids, far)} more than 1000 km from the middle of all: are latitude and"
         source.note("far", f"{text} longitude in the right order?")

@@ -1,4 +1,4 @@
-"""Read one file or two: recognise their format by their content, then by the ending of the name."""
+"""Read one file or two. The content of a file tells its format; if not, the end of its name."""
 
 from collections.abc import Sequence
 
@@ -69,10 +69,7 @@ def _read_two(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -
     if len(tables) == 2 and (wanted == "fleet" or any(has_vehicles(each) for _, each in tables)):
         stops, vehicles = sorted(tables, key=lambda each: has_vehicles(each[1]))
         return read_fleet(stops, vehicles)
-    first, second = (
-        part_of(source, each) if isinstance(each, Table) else _tsplib_part(source, each, unrounded)
-        for source, each in contents
-    )
+    first, second = (_part(source, each, unrounded) for source, each in contents)
     planes = None
     if first.plane and second.plane:
         planes = [[*one, *other] for one, other in zip(first.plane, second.plane, strict=True)]
@@ -81,51 +78,54 @@ def _read_two(sources: Sequence[Source], wanted: Kind | None, unrounded: bool) -
 
 def _read(source: Source, wanted: Kind | None) -> Reading:
     """Return the request in a file that holds both objectives, or a fleet, or a map."""
-    if is_spreadsheet(source.file.data):
-        return reading_of(source, table_of(source, rows_of(source)))
-    text = _text(source)
-    if looks_like_json(text):
-        return read_json(source, text, wanted)
-    if is_tsplib(text):
-        file = split_tsplib(source, text)
-        if is_cvrp(file):
-            return read_cvrp(file)
+    content = _content(source)
+    if isinstance(content, Table):
+        return reading_of(source, content)
+    if isinstance(content, TsplibFile):
+        if is_cvrp(content):
+            return read_cvrp(content)
         raise source.refusal("a file of TSPLIB is one objective: name another for the other one")
-    if is_customers(text):
-        return read_customers(source, text)
-    if source.name.casefold().endswith((".json", ".geojson")):
-        return read_json(source, text, wanted)
-    return reading_of(source, table_of_csv(source, text))
-
-
-def _text(source: Source) -> str:
-    for begin, named in _BINARY.items():
-        if source.file.data.startswith(begin):
-            raise source.refusal(f"must be a file of stops, got {named}")
-    return text_of(source)
+    if is_customers(content):
+        return read_customers(source, content)
+    return read_json(source, content, wanted)
 
 
 def read_table(file: NamedFile, bounds: Bounds) -> tuple[Source, Table]:
-    """Return the table in CSV or XLSX, and its source."""
+    """Return the table in CSV or XLSX, and its source.
+
+    Raises:
+        UnreadableFile: The file is not a table; the message names it.
+    """
     source = Source(file, bounds)
-    if is_spreadsheet(file.data):
-        return source, table_of(source, rows_of(source))
-    return source, table_of_csv(source, _text(source))
+    content = _content(source)
+    if not isinstance(content, Table):
+        raise source.refusal("must be a table, in CSV or XLSX")
+    return source, content
 
 
-def _content(source: Source) -> Table | TsplibFile:
-    """Return the content of one of two files."""
+def _content(source: Source) -> Table | TsplibFile | str:
+    """Return a table, a file of TSPLIB, or the text of JSON or of customers with windows."""
     if is_spreadsheet(source.file.data):
         return table_of(source, rows_of(source))
-    text = _text(source)
+    for begin, named in _BINARY.items():
+        if source.file.data.startswith(begin):
+            raise source.refusal(f"must be a file of stops, got {named}")
+    text = text_of(source)
+    if looks_like_json(text):
+        return text
     if is_tsplib(text):
         return split_tsplib(source, text)
-    if looks_like_json(text):
-        raise source.refusal("must be a table or TSPLIB, as one of two files")
+    if is_customers(text) or source.name.casefold().endswith((".json", ".geojson")):
+        return text
     return table_of_csv(source, text)
 
 
-def _tsplib_part(source: Source, file: TsplibFile, unrounded: bool) -> Part:
+def _part(source: Source, file: Table | TsplibFile | str, unrounded: bool) -> Part:
+    """Return the content of one of two files."""
+    if isinstance(file, Table):
+        return part_of(source, file)
+    if isinstance(file, str):
+        raise source.refusal("must be a table or TSPLIB, as one of two files")
     if unrounded:
         if file.kind != "EUC_2D":
             raise source.refusal(f"EDGE_WEIGHT_TYPE must be EUC_2D, got {file.kind}")

@@ -1,4 +1,4 @@
-"""A file that is read, its bounds and its errors; and the reading: a request, notes and columns."""
+"""A file that is being read, its bounds and errors; and the result: a request with notes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -14,11 +14,11 @@ _LONGEST_SHOWN = 80  # characters of a file that a sentence quotes
 
 
 class UnreadableFile(ValueError):
-    """A file that is not of its format, or of a kind that is not supported."""
+    """A file that does not follow its format, or whose format is not supported."""
 
 
 class FileTooLarge(UnreadableFile):
-    """A file that holds more than the reader takes."""
+    """A file with more content than its bounds allow."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,9 +115,14 @@ class Source:
         """Add a note on something that is assumed."""
         self.notes.append(Note(self.name, printable(text), code))
 
-    def refusal(self, reason: str) -> UnreadableFile:
-        """Return the exception that says why the file cannot be read."""
-        return UnreadableFile(f"{self.name}: {printable(reason)}")
+    def note_left_out(self, what: str) -> None:
+        """Note something in the file that is not supported for fleets."""
+        self.note("left-out", f"{what} was not used: it is not supported for fleets.")
+
+    def refusal(self, demand: str, *came: object) -> UnreadableFile:
+        """Return the exception that says what the file must be, and quotes what came instead."""
+        got = "".join(f", got {quoted(each)}" for each in came)
+        return UnreadableFile(f"{self.name}: {printable(demand)}{got}")
 
     def check_count(self, noun: str, limit: int, actual: int) -> None:
         """Raise FileTooLarge if the number is over the limit."""
@@ -126,7 +131,7 @@ class Source:
 
     def reading(self, kind: Kind, request: Request) -> Reading:
         """Return the reading of this file alone."""
-        return Reading(kind, request, self.name, tuple(self.notes), tuple(self.columns))
+        return reading_of_both(kind, request, (self,))
 
 
 def reading_of_both(

@@ -1,4 +1,4 @@
-"""The rows of a spreadsheet in XLSX: of its first sheet that holds anything."""
+"""Read the rows of a spreadsheet in XLSX, from its first visible sheet with content."""
 
 import io
 import zipfile

@@ -1,4 +1,4 @@
-"""Requests of tables: stops with places, two planes, or one objective of two."""
+"""Make requests from tables: of stops with places, of two planes, or of one objective."""
 
 import re
 from dataclasses import dataclass, field
@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from service.files.columns import FLEET
+from service.files.columns import FLEET, Columns, columns_of, ids_of, place_in
 from service.files.fleets import Stop, measured, planar, timed, with_one_vehicle
 from service.files.places import check_range, note_places, weighted
 from service.files.reading import Reading, Source, quoted
-from service.files.table_columns import Columns, columns_of, ids_of, place_in
 from service.files.tables import Table, number_in, plain_numbers
 from service.files.visits import add_visits
 
@@ -93,7 +92,7 @@ def _two_planes(columns: Columns) -> Reading:
         columns.fields[at] = name
     rows = columns.numbers(free)
     ids = ids_of(columns) if "id" in columns.fields else None
-    columns.tell()
+    columns.report()
     if ids is None:
         return source.reading("front", {"coordinates": rows})
     names = ("first length", "second length")
@@ -110,7 +109,7 @@ def _located(columns: Columns) -> Reading:
     stops = _stops(columns, _places(columns))
     note_places(source, stops)
     second = _second(columns, stops)
-    columns.tell()
+    columns.report()
     distance = {"name": "distance", "from": "great_circle"}
     return source.reading("front", {"stops": stops, "objectives": [distance, second]})
 
@@ -120,7 +119,7 @@ def _fleet(columns: Columns) -> Reading:
     source = columns.source
     stops, plane = visits_of(columns)
     add_visits(columns, stops)
-    columns.tell()
+    columns.report()
     objectives = planar({"coordinates": plane}) if plane else measured(source, stops, timed(stops))
     return source.reading("fleet", with_one_vehicle(source, stops, objectives))
 
@@ -185,7 +184,7 @@ def _second(columns: Columns, stops: list[Stop]) -> dict[str, Any]:
         weights = np.array([each for (each,) in columns.numbers([cost])])
         if (weights < 0).any():
             row = int(np.argmax(weights < 0))
-            raise source.refusal(f"{columns.where(row, cost)} must not be negative")
+            raise columns.refusal(row, cost, "must not be negative")
         name = quoted(columns.names[cost])
         source.note(
             "objectives", f"{name} is what a metre costs near a stop: the second objective."
@@ -207,7 +206,7 @@ def part_of(source: Source, table: Table) -> Part:
     if "place" in columns.fields or {"longitude", "latitude"} <= set(columns.fields):
         stops = _stops(columns, _places(columns))
         note_places(source, stops)
-        columns.tell()
+        columns.report()
         return Part(name, count, [stop["id"] for stop in stops], stops=stops)
     free = [at for at, each in enumerate(columns.fields) if each != "id"]
     if len(free) not in (2, count) and table.width == count and columns.are_numbers(0):

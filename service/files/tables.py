@@ -1,4 +1,4 @@
-"""Tables of fields: from CSV of any separator, from XLSX, and from records of JSON."""
+"""Make tables of fields, with a heading or without, from CSV, XLSX and records of JSON."""
 
 import csv
 import io
@@ -62,9 +62,9 @@ def table_of_csv(source: Source, text: str) -> Table:
         UnreadableFile: It is not CSV, or has too many fields.
     """
     first, _, rest = text.partition("\n")
-    told = re.fullmatch(r"\s*\"?sep=(.)\"?\s*", first)
-    body = rest if told else text
-    separator = told[1] if told else _separator(body)
+    declared = re.fullmatch(r"\s*\"?sep=(.)\"?\s*", first)
+    body = rest if declared else text
+    separator = declared[1] if declared else _separator(body)
     if separator not in (",", None):
         named = _SEPARATORS.get(separator, quoted(separator))
         source.note("separator", f"Fields are separated by {named}.")
@@ -72,7 +72,7 @@ def table_of_csv(source: Source, text: str) -> Table:
         rows: Iterable[list[str]] = (line.split() for line in body.splitlines())
     else:
         rows = _csv_rows(source, body, separator)
-    return table_of(source, rows, 2 if told else 1)
+    return table_of(source, rows, 2 if declared else 1)
 
 
 def table_of(source: Source, fields: Iterable[Sequence[str]], first: int = 1) -> Table:
@@ -147,7 +147,7 @@ def _take_heading(source: Source, rows: list[Row]) -> list[str] | None:
 
 
 def _counts_up(fields: Sequence[str]) -> bool:
-    """Return whether fields are a heading that pandas writes if columns have no names: 0, 1, 2."""
+    """Return whether fields count from 0, as pandas writes the heading of unnamed columns."""
     numbers = fields[1:] if fields[0] == "" else fields
     return list(numbers) == [str(number) for number in range(len(numbers))]
 

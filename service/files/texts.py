@@ -24,7 +24,8 @@ def text_of(source: Source) -> str:
         UnreadableFile: The bytes are not text.
     """
     data = source.file.data
-    encoding = next((name for bom, name in _BOMS if data.startswith(bom)), None) or _told(data)
+    marked = next((name for bom, name in _BOMS if data.startswith(bom)), None)
+    encoding = marked or _encoding_of(data)
     try:
         text = data.decode(encoding)
     except UnicodeDecodeError as error:
@@ -37,7 +38,7 @@ def text_of(source: Source) -> str:
     return text
 
 
-def _told(data: bytes) -> str:
+def _encoding_of(data: bytes) -> str:
     """Return the encoding of bytes without a byte order mark."""
     even, odd = data[:_SAMPLE:2].count(0), data[1:_SAMPLE:2].count(0)
     if even + odd > min(len(data), _SAMPLE) // 4:  # every other byte of Latin text in UTF-16

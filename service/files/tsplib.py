@@ -1,14 +1,14 @@
-"""Files of TSPLIB (Reinelt, 1991) and CVRPLIB: read their keywords and sections in any spelling."""
+"""Read files of TSPLIB (Reinelt, 1991) and CVRPLIB: keywords, sections and distances."""
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.files.reading import Source, quoted
-from service.files.tsplib_distances import DIMENSIONS, distances
+from service.files.reading import Source
 
 Array = NDArray[np.float64]
 _KEYWORD = re.compile(r"([A-Za-z][A-Za-z0-9_]*)[ \t]*(?::(.*))?")
@@ -23,6 +23,13 @@ _LAYOUTS = {
     "LOWER_DIAG_ROW": "lower diagonal",
     "UPPER_DIAG_COL": "lower diagonal",
 }
+# The axes of places, by the kind of distance between them.
+_AXES = {
+    **dict.fromkeys(("EUC_2D", "CEIL_2D", "MAN_2D", "MAX_2D", "GEO", "ATT"), 2),
+    **dict.fromkeys(("EUC_3D", "MAN_3D", "MAX_3D"), 3),
+}
+_PI = 3.141592  # as TSPLIB defines it
+_EARTH = 6378.388  # kilometres, as TSPLIB defines it
 _LARGEST = 1e150  # its square is still a float
 _TELLING = ("EDGE_WEIGHT_TYPE", "NODE_COORD_SECTION", "EDGE_WEIGHT_SECTION", "EDGE_DATA_FORMAT")
 _NOT_PLANNED = {"SOP": "an order of cities", "HCP": "no costs", "TOUR": "a tour, and no costs"}
@@ -54,7 +61,7 @@ class TsplibFile:
         """
         value = self.word("DIMENSION")
         if not re.fullmatch("[1-9][0-9]{0,8}", value):
-            raise self.source.refusal(f"DIMENSION must be a whole number, got {quoted(value)}")
+            raise self.source.refusal("DIMENSION must be a whole number", value)
         self.source.check_count("cities", self.source.bounds.cities, int(value))
         return int(value)
 
@@ -115,7 +122,7 @@ def _fill(file: TsplibFile, text: str) -> None:
 
 def places(file: TsplibFile) -> Array:
     """Return the places of the cities, shape (n, 2 or 3), in the order of the file."""
-    axes = DIMENSIONS.get(file.kind, 2)
+    axes = _AXES.get(file.kind, 2)
     return file.numbers("NODE_COORD_SECTION", file.dimension, 1 + axes)[:, 1:]
 
 
@@ -127,15 +134,14 @@ def costs(file: TsplibFile) -> Array:
     """
     limit = file.source.bounds.matrix_cities
     file.source.check_count("cities whose costs are written out", limit, file.dimension)
-    if file.kind in DIMENSIONS:
+    if file.kind in _AXES:
         found = places(file)
         if not (np.abs(found) <= _LARGEST).all():
             raise file.source.refusal(f"NODE_COORD_SECTION must hold numbers up to {_LARGEST:g}")
-        return distances(file.kind, found)
+        return _distances(file.kind, found)
     if file.kind != "EXPLICIT":
-        known = ", ".join(("EXPLICIT", *DIMENSIONS))
-        demand = f"EDGE_WEIGHT_TYPE must be one of {known}"
-        raise file.source.refusal(f"{demand}, got {quoted(file.kind)}")
+        known = ", ".join(("EXPLICIT", *_AXES))
+        raise file.source.refusal(f"EDGE_WEIGHT_TYPE must be one of {known}", file.kind)
     return _explicit(file)
 
 
@@ -145,8 +151,8 @@ def _explicit(file: TsplibFile) -> Array:
         named = "FULL_MATRIX"
     layout = _LAYOUTS.get(named)
     if layout is None:
-        demand = f"EDGE_WEIGHT_FORMAT must be one of {', '.join(_LAYOUTS)}"
-        raise file.source.refusal(f"{demand}, got {quoted(named)}")
+        known = ", ".join(_LAYOUTS)
+        raise file.source.refusal(f"EDGE_WEIGHT_FORMAT must be one of {known}", named)
     n, section = file.dimension, "EDGE_WEIGHT_SECTION"
     if layout == "full":
         return file.numbers(section, n, n)
@@ -170,3 +176,48 @@ def plain(costs: Array) -> list[list[Any]]:
         rows: list[list[Any]] = (costs.astype(np.int64) if whole else costs).tolist()
         return rows
     return [[cost if np.isfinite(cost) else None for cost in row] for row in costs.tolist()]
+
+
+def _distances(kind: str, places: Array) -> Array:
+    """Return the distance from each place to each, shape (n, n)."""
+    if kind == "GEO":
+        return _geo(places)
+    apart = np.abs(places[:, np.newaxis] - places)
+    return _PLANAR[kind.partition("_")[0]](apart)
+
+
+def _nearest(lengths: Array) -> Array:
+    return np.floor(lengths + 0.5)
+
+
+def _euclidean(apart: Array) -> Array:
+    return np.sqrt((apart**2).sum(axis=-1))
+
+
+def _att(apart: Array) -> Array:
+    """Return pseudo-Euclidean distances, which are never rounded down."""
+    lengths = np.sqrt((apart**2).sum(axis=-1) / 10)
+    rounded = _nearest(lengths)
+    return rounded + (rounded < lengths)
+
+
+_PLANAR: dict[str, Callable[[Array], Array]] = {
+    "EUC": lambda apart: _nearest(_euclidean(apart)),
+    "CEIL": lambda apart: np.ceil(_euclidean(apart)),
+    "MAN": lambda apart: _nearest(apart.sum(axis=-1)),
+    "MAX": lambda apart: _nearest(apart).max(axis=-1),
+    "ATT": _att,
+}
+
+
+def _geo(places: Array) -> Array:
+    """Return distances in whole kilometres on the earth, of latitudes and longitudes as DDD.MM."""
+    degrees = np.trunc(places)  # TSPLIB says rounded, but the known optima are for this
+    latitude, longitude = (_PI * (degrees + 5 * (places - degrees) / 3) / 180).T
+    q1 = np.cos(longitude[:, np.newaxis] - longitude)
+    q2 = np.cos(latitude[:, np.newaxis] - latitude)
+    q3 = np.cos(latitude[:, np.newaxis] + latitude)
+    cosine = np.clip(0.5 * ((1 + q1) * q2 - (1 - q1) * q3), -1, 1)
+    lengths = np.floor(_EARTH * np.arccos(cosine) + 1)
+    np.fill_diagonal(lengths, 0)
+    return lengths

@@ -2,7 +2,15 @@
 
 import re
 
-from service.files.columns import amount_of, fields_of, fields_of_vehicles, is_about_vehicles
+from service.files.columns import (
+    Columns,
+    amount_of,
+    columns_of,
+    fields_of,
+    fields_of_vehicles,
+    ids_of,
+    is_about_vehicles,
+)
 from service.files.fleets import (
     Stop,
     Vehicle,
@@ -10,14 +18,12 @@ from service.files.fleets import (
     at_depots,
     fleet_request,
     measured,
-    note_left_out,
     planar,
     timed,
 )
 from service.files.places import check_range
 from service.files.reading import Reading, Source, quoted, reading_of_both
 from service.files.stop_tables import visits_of
-from service.files.table_columns import Columns, columns_of, ids_of
 from service.files.tables import Table
 from service.files.visits import add_visits, is_time, seconds_in, span_in
 
@@ -41,7 +47,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     visits = columns_of(*of_stops)
     stops, plane = visits_of(visits)
     units = add_visits(visits, stops)
-    visits.tell()
+    visits.report()
     columns = _columns_of_vehicles(other, of_vehicles[1], stops)
     vehicles = _Vehicles(columns, stops, located=plane is None).read()
     _add_capacities(columns, vehicles, visits, stops, units)
@@ -50,7 +56,7 @@ def read_fleet(of_stops: tuple[Source, Table], of_vehicles: tuple[Source, Table]
     objectives = planar({"coordinates": plane}) if plane else measured(source, stops, clock)
     _add_limits(columns, vehicles, clock)
     _add_fixed(columns, vehicles, located=plane is None)
-    columns.tell()
+    columns.report()
     request = fleet_request(stops, vehicles, objectives)
     return reading_of_both("fleet", request, (source, other))
 
@@ -91,9 +97,7 @@ class _Vehicles:
         else:
             ids = [f"vehicle {row + 1}" for row in rows]
             self._source.note("ids", "No column has names of vehicles: they are numbered from 1.")
-        if (at := columns.find("skills")) is not None:
-            columns.fields[at] = None
-            note_left_out(self._source, quoted(columns.names[at]))
+        columns.leave_out("skills")
         return [self._vehicle(row, id_) for row, id_ in zip(rows, ids, strict=True)]
 
     def _vehicle(self, row: int, id_: str) -> Vehicle:
@@ -114,8 +118,7 @@ class _Vehicles:
         at = columns.find(place)
         if at is not None and (text := " ".join(columns.text(row, at).split())):
             if text not in self._ids:
-                demand = f"{columns.where(row, at)} must be the id of a stop"
-                raise self._source.refusal(f"{demand}, got {quoted(text)}")
+                raise columns.refusal(row, at, "must be the id of a stop", text)
             return text
         longitude, latitude = columns.find(f"{place}_longitude"), columns.find(f"{place}_latitude")
         if longitude is None or latitude is None:
@@ -123,8 +126,7 @@ class _Vehicles:
         if not columns.text(row, longitude) and not columns.text(row, latitude):
             return None
         if not self._located:
-            demand = f"{columns.where(row, latitude)} must be empty, as stops have x and y"
-            raise self._source.refusal(demand)
+            raise columns.refusal(row, latitude, "must be empty, as stops have x and y")
         location = [columns.number(row, longitude), columns.number(row, latitude)]
         check_range(self._source, location, columns.where(row, latitude))
         name = self._places.setdefault(tuple(location), f"{place} of {vehicle}")
@@ -141,9 +143,8 @@ def _add_capacities(
     demands = [at for at, each in enumerate(visits.fields) if each == "demand"]
     found = [at for at, each in enumerate(columns.fields) if each == "capacity"]
     if not demands:
-        for at in found:
-            columns.fields[at] = None
-            note_left_out(columns.source, f"{quoted(columns.names[at])} without demands of stops")
+        for _ in found:
+            columns.leave_out("capacity", " without demands of stops")
         return
     if not found:
         text = f"No column has a capacity: each vehicle holds all demand, {all_demand(stops)}."
@@ -167,11 +168,7 @@ def _add_limits(columns: Columns, vehicles: list[Vehicle], clock: bool) -> None:
     used, left_out = "longest_time", "longest_distance"
     if not clock:
         used, left_out = left_out, used
-    if (at := columns.find(left_out)) is not None:
-        columns.fields[at] = None
-        note_left_out(
-            columns.source, f"{quoted(columns.names[at])} {'with' if clock else 'without'} times"
-        )
+    columns.leave_out(left_out, " with times" if clock else " without times")
     if (at := columns.find(used)) is None:
         return
     for row, vehicle in enumerate(vehicles):
@@ -202,23 +199,19 @@ def _rates(columns: Columns) -> set[float]:
         return set()
     rates = {_amount(columns, row, at) for row in range(len(columns.table.rows))}
     if len(rates) > 1 or 0.0 in rates:
-        columns.fields[at] = None
-        note_left_out(columns.source, f"{quoted(columns.names[at])}, which differs by vehicle,")
+        columns.leave_out("per_km", ", which differs by vehicle,")
     return rates - {0.0}
 
 
 def _whole(columns: Columns, row: int, at: int) -> int:
     number = columns.number(row, at)
     if number < 1 or not number.is_integer():
-        demand = f"{columns.where(row, at)} must be a whole number from 1"
-        raise columns.source.refusal(f"{demand}, got {quoted(columns.text(row, at))}")
+        raise columns.refusal(row, at, "must be a whole number from 1", columns.text(row, at))
     return int(number)
 
 
 def _amount(columns: Columns, row: int, at: int) -> float:
     number = columns.number(row, at)
     if number < 0:
-        raise columns.source.refusal(
-            f"{columns.where(row, at)} must not be negative, got {number:g}"
-        )
+        raise columns.refusal(row, at, f"must not be negative, got {number:g}")
     return number

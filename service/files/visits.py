@@ -1,14 +1,12 @@
-"""Visits in a table: demands, windows, service times and prizes, from their columns."""
+"""Read the columns of a table that are about visits: demands, windows, service, prizes."""
 
 import re
 from functools import partial
 
 import numpy as np
 
-from service.files.columns import seconds_of
-from service.files.fleets import Stop, note_left_out
-from service.files.reading import quoted
-from service.files.table_columns import Columns
+from service.files.columns import Columns, seconds_of
+from service.files.fleets import Stop
 from service.files.tables import number_in
 
 _TIME = re.compile(
@@ -28,9 +26,7 @@ def add_visits(columns: Columns, stops: list[Stop]) -> int:
         By how much the demands of the table were multiplied.
     """
     demands = [at for at, each in enumerate(columns.fields) if each == "demand"]
-    if (at := columns.find("skills")) is not None:
-        columns.fields[at] = None
-        note_left_out(columns.source, quoted(columns.names[at]))
+    columns.leave_out("skills")
     for name, read in (("service", partial(seconds_in, columns)), ("prize", columns.number)):
         if (at := columns.find(name)) is not None:
             for row in _filled(columns, at):
@@ -66,7 +62,7 @@ def _add_demands(columns: Columns, demands: list[int], stops: list[Stop]) -> int
         row = int(np.argmin(right))
         demand = f"must be 0 to {_MOST:g}, with at most {_MOST_DECIMALS} decimals"
         came = ", ".join(f"{each:g}" for each in rows[row])
-        raise columns.source.refusal(f"{columns.where(row, demands[0])} {demand}, got {came}")
+        raise columns.refusal(row, demands[0], f"{demand}, got {came}")
     decimals = next(at for at, each in enumerate(whole) if each.all())
     if decimals:
         columns.source.note(
@@ -85,8 +81,7 @@ def span_in(columns: Columns, row: int, field: str) -> list[float] | None:
         text = columns.text(row, both)
         bounds = _BETWEEN.split(text.strip("[]() "))
         if text and len(bounds) != 2:
-            demand = f"{columns.where(row, both)} must be two times, as 8:00-12:30"
-            raise columns.source.refusal(f"{demand}, got {quoted(text)}")
+            raise columns.refusal(row, both, "must be two times, as 8:00-12:30", text)
         return [seconds_in(columns, row, both, each) for each in bounds] if text else None
     ends = [columns.find(f"{field}_from"), columns.find(f"{field}_to")]
     texts = ["" if at is None else columns.text(row, at) for at in ends]
@@ -96,9 +91,7 @@ def span_in(columns: Columns, row: int, field: str) -> list[float] | None:
     if latest is None or not texts[1]:
         at = latest if latest is not None else earliest
         assert at is not None
-        raise columns.source.refusal(
-            f"{columns.where(row, at)} must say when the {field} ends, got none"
-        )
+        raise columns.refusal(row, at, f"must say when the {field} ends, got none")
     start = 0.0 if earliest is None or not texts[0] else seconds_in(columns, row, earliest)
     return [start, seconds_in(columns, row, latest)]
 
@@ -114,6 +107,5 @@ def seconds_in(columns: Columns, row: int, at: int, text: str | None = None) -> 
         return 3600 * hours + 60 * minutes + seconds
     number = number_in(text)
     if number is None or number < 0:
-        demand = f"{columns.where(row, at)} must be seconds, or a time as 10:30"
-        raise columns.source.refusal(f"{demand}, got {quoted(text)}")
+        raise columns.refusal(row, at, "must be seconds, or a time as 10:30", text)
     return number * (seconds_of(columns.names[at]) or 1)

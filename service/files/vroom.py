@@ -1,10 +1,10 @@
-"""Problems of VROOM, as its API takes them: jobs, shipments and vehicles, times in seconds."""
+"""Read problems of VROOM, in the JSON of its API: jobs, shipments and vehicles."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from service.files.fleets import Stop, fleet_request, measured, note_left_out, timed
+from service.files.fleets import Stop, fleet_request, measured, timed
 from service.files.places import check_range, note_places
 from service.files.reading import Reading, Source, quoted
 
@@ -30,8 +30,7 @@ class _Problem:
         stop: Stop = {"id": name}
         if place is not None:
             if not _are_numbers(place, 2):
-                demand = f"{where} must be longitude and latitude"
-                raise self.source.refusal(f"{demand}, got {quoted(place)}")
+                raise self.source.refusal(f"{where} must be longitude and latitude", place)
             check_range(self.source, place, where)
             stop["location"] = list(place)
         self.stops.append({**stop, **{k: v for k, v in members.items() if v}})
@@ -101,7 +100,7 @@ def _items(
         raise source.refusal(f"{name} must be a list of objects")
     for member in _LEFT_OUT[name]:
         if any(each.get(member) for each in items):
-            note_left_out(source, f"{member} of {name}")
+            source.note_left_out(f"{member} of {name}")
     for at, each in enumerate(items):
         yield each, f"{name}/{at}"
 
@@ -133,9 +132,9 @@ def _window(source: Source, windows: Any, where: str) -> list[float] | None:
     if not windows or windows == [None]:
         return None
     if not isinstance(windows, list) or len(windows) > 1:
-        raise source.refusal(f"{where} must be one window, got {quoted(windows)}")
+        raise source.refusal(f"{where} must be one window", windows)
     if not _are_numbers(windows[0], 2):
-        raise source.refusal(f"{where} must be two times in seconds, got {quoted(windows[0])}")
+        raise source.refusal(f"{where} must be two times in seconds", windows[0])
     return list(windows[0])
 
 
@@ -158,7 +157,7 @@ def _objectives(problem: _Problem, value: dict[str, Any], clock: bool) -> list[d
         return measured(source, problem.stops, clock)
     profile, costs = next(iter(matrices.items()))
     if len(matrices) > 1:
-        note_left_out(source, f"all profiles but {quoted(profile)}")
+        source.note_left_out(f"all profiles but {quoted(profile)}")
     given = costs if isinstance(costs, dict) else {}
     durations = _submatrix(problem, given.get("durations"), f"matrices/{profile}/durations")
     other = given.get("distances") or given.get("costs")
@@ -176,10 +175,8 @@ def _submatrix(problem: _Problem, matrix: Any, where: str) -> list[list[Any]]:
     source.check_count("stops with a matrix", source.bounds.matrix_cities, len(indexes))
     for at, index in enumerate(indexes):
         if not isinstance(index, int) or index < 0:
-            name = problem.stops[at]["id"]
-            raise source.refusal(
-                f"{quoted(name)} must have a location_index, as there are matrices"
-            )
+            name = quoted(problem.stops[at]["id"])
+            raise source.refusal(f"{name} must have a location_index, as there are matrices")
     try:
         return [[matrix[row][column] for column in indexes] for row in indexes]
     except (TypeError, IndexError, KeyError):

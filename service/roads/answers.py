@@ -1,7 +1,7 @@
-"""The parts of a routing engine's answers that Valhalla and OSRM have in common, checked.
+"""Check what the answers of Valhalla and OSRM have in common: tables, places and errors.
 
-An answer is bounded in bytes before it is parsed, so that parsing takes milliseconds: a parser in
-a thread would hold the interpreter's lock as long.
+The bytes of an answer are limited before it is parsed, so that parsing takes milliseconds. A
+thread would not help: a parser holds the interpreter's lock while it runs.
 """
 
 import re

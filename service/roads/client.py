@@ -21,13 +21,12 @@ from service.roads.cache import ArrayCache
 from service.roads.osrm import Osrm
 from service.roads.questions import Questions
 from service.roads.router import Array, Line, RouterInterface, RouterSettings
-from service.roads.streets import Indices, LegLines, count_legs, join_legs
-from service.roads.trails import Leg
+from service.roads.streets import Indices, Leg, LegLines, count_legs, join_legs
 from service.roads.transport import Observe, RouterTransport
 from service.roads.valhalla import Valhalla
 
-_DECIMALS = 6  # of a degree that the engine is told: 0.1 m
-_DRAWN_AT_ONCE = 2  # answers with lines, so that questions about costs never wait for many
+_DECIMALS = 6  # of a degree, as places are sent to the engine: 0.1 m
+_DRAWN_AT_ONCE = 2  # requests for lines at a time, so that those for costs wait for few
 _LEG = b"leg"  # before the places of one, in its key
 _LOG = logging.getLogger("paretour")
 _Result = TypeVar("_Result")
@@ -161,7 +160,7 @@ class RoadClient:
             failure: Refusal = RouterTooSlow(seconds)
         except (RouterUnavailable, RouterUnusable) as error:
             failure = error
-        # Neither sentence tells anything about the stops.
+        # Neither sentence says anything about the stops.
         _LOG.warning("%s", failure)
         raise failure from None
 

@@ -24,32 +24,22 @@ def great_circle_matrix(locations: Array) -> Array:
     array([[       0., 10007557.],
            [10007557.,        0.]])
     """
-    longitude, latitude = np.radians(locations).T
-    north = _half_chords(latitude)
-    east = _half_chords(longitude)
-    # The square of half the chord through a sphere of radius 1; rounding may carry it beyond 1.
-    square = north + np.outer(np.cos(latitude), np.cos(latitude)) * east
-    return 2 * EARTH_RADIUS * np.arcsin(np.sqrt(np.minimum(square, 1.0)))
-
-
-def _half_chords(angles: Array) -> Array:
-    """Return the squared sines of half the differences of all angles, shape (n, n)."""
-    return np.sin((angles[:, np.newaxis] - angles) / 2) ** 2
+    return great_circle_distances(locations[:, np.newaxis], locations)
 
 
 def great_circle_distances(one: Array, other: Array) -> Array:
-    """Return the distances in metres from each place to the other of its row, shape (k,).
+    """Return the distances in metres from places to others, of shapes that broadcast.
 
     Args:
-        one: Longitude and latitude of each place in degrees, shape (k, 2).
+        one: Longitude and latitude of each place in degrees, shape (..., 2).
         other: Likewise.
 
     >>> great_circle_distances(np.array([[0.0, 90.0]]), np.array([[17.0, 0.0]])).round()
     array([10007557.])
     """
-    longitude, latitude = np.radians(one).T
-    other_longitude, other_latitude = np.radians(other).T
-    north = np.sin((latitude - other_latitude) / 2) ** 2
-    east = np.sin((longitude - other_longitude) / 2) ** 2
-    square = north + np.cos(latitude) * np.cos(other_latitude) * east
+    one, other = np.radians(one), np.radians(other)
+    half_chords = np.sin((one - other) / 2) ** 2
+    level = np.cos(one[..., 1]) * np.cos(other[..., 1])
+    # The square of half the chord through a sphere of radius 1; rounding may carry it beyond 1.
+    square = half_chords[..., 1] + level * half_chords[..., 0]
     return 2 * EARTH_RADIUS * np.arcsin(np.sqrt(np.minimum(square, 1.0)))

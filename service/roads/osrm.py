@@ -78,11 +78,11 @@ class Osrm:
         return self._question("table", everywhere, options, BYTES_OF_PLACE * len(everywhere))
 
     def read_snapped(self, answer: Answer, places: Sequence[Location]) -> Array:
-        """Return how many metres each place, shape (n,), lies from its road."""
+        """Return the metres from each place to its road, shape (n,)."""
         _check(answer)
         snapped = [each.location for each in read(_Snapped, answer.content).sources]
         if len(snapped) != len(places):
-            raise Unintelligible(f"{len(places)} sources must be told, got {len(snapped)}")
+            raise Unintelligible(f"{len(places)} sources must come back, got {len(snapped)}")
         return great_circle_distances(np.array(places), np.array(snapped))
 
     def ask_table(self, sources: Sequence[Location], targets: Sequence[Location]) -> Question:

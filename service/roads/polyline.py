@@ -1,4 +1,4 @@
-"""Encoded polylines: lines of places as text (Google, Encoded Polyline Algorithm Format)."""
+"""Decode polylines: lines of places as text (Google, Encoded Polyline Algorithm Format)."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ def decode_polyline(text: str, precision: int) -> Line:
         precision: The decimals of a degree.
 
     Raises:
-        Unintelligible: It is not such a text, or leaves the Earth.
+        Unintelligible: The text is not an encoded line, or a place is not on the Earth.
 
     >>> decode_polyline("_p~iF~ps|U_ulLnnqC", 5).tolist()
     [[-120.2, 38.5], [-120.95, 40.7]]
@@ -34,7 +34,7 @@ def decode_polyline(text: str, precision: int) -> Line:
 
 
 def _numbers(bits: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the numbers: of each the sign in the lowest bit, then its bits five at a time."""
+    """Return the numbers of a text, which has five bits of a number in each character."""
     if ((bits < 0) | (bits >= 2 * _MORE)).any():
         raise Unintelligible("a line must be an encoded polyline")
     (ends,) = np.nonzero(bits < _MORE)

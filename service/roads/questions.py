@@ -1,4 +1,4 @@
-"""The questions of one request to a routing engine, and the results of their answers."""
+"""Ask a routing engine all that one request needs, and put its answers together."""
 
 from asyncio import TaskGroup, to_thread
 from collections.abc import Awaitable, Callable, Iterable, Iterator, Sequence
@@ -13,7 +13,7 @@ from service.errors import NoRoad, OffRoad, RouterUnusable
 from service.roads.great_circle import great_circle_distances
 from service.roads.reachability import MissingWay, missing_ways, ways_of_isolated
 from service.roads.router import Array, Line, Location, NoWay, RouterInterface, Unintelligible
-from service.roads.trails import Leg, trails
+from service.roads.streets import Leg, trails
 from service.roads.transport import AT_ONCE, RouterTransport
 
 _PLACES_AT_ONCE = 100  # places in one question about the nearest roads
@@ -191,7 +191,7 @@ def _parts(n: int, most: int) -> list[_Indices]:
 
 
 def _understood(read: Callable[[], _Result]) -> _Result:
-    """Return an answer once read; raise RouterUnusable if it cannot be understood."""
+    """Return the result of reading an answer; raise RouterUnusable if it cannot be read."""
     try:
         return read()
     except Unintelligible as error:

@@ -1,4 +1,4 @@
-"""Find stops without a way by road: to and from any other, or those to leave out."""
+"""Find stops that have no way by road to or from others, and stops to leave out for that."""
 
 from typing import NamedTuple
 

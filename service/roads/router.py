@@ -62,7 +62,7 @@ class Answer(NamedTuple):
 
 
 class Unintelligible(ValueError):
-    """An answer that is not of the engine's documented form; the text says how."""
+    """An answer that is not as the engine's documentation says; the text says how it differs."""
 
 
 class NoWay(Exception):
@@ -83,7 +83,7 @@ class RouterInterface(Protocol):
         """Return the question for the roads nearest to places."""
 
     def read_snapped(self, answer: Answer, places: Sequence[Location]) -> Array:
-        """Return how many metres each place, shape (n,), lies from its road; infinity: no road."""
+        """Return the metres from each place to its road, shape (n,); infinity if it has none."""
 
     def ask_table(self, sources: Sequence[Location], targets: Sequence[Location]) -> Question:
         """Return the question for the times and distances from each source to each target."""

@@ -1,6 +1,6 @@
-"""Lines of tours along the streets, joined from the lines of their legs."""
+"""The legs of tours along the streets: ask for few trails, and join the lines of their legs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from service.errors import StreetsTooLong
 from service.roads.router import Line
-from service.roads.trails import Leg
 
 Indices = NDArray[np.int64]
+Leg = tuple[int, int]  # from one stop to another
 
 
 def count_legs(ways: Sequence[Indices]) -> dict[Leg, int]:
@@ -26,6 +26,31 @@ def count_legs(ways: Sequence[Indices]) -> dict[Leg, int]:
     order = np.argsort(first)
     pairs = zip(distinct[order].tolist(), counts[order].tolist(), strict=True)
     return {(i, j): n for (i, j), n in pairs}
+
+
+def trails(legs: Iterable[Leg], most: int) -> list[list[int]]:
+    """Return sequences of stops, of bounded length, that go along every leg once.
+
+    Args:
+        legs: Each from one stop to another; repeats count once.
+        most: At least 2.
+
+    >>> trails([(0, 1), (1, 2), (2, 0), (0, 2), (1, 2)], 4)
+    [[0, 1, 2, 0], [0, 2]]
+    """
+    after: dict[int, list[int]] = {}
+    for origin, destination in dict.fromkeys(legs):
+        after.setdefault(origin, []).append(destination)
+    found: list[list[int]] = []
+    while after:
+        trail = [next(iter(after))]
+        while len(trail) < most and (destinations := after.get(trail[-1])):
+            origin = trail[-1]
+            trail.append(destinations.pop(0))
+            if not destinations:
+                del after[origin]
+        found.append(trail)
+    return found
 
 
 class LegLines:

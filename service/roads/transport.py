@@ -1,4 +1,4 @@
-"""Questions to a routing engine over HTTP: few at once, bounded answers, careful retries.
+"""Ask a routing engine over HTTP: few questions at once, bounded answers, few retries.
 
 The engine is not trusted: no redirect is followed, nothing is decompressed, and no answer is read
 beyond its limit of bytes. Addresses and bodies, which name places, are neither

@@ -84,7 +84,7 @@ class Valhalla:
         return self._question("/locate", BYTES_OF_PLACE * len(places), {"locations": places})
 
     def read_snapped(self, answer: Answer, places: Sequence[Location]) -> Array:
-        """Return how many metres each place, shape (n,), lies from its road; infinity: no road."""
+        """Return the metres from each place to its road, shape (n,); infinity if it has none."""
         self._check(answer)
         located = read(_LocatedList, b'{"located":%b}' % answer.content).located
         if len(located) != len(places):

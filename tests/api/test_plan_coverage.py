@@ -11,7 +11,7 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
-from paretour.robots import parse_robots
+from paretour.plans import parse_robots
 from paretour.values import parse_front
 from PIL import Image
 

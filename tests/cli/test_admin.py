@@ -8,21 +8,21 @@ import re
 import pytest
 import typer
 
-from service.cli.admin import run_alive, run_key, run_serve
+from service.cli.commands import key, serve, work
 from tests.helpers.command import started
 
 
 def test_a_key_is_printed_with_its_entry(capsys: pytest.CaptureFixture[str]) -> None:
-    run_key("dispatch")
-    key, entry = capsys.readouterr().out.splitlines()
-    assert entry == f"dispatch:{hashlib.sha256(key.encode()).hexdigest()}"
+    key("dispatch")
+    made, entry = capsys.readouterr().out.splitlines()
+    assert entry == f"dispatch:{hashlib.sha256(made.encode()).hexdigest()}"
 
 
 def test_a_caller_with_a_name_that_no_entry_can_hold_gets_no_key(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     with pytest.raises(typer.Exit) as ended:
-        run_key("the lab")
+        key("the lab")
     assert ended.value.exit_code == 2
     printed = capsys.readouterr()
     assert printed.out == ""
@@ -31,7 +31,7 @@ def test_a_caller_with_a_name_that_no_entry_can_hold_gets_no_key(
 
 def test_a_wrong_setting_ends_with_2(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(typer.Exit) as ended:
-        run_serve(host=None, port=70000, workers=None)
+        serve(host=None, port=70000, workers=None)
     assert ended.value.exit_code == 2
     assert "port: " in capsys.readouterr().err
 
@@ -56,6 +56,6 @@ def test_without_redis_there_is_no_worker_to_ask_after(
 ) -> None:
     monkeypatch.delenv("PARETOUR_REDIS_URL", raising=False)
     with pytest.raises(typer.Exit) as ended:
-        run_alive()
+        work(alive=True)
     assert ended.value.exit_code == 2
     assert "PARETOUR_REDIS_URL must say" in capsys.readouterr().err

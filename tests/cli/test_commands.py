@@ -165,6 +165,9 @@ def test_a_map_of_ros_is_covered_as_the_same_map_in_a_message(tmp_path: Path) ->
         assert item["path"]["points"][0] == [-1.75, 1.25]  # the cell at the lower left
         assert (data[tuple(np.transpose(item["path"]["cells"]))] == 0).all()
     assert picture.read_bytes().startswith(b"\x89PNG")
+    one = ["tour", tmp_path / "map.yaml", *given, "--balance", "0"]
+    ended = paretour(*one, PARETOUR_ACTORS=str(tmp_path))
+    assert list(map(int, ended.stdout.split())) == answer["front"][0]["tour"], ended.stderr
 
 
 WRONG = [
@@ -174,15 +177,16 @@ WRONG = [
     (["front", EXAMPLE, "--start", "61"], "start must be a city, 0 to 60, got 61"),
     (["front", EXAMPLE, "--actor", "x"], "actor must be one of"),
     (["front", EXAMPLE, "--angles", "1,b"], "--angles must be numbers"),
-    (["front", EXAMPLE, "--json", "--csv"], "not as both"),
+    (["front", EXAMPLE, "--json", "--csv"], "as one of --json"),
     (["front", EXAMPLE, "--plot", "front.txt"], "--plot must end in one of"),
-    (["front", EXAMPLE, "--plot", "none/front.png"], "in a directory that is there"),
+    (["front", EXAMPLE, "--plot", "none/front.png"], "in a directory that exists"),
     (["tour", EXAMPLE], "one of angle, balance, first_at_most, second_at_most and knee"),
     (["tour", EXAMPLE, "--angle", "3", "--knee"], "is wanted, got angle and knee"),
     (["tour", EXAMPLE, "--balance", "1.1"], "Invalid value for '--balance'"),
     (["tour", EXAMPLE, "--time-limit", "0", "--first-at-most", "1"], "first length up to 1: the"),
     (["tour"], "Missing argument"),
     (["tour", EXAMPLE, "--angle", "x"], "Invalid value for '--angle'"),
+    (["tour", EXAMPLE, "--knee", "--cost-layer", "a.csv"], "--cost-layer is for a map"),
     (["coverage", "none.png"], "none.png: No such file"),
     (["coverage", "none.yaml"], "none.yaml: No such file"),
     (["coverage", "README.md", "--start-pose", "1;2"], "--start-pose must be numbers with commas"),

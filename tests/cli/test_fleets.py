@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from service.cli.fleets.command import read_fleet
+from service.cli.plans import plan_fleet
 from tests.files.test_examples import FOLDER as EXAMPLES
 from tests.helpers.command import paretour
 from tests.helpers.fleet_requests import fleet_request
@@ -96,13 +96,13 @@ def test_vehicles_or_stops_may_be_standard_input(
         ((Path("-"), tmp_path / "vehicles.csv"), ORDERS),
     ):
         monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(text.encode())))
-        request = read_fleet(*files, {})[0].request
+        request = plan_fleet(*files, {})[0].request
         assert [each["id"] for each in request["vehicles"]] == ["van", "bike"]
 
 
 def test_a_fleet_may_be_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(ORDERS.encode())))
-    request = read_fleet(Path("-"), None, {"size": 3})[0].request
+    request = plan_fleet(Path("-"), None, {"size": 3})[0].request
     assert [stop["id"] for stop in request["stops"]] == ["depot", "a", "b"]
     assert (request["size"], request["vehicles"][0]["capacity"]) == (3, [5])
 

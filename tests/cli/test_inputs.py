@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from service.cli.commands import app
 from service.cli.errors import UnreadableFile
-from service.cli.inputs import read_layer, read_map, read_object, read_request
+from service.cli.inputs import read_layer, read_object, read_request
 from tests.client.test_robots import REQUEST as ROBOTS
 from tests.helpers.fleet_requests import fleet_request
 from tests.helpers.tsplib_files import EUCLIDEAN, EXPLICIT
@@ -28,46 +28,51 @@ def written(folder: Path, *texts: tuple[str, str]) -> list[Path]:
     return paths
 
 
+def read_map(path: Path) -> tuple[dict[str, Any], bytes | None]:
+    found = read_request([path], "coverage")
+    return found.request, found.picture
+
+
 @pytest.mark.parametrize(
     "text",
     ["1,2,3,4\n5,6,7,8.5\n", "x1;y1;x2;y2\n1;2;3;4\n\n5;6;7;8.5", "1\t2\t3\t4\r\n5\t6\t7\t8.5\r\n"],
 )
 def test_four_columns_are_coordinates(tmp_path: Path, text: str) -> None:
     files = written(tmp_path, ("a.csv", text))
-    assert read_request(files)[0] == {"coordinates": [[1, 2, 3, 4], [5, 6, 7, 8.5]]}
+    assert read_request(files, "front")[0] == {"coordinates": [[1, 2, 3, 4], [5, 6, 7, 8.5]]}
 
 
 def test_two_columns_in_two_files_are_a_plane_each(tmp_path: Path) -> None:
     files = written(tmp_path, ("a.csv", "1,2\n5,6\n0,0\n"), ("b.csv", "x,y\n3,4\n7,8\n0,0\n"))
     expected = [[1, 2, 3, 4], [5, 6, 7, 8], [0, 0, 0, 0]]
-    assert read_request(files)[0] == {"coordinates": expected}
+    assert read_request(files, "front")[0] == {"coordinates": expected}
 
 
 def test_square_tables_in_two_files_are_matrices(tmp_path: Path) -> None:
     rows = "0,1,2\n3,0,4\n5,6,0\n"
     matrix = [[0, 1, 2], [3, 0, 4], [5, 6, 0]]
     files = written(tmp_path, ("a.csv", rows), ("b.csv", rows))
-    assert read_request(files)[0]["matrices"].tolist() == [matrix, matrix]
+    assert read_request(files, "front")[0]["matrices"].tolist() == [matrix, matrix]
 
 
 def test_json_is_a_request_or_its_coordinates(tmp_path: Path) -> None:
     request = '{"coordinates": [[1, 2, 3, 4]], "seed": 3}'
     whole, alone = written(tmp_path, ("a.json", request), ("b.json", "[[1, 2, 3, 4]]"))
-    assert read_request([whole]) == ({"coordinates": [[1, 2, 3, 4]], "seed": 3}, None)
-    assert read_request([alone])[0] == {"coordinates": [[1, 2, 3, 4]]}
+    assert read_request([whole], "front")[:2] == ({"coordinates": [[1, 2, 3, 4]], "seed": 3}, None)
+    assert read_request([alone], "front")[0] == {"coordinates": [[1, 2, 3, 4]]}
 
 
 def test_files_of_tsplib_are_matrices_with_euclidean_distances_rounded(tmp_path: Path) -> None:
     files = written(tmp_path, ("a.tsp", EUCLIDEAN), ("b.atsp", EXPLICIT))
     rounded = [[0, 3, 1], [3, 0, 3], [1, 3, 0]]
     explicit = [[0, 1, 2], [3, 0, 4], [5, 6, 0]]
-    assert read_request(files)[0]["matrices"].tolist() == [rounded, explicit]
+    assert read_request(files, "front")[0]["matrices"].tolist() == [rounded, explicit]
 
 
 def test_files_of_tsplib_are_planes_where_that_is_asked_for(tmp_path: Path) -> None:
     files = written(tmp_path, ("a.tsp", EUCLIDEAN), ("b.tsp", EUCLIDEAN))
     expected = [[0, 0, 0, 0], [3.4, 0, 3.4, 0], [0, 0.5, 0, 0.5]]
-    assert read_request(files, unrounded=True)[0] == {"coordinates": expected}
+    assert read_request(files, "front", unrounded=True)[0] == {"coordinates": expected}
 
 
 def test_a_map_is_read_by_its_suffix(tmp_path: Path) -> None:
@@ -114,7 +119,7 @@ def test_a_file_that_cannot_be_read_is_named(
 ) -> None:
     files = written(tmp_path, (name, text))
     with pytest.raises(UnreadableFile) as error:
-        read_request(files)
+        read_request(files, "front")
     assert str(error.value).startswith(f"{files[0]}: ")
     assert sentence in str(error.value)
 
@@ -123,7 +128,7 @@ def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_bytes(b"\xff\xfe1")
     with pytest.raises(UnreadableFile, match=r"a\.csv"):
-        read_request([path])
+        read_request([path], "front")
 
 
 WRONG_PAIRS = [
@@ -138,13 +143,13 @@ def test_two_files_that_do_not_go_together_are_refused(
     tmp_path: Path, first: str, text: str, second: str, other: str, sentence: str
 ) -> None:
     with pytest.raises(UnreadableFile) as error:
-        read_request(written(tmp_path, (first, text), (second, other)))
+        read_request(written(tmp_path, (first, text), (second, other)), "front")
     assert sentence in str(error.value)
 
 
 def test_numbers_may_have_decimal_commas(tmp_path: Path) -> None:
     files = written(tmp_path, ("a.csv", "x1;y1;x2;y2\n1,5;-2;3e1;4\n,5;6;7.25;8\n"))
-    assert read_request(files)[0] == {"coordinates": [[1.5, -2, 30, 4], [0.5, 6, 7.25, 8]]}
+    assert read_request(files, "front")[0] == {"coordinates": [[1.5, -2, 30, 4], [0.5, 6, 7.25, 8]]}
 
 
 @pytest.mark.parametrize(
@@ -159,7 +164,7 @@ def test_numbers_may_have_decimal_commas(tmp_path: Path) -> None:
 def test_a_first_column_may_hold_ids(
     tmp_path: Path, text: str, ids: tuple[str, ...] | None
 ) -> None:
-    request, found = read_request(written(tmp_path, ("a.csv", text)))
+    request, found = read_request(written(tmp_path, ("a.csv", text)), "front")[:2]
     assert found == ids
     planes = [[[1, 2], [5, 6]], [[3, 4], [7, 8]]]
     if ids is None:
@@ -171,9 +176,9 @@ def test_a_first_column_may_hold_ids(
 def test_the_ids_of_two_files_are_the_same(tmp_path: Path) -> None:
     named, other, plain = "id,a,b\na,0,1\nb,2,0\n", "id,a,b\nb,0,1\na,2,0\n", "0,1\n2,0\n"
     files = written(tmp_path, ("a.csv", named), ("b.csv", plain), ("c.csv", other))
-    assert read_request([files[1], files[0]])[1] == ("a", "b")
+    assert read_request([files[1], files[0]], "front")[1] == ("a", "b")
     with pytest.raises(UnreadableFile, match="the same ids, in the same order"):
-        read_request([files[0], files[2]])
+        read_request([files[0], files[2]], "front")
 
 
 CITIES = [[0, 0, 1, 1], [3, 1, 2, 5], [1, 4, 5, 2], [4, 4, 1, 3]]
@@ -191,7 +196,7 @@ class Piped:
 )
 def test_a_file_may_be_standard_input(data: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", Piped(data))
-    assert read_request([Path("-")])[0] == {"coordinates": [[1, 2, 3, 4]]}
+    assert read_request([Path("-")], "front")[0] == {"coordinates": [[1, 2, 3, 4]]}
 
 
 def test_one_of_two_files_may_be_standard_input(
@@ -200,9 +205,9 @@ def test_one_of_two_files_may_be_standard_input(
     [file] = written(tmp_path, ("a.csv", "1,2\n3,4\n5,6\n"))
     monkeypatch.setattr(sys, "stdin", Piped(b"0,0\n1,1\n2,2\n"))
     expected = [[1, 2, 0, 0], [3, 4, 1, 1], [5, 6, 2, 2]]
-    assert read_request([file, Path("-")])[0] == {"coordinates": expected}
+    assert read_request([file, Path("-")], "front")[0] == {"coordinates": expected}
     with pytest.raises(UnreadableFile, match="only one of the two files can be standard input"):
-        read_request([Path("-"), Path("-")])
+        read_request([Path("-"), Path("-")], "front")
 
 
 PIPED: dict[tuple[str, ...], Any] = {
@@ -236,7 +241,7 @@ def test_a_map_and_its_costs_are_not_both_standard_input() -> None:
 def test_standard_input_is_named_where_it_cannot_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", Piped(b"1,2,3\n"))
     with pytest.raises(UnreadableFile, match="standard input: must have 4 columns"):
-        read_request([Path("-")])
+        read_request([Path("-")], "front")
 
 
 def test_a_map_may_be_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -269,9 +274,9 @@ READERS: list[Callable[[Path], object]] = [
     read_layer,
     read_object,
     read_map,
-    lambda path: read_request([path]),
+    lambda path: read_request([path], "front"),
     lambda path: read_request([path], "fleet"),
-    lambda path: read_request([path.with_name("a.csv"), path]),
+    lambda path: read_request([path.with_name("a.csv"), path], "front"),
 ]
 
 

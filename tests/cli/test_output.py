@@ -11,16 +11,14 @@ from paretour.values import parse_front
 from rich.console import Console
 
 from service.cli.data import csv_text
-from service.cli.errors import UsageError
-from service.cli.fronts import OutputFormat, run_front
-from service.cli.labels import ids_of
+from service.cli.fronts import print_chart, run_front, run_tour
+from service.cli.options import OutputFormat, Ways
 from service.cli.output import (
     front_as_rows,
     front_as_table,
     front_summary,
+    ids_of,
     named_tours,
-    print_chart,
-    run_tour,
     stops_of,
     tour_as_json,
     tour_summary,
@@ -125,18 +123,18 @@ def test_a_front_is_printed_in_the_format_asked_for(
 
 
 def test_the_tour_at_an_angle_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
-    run_tour(build_plan, Prepared(), 30, {}, as_json=False)
+    run_tour(build_plan, Prepared(), Ways(angle=30))
     line = "balance 1.000, angle 30.00, lengths 2 and 1\n"
     assert capsys.readouterr() == ("0 2 1\n", line)
 
 
 def test_cities_go_by_their_ids_where_they_have_some(capsys: pytest.CaptureFixture[str]) -> None:
-    run_tour(build_named, Prepared(), None, {"balance": 0.9}, as_json=False)
+    run_tour(build_named, Prepared(), Ways(balance=0.9))
     assert capsys.readouterr().out == 'depot c "b 2"\n'
     run_front(build_named, Prepared(), OutputFormat(as_csv=True))
     rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
     assert next(csv.reader([rows[0]["tour"]], delimiter=" ")) == ["depot", "b 2", "c"]
-    run_tour(build_named, Prepared(), None, {"second_at_most": 1.0}, as_json=True)
+    run_tour(build_named, Prepared(), Ways(second_at_most=1.0), as_json=True)
     assert json.loads(capsys.readouterr().out)["tour"] == [0, 2, 1]
 
 
@@ -154,8 +152,3 @@ def test_a_front_on_a_terminal_is_a_chart_and_three_tours(
     printed = capsys.readouterr().out
     assert all((word in printed) == is_there for word in ("knee", "least second length", "+---"))
     assert "first length" in printed
-
-
-def test_two_formats_at_once_are_refused() -> None:
-    with pytest.raises(UsageError, match="not as both"):
-        OutputFormat(as_csv=True, as_table=True).check()

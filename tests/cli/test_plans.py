@@ -70,10 +70,10 @@ def test_everything_that_a_map_lacks_is_named_at_once(tmp_path: Path) -> None:
 
 def test_a_message_lacks_no_cell_size(tmp_path: Path) -> None:
     (tmp_path / "map.json").write_text('{"info": {}, "data": [0]}')
-    options = {"spacing": 2.0, "unknown": None, "cell_size": None}
-    (tmp_path / "costs.csv").write_text("1\n")
     poses = {"start_pose": "-1,2.5", "end_pose": None}
-    plan, _ = plan_map(tmp_path / "map.json", tmp_path / "costs.csv", options, poses)
+    options = {"spacing": 2.0, "unknown": None, "cell_size": None, **poses}
+    (tmp_path / "costs.csv").write_text("1\n")
+    plan, _ = plan_map(tmp_path / "map.json", tmp_path / "costs.csv", options)
     assert plan.request.keys() == {"occupancy_grid", "spacing", "cost_layer", "start_pose"}
     assert plan.request["occupancy_grid"] == {"info": {}, "data": [0]}
     assert plan.request["start_pose"] == [-1.0, 2.5]

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from paretour import coverage_plan
 from paretour.values import parse_front
 
-from service.cli.plot_map import draw_map, plot_map
+from service.cli.plot import draw_map, plot_map
 from service.coverage.frame import MapFrame
 from tests.helpers.answers import FRONT
 

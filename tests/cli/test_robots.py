@@ -10,11 +10,12 @@ import matplotlib.image
 import numpy as np
 import pytest
 from paretour import Actor, Plan, RobotFront, coverage_plan
-from paretour.robots import parse_robots
+from paretour.plans import parse_robots
 from rich.console import Console
 
-from service.cli.fleets.plot import plot_robots
-from service.cli.fronts import OutputFormat, run_front
+from service.cli.fronts import run_front
+from service.cli.options import OutputFormat
+from service.cli.plot import plot_map
 from tests.helpers.command import paretour
 
 GRID = [[0, 0, 0, 0]]
@@ -85,7 +86,7 @@ def test_plans_are_printed_in_three_formats(capsys: pytest.CaptureFixture[str]) 
 def test_a_map_with_plans_is_a_picture_of_a_panel_each(tmp_path: Path) -> None:
     path = tmp_path / "robots.png"
     plan = coverage_plan(REQUEST, None)
-    plot_robots(parse_robots(ANSWER), plan, path, {"a": 0, "b": 0})
+    plot_map(parse_robots(ANSWER), plan, path, {"a": 0, "b": 0})
     picture = matplotlib.image.imread(path)
     assert picture.shape[:2] == (750, 2250)
     blue = np.array([0x00, 0x72, 0xB2]) / 255  # of the first robot

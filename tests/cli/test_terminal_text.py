@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 from service.cli import backends
 from service.cli.commands import app
 from service.cli.data import csv_text, print_csv, print_data
-from service.cli.labels import labels_of, lengths_as_text
+from service.cli.output import labels_of, lengths_as_text
 from service.errors.printable import printable
 from service.telemetry import PlainFormatter
 

@@ -1,11 +1,12 @@
 """Both clients, synchronous and asynchronous, against a service."""
 
+from inspect import signature
 from io import BytesIO
 
 import httpx
 import numpy as np
 import pytest
-from paretour import Refused
+from paretour import AsyncClient, Client, Refused
 from PIL import Image
 
 from tests.helpers.answers import Connect
@@ -148,3 +149,12 @@ def test_the_rest_of_a_front_is_replanned_at_once_and_as_a_job(url: str, connect
         rest.lengths.tolist()
     )
     assert (front.kept, driven.kept) == (None, None)
+
+
+def test_both_clients_have_the_same_methods_with_the_same_parameters_and_help() -> None:
+    names = [name for name in vars(Client) if not name.startswith("_")]
+    assert names == [name for name in vars(AsyncClient) if not name.startswith("_")]
+    for name in names:
+        method, same = getattr(Client, name), getattr(AsyncClient, name)
+        assert signature(method).parameters == signature(same).parameters
+        assert method.__doc__ == same.__doc__

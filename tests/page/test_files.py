@@ -110,7 +110,7 @@ def test_points_of_geojson_are_stops_as_on_the_command_line(
         open_files(opened, {"stops.geojson": text})
     expect(opened.locator("#count")).to_have_text("3 stops")
     (tmp_path / "stops.geojson").write_text(text)
-    request, ids = read_request([tmp_path / "stops.geojson"])
+    request, ids, *_ = read_request([tmp_path / "stops.geojson"], "front")
     body = curl_body(opened)
     assert ids == ("depot", "order-17", "18")
     assert {name: body[name] for name in request} == request

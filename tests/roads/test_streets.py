@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from service.errors import NoRoad, OffRoad, RouterTooSlow, RouterUnusable, StreetsTooLong
 from service.roads.client import RoadClient
 from service.roads.router import Line, RouterSettings
-from service.roads.trails import Leg
+from service.roads.streets import Leg
 from tests.helpers.fake_router import (
     BEYOND,
     FakeOsrm,

@@ -5,7 +5,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.roads.trails import trails
+from service.roads.streets import trails
 
 LEGS = st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)), max_size=40)
 

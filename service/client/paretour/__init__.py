@@ -14,7 +14,6 @@ from paretour.asynchronous import AsyncClient, AsyncJob
 from paretour.choice import Choice
 from paretour.errors import Refused
 from paretour.expect import UnexpectedAnswer
-from paretour.fleets import FleetFront, FleetPlan, FleetRoute
 from paretour.kinds import FrontOfAnyKind
 from paretour.members import (
     CoverageRequest,
@@ -26,8 +25,8 @@ from paretour.members import (
     RobotsRequest,
     StopRequest,
 )
+from paretour.plans import FleetFront, FleetPlan, FleetRoute, RobotFront, RobotPlan, RobotRoute
 from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
-from paretour.robots import RobotFront, RobotPlan, RobotRoute
 from paretour.ros_maps import read_ros_map
 from paretour.sync import Client, Job
 from paretour.values import (

@@ -1,28 +1,46 @@
 """The client for asynchronous programs, and its jobs: the same as sync.py, with `await`."""
 
 import asyncio
-from collections.abc import AsyncIterator
-from typing import Any, Generic, Self, TypeVar, Unpack
+from collections.abc import AsyncIterator, Callable, Coroutine
+from typing import Any, Concatenate, Generic, ParamSpec, Self, TypeVar
 
 import httpx
 from paretour.bodies import MOST_BYTES, Body
-from paretour.calls import AnyFront, Call, Calls, Geometry, Parse, client_headers
-from paretour.choice import Choice
+from paretour.calls import AnyFront, Call, Calls, Parse, Submitted, client_headers, described_as
 from paretour.events import JobEvents
-from paretour.fleets import FleetFront, parse_fleet
 from paretour.kinds import FrontOfAnyKind, parse_any
-from paretour.members import (
-    CoverageRequest,
-    FleetRequest,
-    FrontRequest,
-    ReplanRequest,
-    RobotsRequest,
-)
-from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
-from paretour.robots import RobotFront, parse_robots
-from paretour.values import Actor, Front, Progress, Tour, parse_front
+from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
+from paretour.values import Front, Progress, parse_front
 
+P = ParamSpec("P")
 T = TypeVar("T")
+
+
+def _result(
+    call: Callable[Concatenate[Calls, P], Call[T]],
+) -> Callable[Concatenate["AsyncClient", P], Coroutine[Any, Any, T]]:
+    """Return the method of the client that makes a call and returns its result."""
+
+    @described_as(call)
+    async def method(self: "AsyncClient", *args: P.args, **kwargs: P.kwargs) -> T:
+        return await self._connection.run(call(self._calls, *args, **kwargs))
+
+    return method
+
+
+def _job(
+    call: Callable[Concatenate[Calls, P], Call[Submitted[AnyFront]]],
+) -> Callable[Concatenate["AsyncClient", P], Coroutine[Any, Any, "AsyncJob[AnyFront]"]]:
+    """Return the method of the client that submits a job and returns it."""
+
+    @described_as(call)
+    async def method(
+        self: "AsyncClient", *args: P.args, **kwargs: P.kwargs
+    ) -> "AsyncJob[AnyFront]":
+        submitted = await self._connection.run(call(self._calls, *args, **kwargs))
+        return AsyncJob(*submitted, self._connection, self._calls)
+
+    return method
 
 
 class AsyncClient:
@@ -50,120 +68,39 @@ class AsyncClient:
         self._connection = _Connection(http, most_bytes)
         self._calls = Calls(timeout=timeout, patience=patience)
 
-    async def front(self, **request: Unpack[FrontRequest]) -> Front:
-        """Plan a front and wait for it, until its time limit or until nothing more is found."""
-        return await self.plan(front_plan(request))
-
-    async def coverage(self, png: bytes | None = None, **request: Unpack[CoverageRequest]) -> Front:
-        """Plan a front over a map and wait for it.
-
-        Args:
-            png: The map as the content of a PNG or PGM file, instead of a grid in the request;
-                `read_ros_map` reads both from a map.yaml.
-            **request: The members of the request.
-        """
-        return await self.plan(coverage_plan(request, png))
-
-    async def replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> Front:
-        """Plan the rest of a tour that is being driven, given what has changed, and wait for it.
-
-        Args:
-            front: The front, or its id.
-            **request: What has changed, and the options of the new front.
-        """
-        return await self.plan(replan_plan(front, request))
-
-    async def submit_replan(
-        self, front: Front | str, **request: Unpack[ReplanRequest]
-    ) -> "AsyncJob[Front]":
-        """Submit a job that plans the rest of a tour; arguments as of `replan`."""
-        return await self.post(replan_plan(front, request))
-
-    async def fleet(self, **request: Unpack[FleetRequest]) -> FleetFront:
-        """Plan a front of plans for a fleet and wait for it."""
-        return await self.plan_fleet(fleet_plan(request))
-
-    async def submit_fleet(self, **request: Unpack[FleetRequest]) -> "AsyncJob[FleetFront]":
-        """Submit a job that plans a front of plans for a fleet."""
-        return self.fleet_job(await self._connection.run(self._calls.submit(fleet_plan(request))))
-
-    async def robots(
-        self, png: bytes | None = None, **request: Unpack[RobotsRequest]
-    ) -> RobotFront:
-        """Plan a front of plans for several robots that share a map; arguments as of `coverage`."""
-        return await self.plan_robots(coverage_plan(request, png))
-
-    async def submit_robots(
-        self, png: bytes | None = None, **request: Unpack[RobotsRequest]
-    ) -> "AsyncJob[RobotFront]":
-        """Submit a job that plans for several robots; arguments as of `coverage`."""
-        submitted = self._calls.submit(coverage_plan(request, png))
-        return self.robots_job(await self._connection.run(submitted))
-
-    async def submit(self, **request: Unpack[FrontRequest]) -> "AsyncJob[Front]":
-        """Submit a job that plans a front."""
-        return await self.post(front_plan(request))
-
-    async def submit_coverage(
-        self, png: bytes | None = None, **request: Unpack[CoverageRequest]
-    ) -> "AsyncJob[Front]":
-        """Submit a job that plans a front over a map; arguments as of `coverage`."""
-        return await self.post(coverage_plan(request, png))
-
-    async def plan(self, plan: Plan) -> Front:
-        """Send a plan that was built before, and wait for the front."""
-        return await self._connection.run(self._calls.plan(plan, parse_front))
-
-    async def plan_fleet(self, plan: Plan) -> FleetFront:
-        """Send a plan for a fleet that was built before, and wait for the front of its plans."""
-        return await self._connection.run(self._calls.plan(plan, parse_fleet))
-
-    async def plan_robots(self, plan: Plan) -> RobotFront:
-        """Send a plan for robots that was built before, and wait for the front of its plans."""
-        return await self._connection.run(self._calls.plan(plan, parse_robots))
-
-    async def post(self, plan: Plan) -> "AsyncJob[Front]":
-        """Send a plan that was built before, as a job."""
-        return self.job(await self._connection.run(self._calls.submit(plan)))
+    front = _result(Calls.front)
+    coverage = _result(Calls.coverage)
+    replan = _result(Calls.replan)
+    fleet = _result(Calls.fleet)
+    robots = _result(Calls.robots)
+    plan = _result(Calls.plan)
+    plan_fleet = _result(Calls.plan_fleet)
+    plan_robots = _result(Calls.plan_robots)
+    tour = _result(Calls.tour)
+    geojson = _result(Calls.geojson)
+    actors = _result(Calls.actors)
+    submit = _job(Calls.submit)
+    submit_coverage = _job(Calls.submit_coverage)
+    submit_replan = _job(Calls.submit_replan)
+    submit_fleet = _job(Calls.submit_fleet)
+    submit_robots = _job(Calls.submit_robots)
+    post = _job(Calls.post)
 
     def job(self, front: str) -> "AsyncJob[Front]":
         """Return the job of a front by its id, without asking whether the service knows it."""
         return AsyncJob(front, parse_front, self._connection, self._calls)
 
     def fleet_job(self, front: str) -> "AsyncJob[FleetFront]":
-        """Return the job of a front of plans, in the same way."""
+        """Return the job of a front of plans for a fleet, as `job` does."""
         return AsyncJob(front, parse_fleet, self._connection, self._calls)
 
     def robots_job(self, front: str) -> "AsyncJob[RobotFront]":
-        """Return the job of a front of plans for several robots, in the same way."""
+        """Return the job of a front of plans for several robots, as `job` does."""
         return AsyncJob(front, parse_robots, self._connection, self._calls)
 
     def any_job(self, front: str) -> "AsyncJob[FrontOfAnyKind]":
-        """Return the job of a front of whatever kind, in the same way."""
+        """Return the job of a front whose kind is not known, as `job` does."""
         return AsyncJob(front, parse_any, self._connection, self._calls)
-
-    async def tour(
-        self, angle: float | None = None, front: str | None = None, **choice: Unpack[Choice]
-    ) -> Tour:
-        """Return a tour of a front by its id, or of the latest, as `Front.choose` does."""
-        return await self._connection.run(self._calls.tour(angle, front, choice))
-
-    async def geojson(
-        self, front: str, geometry: Geometry = "straight", plan: int | None = None
-    ) -> dict[str, Any]:
-        """Return a front by its id as a FeatureCollection (RFC 7946), if its stops have locations.
-
-        Args:
-            front: The front's id.
-            geometry: Whether its lines are straight, or follow the streets, which needs a routing
-                engine in the service.
-            plan: For a fleet, the index of the one plan to draw, from 0; None draws all.
-        """
-        return await self._connection.run(self._calls.geojson(front, geometry, plan))
-
-    async def actors(self) -> tuple[Actor, ...]:
-        """Return the actors that the service has loaded."""
-        return await self._connection.run(self._calls.actors())
 
     async def close(self) -> None:
         """Close the connections."""

@@ -1,12 +1,15 @@
-"""The calls of the service's HTTP interface. The clients send their requests.
+"""The calls of the service's HTTP interface, from arguments to results, without a connection.
 
 A call is a generator: it yields a request, is sent the response, and returns the call's result.
-Both clients run the same calls, one waiting for responses and one awaiting them.
+The methods of both clients are these calls; one client waits for the responses, the other awaits
+them.
 """
 
 from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal, TypeVar
+from functools import wraps
+from inspect import Signature, signature
+from typing import Any, Literal, TypeVar, Unpack, cast
 
 import httpx
 from paretour.bodies import ACCEPTED
@@ -15,12 +18,37 @@ from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
 from paretour.events import JobEvents
 from paretour.expect import Members, UnexpectedAnswer, each, members, parse_json, text, unexpected
 from paretour.kinds import FrontOfAnyKind
-from paretour.requests import Plan, front_path
-from paretour.values import FINAL_STATUSES, Actor, Tour, parse_actor, parse_tour
+from paretour.members import (
+    CoverageRequest,
+    FleetRequest,
+    FrontRequest,
+    ReplanRequest,
+    RobotsRequest,
+)
+from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
+from paretour.requests import (
+    Plan,
+    coverage_plan,
+    fleet_plan,
+    front_path,
+    front_plan,
+    replan_plan,
+)
+from paretour.values import (
+    FINAL_STATUSES,
+    Actor,
+    Front,
+    Tour,
+    parse_actor,
+    parse_front,
+    parse_tour,
+)
 
 T = TypeVar("T")
 AnyFront = TypeVar("AnyFront", bound=FrontOfAnyKind)
+Method = TypeVar("Method", bound=Callable[..., Any])
 Parse = Callable[[Mapping[str, Any]], AnyFront]
+Submitted = tuple[str, Parse[AnyFront]]  # the id of a job's front, and the parser of that front
 Geometry = Literal["straight", "roads"]
 
 
@@ -59,14 +87,80 @@ class Calls:
     timeout: float
     patience: float
 
-    def plan(self, plan: Plan, parse: Parse[AnyFront]) -> Call[AnyFront]:
-        """Plan a front and wait for it, parsed so."""
-        return parse(_answer((yield from self._post(plan, self.timeout + plan.seconds))).document)
+    def front(self, **request: Unpack[FrontRequest]) -> Call[Front]:
+        """Plan a front and wait for it, until its time limit or until nothing more is found."""
+        return self.plan(front_plan(request))
 
-    def submit(self, plan: Plan) -> Call[str]:
-        """Submit a job that plans a front; return the front's id."""
-        response = yield from self._post(plan, self.timeout, Prefer="respond-async")
-        return _answer(response).read("id", text)
+    def coverage(self, png: bytes | None = None, **request: Unpack[CoverageRequest]) -> Call[Front]:
+        """Plan a front over a map and wait for it.
+
+        Args:
+            png: The map as the content of a PNG or PGM file, instead of a grid in the request;
+                `read_ros_map` reads both from a map.yaml.
+            **request: The members of the request.
+        """
+        return self.plan(coverage_plan(request, png))
+
+    def replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> Call[Front]:
+        """Plan the rest of a tour that is being driven, given what has changed, and wait for it.
+
+        Args:
+            front: The front, or its id.
+            **request: What has changed, and the options of the new front.
+        """
+        return self.plan(replan_plan(front, request))
+
+    def fleet(self, **request: Unpack[FleetRequest]) -> Call[FleetFront]:
+        """Plan a front of plans for a fleet and wait for it."""
+        return self.plan_fleet(fleet_plan(request))
+
+    def robots(
+        self, png: bytes | None = None, **request: Unpack[RobotsRequest]
+    ) -> Call[RobotFront]:
+        """Plan a front of plans for several robots that share a map; arguments as of `coverage`."""
+        return self.plan_robots(coverage_plan(request, png))
+
+    def plan(self, plan: Plan) -> Call[Front]:
+        """Send a plan that was built before, and wait for the front."""
+        return self._plan(plan, parse_front)
+
+    def plan_fleet(self, plan: Plan) -> Call[FleetFront]:
+        """Send a plan for a fleet that was built before, and wait for the front of its plans."""
+        return self._plan(plan, parse_fleet)
+
+    def plan_robots(self, plan: Plan) -> Call[RobotFront]:
+        """Send a plan for robots that was built before, and wait for the front of its plans."""
+        return self._plan(plan, parse_robots)
+
+    def submit(self, **request: Unpack[FrontRequest]) -> Call[Submitted[Front]]:
+        """Submit a job that plans a front."""
+        return self.post(front_plan(request))
+
+    def submit_coverage(
+        self, png: bytes | None = None, **request: Unpack[CoverageRequest]
+    ) -> Call[Submitted[Front]]:
+        """Submit a job that plans a front over a map; arguments as of `coverage`."""
+        return self.post(coverage_plan(request, png))
+
+    def submit_replan(
+        self, front: Front | str, **request: Unpack[ReplanRequest]
+    ) -> Call[Submitted[Front]]:
+        """Submit a job that plans the rest of a tour; arguments as of `replan`."""
+        return self.post(replan_plan(front, request))
+
+    def submit_fleet(self, **request: Unpack[FleetRequest]) -> Call[Submitted[FleetFront]]:
+        """Submit a job that plans a front of plans for a fleet."""
+        return self._submit(fleet_plan(request), parse_fleet)
+
+    def submit_robots(
+        self, png: bytes | None = None, **request: Unpack[RobotsRequest]
+    ) -> Call[Submitted[RobotFront]]:
+        """Submit a job that plans for several robots; arguments as of `coverage`."""
+        return self._submit(coverage_plan(request, png), parse_robots)
+
+    def post(self, plan: Plan) -> Call[Submitted[Front]]:
+        """Send a plan that was built before, as a job."""
+        return self._submit(plan, parse_front)
 
     def stored(self, front_id: str, parse: Parse[AnyFront]) -> Call[AnyFront]:
         """Return a front as it is now, parsed by `parse`."""
@@ -97,16 +191,27 @@ class Calls:
         """Delete the front of a job that has ended."""
         yield from self._send(self._delete(front_id))
 
-    def tour(self, angle: float | None, front_id: str | None, choice: Choice) -> Call[Tour]:
-        """Return a tour at an angle in degrees, or of another choice."""
-        params = parameters(angle, choice) | ({} if front_id is None else {"front": front_id})
+    def tour(
+        self, angle: float | None = None, front: str | None = None, **choice: Unpack[Choice]
+    ) -> Call[Tour]:
+        """Return a tour of a front by its id, or of the latest, as `Front.choose` does."""
+        params = parameters(angle, choice) | ({} if front is None else {"front": front})
         return parse_tour(_answer((yield from self._get("/tour", params))).document)
 
-    def geojson(self, front_id: str, geometry: Geometry, plan: int | None) -> Call[dict[str, Any]]:
-        """Return a front, or one plan of it, as GeoJSON."""
+    def geojson(
+        self, front: str, geometry: Geometry = "straight", plan: int | None = None
+    ) -> Call[dict[str, Any]]:
+        """Return a front by its id as a FeatureCollection (RFC 7946), if its stops have locations.
+
+        Args:
+            front: The front's id.
+            geometry: Whether its lines are straight, or follow the streets, which needs a routing
+                engine in the service.
+            plan: For a fleet, the index of the one plan to draw, from 0; None draws all.
+        """
         headers = {"Accept": "application/geo+json"}
         query = {"geometry": geometry} if plan is None else {"geometry": geometry, "plan": plan}
-        answer = _answer((yield from self._get(front_path(front_id), query, headers)))
+        answer = _answer((yield from self._get(front_path(front), query, headers)))
         if (kind := answer.read("type", text)) != "FeatureCollection":
             raise unexpected("answer/type", "FeatureCollection", kind)
         return dict(answer.document)
@@ -118,6 +223,13 @@ class Calls:
     def events(self, front_id: str) -> JobEvents:
         """Return the events of a job, before the first one is read."""
         return JobEvents(front_id, self.timeout, self.patience)
+
+    def _plan(self, plan: Plan, parse: Parse[AnyFront]) -> Call[AnyFront]:
+        return parse(_answer((yield from self._post(plan, self.timeout + plan.seconds))).document)
+
+    def _submit(self, plan: Plan, parse: Parse[AnyFront]) -> Call[Submitted[AnyFront]]:
+        response = yield from self._post(plan, self.timeout, Prefer="respond-async")
+        return _answer(response).read("id", text), parse
 
     def _send(self, request: HttpRequest) -> Call[httpx.Response]:
         """Send a request, again while the service asks for that, and return the response.
@@ -154,6 +266,18 @@ class Calls:
         content = {**body, "headers": {**body.get("headers", {}), **headers}}
         request = HttpRequest(method="POST", path=plan.path, content=content, timeout=timeout)
         return (yield from self._send(request))
+
+
+def described_as(call: Callable[..., Any]) -> Callable[[Method], Method]:
+    """Return a decorator that gives a client's method the name, help and parameters of a call."""
+
+    def decorate(method: Method) -> Method:
+        described = wraps(call)(method)
+        parameters = signature(call).replace(return_annotation=Signature.empty)
+        described.__signature__ = parameters  # type: ignore[attr-defined]
+        return cast(Method, described)
+
+    return decorate
 
 
 def client_headers(api_key: str | None) -> dict[str, str]:

@@ -1,5 +1,6 @@
 """Choose one tour of a front: at an angle, at a balance, within a budget, or at the knee."""
 
+from collections.abc import Mapping
 from typing import Any, TypedDict
 
 import numpy as np
@@ -37,7 +38,7 @@ def choose(lengths: Array, angles: Array, angle: float | None, choice: Choice) -
         ValueError: Not exactly one way is given, no tour is within the budget, or the front is
             empty.
     """
-    [(name, wanted)] = the_way(angle, choice).items()
+    [(name, wanted)] = the_way({"angle": angle, **choice}).items()
     if not len(lengths):
         raise ValueError("the front is empty yet")
     u, v = _in_box(lengths).T
@@ -52,16 +53,15 @@ def choose(lengths: Array, angles: Array, angle: float | None, choice: Choice) -
 
 def parameters(angle: float | None, choice: Choice) -> dict[str, Any]:
     """Return the query parameters of `GET /tour` for a choice."""
-    return {name: str(value).lower() for name, value in the_way(angle, choice).items()}
+    return {name: str(value).lower() for name, value in the_way({"angle": angle, **choice}).items()}
 
 
-def the_way(angle: float | None, choice: Choice) -> dict[str, Any]:
-    """Return the one way that is given.
+def the_way(ways: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the one way to choose that is given: its name and value.
 
     Raises:
         ValueError: Not exactly one is given.
     """
-    ways: dict[str, Any] = {"angle": angle, **choice}
     given = {
         name: value for name, value in ways.items() if value is not None and value is not False
     }

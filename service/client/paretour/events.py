@@ -1,4 +1,4 @@
-"""Follow a job's progress over as many connections as it takes."""
+"""Follow the progress of a job; connect again where a connection breaks."""
 
 from typing import Any
 
@@ -105,7 +105,7 @@ class JobEvents:
             raise error
 
     def _wait(self, seconds: float) -> bool:
-        """Set the delay; return whether patience lasts so long."""
+        """Set the delay; return whether patience is not over by then."""
         self.delay = seconds
         self._waited += seconds
         return self._waited <= self._patience

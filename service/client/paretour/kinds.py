@@ -4,8 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from paretour.expect import members, text, unexpected
-from paretour.fleets import FleetFront, parse_fleet
-from paretour.robots import RobotFront, parse_robots
+from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
 from paretour.values import Front, parse_front
 
 FrontOfAnyKind = Front | FleetFront | RobotFront

@@ -5,7 +5,7 @@ from typing import Any, Literal, Protocol, Required, TypedDict
 
 from numpy.typing import ArrayLike
 
-# From each city (row) to each (column); None, or infinity, where there is no way.
+# A row for each city, with its costs to all cities; None or infinity if there is no way.
 Costs = ArrayLike | Sequence[Sequence[float | None]]
 
 

@@ -52,7 +52,7 @@ class EventParser:
         return events
 
     def _read(self, line: str) -> ServerSentEvent | None:
-        """Return the event that ends with this line, which is so for an empty line after data."""
+        """Return the event that this line ends: an empty line does, if data came before it."""
         if not line:
             return self._dispatch()
         field, _, value = line.partition(":")  # in a comment, the field is empty

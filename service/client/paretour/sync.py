@@ -1,28 +1,44 @@
 """The client for synchronous programs, and its jobs."""
 
 import time
-from collections.abc import Iterator
-from typing import Any, Generic, Self, TypeVar, Unpack
+from collections.abc import Callable, Iterator
+from typing import Concatenate, Generic, ParamSpec, Self, TypeVar
 
 import httpx
 from paretour.bodies import MOST_BYTES, Body
-from paretour.calls import AnyFront, Call, Calls, Geometry, Parse, client_headers
-from paretour.choice import Choice
+from paretour.calls import AnyFront, Call, Calls, Parse, Submitted, client_headers, described_as
 from paretour.events import JobEvents
-from paretour.fleets import FleetFront, parse_fleet
 from paretour.kinds import FrontOfAnyKind, parse_any
-from paretour.members import (
-    CoverageRequest,
-    FleetRequest,
-    FrontRequest,
-    ReplanRequest,
-    RobotsRequest,
-)
-from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, replan_plan
-from paretour.robots import RobotFront, parse_robots
-from paretour.values import Actor, Front, Progress, Tour, parse_front
+from paretour.plans import FleetFront, RobotFront, parse_fleet, parse_robots
+from paretour.values import Front, Progress, parse_front
 
+P = ParamSpec("P")
 T = TypeVar("T")
+
+
+def _result(
+    call: Callable[Concatenate[Calls, P], Call[T]],
+) -> Callable[Concatenate["Client", P], T]:
+    """Return the method of the client that makes a call and returns its result."""
+
+    @described_as(call)
+    def method(self: "Client", *args: P.args, **kwargs: P.kwargs) -> T:
+        return self._connection.run(call(self._calls, *args, **kwargs))
+
+    return method
+
+
+def _job(
+    call: Callable[Concatenate[Calls, P], Call[Submitted[AnyFront]]],
+) -> Callable[Concatenate["Client", P], "Job[AnyFront]"]:
+    """Return the method of the client that submits a job and returns it."""
+
+    @described_as(call)
+    def method(self: "Client", *args: P.args, **kwargs: P.kwargs) -> "Job[AnyFront]":
+        submitted = self._connection.run(call(self._calls, *args, **kwargs))
+        return Job(*submitted, self._connection, self._calls)
+
+    return method
 
 
 class Client:
@@ -57,116 +73,39 @@ class Client:
         self._connection = _Connection(http, most_bytes)
         self._calls = Calls(timeout=timeout, patience=patience)
 
-    def front(self, **request: Unpack[FrontRequest]) -> Front:
-        """Plan a front and wait for it, until its time limit or until nothing more is found."""
-        return self.plan(front_plan(request))
-
-    def coverage(self, png: bytes | None = None, **request: Unpack[CoverageRequest]) -> Front:
-        """Plan a front over a map and wait for it.
-
-        Args:
-            png: The map as the content of a PNG or PGM file, instead of a grid in the request;
-                `read_ros_map` reads both from a map.yaml.
-            **request: The members of the request.
-        """
-        return self.plan(coverage_plan(request, png))
-
-    def replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> Front:
-        """Plan the rest of a tour that is being driven, given what has changed, and wait for it.
-
-        Args:
-            front: The front, or its id.
-            **request: What has changed, and the options of the new front.
-        """
-        return self.plan(replan_plan(front, request))
-
-    def submit_replan(self, front: Front | str, **request: Unpack[ReplanRequest]) -> "Job[Front]":
-        """Submit a job that plans the rest of a tour; arguments as of `replan`."""
-        return self.post(replan_plan(front, request))
-
-    def fleet(self, **request: Unpack[FleetRequest]) -> FleetFront:
-        """Plan a front of plans for a fleet and wait for it."""
-        return self.plan_fleet(fleet_plan(request))
-
-    def submit_fleet(self, **request: Unpack[FleetRequest]) -> "Job[FleetFront]":
-        """Submit a job that plans a front of plans for a fleet."""
-        return self.fleet_job(self._connection.run(self._calls.submit(fleet_plan(request))))
-
-    def robots(self, png: bytes | None = None, **request: Unpack[RobotsRequest]) -> RobotFront:
-        """Plan a front of plans for several robots that share a map; arguments as of `coverage`."""
-        return self.plan_robots(coverage_plan(request, png))
-
-    def submit_robots(
-        self, png: bytes | None = None, **request: Unpack[RobotsRequest]
-    ) -> "Job[RobotFront]":
-        """Submit a job that plans for several robots; arguments as of `coverage`."""
-        submitted = self._calls.submit(coverage_plan(request, png))
-        return self.robots_job(self._connection.run(submitted))
-
-    def submit(self, **request: Unpack[FrontRequest]) -> "Job[Front]":
-        """Submit a job that plans a front."""
-        return self.post(front_plan(request))
-
-    def submit_coverage(
-        self, png: bytes | None = None, **request: Unpack[CoverageRequest]
-    ) -> "Job[Front]":
-        """Submit a job that plans a front over a map; arguments as of `coverage`."""
-        return self.post(coverage_plan(request, png))
-
-    def plan(self, plan: Plan) -> Front:
-        """Send a plan that was built before, and wait for the front."""
-        return self._connection.run(self._calls.plan(plan, parse_front))
-
-    def plan_fleet(self, plan: Plan) -> FleetFront:
-        """Send a plan for a fleet that was built before, and wait for the front of its plans."""
-        return self._connection.run(self._calls.plan(plan, parse_fleet))
-
-    def plan_robots(self, plan: Plan) -> RobotFront:
-        """Send a plan for robots that was built before, and wait for the front of its plans."""
-        return self._connection.run(self._calls.plan(plan, parse_robots))
-
-    def post(self, plan: Plan) -> "Job[Front]":
-        """Send a plan that was built before, as a job."""
-        return self.job(self._connection.run(self._calls.submit(plan)))
+    front = _result(Calls.front)
+    coverage = _result(Calls.coverage)
+    replan = _result(Calls.replan)
+    fleet = _result(Calls.fleet)
+    robots = _result(Calls.robots)
+    plan = _result(Calls.plan)
+    plan_fleet = _result(Calls.plan_fleet)
+    plan_robots = _result(Calls.plan_robots)
+    tour = _result(Calls.tour)
+    geojson = _result(Calls.geojson)
+    actors = _result(Calls.actors)
+    submit = _job(Calls.submit)
+    submit_coverage = _job(Calls.submit_coverage)
+    submit_replan = _job(Calls.submit_replan)
+    submit_fleet = _job(Calls.submit_fleet)
+    submit_robots = _job(Calls.submit_robots)
+    post = _job(Calls.post)
 
     def job(self, front: str) -> "Job[Front]":
         """Return the job of a front by its id, without asking whether the service knows it."""
         return Job(front, parse_front, self._connection, self._calls)
 
     def fleet_job(self, front: str) -> "Job[FleetFront]":
-        """Return the job of a front of plans, in the same way."""
+        """Return the job of a front of plans for a fleet, as `job` does."""
         return Job(front, parse_fleet, self._connection, self._calls)
 
     def robots_job(self, front: str) -> "Job[RobotFront]":
-        """Return the job of a front of plans for several robots, in the same way."""
+        """Return the job of a front of plans for several robots, as `job` does."""
         return Job(front, parse_robots, self._connection, self._calls)
 
     def any_job(self, front: str) -> "Job[FrontOfAnyKind]":
-        """Return the job of a front of whatever kind, in the same way."""
+        """Return the job of a front whose kind is not known, as `job` does."""
         return Job(front, parse_any, self._connection, self._calls)
-
-    def tour(
-        self, angle: float | None = None, front: str | None = None, **choice: Unpack[Choice]
-    ) -> Tour:
-        """Return a tour of a front by its id, or of the latest, as `Front.choose` does."""
-        return self._connection.run(self._calls.tour(angle, front, choice))
-
-    def geojson(
-        self, front: str, geometry: Geometry = "straight", plan: int | None = None
-    ) -> dict[str, Any]:
-        """Return a front by its id as a FeatureCollection (RFC 7946), if its stops have locations.
-
-        Args:
-            front: The front's id.
-            geometry: Whether its lines are straight, or follow the streets, which needs a routing
-                engine in the service.
-            plan: For a fleet, the index of the one plan to draw, from 0; None draws all.
-        """
-        return self._connection.run(self._calls.geojson(front, geometry, plan))
-
-    def actors(self) -> tuple[Actor, ...]:
-        """Return the actors that the service has loaded."""
-        return self._connection.run(self._calls.actors())
 
     def close(self) -> None:
         """Close the connections."""

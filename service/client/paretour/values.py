@@ -130,29 +130,46 @@ class Tour:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Front:
-    """The tours of a front, in order of their first length.
+class StoredFront:
+    """A front of any kind, in order of the first length of its m tours or plans.
 
     Attributes:
         id: The id under which the service stores the front.
         status: The status of its job: queued, running, done, cancelled or failed.
-        tours: The cities of each tour in order, shape (m, n).
-        lengths: The lengths of each tour, shape (m, 2).
-        angles: The direction of the lengths of each tour, in degrees, shape (m,).
-        balances: 0 at the least first length of the tours, 1 at the least second, shape (m,).
-        points: The number of nondominated tours found; the front is a subset of these.
+        lengths: The lengths of each tour or plan, shape (m, 2).
+        points: The number of nondominated ones found; the front is a subset of these.
         hypervolume: The share of the box at the reference point that the points found dominate.
-        hypervolume_bound: The most that any front can have, if a bound was asked for.
         reference_point: The reference point of the hypervolume, shape (2,); None while it is not
             known.
-        scale: The length that is 1 in scaled objectives, shape (2,); None while it is not known.
-        actor: The name of the network; None where it built no tours.
         terminated: Why the search ended: `converged`, `time_limit` or `cancelled`, or a word of a
             later service; None while it runs. `converged` proves that nothing is better only up to
             eleven cities.
+        document: The whole answer, with every member.
+    """
+
+    id: str
+    status: str
+    lengths: Array
+    points: int
+    hypervolume: float
+    reference_point: Array | None
+    terminated: str | None
+    document: Mapping[str, Any]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Front(StoredFront):
+    """The tours of a front, in order of their first length.
+
+    Attributes:
+        tours: The cities of each tour in order, shape (m, n).
+        angles: The direction of the lengths of each tour, in degrees, shape (m,).
+        balances: 0 at the least first length of the tours, 1 at the least second, shape (m,).
+        hypervolume_bound: The most that any front can have, if a bound was asked for.
+        scale: The length that is 1 in scaled objectives, shape (2,); None while it is not known.
+        actor: The name of the network; None where it built no tours.
         places: Over a map, the row and column of each city, shape (n, 2).
         paths: Over a map, the path of each tour, if the request asked for paths.
-        document: The whole answer, with every member.
         stops: The ids of the stops of each tour in order, if the request had ids.
         objectives: Both objectives, if the request named them.
         kept: The share of the driven tour's remaining legs that each tour keeps, shape (m,), if it
@@ -161,22 +178,14 @@ class Front:
         uncovered: Over a map, the free cells that no path leads to.
     """
 
-    id: str
-    status: str
     tours: NDArray[np.int64]
-    lengths: Array
     angles: Array
     balances: Array
-    points: int
-    hypervolume: float
     hypervolume_bound: float | None
-    reference_point: Array | None
     scale: Array | None
     actor: str | None
-    terminated: str | None
     places: NDArray[np.int64] | None
     paths: tuple[Path, ...] | None
-    document: Mapping[str, Any]
     stops: tuple[tuple[str, ...], ...] | None = None
     objectives: tuple[Objective, ...] | None = None
     kept: Array | None = None
@@ -268,22 +277,15 @@ def parse_front(document: Mapping[str, Any]) -> Front:
     actor = answer.maybe("actor", members)
     named = answer.maybe("stops", each(members, cities)) is not None
     return Front(
-        id=answer.read("id", text),
-        status=answer.read("status", text),
+        **stored_members(answer, items),
         tours=_stacked([item.read("tour", tour) for item in items], (cities,), np.int64),
-        lengths=lengths_of(items),
         angles=_stacked([item.read("angle", number) for item in items]),
         balances=_stacked([item.read("balance", number) for item in items]),
-        points=answer.read("points", count),
-        hypervolume=answer.read("hypervolume", number),
         hypervolume_bound=answer.maybe("hypervolume_bound", number),
-        reference_point=answer.maybe("reference_point", floats(PAIR)),
         scale=answer.maybe("scale", floats(PAIR)),
         actor=None if actor is None else actor.read("name", text),
-        terminated=answer.maybe("terminated", text),
         places=answer.maybe("places", indexes(cities, PAIR)),
         paths=of_all(items, "path", parse_path),
-        document=document,
         stops=tuple(item.read("stops", each(text, cities)) for item in items) if named else None,
         objectives=objectives_of(answer),
         kept=None if (kept := of_all(items, "kept", number)) is None else _stacked(kept),
@@ -335,9 +337,18 @@ def _parse_region(value: Any, where: str) -> UncoveredRegion:
     )
 
 
-def lengths_of(items: Sequence[Members]) -> Array:
-    """Return both lengths of all items of a front, shape (m, 2)."""
-    return _stacked([item.read("lengths", floats(PAIR)) for item in items], (PAIR,))
+def stored_members(answer: Members, items: Sequence[Members]) -> dict[str, Any]:
+    """Return the attributes that fronts of all kinds have, from an answer and its items."""
+    return {
+        "id": answer.read("id", text),
+        "status": answer.read("status", text),
+        "lengths": _stacked([item.read("lengths", floats(PAIR)) for item in items], (PAIR,)),
+        "points": answer.read("points", count),
+        "hypervolume": answer.read("hypervolume", number),
+        "reference_point": answer.maybe("reference_point", floats(PAIR)),
+        "terminated": answer.maybe("terminated", text),
+        "document": answer.document,
+    }
 
 
 def objectives_of(answer: Members) -> tuple[Objective, ...] | None:

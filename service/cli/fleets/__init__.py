@@ -1,1 +1,0 @@
-"""The commands for fleets and robots: plan, print and plot fronts of plans."""

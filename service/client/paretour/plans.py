@@ -1,0 +1,178 @@
+"""Fronts of plans, for the vehicles of a fleet or for robots on a map, as immutable values."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from paretour.expect import Read, each, floats, indexes, members, number, text
+from paretour.values import (
+    PAIR,
+    Array,
+    Objective,
+    Path,
+    StoredFront,
+    Uncovered,
+    objectives_of,
+    parse_path,
+    parse_uncovered,
+    stored_members,
+)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FleetRoute:
+    """The route of one vehicle.
+
+    Attributes:
+        vehicle: The id of its type.
+        stops: The ids of its stops in order, with its start and end if these are stops.
+        lengths: Its lengths, shape (2,).
+        arrivals: When it reaches each of these stops; at the first, when it leaves. Shape
+            (len(stops),). None if no objective is time.
+    """
+
+    vehicle: str
+    stops: tuple[str, ...]
+    lengths: Array
+    arrivals: Array | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RobotRoute:
+    """The route of one robot.
+
+    Attributes:
+        robot: Its id.
+        tour: Its places in order, from its start to its end, shape (k,).
+        lengths: Its lengths, shape (2,).
+        path: Its path over the map, if the request asked for paths.
+    """
+
+    robot: str
+    tour: NDArray[np.int64]
+    lengths: Array
+    path: Path | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Plan:
+    """A plan of a front: routes of the vehicles or robots used.
+
+    Attributes:
+        balance: 0 at the least first length of the front, 1 at the least second.
+        lengths: Its lengths, shape (2,).
+    """
+
+    balance: float
+    lengths: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FleetPlan(_Plan):
+    """A plan for the vehicles of a fleet; `unassigned` are the ids of the stops it leaves out."""
+
+    routes: tuple[FleetRoute, ...]
+    unassigned: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RobotPlan(_Plan):
+    """A plan for several robots on a map."""
+
+    routes: tuple[RobotRoute, ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FleetFront(StoredFront):
+    """A front of plans for a fleet, with both objectives as the request named them."""
+
+    plans: tuple[FleetPlan, ...]
+    objectives: tuple[Objective, ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RobotFront(StoredFront):
+    """A front of plans for several robots on a map.
+
+    Attributes:
+        plans: The plans.
+        objectives: Both objectives, as the service names them.
+        places: The row and column of each place, shape (n, 2).
+        uncovered: The free cells of the map that no path leads to.
+    """
+
+    plans: tuple[RobotPlan, ...]
+    objectives: tuple[Objective, ...]
+    places: NDArray[np.int64]
+    uncovered: Uncovered | None = None
+
+
+def parse_fleet(document: Mapping[str, Any]) -> FleetFront:
+    """Return the front of plans for a fleet in a JSON answer.
+
+    Raises:
+        UnexpectedAnswer: A member is missing or wrong; so does `parse_robots`.
+    """
+    answer = members(document, "answer")
+    return FleetFront(
+        **stored_members(answer, answer.read("front", each(members))),
+        plans=answer.read("front", each(_parse_fleet_plan)),
+        objectives=objectives_of(answer) or (),
+    )
+
+
+def parse_robots(document: Mapping[str, Any]) -> RobotFront:
+    """Return the front of plans for robots in a JSON answer."""
+    answer = members(document, "answer")
+    places = indexes(None, PAIR)(answer.document.get("places") or [], "answer/places")
+    route = partial(_parse_robot_route, places=len(places))
+    return RobotFront(
+        **stored_members(answer, answer.read("front", each(members))),
+        plans=answer.read("front", each(partial(_parse_robot_plan, route=route))),
+        objectives=objectives_of(answer) or (),
+        places=places,
+        uncovered=answer.maybe("uncovered", parse_uncovered),
+    )
+
+
+def _parse_fleet_plan(value: Any, where: str) -> FleetPlan:
+    plan = members(value, where)
+    return FleetPlan(
+        balance=plan.read("balance", number),
+        lengths=plan.read("lengths", floats(PAIR)),
+        routes=plan.read("routes", each(_parse_fleet_route)),
+        unassigned=plan.read("unassigned", each(text)),
+    )
+
+
+def _parse_fleet_route(value: Any, where: str) -> FleetRoute:
+    route = members(value, where)
+    stops = route.read("stops", each(text))
+    return FleetRoute(
+        vehicle=route.read("vehicle", text),
+        stops=stops,
+        lengths=route.read("lengths", floats(PAIR)),
+        arrivals=route.maybe("arrivals", floats(len(stops))),
+    )
+
+
+def _parse_robot_plan(value: Any, where: str, route: Read[RobotRoute]) -> RobotPlan:
+    plan = members(value, where)
+    return RobotPlan(
+        balance=plan.read("balance", number),
+        lengths=plan.read("lengths", floats(PAIR)),
+        routes=plan.read("routes", each(route)),
+    )
+
+
+def _parse_robot_route(value: Any, where: str, places: int) -> RobotRoute:
+    route = members(value, where)
+    return RobotRoute(
+        robot=route.read("robot", text),
+        tour=route.read("tour", indexes(None, below=places)),
+        lengths=route.read("lengths", floats(PAIR)),
+        path=route.maybe("path", parse_path),
+    )
