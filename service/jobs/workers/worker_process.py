@@ -8,8 +8,8 @@ import signal
 import tempfile
 import time
 import traceback
-from asyncio import Protocol, WriteTransport
-from collections.abc import Callable
+from asyncio import StreamReader, StreamWriter
+from collections.abc import AsyncIterator
 from contextlib import ExitStack, suppress
 from multiprocessing.context import ForkServerProcess
 from socket import socket, socketpair
@@ -26,9 +26,9 @@ from service.jobs.workers.messages import (
     Unable,
     Warm,
     WarmUp,
-    decode,
     encode,
-    receive_blocking,
+    receive,
+    received,
 )
 from service.requests.task import Task
 
@@ -68,7 +68,8 @@ class _WorkerLoop:
 
     def __init__(self, tasks: socket, signals: socket, runner: Runner) -> None:
         self._tasks = tasks
-        self._signals = signals
+        self._incoming = tasks.makefile("rb")
+        self._signals = signals.makefile("rb")
         self._runner = runner
         self._sending = Lock()
         self._changing = Lock()  # held while these change, and while a call is terminated
@@ -85,7 +86,7 @@ class _WorkerLoop:
         Thread(target=self._read_signals, name="signals", daemon=True).start()
         self._send(Started())
         while True:
-            do: Do = receive_blocking(self._tasks)
+            do: Do = receive(self._incoming)
             results = [self._result(number, task) for number, task in do.tasks.items()]
             # Before these are sent, as what is stopped then may be a task that is still to come.
             self._stopped.clear()
@@ -95,7 +96,7 @@ class _WorkerLoop:
         """Handle signals; exit at once when the service is gone, even in the middle of a task."""
         try:
             while True:
-                self._handle(receive_blocking(self._signals))
+                self._handle(receive(self._signals))
         except (EOFError, OSError):
             os._exit(0)
         except BaseException:
@@ -174,55 +175,21 @@ def _picklable(error: Exception) -> Exception:
     return error
 
 
-class _Inbox(Protocol):
-    """Receives the messages of a process, and gives each to a function as soon as it is whole."""
-
-    def __init__(self) -> None:
-        self._received = bytearray()
-        self._on_message: Callable[[object], None] | None = None
-        self._gone = asyncio.get_running_loop().create_future()
-
-    async def deliver(self, on_message: Callable[[object], None]) -> None:
-        """Call a function with each message until the process is gone; raise what it raises."""
-        self._on_message = on_message
-        self._deliver_received()
-        await self._gone
-
-    def data_received(self, data: bytes) -> None:
-        """Deliver the messages that are whole now."""
-        self._received += data
-        self._deliver_received()
-
-    def connection_lost(self, exc: Exception | None) -> None:  # noqa: ARG002
-        """Take note that the process is gone."""
-        if not self._gone.done():
-            self._gone.set_result(None)
-
-    def _deliver_received(self) -> None:
-        if self._on_message is None or self._gone.done():
-            return
-        try:
-            for message in decode(self._received):
-                self._on_message(message)
-        except Exception as error:
-            self._gone.set_exception(error)
-
-
 class WorkerProcess:
     """The handle of a worker process: the process and the sockets to it.
 
-    When the service is gone, the process ends; when the process is gone, `deliver_messages` ends.
+    When the service is gone, the process ends; when the process is gone, its messages end.
     """
 
     def __init__(
         self,
         process: ForkServerProcess,
-        inbox: _Inbox,
-        tasks: WriteTransport,
-        signals: WriteTransport,
+        results: StreamReader,
+        tasks: StreamWriter,
+        signals: StreamWriter,
     ) -> None:
         self._process = process
-        self._inbox = inbox
+        self._results = results
         self._tasks = tasks
         self._signals = signals
 
@@ -233,7 +200,6 @@ class WorkerProcess:
         Raises:
             OSError: No descriptors or processes are left.
         """
-        loop = asyncio.get_running_loop()
         with ExitStack() as ours:  # closed where this fails, with which the process ends
             with ExitStack() as theirs:
                 own_tasks, tasks = _socket_pair(ours, theirs)
@@ -244,11 +210,11 @@ class WorkerProcess:
                 )
                 _use_short_temporary_folder()
                 process.start()
-            writing, inbox = await loop.create_connection(_Inbox, sock=own_tasks)
+            results, writing = await asyncio.open_connection(sock=own_tasks)
             ours.callback(writing.close)
-            signalling, _ = await loop.create_connection(Protocol, sock=own_signals)
+            _, signalling = await asyncio.open_connection(sock=own_signals)
             ours.pop_all()
-        return cls(process, inbox, writing, signalling)
+        return cls(process, results, writing, signalling)
 
     @property
     def pid(self) -> int | None:
@@ -260,13 +226,9 @@ class WorkerProcess:
         connection = self._tasks if isinstance(message, Do) else self._signals
         connection.write(encode(message))
 
-    async def deliver_messages(self, on_message: Callable[[object], None]) -> None:
-        """Call a function with each message of the process, until it is gone.
-
-        Raises:
-            Exception: What the function raised, or a message that cannot be decoded.
-        """
-        await self._inbox.deliver(on_message)
+    def messages(self) -> AsyncIterator[object]:
+        """Yield each message of the process, until it is gone."""
+        return received(self._results)
 
     @property
     def exit_status(self) -> int | None:

@@ -7,7 +7,6 @@ import asyncio
 import logging
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from functools import partial
 
 from service.errors import NoWorker, WarmingUp
 from service.jobs.retries import GrowingPause
@@ -108,7 +107,8 @@ class WorkerSet:
         worker = Worker(await WorkerProcess.start(self._make_runner))
         self._workers.append(worker)
         try:
-            await worker.process.deliver_messages(partial(self._handle, worker))
+            async for message in worker.process.messages():
+                self._handle(worker, message)
             self.lost += 1
             _LOG.warning("worker %s was lost and is replaced", worker.process.pid)
         finally:
