@@ -204,6 +204,7 @@ def _local_engine(
         queue=settings.queue,
         share=settings.caller_share,
         seconds=settings.request_seconds,
+        roads=roads,
         on_front=metrics.planned,
         on_failed=ending.fail,
     )
@@ -214,7 +215,7 @@ def _local_engine(
         max_bytes=settings.store_bytes,
     )
     read = partial(read_task, limits=settings.limits, actors=actors)
-    return store, LocalEngine(workers, store, read, roads)
+    return store, LocalEngine(workers, store, read)
 
 
 def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:

@@ -22,11 +22,8 @@ from service.jobs.record import Record, as_cancelled, as_failed, as_finished
 from service.jobs.retries import UnsavedRecords
 from service.jobs.running_job import RunningJob
 from service.jobs.store import Store
-from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
-from service.requests.road_measurer import measured_by_road, needs_roads
 from service.requests.task import Task, TaskSource
-from service.roads.client import RoadClient
 
 _PAUSE = 0.5  # seconds between tries to resume the job of an earlier process
 _LOG = logging.getLogger("paretour")
@@ -39,8 +36,10 @@ class LocalEngine:
     store resumes them. If the store does not accept a finished record, its front is reported all
     the same and stored later; until then no new job is accepted.
 
-    This process asks for costs by road, not the workers: a job that waits for the routing engine
-    holds its place, but no process.
+    Args:
+        workers: The processes that plan.
+        store: Where records are kept.
+        read: Reads the stored task of a job that an earlier process left unfinished.
     """
 
     def __init__(
@@ -48,20 +47,10 @@ class LocalEngine:
         workers: WorkerPool,
         store: Store,
         read: Callable[[TaskSource], Task],
-        roads: RoadClient | None = None,
     ) -> None:
-        """Make an engine.
-
-        Args:
-            workers: The processes that plan.
-            store: Where records are kept.
-            read: Reads the stored task of a job that an earlier process left unfinished.
-            roads: The client of a routing engine.
-        """
         self._workers = workers
         self._store = store
         self._read = read
-        self._roads = roads
         self._unsaved = UnsavedRecords(store)
         self._jobs: dict[str, RunningJob] = {}
         self._tasks: set[asyncio.Task[None]] = set()
@@ -80,8 +69,6 @@ class LocalEngine:
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
-        if self._roads is not None:
-            await self._roads.close()
 
     async def stats(self) -> EngineStats:
         """Return the numbers for the metrics."""
@@ -111,8 +98,7 @@ class LocalEngine:
     ) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it."""
         self._unsaved.check_none()
-        submission = self._workers.reserve(task, deadline=deadline, client=record.client)
-        self._queue(submission)
+        submission = self._workers.submit(task, deadline=deadline, client=record.client)
         disconnected.add_done_callback(lambda _: self._workers.stop(submission))
         try:
             front = await submission.front()
@@ -198,30 +184,8 @@ class LocalEngine:
 
     def _begin(self, job: RunningJob) -> None:
         assert job.submission is not None
-        self._queue(job.submission)
+        self._workers.queue(job.submission)
         self._spawn(self._follow(job))
-
-    def _queue(self, submission: Submission) -> None:
-        """Queue a submission that has a place, at once or when its costs by road are there."""
-        if self._roads is None or not needs_roads(submission.task):
-            self._workers.queue(submission)
-        else:
-            self._spawn(self._queue_measured(submission, self._roads))
-
-    async def _queue_measured(self, submission: Submission, roads: RoadClient) -> None:
-        """Ask for the costs by road of a submission, until it ends, and queue it with them."""
-        asking = asyncio.create_task(measured_by_road(submission.task, roads))
-        submission.when_ended(asking.cancel)
-        try:
-            await asyncio.wait((asking,))
-            if not asking.cancelled():
-                submission.task = asking.result()
-        except Exception as error:
-            submission.fail(error)
-        finally:
-            asking.cancel()
-            # One that has ended only returns its place.
-            self._workers.queue(submission)
 
     def _drop(self, job: RunningJob) -> None:
         """Give up a job that was not admitted."""

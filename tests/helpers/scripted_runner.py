@@ -62,6 +62,8 @@ class ScriptedRunner:
             case "call":
                 _TERMINATED.wait()
                 raise RuntimeError("terminated")
+            case "grow":
+                np.ones(2**27)  # 1 GiB
             case "hang":
                 time.sleep(600)
             case "report and hang":

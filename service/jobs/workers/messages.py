@@ -50,6 +50,11 @@ class Warm:
     """From a worker: the search is compiled."""
 
 
+@dataclass(frozen=True)
+class Spent:
+    """From a worker: it has grown too large, and ends after the results that follow."""
+
+
 @dataclass(frozen=True, eq=False)
 class Found:
     """From a worker: the progress of a task that goes on, and its best front so far."""

@@ -4,6 +4,7 @@ import asyncio
 import multiprocessing
 import os
 import pickle
+import resource
 import signal
 import tempfile
 import time
@@ -21,6 +22,7 @@ from service.jobs.workers.messages import (
     Done,
     Failed,
     Found,
+    Spent,
     Started,
     Stop,
     Unable,
@@ -33,6 +35,7 @@ from service.jobs.workers.messages import (
 from service.requests.task import Task
 
 NICENESS = 5  # of a worker: the event loop comes first, and needs little
+_LARGE = 1_000_000  # kilobytes to which a process may grow; after that task a fresh one follows
 _TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin a call
 
 _CONTEXT = multiprocessing.get_context("forkserver")
@@ -77,7 +80,7 @@ class _WorkerLoop:
         self._stopped: set[int] = set()
 
     def run(self) -> None:
-        """Run tasks, one after another, until the service closes the connection.
+        """Run tasks, one after another, until the process is large or the service is gone.
 
         Raises:
             EOFError: The service is gone.
@@ -90,6 +93,9 @@ class _WorkerLoop:
             results = [self._result(number, task) for number, task in do.tasks.items()]
             # Before these are sent, as what is stopped then may be a task that is still to come.
             self._stopped.clear()
+            if resource.getrusage(resource.RUSAGE_SELF).ru_maxrss > _LARGE:
+                self._send(Spent(), *results)
+                return
             self._send(*results)
 
     def _read_signals(self) -> None:

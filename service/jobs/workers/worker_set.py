@@ -12,7 +12,7 @@ from service.errors import NoWorker, WarmingUp
 from service.jobs.retries import GrowingPause
 from service.jobs.runner import MakeRunner
 from service.jobs.submission import Submission
-from service.jobs.workers.messages import Started, Unable, Warm, WarmUp
+from service.jobs.workers.messages import Spent, Started, Unable, Warm, WarmUp
 from service.jobs.workers.worker_process import WorkerProcess
 
 _SHORTEST_PAUSE = 0.5  # seconds until a process that could not even start is tried again
@@ -29,6 +29,7 @@ class Worker:
     started: bool = False
     warming: bool = False
     warm: bool = False
+    spent: bool = False  # it takes no more submissions
     reason: str = ""  # why it ends, if it has told
     submissions: dict[int, Submission] = field(default_factory=dict)
 
@@ -109,8 +110,9 @@ class WorkerSet:
         try:
             async for message in worker.process.messages():
                 self._handle(worker, message)
-            self.lost += 1
-            _LOG.warning("worker %s was lost and is replaced", worker.process.pid)
+            if not worker.spent:
+                self.lost += 1
+                _LOG.warning("worker %s was lost and is replaced", worker.process.pid)
         finally:
             idle = not worker.submissions  # else what it ran may be what it died of
             worker.process.kill()
@@ -118,7 +120,7 @@ class WorkerSet:
             self._warm_up()
             self._on_lost(worker)
             await worker.process.join()
-        if idle and not self.was_warm:
+        if idle and not self.was_warm and not worker.spent:
             status = worker.process.exit_status
             self._fail(worker.reason or f"a process ended with status {status} while it loaded")
         return worker.started
@@ -144,6 +146,8 @@ class WorkerSet:
                 self._failing = False
             case Warm():
                 worker.warm = self.was_warm = True
+            case Spent():
+                worker.spent = True
             case Unable():
                 worker.reason = message.reason
         self._warm_up()
