@@ -37,7 +37,6 @@ from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.stored_task import read_task
 from service.roads.client import RoadClient
-from service.roads.router import RouterSettings
 from service.settings import Settings
 from service.telemetry import configure_logging, log_loading, logged, logging_every, trace
 
@@ -155,24 +154,26 @@ def build_worker(settings: Settings) -> Callable[[], int]:
     redis_url = _redis_url(settings)
     from service.cluster.celery_app import make_celery
     from service.cluster.worker import CeleryWorker, make_record_worker
-    from service.jobs.compiled_code import warm_up
 
-    _checked_actors(settings)
+    actors = _checked_actors(settings)
     configure_logging()
-    seconds = settings.request_seconds
     worker = CeleryWorker(
-        celery=make_celery(redis_url, seconds),
-        make_record_worker=partial(
-            make_record_worker, _make_runner(settings, settings.roads), redis_url, seconds
+        celery=make_celery(redis_url, settings.request_seconds),
+        records=make_record_worker(
+            _make_runner(settings),
+            partial(read_task, limits=settings.limits, actors=actors),
+            redis_url,
+            workers=settings.workers,
+            seconds=settings.request_seconds,
+            roads=None if settings.roads is None else RoadClient(settings.roads),
         ),
         workers=settings.workers,
         drain_seconds=settings.drain_seconds,
     )
 
     def run() -> int:
-        # Before the first fork, so that every process has the compiled search at once.
         with logging_every("the search is being loaded or compiled"):
-            warm_up()
+            worker.start()
         return worker.run()
 
     return run
@@ -199,7 +200,7 @@ def _local_engine(
 ) -> tuple[Store, Engine]:
     """Return the store in SQLite, and the engine in this process and its children."""
     workers = WorkerPool(
-        _make_runner(settings, None),
+        _make_runner(settings),
         workers=settings.workers,
         queue=settings.queue,
         share=settings.caller_share,
@@ -235,9 +236,9 @@ def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
     )
 
 
-def _make_runner(settings: Settings, roads: RouterSettings | None) -> MakeRunner:
+def _make_runner(settings: Settings) -> MakeRunner:
     make = partial(
-        make_runner, settings.actors, settings.threads, settings.limits, settings.own_actors, roads
+        make_runner, settings.actors, settings.threads, settings.limits, settings.own_actors
     )
     return partial(logged, make)
 

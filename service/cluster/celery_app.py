@@ -6,23 +6,21 @@ from celery import Celery
 from kombu.exceptions import OperationalError
 from redis.exceptions import ResponseError
 
-from service.cluster.records import UNAVAILABLE
+from service.cluster.script import UNAVAILABLE
 from service.cluster.transport import TRANSPORT
 from service.errors import StoreUnavailable
 
 QUEUE = "paretour"
 TASK = "paretour.plan"
-_SPARE = 15.0  # seconds from a record's time limit until its process is killed
-_MEMORY = 1_000_000  # kilobytes that a process may have grown to before a fresh one follows
+_SPARE = 30.0  # seconds from a record's time limit until its message is sent to another worker
 _ONCE_MORE = {
     "max_retries": 1,
     "interval_start": 0,
 }  # as the connection may be to a Redis that was restarted
-_LOADING = 300.0  # seconds that a process may take to load, or to compile
 
 
 def make_celery(redis_url: str, seconds: float) -> Celery:
-    """Return the application at this Redis, whose tasks are killed soon after their time limit."""
+    """Return the application at this Redis, for records with a time limit in seconds."""
     celery = Celery("paretour", broker=redis_url, set_as_current=False)
     celery.conf.broker_transport = TRANSPORT
     if redis_url.startswith("rediss:"):
@@ -33,14 +31,10 @@ def make_celery(redis_url: str, seconds: float) -> Celery:
         task_ignore_result=True,
         # A message is removed once its record is finished, and comes back if its worker is lost.
         task_acks_late=True,
-        task_reject_on_worker_lost=True,
         task_acks_on_failure=True,
-        task_acks_on_timeout=False,
         worker_prefetch_multiplier=1,
-        # A process that takes too long is killed; only then is its message sent to another.
-        task_time_limit=seconds + _SPARE,
         broker_transport_options={
-            "visibility_timeout": int(seconds + 2 * _SPARE),
+            "visibility_timeout": int(seconds + _SPARE),
             "unacked_restore_interval": 5,
             "unacked_restore_throttle": 1,
             "socket_keepalive": True,
@@ -53,8 +47,6 @@ def make_celery(redis_url: str, seconds: float) -> Celery:
         broker_channel_error_retry=True,
         worker_cancel_long_running_tasks_on_connection_loss=False,
         worker_enable_remote_control=False,
-        worker_max_memory_per_child=_MEMORY,
-        worker_proc_alive_timeout=_LOADING,
     )
     return celery
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 from redis.asyncio import Redis
 
-from service.cluster.records import CHANNEL, UNAVAILABLE
+from service.cluster.script import CHANNEL, UNAVAILABLE
 from service.jobs.record import UNFINISHED
 
 _PAUSE = 0.2  # seconds between two tries to listen

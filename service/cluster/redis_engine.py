@@ -2,25 +2,19 @@
 
 import asyncio
 import logging
-from asyncio import Event, Future
+from asyncio import Future
 from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import suppress
 from functools import partial
 from time import time
 
 from redis.asyncio import Redis
-from redis.backoff import NoBackoff
-from redis.retry import Retry
 
 from service.cluster.celery_app import QUEUE, make_celery, send_record
 from service.cluster.pubsub import Subscriptions
-from service.cluster.records import (
-    LEASE,
-    STOP_REASONS,
-    StoredRecord,
-    record_arguments,
-)
+from service.cluster.records import STOP_REASONS, StoredRecord, record_arguments
 from service.cluster.redis_store import RedisStore
+from service.cluster.script import LEASE, connect_redis
 from service.errors import (
     Cancelled,
     DeadlineExceeded,
@@ -172,7 +166,8 @@ class RedisEngine:
                         yield JobState(record, progress)
                 if record.finished:
                     return
-                await _wait(changed, _POLL)
+                with suppress(TimeoutError):
+                    await asyncio.wait_for(changed.wait(), _POLL)
 
     async def cancel(self, record: Record) -> Record:
         """End a job at once, with what was found so far, and return its final record."""
@@ -236,15 +231,6 @@ class RedisEngine:
         task.add_done_callback(self._tasks.discard)
 
 
-async def _wait(changed: Event, seconds: float) -> None:
-    with suppress(TimeoutError):
-        async with asyncio.timeout(seconds):
-            await changed.wait()
-
-
-_SECONDS = 2.0  # the longest that one reply of Redis may take
-
-
 def connect(  # noqa: PLR0913  a setting each
     redis_url: str,
     *,
@@ -257,10 +243,7 @@ def connect(  # noqa: PLR0913  a setting each
     on_front: Callable[[FrontDocument], None] = lambda _: None,
 ) -> tuple[RedisStore, RedisEngine]:
     """Return the store and the engine of a replica at this Redis."""
-    # Tried once more, because the connection may be to a Redis that was restarted.
-    redis = Redis.from_url(
-        redis_url, retry=Retry(NoBackoff(), 1), socket_timeout=_SECONDS, socket_keepalive=True
-    )
+    redis = connect_redis(redis_url)
     store = RedisStore(redis, entries=entries, max_age=max_age, max_bytes=max_bytes)
     send = partial(send_record, make_celery(redis_url, seconds))
     return store, RedisEngine(redis, store, send, queue=queue, share=share, on_front=on_front)

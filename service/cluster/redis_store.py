@@ -1,24 +1,18 @@
 """The store in Redis, shared by all replicas."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from time import time
 from typing import Any
 
 from redis.asyncio import Redis
-from redis.exceptions import ResponseError
 
 from service.cluster.records import (
-    REFUSES_WRITES,
-    SCRIPT,
-    UNAVAILABLE,
     Argument,
     StoredRecord,
-    damaged_key,
-    log_repaired,
     record_arguments,
-    stored_record,
     stored_source,
 )
+from service.cluster.script import RecordScript
 from service.errors import (
     Expired,
     IdempotencyMismatch,
@@ -26,16 +20,15 @@ from service.errors import (
     NoWorker,
     QueueFull,
     ShareFull,
-    StoreUnavailable,
 )
 from service.jobs.record import Record
-from service.jobs.store import STORE_BYTES, UnreadableRecord, log_dropped
+from service.jobs.store import STORE_BYTES
 from service.requests.task import TaskSource
 
 NOBODY = "none of the cluster was there in the last 5 s"
 
 
-class RedisStore:
+class RedisStore(RecordScript):
     """Keeps at most `entries` finished records of `max_bytes`, none older than `max_age` seconds.
 
     Of those that were dropped it remembers the last `tombstones` ids. Only `unfinished` returns
@@ -52,10 +45,8 @@ class RedisStore:
         tombstones: int = 10_000,
         clock: Callable[[], float] = time,
     ) -> None:
-        self._redis = redis
-        self._script = redis.register_script(SCRIPT)
+        super().__init__(redis, clock)
         self._bounds = (max_age, entries, tombstones, max_bytes)
-        self._clock = clock
 
     async def put(self, record: Record) -> None:
         """Store a record, in place of an earlier one with its id."""
@@ -118,34 +109,6 @@ class RedisStore:
         found = [await self.read(*each, whole=True) for each in await self.call("unfinished")]
         return [stored.record for stored in found if stored is not None]
 
-    async def close(self) -> None:
-        """Close the connections."""
-        await self._redis.aclose()
-
-    async def call(self, verb: str, *arguments: Argument) -> Any:
-        """Run a verb of the script and return its reply.
-
-        Raises:
-            StoreUnavailable: Redis does not answer, or takes no more data where the verb writes.
-        """
-        try:
-            return await self._script(args=[verb, self._clock(), *arguments])
-        except UNAVAILABLE as error:
-            raise StoreUnavailable from error
-        except ResponseError as error:
-            if str(error).startswith(REFUSES_WRITES):
-                raise StoreUnavailable from error
-            await self._repair(error)
-            raise StoreUnavailable from error
-
-    async def _repair(self, error: ResponseError) -> None:
-        """Recreate the key at which the script failed; raise the error if it names none."""
-        key = damaged_key(error)
-        if key is None:
-            raise error
-        log_repaired(key, error)
-        await self._script(args=["repair", self._clock(), key])
-
     async def check_ready(self) -> None:
         """Raise StoreUnavailable if Redis accepts no more data, NoWorker if no worker runs."""
         if await self.call("write") == 0:
@@ -170,31 +133,6 @@ class RedisStore:
                     stored = await self.read(id_, *hashes, caller=arguments[0])
                     if stored is not None:
                         return stored
-
-    async def read(
-        self,
-        id: bytes,  # noqa: A002
-        *hashes: Iterable[bytes],
-        caller: str = "",
-        whole: bool = False,
-    ) -> StoredRecord | None:
-        """Return the record in these hashes; if it cannot be read, drop it and return None.
-
-        Args:
-            id: Its id, which may be missing in the hashes.
-            hashes: As HGETALL gives them.
-            caller: Its caller, if known.
-            whole: Whether an unfinished record must have its source.
-        """
-        try:
-            stored = stored_record(*hashes)
-            if whole and stored.record.source is None:
-                raise UnreadableRecord("what to plan is missing")
-        except UnreadableRecord as error:
-            log_dropped(id.decode(errors="replace")[:80], error)
-            await self.call("drop", id, *([caller] if caller else []))
-            return None
-        return stored
 
     async def _earlier(self, caller: str, verb: str, *arguments: Argument) -> Record | None:
         """Return the earlier record that an admission finds, if there is one that can be read."""

@@ -9,8 +9,7 @@ from service.front import Progress
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report
 from service.requests.limits import Limits
-from service.requests.task import Task, TaskSource
-from service.roads.router import RouterSettings
+from service.requests.task import Task
 
 REPORT_TOURS = 100  # at most in a reported front
 REPORT_SECONDS = 0.25  # at least between two reports
@@ -22,9 +21,6 @@ class Runner(Protocol):
 
     def warm_up(self) -> None:
         """Compile the search, or load it from the cache."""
-
-    def read(self, source: TaskSource) -> Task:
-        """Return a stored task; errors as of `read_task`."""
 
     def run(self, task: Task, stop: Callable[[], bool], report: Report) -> FrontDocument:
         """Return the front of a task.
@@ -65,9 +61,8 @@ def make_runner(
     threads: int,
     limits: Limits,
     own_actors: Path | None = None,
-    roads: RouterSettings | None = None,
 ) -> Runner:
     """Return a runner as `load_runner` does: what plans is imported by the process that calls."""
     from service.jobs.task_runner import load_runner
 
-    return load_runner(actors, threads, limits, own_actors, roads)
+    return load_runner(actors, threads, limits, own_actors)

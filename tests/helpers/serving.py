@@ -3,7 +3,7 @@
 import socket
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -46,7 +46,9 @@ class ColdRunner(TaskRunner):
             time.sleep(0.005)
 
 
-def runner_of(*actors: NamedActor, limits: Limits = LIMITS, warm: Path | None = None) -> MakeRunner:
+def runner_of(
+    *actors: NamedActor, limits: Limits = LIMITS, warm: Path | None = None
+) -> Callable[[], TaskRunner]:
     """Return a picklable factory of runners with these actors, by default two that shuffle.
 
     With `warm`, the path of a file, their warm-up lasts until it exists.
