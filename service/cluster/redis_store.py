@@ -31,8 +31,7 @@ NOBODY = "none of the cluster was there in the last 5 s"
 class RedisStore(RecordScript):
     """Keeps at most `entries` finished records of `max_bytes`, none older than `max_age` seconds.
 
-    Of those that were dropped it remembers the last `tombstones` ids. Only `unfinished` returns
-    records with their sources.
+    Of those that were dropped it remembers the last `tombstones` ids.
     """
 
     def __init__(
@@ -47,21 +46,6 @@ class RedisStore(RecordScript):
     ) -> None:
         super().__init__(redis, clock)
         self._bounds = (max_age, entries, tombstones, max_bytes)
-
-    async def put(self, record: Record) -> None:
-        """Store a record, in place of an earlier one with its id."""
-        await self.call("put", record.id, *record_arguments(record))
-        await self._evict()
-
-    async def admit(self, record: Record) -> Record:
-        """Store a new record and return it, or return the one that has its idempotency key."""
-        await self._evict()
-        arguments = (*_identity(record), *record_arguments(record))
-        return await self._earlier(record.caller, "admit", *arguments) or record
-
-    async def repeated(self, record: Record) -> Record | None:
-        """Return the record that has the idempotency key of this one, if one has and succeeded."""
-        return await self._earlier(record.caller, "repeated", *_identity(record)[1:])
 
     async def submit(self, record: Record, queue: int, share: float, waits: bool = False) -> Record:
         """Admit a record if there is a place for it; a repeat needs none.
@@ -103,11 +87,6 @@ class RedisStore(RecordScript):
     async def delete(self, record: Record) -> None:
         """Delete a record, and leave no trace of it."""
         await self.call("forget", record.id)
-
-    async def unfinished(self) -> list[Record]:
-        """Return all unfinished records with their sources, the oldest first."""
-        found = [await self.read(*each, whole=True) for each in await self.call("unfinished")]
-        return [stored.record for stored in found if stored is not None]
 
     async def check_ready(self) -> None:
         """Raise StoreUnavailable if Redis accepts no more data, NoWorker if no worker runs."""

@@ -21,7 +21,7 @@ from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.record import Record, as_cancelled, as_failed, as_finished
 from service.jobs.retries import UnsavedRecords
 from service.jobs.running_job import RunningJob
-from service.jobs.store import Store
+from service.jobs.sqlite_store import SqliteStore
 from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.task import Task, TaskSource
 
@@ -45,7 +45,7 @@ class LocalEngine:
     def __init__(
         self,
         workers: WorkerPool,
-        store: Store,
+        store: SqliteStore,
         read: Callable[[TaskSource], Task],
     ) -> None:
         self._workers = workers

@@ -6,7 +6,7 @@ import logging
 from service.errors import StoreUnavailable
 from service.jobs.deadline import Deadline
 from service.jobs.record import Record, as_failed
-from service.jobs.store import Store
+from service.jobs.sqlite_store import SqliteStore
 
 
 class GrowingPause:
@@ -36,7 +36,7 @@ _LOG = logging.getLogger("paretour")
 class UnsavedRecords:
     """Saves records that the store did not accept at first."""
 
-    def __init__(self, store: Store, patience: float = _PATIENCE) -> None:
+    def __init__(self, store: SqliteStore, patience: float = _PATIENCE) -> None:
         self._store = store
         self._patience = patience
         self._ids: set[str] = set()

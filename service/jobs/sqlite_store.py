@@ -62,7 +62,7 @@ _Condition = tuple[str] | tuple[str, float] | tuple[str, float, float]
 class SqliteStore:
     """Keeps at most `entries` finished records of `max_bytes`, none older than `max_age` seconds.
 
-    Of those that were dropped it remembers the last `tombstones` ids. The file belongs to one
+    Of the records that were dropped it remembers the last `tombstones` ids. The file belongs to one
     process at a time.
 
     Raises:
@@ -106,11 +106,21 @@ class SqliteStore:
             await self._in_thread(self._put, record, self._clock())
 
     async def admit(self, record: Record) -> Record:
-        """Store a new record and return it, or return the one that has its idempotency key."""
+        """Store a new record and return it, or return the one that has its idempotency key.
+
+        A failed record loses its key, so that a repeat is a new try.
+
+        Raises:
+            IdempotencyMismatch: The caller used the key for another body.
+        """
         return await self._in_thread(self._admit, record)
 
     async def repeated(self, record: Record) -> Record | None:
-        """Return the record that has the idempotency key of this one, if one has and succeeded."""
+        """Return the record that has the idempotency key of this one, if one has and succeeded.
+
+        Raises:
+            IdempotencyMismatch: The caller used the key for another body.
+        """
         return await self._in_thread(self._repeated, record)
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002

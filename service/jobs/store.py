@@ -1,4 +1,4 @@
-"""The interface of stores, and the stored form of a record, which all of them share.
+"""What requests need of stores, and the stored form of a record, which all stores share.
 
 The names of the columns are read by other releases and stay as they are.
 """
@@ -31,25 +31,6 @@ class Store(Protocol):
     A client is a caller, or an address where there are no keys.
     """
 
-    async def put(self, record: Record) -> None:
-        """Store a record, in place of an earlier one with its id."""
-
-    async def admit(self, record: Record) -> Record:
-        """Store a new record and return it, or return the one that has its idempotency key.
-
-        A failed record loses its key, so that a repeat is a new try.
-
-        Raises:
-            IdempotencyMismatch: The caller used the key for another body.
-        """
-
-    async def repeated(self, record: Record) -> Record | None:
-        """Return the record that has the idempotency key of this one, if one has and succeeded.
-
-        Raises:
-            IdempotencyMismatch: The caller used the key for another body.
-        """
-
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
         """Return the caller's record with this id.
 
@@ -75,9 +56,6 @@ class Store(Protocol):
 
     async def delete(self, record: Record) -> None:
         """Delete a record, and leave no trace of it."""
-
-    async def unfinished(self) -> list[Record]:
-        """Return all unfinished records with their sources, the oldest first."""
 
     async def close(self) -> None:
         """Close the file or the connections."""

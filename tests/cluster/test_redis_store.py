@@ -10,7 +10,6 @@ import redis as redis_client
 from redis.asyncio import Redis as AsyncRedis
 
 from service.cluster.redis_engine import connect
-from service.cluster.redis_store import RedisStore
 from service.cluster.script import connect_redis
 from service.cluster.worker_store import WorkerStore
 from service.errors import Expired, StoreUnavailable
@@ -18,7 +17,7 @@ from service.front import Progress
 from service.requests.task import TaskSource
 from tests.helpers.redis_server import Redis, redis_server
 from tests.helpers.released_records import ANSWERS, REDIS_HASHES, REDIS_SETS
-from tests.helpers.stores import Worker, job, record, redis_store
+from tests.helpers.stores import FullRedisStore, Worker, job, record, redis_store
 
 
 def test_a_store_that_does_not_answer_is_unavailable(tmp_path: Path) -> None:
@@ -40,7 +39,7 @@ def test_records_of_the_last_release_are_read(redis: Redis) -> None:
             await connection.hset(key, mapping=fields)
         for key, ids in REDIS_SETS.items():
             await connection.zadd(key, ids)
-        store = RedisStore(connection, entries=9, max_age=60, clock=lambda: 1001.0)
+        store = FullRedisStore(connection, entries=9, max_age=60, clock=lambda: 1001.0)
         done = await store.get("us", "done")
         assert (done.json(), done.front.gained) == (ANSWERS["done"], 0.0625)
         assert (await store.latest("us", "us")).id == "done"
@@ -142,9 +141,9 @@ def test_what_replicas_of_the_last_release_store_is_counted(redis: Redis) -> Non
             await connection.zadd("paretour:finished", {str(number): number})
             await connection.zadd(f"paretour:caller:{caller}", {str(number): number})
         bounds = {"max_age": 60, "clock": lambda: 1001.0}
-        by_entries = RedisStore(connection, entries=10, **bounds)
+        by_entries = FullRedisStore(connection, entries=10, **bounds)
         assert (await by_entries.latest("us", "us")).id == "0"
-        by_bytes = RedisStore(connection, entries=99, max_bytes=3_000, **bounds)
+        by_bytes = FullRedisStore(connection, entries=99, max_bytes=3_000, **bounds)
         assert (await by_bytes.latest("us", "us")).id == "0"
         assert await connection.zcard("paretour:finished") < 10
         assert int(await connection.get("paretour:total")) <= 3_000

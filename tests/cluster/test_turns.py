@@ -9,11 +9,10 @@ import redis as redis_client
 from hypothesis import HealthCheck, example, given, settings
 from redis.asyncio import Redis as AsyncRedis
 
-from service.cluster.redis_store import RedisStore
 from service.cluster.script import LEASE
 from service.jobs.record import Record
 from tests.helpers.redis_server import Redis
-from tests.helpers.stores import Worker, job, record
+from tests.helpers.stores import FullRedisStore, Worker, job, record
 from tests.helpers.turns import EVENTS, clients_by_policy
 
 pytestmark = pytest.mark.usefixtures("connection")
@@ -30,7 +29,7 @@ def submitted(url: str, *ids: str) -> None:
     """Submit a job for each id, of the client that its first letter names."""
 
     async def submit() -> None:
-        store = RedisStore(AsyncRedis.from_url(url), entries=9, max_age=60)
+        store = FullRedisStore(AsyncRedis.from_url(url), entries=9, max_age=60)
         for id_ in ids:
             await store.submit(job(id_, client=id_[0]), queue=99, share=1.0)
         await store.close()
@@ -116,7 +115,7 @@ def test_what_ended_while_it_waited_takes_no_turn(redis: Redis) -> None:
 
 def test_jobs_that_name_no_client_take_turns_by_their_callers(redis: Redis) -> None:
     async def put() -> None:
-        store = RedisStore(AsyncRedis.from_url(redis.url), entries=9, max_age=60)
+        store = FullRedisStore(AsyncRedis.from_url(redis.url), entries=9, max_age=60)
         await store.put(job("old", caller="us"))
         await store.close()
 
@@ -134,7 +133,7 @@ def test_what_a_worker_finishes_keeps_its_source_unless_it_failed(redis: Redis) 
         worker.finish(record(id_, status=status))
 
     async def sources() -> list[Any]:
-        store = RedisStore(AsyncRedis.from_url(redis.url), entries=9, max_age=60)
+        store = FullRedisStore(AsyncRedis.from_url(redis.url), entries=9, max_age=60)
         found = [await store.source(record(id_)) for id_ in "ab"]
         await store.close()
         return found
