@@ -31,10 +31,10 @@ from service.api.transport.protocol import Connection
 from service.cluster import check_cluster
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
-from service.jobs.runner import MakeRunner, make_runner
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool
+from service.jobs.workers.worker_process import MakeRunner, make_runner
 from service.requests.stored_task import read_task
 from service.roads.client import RoadClient
 from service.settings import Settings

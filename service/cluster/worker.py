@@ -29,9 +29,9 @@ from service.cluster.worker_store import TakenOver, WorkerStore
 from service.errors import Cancelled, DeadlineExceeded, NoWorker, WarmingUp, WorkerLost
 from service.jobs.deadline import Deadline
 from service.jobs.record import Record, as_ended, as_failed
-from service.jobs.runner import MakeRunner
 from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.workers.worker_pool import WorkerPool
+from service.jobs.workers.worker_process import MakeRunner
 from service.requests.task import Task, TaskSource
 from service.roads.client import RoadClient
 

@@ -17,11 +17,11 @@ from service.api.app import Edge, create_app
 from service.api.transport.connections import ConnectionLimits, Connections
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
-from service.jobs.runner import MakeRunner
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
 from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
+from service.jobs.workers.worker_process import MakeRunner
 from service.kinds.kind import NamedActor
 from service.requests.limits import Limits
 from service.requests.stored_task import read_task

@@ -5,6 +5,7 @@ import struct
 from asyncio import StreamReader
 from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass
+from enum import Enum
 from typing import Any, BinaryIO
 
 from service.front import Progress
@@ -12,11 +13,6 @@ from service.kinds.front_document import FrontDocument
 from service.requests.task import Task
 
 _LENGTH = struct.Struct("!Q")
-
-
-@dataclass(frozen=True)
-class WarmUp:
-    """To a worker: compile the search, or load it from the cache."""
 
 
 @dataclass(frozen=True)
@@ -33,9 +29,18 @@ class Stop:
     number: int
 
 
-@dataclass(frozen=True)
-class Started:
-    """From a worker: its networks are loaded."""
+class Order(Enum):
+    """To a worker."""
+
+    WARM_UP = "compile the search, or load it from the cache"
+
+
+class Stage(Enum):
+    """From a worker: what it has come to."""
+
+    STARTED = "its networks are loaded"
+    WARM = "the search is compiled"
+    SPENT = "it has grown too large, and ends after the results that follow"
 
 
 @dataclass(frozen=True)
@@ -43,16 +48,6 @@ class Unable:
     """From a worker: it cannot work and ends, for this reason."""
 
     reason: str
-
-
-@dataclass(frozen=True)
-class Warm:
-    """From a worker: the search is compiled."""
-
-
-@dataclass(frozen=True)
-class Spent:
-    """From a worker: it has grown too large, and ends after the results that follow."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,9 +19,9 @@ from service.errors import Cancelled, DeadlineExceeded, ShuttingDown, WarmingUp,
 from service.jobs.deadline import Deadline
 from service.jobs.fair_queue import FairQueue, check_place, places_of_client
 from service.jobs.record import StopReason
-from service.jobs.runner import MakeRunner
 from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.workers.messages import Do, Done, Failed, Found, Stop
+from service.jobs.workers.worker_process import MakeRunner
 from service.jobs.workers.worker_set import Worker, WorkerSet
 from service.kinds.front_document import FrontDocument
 from service.requests.road_measurer import measured_by_road, needs_roads

@@ -1,4 +1,4 @@
-"""Worker processes: the loop inside one, and its handle in the service's event loop."""
+"""Worker processes: what runs tasks in one, the loop around it, and its handle in the service."""
 
 import asyncio
 import multiprocessing
@@ -10,32 +10,38 @@ import tempfile
 import time
 import traceback
 from asyncio import StreamReader, StreamWriter
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import ExitStack, suppress
 from multiprocessing.context import ForkServerProcess
+from pathlib import Path
 from socket import socket, socketpair
-from threading import Lock, Thread
+from threading import Condition, Lock, Thread
+from typing import Protocol
 
-from service.jobs.runner import MakeRunner, Reporter, Runner
+from service.front import Progress
 from service.jobs.workers.messages import (
     Do,
     Done,
     Failed,
     Found,
-    Spent,
-    Started,
+    Order,
+    Stage,
     Stop,
     Unable,
-    Warm,
-    WarmUp,
     encode,
     receive,
     received,
 )
+from service.kinds.front_document import FrontDocument
+from service.kinds.kind import Report
+from service.requests.limits import Limits
 from service.requests.task import Task
 
 NICENESS = 5  # of a worker: the event loop comes first, and needs little
 _LARGE = 1_000_000  # kilobytes to which a process may grow; after that task a fresh one follows
+_REPORT_TOURS = 100  # at most in a reported front
+_REPORT_SECONDS = 0.25  # at least between two reports
+_REPORT_SHARE = 0.05  # the share of the time that reports may take
 _TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin a call
 
 _CONTEXT = multiprocessing.get_context("forkserver")
@@ -43,6 +49,58 @@ _CONTEXT.set_forkserver_preload(["service.jobs.workers.preloaded"])
 # Python puts the socket of the fork server at TMPDIR/pymp-12345678/listener-12345678.
 _LONGEST_FOLDER = 107 - 32  # bytes; the path of a socket has at most 107
 _SHORT_FOLDERS = ("/tmp", "/var/tmp", "/dev/shm")
+
+
+class Runner(Protocol):
+    """Runs tasks, one at a time."""
+
+    def warm_up(self) -> None:
+        """Compile the search, or load it from the cache."""
+
+    def run(self, task: Task, stop: Callable[[], bool], report: Report) -> FrontDocument:
+        """Return the front of a task.
+
+        Args:
+            task: The task.
+            stop: Called often; planning ends soon after it returns True.
+            report: Called now and then with the progress, and with a function that writes the best
+                n tours found so far, which is valid until the report returns.
+        """
+
+    def terminate(self) -> None:
+        """End the running call of a network, if one runs; from any thread."""
+
+
+MakeRunner = Callable[[], Runner]
+
+
+class Reporter:
+    """Sends progress with the best front now and then; less often if sending takes long."""
+
+    def __init__(self, send: Callable[[Progress, FrontDocument], None]) -> None:
+        self._send = send
+        self._next = time.monotonic() + _REPORT_SECONDS
+
+    def __call__(self, progress: Progress, best: Callable[[int], FrontDocument]) -> None:
+        """Send a report, if one is due."""
+        began = time.monotonic()
+        if began < self._next:
+            return
+        self._send(progress, best(_REPORT_TOURS))
+        ended = time.monotonic()
+        self._next = ended + max(_REPORT_SECONDS, (ended - began) / _REPORT_SHARE)
+
+
+def make_runner(
+    actors: Path,
+    threads: int,
+    limits: Limits,
+    own_actors: Path | None = None,
+) -> Runner:
+    """Return a runner as `load_runner` does: what plans is imported by the process that calls."""
+    from service.jobs.task_runner import load_runner
+
+    return load_runner(actors, threads, limits, own_actors)
 
 
 def run_worker(tasks: socket, signals: socket, make_runner: MakeRunner) -> None:
@@ -75,7 +133,7 @@ class _WorkerLoop:
         self._signals = signals.makefile("rb")
         self._runner = runner
         self._sending = Lock()
-        self._changing = Lock()  # held while these change, and while a call is terminated
+        self._changing = Condition()  # held while these change, and while a call is terminated
         self._running: int | None = None
         self._stopped: set[int] = set()
 
@@ -87,14 +145,15 @@ class _WorkerLoop:
             OSError: Likewise.
         """
         Thread(target=self._read_signals, name="signals", daemon=True).start()
-        self._send(Started())
+        Thread(target=self._terminate_stopped, name="terminate", daemon=True).start()
+        self._send(Stage.STARTED)
         while True:
             do: Do = receive(self._incoming)
             results = [self._result(number, task) for number, task in do.tasks.items()]
             # Before these are sent, as what is stopped then may be a task that is still to come.
             self._stopped.clear()
             if resource.getrusage(resource.RUSAGE_SELF).ru_maxrss > _LARGE:
-                self._send(Spent(), *results)
+                self._send(Stage.SPENT, *results)
                 return
             self._send(*results)
 
@@ -113,46 +172,36 @@ class _WorkerLoop:
         match message:
             case Stop():
                 self._stop(message.number)
-            case WarmUp():
+            case Order.WARM_UP:
                 Thread(target=self._warm_up, name="warm-up", daemon=True).start()
 
-    def _begin(self, number: int) -> None:
+    def _set_running(self, number: int | None) -> None:
         with self._changing:
             self._running = number
-            if number in self._stopped:  # a signal may come before the task
-                self._terminate_soon(number)
-
-    def _end(self) -> None:
-        with self._changing:
-            self._running = None
+            self._changing.notify()
 
     def _stop(self, number: int) -> None:
         with self._changing:
-            self._stopped.add(number)
-            if self._running == number:
-                self._terminate_soon(number)
+            self._stopped.add(number)  # which may come before the task
+            self._changing.notify()
 
-    def _terminate_soon(self, number: int) -> None:
-        Thread(target=self._terminate, args=[number], daemon=True).start()
-
-    def _terminate(self, number: int) -> None:
-        """Terminate the calls of the runner until the task of this number has ended."""
+    def _terminate_stopped(self) -> None:
+        """Terminate the calls of the runner again and again, while a stopped task runs."""
         while True:
             with self._changing:
-                if self._running != number:
-                    return
+                self._changing.wait_for(lambda: self._running in self._stopped)
                 self._runner.terminate()
             time.sleep(_TERMINATE_EVERY)
 
     def _result(self, number: int, task: Task) -> Done | Failed:
         report = Reporter(lambda progress, front: self._send(Found(number, progress, front)))
-        self._begin(number)
+        self._set_running(number)
         try:
             return Done(number, self._runner.run(task, lambda: number in self._stopped, report))
         except Exception as error:
             return Failed(number, _picklable(error))
         finally:
-            self._end()
+            self._set_running(None)
 
     def _warm_up(self) -> None:
         try:
@@ -163,7 +212,7 @@ class _WorkerLoop:
                 self._send(Unable(repr(error)))
             os._exit(1)
         with suppress(OSError):
-            self._send(Warm())
+            self._send(Stage.WARM)
 
     def _send(self, *messages: object) -> None:
         content = encode(*messages)
@@ -227,7 +276,7 @@ class WorkerProcess:
         """The id of the process."""
         return self._process.pid
 
-    def send(self, message: Do | Stop | WarmUp) -> None:
+    def send(self, message: Do | Stop | Order) -> None:
         """Send a message; one to a process that is gone is lost."""
         connection = self._tasks if isinstance(message, Do) else self._signals
         connection.write(encode(message))

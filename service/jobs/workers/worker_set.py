@@ -10,10 +10,9 @@ from dataclasses import dataclass, field
 
 from service.errors import NoWorker, WarmingUp
 from service.jobs.retries import GrowingPause
-from service.jobs.runner import MakeRunner
 from service.jobs.submission import Submission
-from service.jobs.workers.messages import Spent, Started, Unable, Warm, WarmUp
-from service.jobs.workers.worker_process import WorkerProcess
+from service.jobs.workers.messages import Order, Stage, Unable
+from service.jobs.workers.worker_process import MakeRunner, WorkerProcess
 
 _SHORTEST_PAUSE = 0.5  # seconds until a process that could not even start is tried again
 _LONGEST_PAUSE = 15.0
@@ -141,12 +140,12 @@ class WorkerSet:
 
     def _handle(self, worker: Worker, message: object) -> None:
         match message:
-            case Started():
+            case Stage.STARTED:
                 worker.started = True
                 self._failing = False
-            case Warm():
+            case Stage.WARM:
                 worker.warm = self.was_warm = True
-            case Spent():
+            case Stage.SPENT:
                 worker.spent = True
             case Unable():
                 worker.reason = message.reason
@@ -159,4 +158,4 @@ class WorkerSet:
             first = not any(other.warming for other in self._workers)
             if worker.started and not worker.warming and (self.was_warm or first):
                 worker.warming = True
-                worker.process.send(WarmUp())
+                worker.process.send(Order.WARM_UP)

@@ -23,8 +23,8 @@ from service.errors import (
     WorkerLost,
 )
 from service.jobs.deadline import Deadline
-from service.jobs.runner import Runner
 from service.jobs.workers.worker_pool import WorkerPool
+from service.jobs.workers.worker_process import Runner
 from service.kinds.front_document import FrontDocument
 from tests.helpers.scripted_runner import ScriptedRunner, brief_task, task, worker_pool
 
