@@ -2,19 +2,19 @@
 
 import asyncio
 import logging
-from asyncio import Future
-from collections.abc import AsyncIterator, Callable, Coroutine
-from contextlib import suppress
+from asyncio import Event, Future
+from collections import defaultdict
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
+from contextlib import contextmanager, suppress
 from functools import partial
 from time import time
 
 from redis.asyncio import Redis
 
 from service.cluster.celery_app import QUEUE, make_celery, send_record
-from service.cluster.pubsub import Subscriptions
 from service.cluster.records import STOP_REASONS, StoredRecord, record_arguments
 from service.cluster.redis_store import RedisStore
-from service.cluster.script import LEASE, connect_redis
+from service.cluster.script import CHANNEL, LEASE, UNAVAILABLE, connect_redis
 from service.errors import (
     Cancelled,
     DeadlineExceeded,
@@ -25,14 +25,71 @@ from service.errors import (
 )
 from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
-from service.jobs.record import Record, StopReason, as_ended, as_failed
+from service.jobs.record import UNFINISHED, Record, StopReason, as_ended, as_failed
 from service.jobs.store import STORE_BYTES
 from service.kinds.front_document import FrontDocument
 from service.requests.task import Task
 
 _POLL = 2.0  # seconds without a notification after which a record is read all the same
 _GRACE = 1.0  # seconds for a worker to stop by itself
+_LISTEN_PAUSE = 0.2  # seconds between two tries to listen
+_SILENT = 5.0  # seconds without a message after which the connection is tested
 _SWEEP = 2.0  # seconds between two searches for jobs that lost their worker or message
+
+
+class Subscriptions:
+    """Sets the events of waiting tasks whenever their record has changed, or may have changed.
+
+    `on_finished` is called with the id of each record that is finished.
+    """
+
+    def __init__(self, redis: Redis, on_finished: Callable[[str], None]) -> None:
+        self._redis = redis
+        self._on_finished = on_finished
+        self._waiting: dict[str, set[Event]] = defaultdict(set)
+
+    @contextmanager
+    def changes(self, id: str) -> Iterator[Event]:  # noqa: A002
+        """Return an event that is set at each change of a record."""
+        changed = Event()
+        self._waiting[id].add(changed)
+        try:
+            yield changed
+        finally:
+            self._waiting[id].discard(changed)
+            if not self._waiting[id]:
+                del self._waiting[id]
+
+    async def listen(self) -> None:
+        """Receive notifications, until the task is cancelled."""
+        while True:
+            try:
+                await self._listen()
+            except UNAVAILABLE:
+                await asyncio.sleep(_LISTEN_PAUSE)
+
+    async def _listen(self) -> None:
+        async with self._redis.pubsub() as channel:
+            await channel.subscribe(CHANNEL)
+            # Messages that were sent before the subscription are lost.
+            for id_ in list(self._waiting):
+                self._wake(id_)
+            while True:
+                message = await channel.get_message(timeout=_SILENT)
+                if message is None:
+                    await channel.ping()  # which raises where the connection is lost
+                elif message["type"] == "message":
+                    id_, _, status = message["data"].decode(errors="replace").partition(":")
+                    self._handle(id_, status)
+
+    def _handle(self, id: str, status: str) -> None:  # noqa: A002
+        if status not in UNFINISHED:
+            self._on_finished(id)
+        self._wake(id)
+
+    def _wake(self, id: str) -> None:  # noqa: A002
+        for changed in self._waiting.get(id, ()):
+            changed.set()
 
 
 class RedisEngine:

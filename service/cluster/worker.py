@@ -26,9 +26,9 @@ from service.cluster.celery_app import TASK
 from service.cluster.records import StoredRecord
 from service.cluster.script import connect_redis
 from service.cluster.worker_store import TakenOver, WorkerStore
-from service.errors import Cancelled, DeadlineExceeded, NoWorker, WarmingUp, WorkerLost
+from service.errors import Cancelled, NoWorker, WarmingUp, WorkerLost
 from service.jobs.deadline import Deadline
-from service.jobs.record import Record, as_ended, as_failed
+from service.jobs.record import as_failed
 from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.workers.worker_pool import WorkerPool
 from service.jobs.workers.worker_process import MakeRunner
@@ -124,11 +124,12 @@ class RecordWorker:
         except Exception as error:
             await store.finish(as_failed(record, error, record.front))
             return
+        submission.waited = time() - stored.requested_at
         await self._follow(store, record.id, submission)
         if submission.stop_reason is Draining:
             await store.hand_back(record.id)
         elif submission.stop_reason is not TakenOver:
-            await store.finish(await _ended(stored, submission))
+            await store.finish(await submission.final(record))
         # A process that does not stop at once is given no other record meanwhile.
         while submission in self._pool.running:
             await asyncio.sleep(_CHECK_EVERY)
@@ -163,24 +164,6 @@ class RecordWorker:
                 for store in self._stores:
                     await store.send_heartbeat()
             await asyncio.sleep(_HEARTBEAT_EVERY)
-
-
-async def _ended(stored: StoredRecord, submission: Submission) -> Record:
-    """Return the record of a submission that has ended.
-
-    Raises:
-        WorkerLost: The process was lost.
-    """
-    record = stored.record
-    try:
-        front = await submission.front()
-    except WorkerLost:
-        raise
-    except (Cancelled, DeadlineExceeded):
-        front = record.front  # of an earlier try
-    except Exception as error:
-        return as_failed(record, error, submission.best_front or record.front)
-    return as_ended(record, front, submission.stop_reason, time() - stored.requested_at)
 
 
 def make_record_worker(

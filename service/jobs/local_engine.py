@@ -5,6 +5,7 @@ import logging
 from asyncio import Future
 from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import suppress
+from dataclasses import replace
 
 from service.errors import (
     Cancelled,
@@ -15,18 +16,53 @@ from service.errors import (
     ShuttingDown,
     StoreUnavailable,
     WarmingUp,
+    WorkerLost,
 )
 from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
-from service.jobs.record import Record, as_cancelled, as_failed, as_finished
+from service.jobs.record import Record, Status, as_cancelled, as_failed, as_finished
 from service.jobs.retries import UnsavedRecords
-from service.jobs.running_job import RunningJob
 from service.jobs.sqlite_store import SqliteStore
+from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.task import Task, TaskSource
 
 _PAUSE = 0.5  # seconds between tries to resume the job of an earlier process
 _LOG = logging.getLogger("paretour")
+
+
+class _Job:
+    """An unfinished job: its record, its submission once it has one, and an event for watchers."""
+
+    def __init__(self, record: Record) -> None:
+        self.record = record
+        self.ended = False
+        self.submission: Submission | None = None
+        self.changed = asyncio.Event()  # which is set at the next change
+
+    @property
+    def state(self) -> JobState:
+        """The present state."""
+        record, submission = self.record, self.submission
+        if record.finished or submission is None:
+            return JobState(record)
+        status: Status = "running" if submission.attempts else "queued"
+        front = submission.best_front or record.front
+        return JobState(replace(record, status=status, front=front), submission.progress)
+
+    def reserve(self, workers: WorkerPool, task: Task) -> None:
+        """Take a place in the queue for its task; it raises what WorkerPool.reserve raises."""
+        self.submission = workers.reserve(task, self._notify, client=self.record.client)
+
+    def end(self, record: Record) -> None:
+        """Take the final record."""
+        self.record = record
+        self.ended = True
+        self._notify()
+
+    def _notify(self) -> None:
+        changed, self.changed = self.changed, asyncio.Event()
+        changed.set()
 
 
 class LocalEngine:
@@ -52,14 +88,14 @@ class LocalEngine:
         self._store = store
         self._read = read
         self._unsaved = UnsavedRecords(store)
-        self._jobs: dict[str, RunningJob] = {}
+        self._jobs: dict[str, _Job] = {}
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def start(self) -> None:
         """Start the workers, and resume the jobs that an earlier process left unfinished."""
         await self._workers.start()
-        resumed = [RunningJob(record) for record in await self._store.unfinished()]
-        self._jobs.update({job.id: job for job in resumed})
+        resumed = [_Job(record) for record in await self._store.unfinished()]
+        self._jobs.update({job.record.id: job for job in resumed})
         if resumed:
             self._spawn(self._resume(resumed))
 
@@ -113,7 +149,7 @@ class LocalEngine:
 
     async def submit(self, record: Record, task: Task) -> Record:
         """Store and begin a job at once, or return the earlier one that it is a repeat of."""
-        job = RunningJob(record)
+        job = _Job(record)
         try:
             self._unsaved.check_none()
             job.reserve(self._workers, task)
@@ -123,13 +159,13 @@ class LocalEngine:
                 return earlier
             raise
         # Before it is stored: a client that sees it in the store must find it here too.
-        self._jobs[job.id] = job
+        self._jobs[job.record.id] = job
         try:
             first = await self._admit(record)
         except BaseException:
             self._drop(job)
             raise
-        if first.id == job.id:
+        if first.id == job.record.id:
             self._begin(job)
         else:
             self._drop(job)
@@ -182,14 +218,14 @@ class LocalEngine:
             _LOG.error("front %s cannot be stored", record.id, exc_info=error)
             raise StoreUnavailable from error
 
-    def _begin(self, job: RunningJob) -> None:
+    def _begin(self, job: _Job) -> None:
         assert job.submission is not None
         self._workers.queue(job.submission)
         self._spawn(self._follow(job))
 
-    def _drop(self, job: RunningJob) -> None:
+    def _drop(self, job: _Job) -> None:
         """Give up a job that was not admitted."""
-        del self._jobs[job.id]
+        del self._jobs[job.record.id]
         if job.submission is not None:
             self._workers.give_back(job.submission)
 
@@ -198,7 +234,7 @@ class LocalEngine:
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    async def _resume(self, jobs: list[RunningJob]) -> None:
+    async def _resume(self, jobs: list[_Job]) -> None:
         """Begin the jobs of an earlier process, except those cancelled meanwhile."""
         for job in jobs:
             try:
@@ -209,7 +245,7 @@ class LocalEngine:
             except Exception as error:
                 await self._end(job, as_failed(job.record, error, job.record.front))
 
-    def _is_resumed(self, job: RunningJob, task: Task) -> bool:
+    def _is_resumed(self, job: _Job, task: Task) -> bool:
         """Begin a job, and return whether there was a place for it."""
         with suppress(QueueFull, WarmingUp, ShuttingDown):
             self._workers.check_warm()
@@ -217,18 +253,18 @@ class LocalEngine:
             self._begin(job)
         return job.submission is not None
 
-    async def _follow(self, job: RunningJob) -> None:
+    async def _follow(self, job: _Job) -> None:
         """Wait for the front of a job, and end it."""
         try:
             await self._end(job, await self._result(job))
         except ShuttingDown:
-            _LOG.info("front %s is left for the next start", job.id)
+            _LOG.info("front %s is left for the next start", job.record.id)
         finally:
             if not job.ended:
                 job.end(job.record)
-            self._jobs.pop(job.id, None)
+            self._jobs.pop(job.record.id, None)
 
-    async def _end(self, job: RunningJob, ended: Record) -> None:
+    async def _end(self, job: _Job, ended: Record) -> None:
         """Store the final record of a job, then report it; if it cannot be stored, report it first.
 
         The job remains, with its final record, until that is stored.
@@ -239,16 +275,11 @@ class LocalEngine:
             job.end(ended)
             await self._unsaved.save(ended, error)
         job.end(ended)
-        self._jobs.pop(job.id, None)
+        self._jobs.pop(job.record.id, None)
 
-    async def _result(self, job: RunningJob) -> Record:
-        submission, record = job.submission, job.record
-        assert submission is not None
+    async def _result(self, job: _Job) -> Record:
+        assert job.submission is not None
         try:
-            return as_finished(record, await submission.front(), submission.stop_reason)
-        except Cancelled:
-            return as_cancelled(record)
-        except ShuttingDown:
-            raise
-        except Exception as error:
-            return as_failed(record, error, submission.best_front or record.front)
+            return await job.submission.final(job.record)
+        except WorkerLost as error:
+            return as_failed(job.record, error, job.submission.best_front or job.record.front)

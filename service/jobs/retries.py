@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+from collections.abc import Iterator
 
 from service.errors import StoreUnavailable
 from service.jobs.deadline import Deadline
@@ -9,22 +10,11 @@ from service.jobs.record import Record, as_failed
 from service.jobs.sqlite_store import SqliteStore
 
 
-class GrowingPause:
-    """A pause that doubles each time, from the shortest to the longest, in seconds."""
-
-    def __init__(self, shortest: float, longest: float) -> None:
-        self._shortest = shortest
-        self._longest = longest
-        self._seconds = shortest
-
-    async def wait(self) -> None:
-        """Wait; the next pause is longer."""
-        seconds, self._seconds = self._seconds, min(2 * self._seconds, self._longest)
-        await asyncio.sleep(seconds)
-
-    def reset(self) -> None:
-        """Begin with the shortest again."""
-        self._seconds = self._shortest
+def growing_pauses(shortest: float, longest: float) -> Iterator[float]:
+    """Yield seconds to wait: the shortest pause, then each twice the last, up to the longest."""
+    while True:
+        yield shortest
+        shortest = min(2 * shortest, longest)
 
 
 _PATIENCE = 600.0  # seconds for which storing a front is tried
@@ -57,14 +47,14 @@ class UnsavedRecords:
         """
         self._ids.add(record.id)
         _LOG.error("front %s cannot be stored, and is tried again", record.id, exc_info=error)
-        pause = GrowingPause(_SHORTEST_PAUSE, _LONGEST_PAUSE)
+        pauses = growing_pauses(_SHORTEST_PAUSE, _LONGEST_PAUSE)
         deadline = Deadline.after(self._patience)
         try:
             while not await self._is_saved(record):
                 if deadline.over() and record.front.tours:
                     empty = record.front.without_tours()
                     record = as_failed(record, StoreUnavailable(), empty)
-                await pause.wait()
+                await asyncio.sleep(next(pauses))
         finally:
             self._ids.discard(record.id)
         _LOG.info("front %s is stored", record.id)

@@ -5,9 +5,9 @@ from asyncio import Future, TimerHandle
 from collections.abc import Callable
 from time import perf_counter
 
-from service.errors import Cancelled, DeadlineExceeded
+from service.errors import Cancelled, DeadlineExceeded, ShuttingDown, WorkerLost
 from service.front import Progress
-from service.jobs.record import StopReason
+from service.jobs.record import Record, StopReason, as_ended, as_failed, as_finished
 from service.kinds.front_document import FrontDocument
 from service.requests.task import Task
 
@@ -35,6 +35,7 @@ class Submission:
         self.task = task
         self.client = client
         self.attempts = 0
+        self.waited = 0.0  # seconds, before it was submitted
         self.stop_reason: StopReason | None = None
         self.progress: Progress | None = None
         self.best_front: FrontDocument | None = None
@@ -66,6 +67,23 @@ class Submission:
         await self._has_ended.wait()
         return self._future.result()
 
+    async def final(self, record: Record) -> Record:
+        """Wait for the end, and return the record of this submission as it is then.
+
+        Raises:
+            WorkerLost: As many workers died over it as may.
+            ShuttingDown: It is left unfinished.
+        """
+        try:
+            front = await self.front()
+        except (WorkerLost, ShuttingDown):
+            raise
+        except (Cancelled, DeadlineExceeded):  # what is there is of an earlier try
+            return as_ended(record, record.front, self.stop_reason, self._seconds)
+        except Exception as error:
+            return as_failed(record, error, self.best_front or record.front)
+        return as_finished(record, front, self.stop_reason)
+
     def when_ended(self, callback: Callable[[], object]) -> None:
         """Register a function to be called soon after the end."""
         self._future.add_done_callback(lambda _: callback())
@@ -88,8 +106,8 @@ class Submission:
         if self.ended:
             return
         self._cancel_timer()
-        seconds = perf_counter() - self._submitted
-        self._future.set_result(front.ended(seconds, late=self.stop_reason is DeadlineExceeded))
+        late = self.stop_reason is DeadlineExceeded
+        self._future.set_result(front.ended(self._seconds, late=late))
         self._has_ended.set()
 
     def fail(self, error: Exception) -> None:
@@ -108,6 +126,10 @@ class Submission:
             self.fail((self.stop_reason or Cancelled)())
         else:
             self.finish(self.best_front)
+
+    @property
+    def _seconds(self) -> float:
+        return self.waited + perf_counter() - self._submitted
 
     def _cancel_timer(self) -> None:
         if self.timer is not None:

@@ -180,7 +180,7 @@ def test_a_redis_that_takes_no_more_is_unavailable(tmp_path: Path) -> None:
     async def test() -> None:
         with redis_server(tmp_path) as redis:
             store, engine = connect(redis.url, entries=9, max_age=60, queue=1, seconds=60)
-            await store.put(record("a"))
+            await store.submit(record("a"), queue=1, share=1.0)
             connection = redis_client.Redis.from_url(redis.url)
             worker = WorkerStore(connect_redis(redis.url), "a worker")
             await worker.send_heartbeat()

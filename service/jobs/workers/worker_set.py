@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from service.errors import NoWorker, WarmingUp
-from service.jobs.retries import GrowingPause
+from service.jobs.retries import growing_pauses
 from service.jobs.submission import Submission
 from service.jobs.workers.messages import Order, Stage, Unable
 from service.jobs.workers.worker_process import MakeRunner, WorkerProcess
@@ -92,15 +92,14 @@ class WorkerSet:
 
     async def _keep_worker(self) -> None:
         """Keep one process running until the set is closed, whatever fails."""
-        pause = GrowingPause(_SHORTEST_PAUSE, _LONGEST_PAUSE)
         while True:
-            try:
-                if await self._run_worker():
-                    pause.reset()
-                    continue
-            except Exception as error:
-                self._log_failure(error)
-            await pause.wait()
+            for seconds in growing_pauses(_SHORTEST_PAUSE, _LONGEST_PAUSE):
+                try:
+                    if await self._run_worker():
+                        break
+                except Exception as error:
+                    self._log_failure(error)
+                await asyncio.sleep(seconds)
 
     async def _run_worker(self) -> bool:
         """Start a process, handle its messages until it is lost, and return whether it started."""
