@@ -1,5 +1,6 @@
 """Build and run the service, or a worker of the cluster, as the settings say."""
 
+import asyncio
 import gc
 import logging
 import multiprocessing
@@ -153,13 +154,13 @@ def build_worker(settings: Settings) -> Callable[[], int]:
     """
     redis_url = _redis_url(settings)
     from service.cluster.celery_app import make_celery
-    from service.cluster.worker import CeleryWorker, make_record_worker
+    from service.cluster.worker import CeleryWorker, RecordWorker
 
     actors = _checked_actors(settings)
     configure_logging()
     worker = CeleryWorker(
         celery=make_celery(redis_url, settings.request_seconds),
-        records=make_record_worker(
+        records=RecordWorker(
             _make_runner(settings),
             partial(read_task, limits=settings.limits, actors=actors),
             redis_url,
@@ -167,7 +168,6 @@ def build_worker(settings: Settings) -> Callable[[], int]:
             seconds=settings.request_seconds,
             roads=None if settings.roads is None else RoadClient(settings.roads),
         ),
-        workers=settings.workers,
         drain_seconds=settings.drain_seconds,
     )
 
@@ -188,7 +188,7 @@ def takes_work(settings: Settings) -> bool:
     redis_url = _redis_url(settings)
     from service.cluster import worker_store
 
-    return worker_store.takes_work(redis_url)
+    return asyncio.run(worker_store.takes_work(redis_url))
 
 
 def _local_engine(

@@ -255,37 +255,18 @@ class Settings(BaseSettings):
         """The routing engine, if there is one."""
         if self.router_url is None:
             return None
-        return RouterSettings(
-            url=self.router_url,
-            router=self.router,
-            profile=self.router_profile or DEFAULT_PROFILES[self.router],
-            snap=self.router_snap,
-            # Less than the request's, so that the error names the slow engine as the cause.
-            seconds=min(self.router_seconds, _ROUTER_SHARE * self.request_seconds),
-            pairs=self.router_pairs,
-            cache_bytes=self.router_cache_bytes,
-            cache_seconds=self.router_cache_seconds,
-            legs=self.router_legs,
-            positions=self.router_positions,
-        )
+        named = {name.removeprefix("router_"): value for name, value in self if "router_" in name}
+        named["profile"] = self.router_profile or DEFAULT_PROFILES[self.router]
+        # Less than the request's, so that the error names the slow engine as the cause.
+        named["seconds"] = min(self.router_seconds, _ROUTER_SHARE * self.request_seconds)
+        return RouterSettings(router=self.router, **named)
 
     @property
     def limits(self) -> Limits:
-        """The limits of a request."""
-        return Limits(
-            body_bytes=self.max_body_bytes,
-            cities=self.max_cities,
-            matrix_cities=self.max_matrix_cities,
-            network_cities=self.max_network_cities,
-            fleet_stops=self.max_fleet_stops,
-            cells=self.max_cells,
-            path_cells=self.max_path_cells,
-            preferences=self.max_preferences,
-            repairs=self.max_repairs,
-            size=self.max_size,
-            seconds=self.max_time_limit,
-            roads=self.router_url is not None,
-        )
+        """The limits of a request: the settings whose names begin with `max_`."""
+        named = {name.removeprefix("max_"): value for name, value in self if name[:4] == "max_"}
+        seconds = named.pop("time_limit")
+        return Limits(**named, seconds=seconds, roads=self.router_url is not None)
 
 
 PREFIX = "PARETOUR_"

@@ -3,11 +3,11 @@
 import asyncio
 import logging
 from asyncio import Event, Future
-from collections import defaultdict
-from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import AsyncIterator, Callable, Coroutine
+from contextlib import suppress
 from functools import partial
 from time import time
+from weakref import WeakValueDictionary
 
 from redis.asyncio import Redis
 
@@ -38,7 +38,7 @@ _SWEEP = 2.0  # seconds between two searches for jobs that lost their worker or 
 
 
 class Subscriptions:
-    """Sets the events of waiting tasks whenever their record has changed, or may have changed.
+    """Tells those who wait when a record has changed, or may have changed.
 
     `on_finished` is called with the id of each record that is finished.
     """
@@ -46,19 +46,11 @@ class Subscriptions:
     def __init__(self, redis: Redis, on_finished: Callable[[str], None]) -> None:
         self._redis = redis
         self._on_finished = on_finished
-        self._waiting: dict[str, set[Event]] = defaultdict(set)
+        self._changes = WeakValueDictionary[str, Event]()  # while somebody has them
 
-    @contextmanager
-    def changes(self, id: str) -> Iterator[Event]:  # noqa: A002
-        """Return an event that is set at each change of a record."""
-        changed = Event()
-        self._waiting[id].add(changed)
-        try:
-            yield changed
-        finally:
-            self._waiting[id].discard(changed)
-            if not self._waiting[id]:
-                del self._waiting[id]
+    def next_change(self, id: str) -> Event:  # noqa: A002
+        """Return an event that is set at the next change of a record."""
+        return self._changes.setdefault(id, Event())
 
     async def listen(self) -> None:
         """Receive notifications, until the task is cancelled."""
@@ -72,7 +64,7 @@ class Subscriptions:
         async with self._redis.pubsub() as channel:
             await channel.subscribe(CHANNEL)
             # Messages that were sent before the subscription are lost.
-            for id_ in list(self._waiting):
+            for id_ in list(self._changes):
                 self._wake(id_)
             while True:
                 message = await channel.get_message(timeout=_SILENT)
@@ -88,7 +80,7 @@ class Subscriptions:
         self._wake(id)
 
     def _wake(self, id: str) -> None:  # noqa: A002
-        for changed in self._waiting.get(id, ()):
+        if changed := self._changes.pop(id, None):
             changed.set()
 
 
@@ -212,19 +204,18 @@ class RedisEngine:
     async def watch(self, record: Record) -> AsyncIterator[JobState]:
         """Yield the state of a job now and after each change, until it is finished."""
         last = None
-        with self._subscriptions.changes(record.id) as changed:
-            while True:
-                changed.clear()
-                with suppress(StoreUnavailable):
-                    stored = await self._stored(record)
-                    record, progress = stored.record, stored.progress
-                    if (record.status, progress) != last:
-                        last = record.status, progress
-                        yield JobState(record, progress)
-                if record.finished:
-                    return
-                with suppress(TimeoutError):
-                    await asyncio.wait_for(changed.wait(), _POLL)
+        while True:
+            changed = self._subscriptions.next_change(record.id)
+            with suppress(StoreUnavailable):
+                stored = await self._stored(record)
+                record, progress = stored.record, stored.progress
+                if (record.status, progress) != last:
+                    last = record.status, progress
+                    yield JobState(record, progress)
+            if record.finished:
+                return
+            with suppress(TimeoutError):
+                await asyncio.wait_for(changed.wait(), _POLL)
 
     async def cancel(self, record: Record) -> Record:
         """End a job at once, with what was found so far, and return its final record."""

@@ -133,14 +133,7 @@ def _identity(record: Record) -> tuple[str, str, str, str]:
 
 
 def _check_reply(reply: Any) -> None:
-    """Raise a refusal if the reply to an admission is one.
-
-    Raises:
-        IdempotencyMismatch: The key was used with another body.
-        QueueFull: No place is left.
-        ShareFull: The client holds its share of the places.
-        NoWorker: The client would wait for a worker, and none runs.
-    """
+    """Raise a refusal if the reply to an admission is one; see `RedisStore.submit`."""
     match reply:
         case b"mismatch":
             raise IdempotencyMismatch

@@ -27,7 +27,6 @@ from service.cluster.records import StoredRecord
 from service.cluster.script import connect_redis
 from service.cluster.worker_store import TakenOver, WorkerStore
 from service.errors import Cancelled, NoWorker, WarmingUp, WorkerLost
-from service.jobs.deadline import Deadline
 from service.jobs.record import as_failed
 from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.workers.worker_pool import WorkerPool
@@ -44,28 +43,40 @@ class Draining(Cancelled):
 
 
 class RecordWorker:
-    """Plans the fronts of records, as many at a time as there are stores, in an event loop.
+    """Plans the fronts of records in an event loop, as many at a time as it has processes.
+
+    A process that is lost is counted in Redis, so the pool leaves it to this worker to try again.
 
     Args:
-        pool: The processes that plan, one for each store. It must leave it to this worker to try a
-            record again: a lost process is counted in Redis.
-        stores: The access to Redis of each.
+        make_runner: Called in each process; it must be picklable.
         read: Reads the stored task of a record.
+        redis_url: The Redis with the records.
+        workers: How many processes there are.
         seconds: The time limit of a record.
+        roads: The client of a routing engine.
     """
 
     def __init__(
         self,
-        pool: WorkerPool,
-        stores: list[WorkerStore],
+        make_runner: MakeRunner,
         read: Callable[[TaskSource], Task],
+        redis_url: str,
+        *,
+        workers: int,
         seconds: float,
+        roads: RoadClient | None = None,
     ) -> None:
-        self._pool = pool
-        self._stores = stores
+        self._pool = WorkerPool(
+            make_runner, workers=workers, queue=workers, seconds=seconds, attempts=1, roads=roads
+        )
+        machine = f"{gethostname()}:{os.getpid()}"
+        self._stores = [
+            WorkerStore(connect_redis(redis_url), f"{machine}:{uuid.uuid4().hex}")
+            for _ in range(workers)
+        ]
+        self._free = list(self._stores)
+        self.workers = workers
         self._read = read
-        self._seconds = seconds
-        self._free = list(stores)
         self._draining = False
 
     async def start(self) -> None:
@@ -120,7 +131,7 @@ class RecordWorker:
         assert record.source is not None
         try:
             task = await asyncio.to_thread(self._read, record.source)
-            submission = self._pool.submit(task, deadline=Deadline.after(self._seconds))
+            submission = self._pool.submit(task)
         except Exception as error:
             await store.finish(as_failed(record, error, record.front))
             return
@@ -166,22 +177,6 @@ class RecordWorker:
             await asyncio.sleep(_HEARTBEAT_EVERY)
 
 
-def make_record_worker(
-    make_runner: MakeRunner,
-    read: Callable[[TaskSource], Task],
-    redis_url: str,
-    *,
-    workers: int,
-    seconds: float,
-    roads: RoadClient | None = None,
-) -> RecordWorker:
-    """Return the worker of this process, each of whose stores has a unique name."""
-    names = [f"{gethostname()}:{os.getpid()}:{uuid.uuid4().hex}" for _ in range(workers)]
-    stores = [WorkerStore(connect_redis(redis_url), name) for name in names]
-    pool = WorkerPool(make_runner, workers=workers, queue=workers, attempts=1, roads=roads)
-    return RecordWorker(pool, stores, read, seconds)
-
-
 class _Threads(TaskPool):  # type: ignore[misc]  # Celery has no types
     """Celery's pool of threads, each of which waits for a record.
 
@@ -213,7 +208,6 @@ class CeleryWorker:
 
     celery: Celery
     records: RecordWorker
-    workers: int
     drain_seconds: float
     loop: AbstractEventLoop = field(default_factory=asyncio.new_event_loop)
 
@@ -230,7 +224,7 @@ class CeleryWorker:
         worker = self.celery.Worker(
             hostname=f"paretour@{gethostname()}-{os.getpid()}",
             pool=_Threads,
-            concurrency=self.workers,
+            concurrency=self.records.workers,
             quiet=True,
             without_gossip=True,
             without_mingle=True,

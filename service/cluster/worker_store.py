@@ -104,16 +104,12 @@ _LOST_AFTER = LEASE + 1  # seconds until a lost process is no longer counted
 _CHECK_EVERY = 0.25  # seconds between two checks
 
 
-def takes_work(redis_url: str) -> bool:
+async def takes_work(redis_url: str) -> bool:
     """Return whether this machine has a worker, none of whose processes is idle while jobs wait.
 
     The check takes up to LEASE + 1 seconds. If Redis does not answer, the worker is not at fault,
     and the result is True.
     """
-    return asyncio.run(_takes_work(redis_url))
-
-
-async def _takes_work(redis_url: str) -> bool:
     script = RecordScript(connect_redis(redis_url))
     deadline = Deadline.after(_LOST_AFTER)
     try:

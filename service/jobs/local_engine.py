@@ -21,13 +21,14 @@ from service.errors import (
 from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
 from service.jobs.record import Record, Status, as_cancelled, as_failed, as_finished
-from service.jobs.retries import UnsavedRecords
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
 from service.requests.task import Task, TaskSource
 
 _PAUSE = 0.5  # seconds between tries to resume the job of an earlier process
+_PATIENCE = 600.0  # seconds for which storing a front is tried
+_SAVE_PAUSE = 2.0  # seconds between two tries
 _LOG = logging.getLogger("paretour")
 
 
@@ -63,6 +64,49 @@ class _Job:
     def _notify(self) -> None:
         changed, self.changed = self.changed, asyncio.Event()
         changed.set()
+
+
+class UnsavedRecords:
+    """Saves records that the store did not accept at first."""
+
+    def __init__(self, store: SqliteStore, patience: float = _PATIENCE) -> None:
+        self._store = store
+        self._patience = patience
+        self._ids: set[str] = set()
+
+    def check_none(self) -> None:
+        """Raise StoreUnavailable while the store has not accepted some record."""
+        if self._ids:
+            raise StoreUnavailable
+
+    async def save(self, record: Record, error: Exception) -> None:
+        """Try to store a finished record until the store accepts it.
+
+        After some minutes the front is given up, and a failed record is stored instead.
+
+        Args:
+            record: The record.
+            error: What the store raised at first.
+        """
+        self._ids.add(record.id)
+        _LOG.error("front %s cannot be stored, and is tried again", record.id, exc_info=error)
+        deadline = Deadline.after(self._patience)
+        try:
+            while not await self._is_saved(record):
+                if deadline.over() and record.front.tours:
+                    empty = record.front.without_tours()
+                    record = as_failed(record, StoreUnavailable(), empty)
+                await asyncio.sleep(_SAVE_PAUSE)
+        finally:
+            self._ids.discard(record.id)
+        _LOG.info("front %s is stored", record.id)
+
+    async def _is_saved(self, record: Record) -> bool:
+        try:
+            await self._store.put(record)
+        except Exception:
+            return False
+        return True
 
 
 class LocalEngine:

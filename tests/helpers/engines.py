@@ -18,7 +18,7 @@ import redis
 from service.api.app import Edge
 from service.cluster.celery_app import make_celery
 from service.cluster.redis_engine import connect
-from service.cluster.worker import CeleryWorker, make_record_worker
+from service.cluster.worker import CeleryWorker, RecordWorker
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
@@ -167,7 +167,7 @@ def _work(
     read = partial(read_task, limits=runner.limits, actors=runner.infos)
     worker = CeleryWorker(
         celery=make_celery(url, seconds),
-        records=make_record_worker(
+        records=RecordWorker(
             make_runner,
             read,
             url,
@@ -175,7 +175,6 @@ def _work(
             seconds=seconds,
             roads=roads and RoadClient(roads),
         ),
-        workers=workers,
         drain_seconds=5,
     )
     worker.start()

@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from service.errors import NoWorker, WarmingUp
-from service.jobs.retries import growing_pauses
 from service.jobs.submission import Submission
 from service.jobs.workers.messages import Order, Stage, Unable
 from service.jobs.workers.worker_process import MakeRunner, WorkerProcess
@@ -93,7 +92,7 @@ class WorkerSet:
     async def _keep_worker(self) -> None:
         """Keep one process running until the set is closed, whatever fails."""
         while True:
-            for seconds in growing_pauses(_SHORTEST_PAUSE, _LONGEST_PAUSE):
+            for seconds in _growing_pauses():
                 try:
                     if await self._run_worker():
                         break
@@ -158,3 +157,11 @@ class WorkerSet:
             if worker.started and not worker.warming and (self.was_warm or first):
                 worker.warming = True
                 worker.process.send(Order.WARM_UP)
+
+
+def _growing_pauses() -> Iterator[float]:
+    """Yield seconds to wait, each time twice as many, up to the longest pause."""
+    seconds = _SHORTEST_PAUSE
+    while True:
+        yield seconds
+        seconds = min(2 * seconds, _LONGEST_PAUSE)
