@@ -20,10 +20,8 @@ QUEUE = "paretour"
 TASK = "paretour.plan"
 _SHOWN = 80  # bytes of a foreign element in the log
 _SPARE = 30.0  # seconds from a record's time limit until its message is sent to another worker
-_ONCE_MORE = {
-    "max_retries": 1,
-    "interval_start": 0,
-}  # as the connection may be to a Redis that was restarted
+# The connection may be to a Redis that was restarted.
+_ONCE_MORE = {"max_retries": 1, "interval_start": 0}
 
 
 def make_celery(redis_url: str, seconds: float) -> Celery:

@@ -112,7 +112,7 @@ class RedisEngine:
         self._queue = queue
         self._share = share
         self._on_front = on_front
-        self._subscriptions = Subscriptions(redis, self._on_finished)
+        self._subscriptions = Subscriptions(redis, lambda id_: self._spawn(self._claim(id_)))
         self._tasks: set[asyncio.Task[None]] = set()
         self._stats = EngineStats(waiting=0, working=0, lost=0)
         self._closed = False
@@ -187,7 +187,7 @@ class RedisEngine:
         first = await self._store.submit(record, self._queue, self._share, waits)
         if first.id == record.id:
             try:
-                await self._send_id(record.id)
+                await asyncio.to_thread(self._send, record.id)
             except Exception:
                 await self._store.delete(record)
                 await self._store.call("messages", QUEUE)  # which repairs them, if that is why
@@ -243,9 +243,6 @@ class RedisEngine:
             ended = as_ended(stored.record, stored.record.front, reason, seconds)
             await self._store.call("finish", record.id, *record_arguments(ended))
 
-    async def _send_id(self, id: str) -> None:  # noqa: A002
-        await asyncio.to_thread(self._send, id)
-
     async def _sweep(self) -> None:
         while True:
             try:
@@ -261,10 +258,7 @@ class RedisEngine:
         for id_ in await self._store.call("stale", LEASE, QUEUE):
             name = id_.decode(errors="replace")
             self._log.warning("front %s has lost its worker, sent again", name[:80])
-            await self._send_id(name)
-
-    def _on_finished(self, id: str) -> None:  # noqa: A002
-        self._spawn(self._claim(id))
+            await asyncio.to_thread(self._send, name)
 
     async def _claim(self, id: str) -> None:  # noqa: A002
         """Pass a finished front on, unless another replica has."""

@@ -15,9 +15,17 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from itertools import count
 
-from service.errors import Cancelled, DeadlineExceeded, ShuttingDown, WarmingUp, WorkerLost
+from service.errors import (
+    Cancelled,
+    DeadlineExceeded,
+    QueueFull,
+    ShareFull,
+    ShuttingDown,
+    WarmingUp,
+    WorkerLost,
+)
 from service.jobs.deadline import Deadline
-from service.jobs.fair_queue import FairQueue, check_place, places_of_client
+from service.jobs.fair_queue import FairQueue
 from service.jobs.record import StopReason
 from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.workers.messages import Do, Done, Failed, Found, Stop
@@ -67,7 +75,8 @@ class WorkerPool:
         self._workers = WorkerSet(make_runner, workers, self._handle, self._requeue_from, on_failed)
         self._size = workers
         self._places = workers + queue
-        self._places_of_client = places_of_client(workers, queue, share)
+        # As in service/cluster/records.lua.
+        self._places_of_client = max(math.ceil(share * self._places), workers + 1)
         self._seconds = seconds
         self._attempts = attempts
         self._roads = roads
@@ -131,8 +140,11 @@ class WorkerPool:
     def check_place(self, client: str = "") -> None:
         """Raise QueueFull or ShareFull when no place is left for one more task of a client."""
         running = (each for each in self.running if not each.ended)
-        held = (*self._reserved, *self._queue, *running)
-        check_place(held, client, self._places, self._places_of_client)
+        clients = [each.client for each in (*self._reserved, *self._queue, *running)]
+        if len(clients) >= self._places:
+            raise QueueFull
+        if clients.count(client) >= self._places_of_client:
+            raise ShareFull(self._places_of_client)
 
     def check_warm(self) -> None:
         """Raise WarmingUp until one process has compiled the search: others will soon load it."""
