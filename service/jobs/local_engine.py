@@ -203,17 +203,18 @@ class LocalEngine:
                 return earlier
             raise
         # Before it is stored: a client that sees it in the store must find it here too.
-        self._jobs[job.record.id] = job
+        self._jobs[record.id] = job
+        first = None
         try:
             first = await self._admit(record)
-        except BaseException:
-            self._drop(job)
-            raise
-        if first.id == job.record.id:
-            self._begin(job)
-        else:
-            self._drop(job)
-        return first
+            return first
+        finally:
+            assert job.submission is not None
+            if first is not None and first.id == record.id:
+                self._begin(job)
+            else:
+                del self._jobs[record.id]
+                self._workers.give_back(job.submission)
 
     def state(self, record: Record) -> JobState:
         """Return the present state of a job, given its record in the store."""
@@ -266,12 +267,6 @@ class LocalEngine:
         assert job.submission is not None
         self._workers.queue(job.submission)
         self._spawn(self._follow(job))
-
-    def _drop(self, job: _Job) -> None:
-        """Give up a job that was not admitted."""
-        del self._jobs[job.record.id]
-        if job.submission is not None:
-            self._workers.give_back(job.submission)
 
     def _spawn(self, coroutine: Coroutine[None, None, None]) -> None:
         task = asyncio.create_task(coroutine)

@@ -26,9 +26,9 @@ class Store(Protocol):
 
     Finished ones are returned without their source, which only `source` reads.
 
-    When finished ones are too many, or take too many bytes, the oldest of the client with the most
-    is dropped; a client's last one only if nobody has two, or if it is too large for the store.
-    A client is a caller, or an address where there are no keys.
+    When finished records are too many or too large together, the oldest one of the client with the
+    most is dropped. A client loses its last one only if no client has two, or if that record alone
+    is too large for the store. A client is a caller, or an address where there are no keys.
     """
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
@@ -55,7 +55,7 @@ class Store(Protocol):
         """
 
     async def delete(self, record: Record) -> None:
-        """Delete a record, and leave no trace of it."""
+        """Delete a record. Afterwards it is unknown, as if it had never been there."""
 
     async def close(self) -> None:
         """Close the file or the connections."""
@@ -130,7 +130,7 @@ def source_from(columns: Mapping[str, Any]) -> TaskSource:
 
 
 def log_dropped(id: str, error: UnreadableRecord) -> None:  # noqa: A002
-    """Log that a record was dropped because it cannot be decoded."""
+    """Log that a record that cannot be decoded was dropped."""
     logging.getLogger("paretour").warning("front %s cannot be read and is dropped: %s", id, error)
 
 

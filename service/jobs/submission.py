@@ -60,7 +60,7 @@ class Submission:
         """Wait for the front and return it. Planning goes on if the waiting task is cancelled.
 
         Raises:
-            WorkerLost: Two workers died over it.
+            WorkerLost: Too many workers died over it.
             Cancelled: It was cancelled before a tour was found.
             DeadlineExceeded: It took too long, and no tour was found.
         """
@@ -71,14 +71,14 @@ class Submission:
         """Wait for the end, and return the record of this submission as it is then.
 
         Raises:
-            WorkerLost: As many workers died over it as may.
-            ShuttingDown: It is left unfinished.
+            WorkerLost: Too many workers died over it.
+            ShuttingDown: The pool was closed before.
         """
         try:
             front = await self.front()
         except (WorkerLost, ShuttingDown):
             raise
-        except (Cancelled, DeadlineExceeded):  # what is there is of an earlier try
+        except (Cancelled, DeadlineExceeded):  # at most an earlier attempt has found something
             return as_ended(record, record.front, self.stop_reason, self._seconds)
         except Exception as error:
             return as_failed(record, error, self.best_front or record.front)

@@ -97,7 +97,7 @@ def make_runner(
     limits: Limits,
     own_actors: Path | None = None,
 ) -> Runner:
-    """Return a runner as `load_runner` does: what plans is imported by the process that calls."""
+    """Return a runner as `load_runner` does, which is imported only by the process that calls."""
     from service.jobs.task_runner import load_runner
 
     return load_runner(actors, threads, limits, own_actors)
@@ -107,9 +107,9 @@ def run_worker(tasks: socket, signals: socket, make_runner: MakeRunner) -> None:
     """Run tasks until the service closes the connections.
 
     Args:
-        tasks: Over it tasks come, and results go.
-        signals: Over it comes what does not wait for the task that is being run.
-        make_runner: Makes what runs them.
+        tasks: Brings tasks and takes results.
+        signals: Brings messages that must not wait until the present task is done.
+        make_runner: Makes the runner of the tasks.
     """
     # An interrupt from a terminal goes to all processes; the service tells its workers to end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -125,7 +125,7 @@ def run_worker(tasks: socket, signals: socket, make_runner: MakeRunner) -> None:
 
 
 class _WorkerLoop:
-    """Runs tasks in one thread, reads signals in another, and warms up in a third."""
+    """Runs tasks in one thread. Others read signals, terminate calls, and warm up."""
 
     def __init__(self, tasks: socket, signals: socket, runner: Runner) -> None:
         self._tasks = tasks
@@ -150,7 +150,7 @@ class _WorkerLoop:
         while True:
             do: Do = receive(self._incoming)
             results = [self._result(number, task) for number, task in do.tasks.items()]
-            # Before these are sent, as what is stopped then may be a task that is still to come.
+            # Before the results are sent: after that a signal may be about a task still to come.
             self._stopped.clear()
             if resource.getrusage(resource.RUSAGE_SELF).ru_maxrss > _LARGE:
                 self._send(Stage.SPENT, *results)
@@ -161,19 +161,16 @@ class _WorkerLoop:
         """Handle signals; exit at once when the service is gone, even in the middle of a task."""
         try:
             while True:
-                self._handle(receive(self._signals))
+                match receive(self._signals):
+                    case Stop(number=number):
+                        self._stop(number)
+                    case Order.WARM_UP:
+                        Thread(target=self._warm_up, name="warm-up", daemon=True).start()
         except (EOFError, OSError):
             os._exit(0)
         except BaseException:
             traceback.print_exc()
             os._exit(1)
-
-    def _handle(self, message: object) -> None:
-        match message:
-            case Stop():
-                self._stop(message.number)
-            case Order.WARM_UP:
-                Thread(target=self._warm_up, name="warm-up", daemon=True).start()
 
     def _set_running(self, number: int | None) -> None:
         with self._changing:

@@ -101,7 +101,7 @@ class WorkerSet:
                 await asyncio.sleep(seconds)
 
     async def _run_worker(self) -> bool:
-        """Start a process, handle its messages until it is lost, and return whether it started."""
+        """Start a process, handle its messages until it ends, and return whether it started."""
         worker = Worker(await WorkerProcess.start(self._make_runner))
         self._workers.append(worker)
         try:
@@ -111,7 +111,7 @@ class WorkerSet:
                 self.lost += 1
                 _LOG.warning("worker %s was lost and is replaced", worker.process.pid)
         finally:
-            idle = not worker.submissions  # else what it ran may be what it died of
+            idle = not worker.submissions  # else it may have died of one of them
             worker.process.kill()
             self._workers.remove(worker)
             self._warm_up()
