@@ -30,6 +30,7 @@ from service.api.transport.connections import ConnectionLimits, Connections
 from service.api.transport.listener import bound_sockets, most_connections
 from service.api.transport.protocol import Connection
 from service.cluster import check_cluster
+from service.errors import NoWorker
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
 from service.jobs.sqlite_store import SqliteStore
@@ -172,8 +173,12 @@ def build_worker(settings: Settings) -> Callable[[], int]:
     )
 
     def run() -> int:
-        with logging_every("the search is being loaded or compiled"):
-            worker.start()
+        try:
+            with logging_every("the search is being loaded or compiled"):
+                worker.start()
+        except NoWorker as error:
+            logging.getLogger("paretour").critical("the worker cannot start: %s", error)
+            return STARTUP_FAILURE
         return worker.run()
 
     return run

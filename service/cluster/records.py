@@ -13,6 +13,7 @@ from pydantic_core import to_json
 
 from service.errors import Cancelled, DeadlineExceeded
 from service.front import Progress
+from service.jobs.engine import JobState
 from service.jobs.record import Record, StopReason
 from service.jobs.store import (
     SOURCE_COLUMNS,
@@ -42,13 +43,11 @@ _TEXTS = ("id", "caller", "request_id", "status", "key", "digest", "kind", CLIEN
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class StoredRecord:
+class StoredRecord(JobState):
     """A record as it stands in Redis. `requested_at` is in seconds since 1970."""
 
-    record: Record
     requested_at: float
     attempts: int
-    progress: Progress | None
 
 
 def record_arguments(record: Record) -> list[Argument]:

@@ -208,10 +208,10 @@ class RedisEngine:
             changed = self._subscriptions.next_change(record.id)
             with suppress(StoreUnavailable):
                 stored = await self._stored(record)
-                record, progress = stored.record, stored.progress
-                if (record.status, progress) != last:
-                    last = record.status, progress
-                    yield JobState(record, progress)
+                record = stored.record
+                if (record.status, stored.progress) != last:
+                    last = record.status, stored.progress
+                    yield stored
             if record.finished:
                 return
             with suppress(TimeoutError):
@@ -228,7 +228,7 @@ class RedisEngine:
             return await self._store.find("get", record.caller, record.id)
         except (NotFound, Expired):
             deleted = as_failed(record, Cancelled(), record.front)
-            return StoredRecord(record=deleted, requested_at=0, attempts=0, progress=None)
+            return StoredRecord(deleted, requested_at=0, attempts=0)
 
     async def _stop(self, record: Record, reason: StopReason) -> None:
         """Ask the worker to end a job; if it does not in time, end the job here."""

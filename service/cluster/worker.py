@@ -6,6 +6,7 @@ goes to Redis, and if it is no longer wanted, the pool is told to stop it.
 """
 
 import asyncio
+import logging
 import os
 import uuid
 from asyncio import AbstractEventLoop
@@ -67,8 +68,15 @@ class RecordWorker:
         roads: RoadClient | None = None,
     ) -> None:
         self._pool = WorkerPool(
-            make_runner, workers=workers, queue=workers, seconds=seconds, attempts=1, roads=roads
+            make_runner,
+            workers=workers,
+            queue=workers,
+            seconds=seconds,
+            attempts=1,
+            roads=roads,
+            on_failed=self._fail,
         )
+        self._failure = ""
         machine = f"{gethostname()}:{os.getpid()}"
         self._stores = [
             WorkerStore(connect_redis(redis_url), f"{machine}:{uuid.uuid4().hex}")
@@ -80,9 +88,16 @@ class RecordWorker:
         self._draining = False
 
     async def start(self) -> None:
-        """Start the processes, wait until one is ready, and send heartbeats from then on."""
+        """Start the processes, wait until one is ready, and send heartbeats from then on.
+
+        Raises:
+            NoWorker: No process gets ready in three tries.
+        """
         await self._pool.start()
         while not self._is_ready():
+            if self._failure:
+                await self._pool.close()
+                raise NoWorker(self._failure)
             await asyncio.sleep(_CHECK_EVERY)
         self._heartbeats = asyncio.create_task(self._send_heartbeats())
 
@@ -96,10 +111,10 @@ class RecordWorker:
         self._draining = True
 
     async def plan(self, id: str, known_lost: bool) -> None:  # noqa: A002
-        """Plan the front of the record whose turn it is, unless none waits.
+        """Plan the front of the record that is next, if one waits.
 
         Args:
-            id: The id in the message, which stands for a turn.
+            id: The id in the message. The message stands for a turn, not for that record.
             known_lost: Whether the worker that had the message before is lost.
 
         Raises:
@@ -163,6 +178,9 @@ class RecordWorker:
             with suppress(TimeoutError):
                 await asyncio.wait_for(ended.wait(), _CHECK_EVERY)
 
+    def _fail(self, reason: str) -> None:
+        self._failure = reason
+
     def _is_ready(self) -> bool:
         with suppress(NoWorker, WarmingUp):
             self._pool.check_ready()
@@ -171,9 +189,12 @@ class RecordWorker:
 
     async def _send_heartbeats(self) -> None:
         while True:
-            if self._is_ready():
-                for store in self._stores:
+            try:
+                for store in self._stores if self._is_ready() else ():
                     await store.send_heartbeat()
+            except Exception:
+                # Otherwise this worker would never be counted again.
+                logging.getLogger("paretour").exception("a sign of life could not be sent")
             await asyncio.sleep(_HEARTBEAT_EVERY)
 
 
@@ -202,8 +223,8 @@ class _Threads(TaskPool):  # type: ignore[misc]  # Celery has no types
 class CeleryWorker:
     """A Celery worker, which gives each message to a worker of records.
 
-    When it is told to shut down, it has `drain_seconds` to finish its records, and then hands them
-    back.
+    After it was told to shut down, it finishes its records for `drain_seconds`, and then hands back
+    those that are left.
     """
 
     celery: Celery
@@ -212,7 +233,11 @@ class CeleryWorker:
     loop: AbstractEventLoop = field(default_factory=asyncio.new_event_loop)
 
     def start(self) -> None:
-        """Start the processes, and wait until one is ready."""
+        """Start the processes, and wait until one is ready.
+
+        Raises:
+            NoWorker: No process gets ready in three tries.
+        """
         Thread(target=self.loop.run_forever, name="records", daemon=True).start()
         self._wait_for(self.records.start())
 

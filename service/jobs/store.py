@@ -1,4 +1,4 @@
-"""What requests need of stores, and the stored form of a record, which all stores share.
+"""The interface of stores that requests use, and the form in which every store keeps a record.
 
 The names of the columns are read by other releases and stay as they are.
 """

@@ -42,8 +42,6 @@ class Submission:
         self.timer: TimerHandle | None = None
         self._on_change = on_change
         self._future: Future[FrontDocument] = asyncio.get_running_loop().create_future()
-        # In addition to the future, which is cancelled with the task that waits for it.
-        self._has_ended = asyncio.Event()
         self._submitted = perf_counter()
 
     @property
@@ -64,8 +62,7 @@ class Submission:
             Cancelled: It was cancelled before a tour was found.
             DeadlineExceeded: It took too long, and no tour was found.
         """
-        await self._has_ended.wait()
-        return self._future.result()
+        return await asyncio.shield(self._future)
 
     async def final(self, record: Record) -> Record:
         """Wait for the end, and return the record of this submission as it is then.
@@ -108,7 +105,6 @@ class Submission:
         self._cancel_timer()
         late = self.stop_reason is DeadlineExceeded
         self._future.set_result(front.ended(self._seconds, late=late))
-        self._has_ended.set()
 
     def fail(self, error: Exception) -> None:
         """End with an error, unless it has ended."""
@@ -118,7 +114,6 @@ class Submission:
         self._future.set_exception(error)
         # Read once, so that asyncio does not warn if nobody waits for it.
         self._future.exception()
-        self._has_ended.set()
 
     def cut_short(self) -> None:
         """End with the best front so far; without one, with the reason of the stop."""
