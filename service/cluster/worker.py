@@ -167,7 +167,11 @@ class RecordWorker:
         ended = asyncio.Event()
         submission.when_ended(ended.set)
         reported: object = None, None
-        while not submission.ended:
+        while True:
+            with suppress(TimeoutError):
+                await asyncio.wait_for(ended.wait(), _CHECK_EVERY)
+            if submission.ended:
+                return
             reason = Draining if self._draining else await store.stop_reason(id)
             if reason is not None:
                 self._pool.stop(submission, reason)
@@ -175,8 +179,6 @@ class RecordWorker:
             if (process, progress) != reported:
                 reported = process, progress
                 await store.report(id, process, progress, submission.best_front)
-            with suppress(TimeoutError):
-                await asyncio.wait_for(ended.wait(), _CHECK_EVERY)
 
     def _fail(self, reason: str) -> None:
         self._failure = reason
