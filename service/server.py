@@ -1,5 +1,6 @@
 """Build and run the service, or a worker of the cluster, as the settings say."""
 
+import asyncio
 import gc
 import logging
 import multiprocessing
@@ -28,15 +29,15 @@ from service.api.transport.connections import ConnectionLimits, Connections
 from service.api.transport.listener import bound_sockets, most_connections
 from service.api.transport.protocol import Connection
 from service.cluster import check_cluster
+from service.errors import NoWorker
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
-from service.jobs.runner import MakeRunner, make_runner
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.store import Store
 from service.jobs.workers.worker_pool import WorkerPool
+from service.jobs.workers.worker_process import MakeRunner, make_runner
 from service.requests.task_codec import read_task
 from service.roads.client import RoadClient
-from service.roads.router import RouterSettings
 from service.settings import Settings
 from service.telemetry import configure_logging, log_loading, logged, logging_every, trace
 
@@ -165,25 +166,30 @@ def build_worker(settings: Settings) -> Callable[[], int]:
     """
     redis_url = _redis_url(settings)
     from service.cluster.celery_app import make_celery
-    from service.cluster.worker import CeleryWorker, make_record_worker
-    from service.jobs.compiled_code import warm_up
+    from service.cluster.worker import CeleryWorker, RecordWorker
 
-    _checked_actors(settings)
+    actors = _checked_actors(settings)
     configure_logging()
-    seconds = settings.request_seconds
     worker = CeleryWorker(
-        celery=make_celery(redis_url, seconds),
-        make_record_worker=partial(
-            make_record_worker, _make_runner(settings, settings.roads), redis_url, seconds
+        celery=make_celery(redis_url, settings.request_seconds),
+        records=RecordWorker(
+            _make_runner(settings),
+            partial(read_task, limits=settings.limits, actors=actors),
+            redis_url,
+            workers=settings.workers,
+            seconds=settings.request_seconds,
+            roads=None if settings.roads is None else RoadClient(settings.roads),
         ),
-        workers=settings.workers,
         drain_seconds=settings.drain_seconds,
     )
 
     def run() -> int:
-        # Before the first fork, so that every process has the compiled search at once.
-        with logging_every("the search is being loaded or compiled"):
-            warm_up()
+        try:
+            with logging_every("the search is being loaded or compiled"):
+                worker.start()
+        except NoWorker as error:
+            logging.getLogger("paretour").critical("the worker cannot start: %s", error)
+            return STARTUP_FAILURE
         return worker.run()
 
     return run
@@ -198,7 +204,7 @@ def takes_work(settings: Settings) -> bool:
     redis_url = _redis_url(settings)
     from service.cluster import worker_store
 
-    return worker_store.takes_work(redis_url)
+    return asyncio.run(worker_store.takes_work(redis_url))
 
 
 def _local_engine(
@@ -210,11 +216,12 @@ def _local_engine(
 ) -> tuple[Store, Engine]:
     """Return the store in SQLite, and the engine in this process and its children."""
     workers = WorkerPool(
-        _make_runner(settings, None),
+        _make_runner(settings),
         workers=settings.workers,
         queue=settings.queue,
         share=settings.caller_share,
         seconds=settings.request_seconds,
+        roads=roads,
         on_front=metrics.planned,
         on_failed=ending.fail,
     )
@@ -225,7 +232,7 @@ def _local_engine(
         max_bytes=settings.store_bytes,
     )
     read = partial(read_task, limits=settings.limits, actors=actors)
-    return store, LocalEngine(workers, store, read, roads)
+    return store, LocalEngine(workers, store, read)
 
 
 def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
@@ -245,9 +252,9 @@ def _redis_engine(settings: Settings, metrics: Metrics) -> tuple[Store, Engine]:
     )
 
 
-def _make_runner(settings: Settings, roads: RouterSettings | None) -> MakeRunner:
+def _make_runner(settings: Settings) -> MakeRunner:
     make = partial(
-        make_runner, settings.actors, settings.threads, settings.limits, settings.own_actors, roads
+        make_runner, settings.actors, settings.threads, settings.limits, settings.own_actors
     )
     return partial(logged, make)
 

@@ -8,6 +8,7 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 from urllib.parse import urlsplit
@@ -56,13 +57,16 @@ def _split(value: object) -> object:
     return [word.strip() for word in value.split(",") if word] if isinstance(value, str) else value
 
 
-def _checked_redis_url(value: str) -> str:
+def _names_server(value: str, *schemes: str) -> bool:
     try:
         parts = urlsplit(value)
-        named = parts.scheme in ("redis", "rediss") and parts.hostname and parts.port != 0
-    except ValueError:  # of the port
-        named = False
-    if not named:
+        return parts.scheme in schemes and bool(parts.hostname) and parts.port != 0
+    except ValueError:  # the port is not a number
+        return False
+
+
+def _checked_redis_url(value: str) -> str:
+    if not _names_server(value, "redis", "rediss"):
         raise ValueError("must be redis://HOST:PORT/NUMBER, or rediss:// for TLS")
     return value
 
@@ -84,24 +88,15 @@ def _checked_rate(value: str) -> str:
 
 def _checked_address(value: str) -> str:
     """Return an http or https URL of a server, which may end in a path."""
-    parts = urlsplit(value)
-    whole = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
-    if not whole or parts.query or parts.fragment or not value.isascii() or " " in value:
+    wrong = not value.isascii() or any(sign in value for sign in "?# ")
+    if wrong or not _names_server(value, "http", "https"):
         raise ValueError("must be like http://valhalla:8002")
     return value
 
 
-def _whole(least: int, most: int) -> WrapValidator:
-    """Return the check that a setting is a whole number in a range, which its error names."""
-    return _between(least, most, "whole number")
-
-
-def _number(least: float, most: float) -> WrapValidator:
+def _number(least: float, most: float, kind: str = "number") -> WrapValidator:
     """Return the check that a setting is a finite number in a range, which its error names."""
-    return _between(least, most, "number")
 
-
-def _between(least: float, most: float, kind: str) -> WrapValidator:
     def check(value: object, read: ValidatorFunctionWrapHandler) -> float:
         try:
             number: float = read(value)
@@ -113,6 +108,8 @@ def _between(least: float, most: float, kind: str) -> WrapValidator:
 
     return WrapValidator(check)
 
+
+_whole = partial(_number, kind="whole number")
 
 Share = Annotated[float, _number(_LEAST, 1)]
 Seconds = Annotated[float, _number(_LEAST, _WEEK)]
@@ -128,217 +125,148 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,50}$")]
 
 
 class Settings(BaseSettings):
-    """All settings; a variable is PARETOUR_ and the field's name in capitals, or its alias."""
+    """All settings. A variable is PARETOUR_ and the field's name in capitals, or its alias."""
 
-    model_config = SettingsConfigDict(env_prefix="PARETOUR_", frozen=True)
+    model_config = SettingsConfigDict(
+        env_prefix="PARETOUR_", frozen=True, use_attribute_docstrings=True
+    )
 
     # The address, and the processes that plan.
-    host: str = Field("127.0.0.1", description="address to listen on")
-    port: Annotated[int, _whole(0, 65_535)] = Field(
-        8000, description="port to listen on; 0 takes a free one"
-    )
-    actors: Path = Field(RELEASED, description="directory of the networks, ONNX files")
-    own_actors: Path | None = Field(
-        None, description="directory of more networks, served in addition"
-    )
-    workers: Annotated[int, _whole(1, _MOST_PROCESSES)] = Field(
-        default_factory=_cores, description="processes that plan, one request at a time each"
-    )
-    threads: Annotated[int, _whole(1, _MOST_PROCESSES)] = Field(
-        1, description="threads of one inference call"
-    )
-    queue: Annotated[int, _whole(0, _MOST_WAITING)] = Field(
-        16, description="requests that may wait for a worker"
-    )
-    caller_share: Share = Field(
-        0.5, description="share of workers, queue and bodies that one caller may use"
-    )
+    host: str = "127.0.0.1"
+    """address to listen on"""
+    port: Annotated[int, _whole(0, 65_535)] = 8000
+    """port to listen on; 0 takes a free one"""
+    actors: Path = RELEASED
+    """directory of the networks, ONNX files"""
+    own_actors: Path | None = None
+    """directory of more networks, served in addition"""
+    workers: Annotated[int, _whole(1, _MOST_PROCESSES)] = Field(default_factory=_cores)
+    """processes that plan, one request at a time each"""
+    threads: Annotated[int, _whole(1, _MOST_PROCESSES)] = 1
+    """threads of one inference call"""
+    queue: Annotated[int, _whole(0, _MOST_WAITING)] = 16
+    """requests that may wait for a worker"""
+    caller_share: Share = 0.5
+    """share of workers, queue and bodies that one caller may use"""
 
     # Connections.
-    connections: Annotated[int, _whole(1, _MOST_CONNECTIONS)] = Field(
-        1000, description="open connections; fewer where descriptors (`ulimit -n`) are few"
-    )
-    connection_share: Share = Field(
-        0.25, description="share of the connections that one address may hold; proxies are exempt"
-    )
-    head_seconds: Seconds = Field(
-        10.0, description="how long a request's head may take, and a connection may be idle"
-    )
+    connections: Annotated[int, _whole(1, _MOST_CONNECTIONS)] = 1000
+    """open connections; fewer where descriptors (`ulimit -n`) are few"""
+    connection_share: Share = 0.25
+    """share of the connections that one address may hold; proxies are exempt"""
+    head_seconds: Seconds = 10.0
+    """how long a request's head may take, and a connection may be idle"""
 
-    forwarded_allow_ips: str = Field(
-        "127.0.0.1",
-        validation_alias="FORWARDED_ALLOW_IPS",
-        description="proxies whose X-Forwarded-For is trusted, separated by commas; or *",
-    )
+    forwarded_allow_ips: str = Field("127.0.0.1", validation_alias="FORWARDED_ALLOW_IPS")
+    """proxies whose X-Forwarded-For is trusted, separated by commas; or *"""
 
     # Map tiles under the stops on the page, which browsers load from there.
-    tiles: Annotated[str, AfterValidator(checked_template)] | None = Field(
-        None, description="address of map tiles with {z}, {x}, {y}; without it no streets are drawn"
-    )
-    tiles_credit: str = Field(
-        "© OpenStreetMap contributors", description="credit for the map tiles, shown on the map"
-    )
+    tiles: Annotated[str, AfterValidator(checked_template)] | None = None
+    """address of map tiles with {z}, {x}, {y}; without it no streets are drawn"""
+    tiles_credit: str = "© OpenStreetMap contributors"
+    """credit for the map tiles, shown on the map"""
 
     # Limits of a request.
-    max_body_bytes: Annotated[int, _whole(1, _MOST_BODY_BYTES)] = Field(
-        2**24, description="the longest request body"
-    )
-    bodies_bytes: Annotated[int, _whole(2**20, _MOST_BYTES)] = Field(
-        2**27,
-        description="the most bytes of all request bodies in progress; as many for answers",
-    )
-    parse_seconds: Seconds = Field(20.0, description="how long a body may take to parse")
-    parse_bytes: Annotated[int, _whole(2**26, _MOST_BYTES)] = Field(
-        2**29 + 2**28, description="memory that parsing a body may take"
-    )
-    max_cities: Annotated[int, _whole(1, _MOST_CITIES)] = Field(
-        10_000, description="the most cities of an instance"
-    )
-    max_matrix_cities: Annotated[int, _whole(1, _MOST_PAIRED_CITIES)] = Field(
-        1000, description="the most cities where costs are matrices"
-    )
-    max_network_cities: Annotated[int, _whole(1, _MOST_PAIRED_CITIES)] = Field(
-        5000, description="the most cities for which a network builds tours"
-    )
-    max_fleet_stops: Annotated[int, _whole(1, _MOST_FLEET_STOPS)] = Field(
-        500, description="the most stops of a fleet, and places that several robots share"
-    )
-    max_cells: Annotated[int, _whole(1, _MOST_CELLS)] = Field(
-        2**20, description="the most cells of a map"
-    )
-    max_path_cells: Annotated[int, _whole(1, _MOST_PATH_CELLS)] = Field(
-        2**21, description="the most path cells, or stops of tours, of an answer"
-    )
-    max_preferences: Annotated[int, _whole(1, _MOST_TOURS)] = Field(
-        200, description="the most preferences of a request"
-    )
-    max_repairs: Annotated[int, _whole(0, _MOST_TOURS)] = Field(
-        200, description="the most repairs of the network's tours"
-    )
-    max_size: Annotated[int, _whole(1, _MOST_TOURS)] = Field(
-        1000, description="the most tours that a request may ask for"
-    )
-    max_time_limit: Annotated[float, _number(0, _WEEK)] = Field(
-        60.0, description="the most seconds of planning"
-    )
+    max_body_bytes: Annotated[int, _whole(1, _MOST_BODY_BYTES)] = 2**24
+    """the longest request body"""
+    bodies_bytes: Annotated[int, _whole(2**20, _MOST_BYTES)] = 2**27
+    """the most bytes of all request bodies in progress; as many for answers"""
+    parse_seconds: Seconds = 20.0
+    """how long a body may take to parse"""
+    parse_bytes: Annotated[int, _whole(2**26, _MOST_BYTES)] = 2**29 + 2**28
+    """memory that parsing a body may take"""
+    max_cities: Annotated[int, _whole(1, _MOST_CITIES)] = 10_000
+    """the most cities of an instance"""
+    max_matrix_cities: Annotated[int, _whole(1, _MOST_PAIRED_CITIES)] = 1000
+    """the most cities where costs are matrices"""
+    max_network_cities: Annotated[int, _whole(1, _MOST_PAIRED_CITIES)] = 5000
+    """the most cities for which a network builds tours"""
+    max_fleet_stops: Annotated[int, _whole(1, _MOST_FLEET_STOPS)] = 500
+    """the most stops of a fleet, and places that several robots share"""
+    max_cells: Annotated[int, _whole(1, _MOST_CELLS)] = 2**20
+    """the most cells of a map"""
+    max_path_cells: Annotated[int, _whole(1, _MOST_PATH_CELLS)] = 2**21
+    """the most path cells, or stops of tours, of an answer"""
+    max_preferences: Annotated[int, _whole(1, _MOST_TOURS)] = 200
+    """the most preferences of a request"""
+    max_repairs: Annotated[int, _whole(0, _MOST_TOURS)] = 200
+    """the most repairs of the network's tours"""
+    max_size: Annotated[int, _whole(1, _MOST_TOURS)] = 1000
+    """the most tours that a request may ask for"""
+    max_time_limit: Annotated[float, _number(0, _WEEK)] = 60.0
+    """the most seconds of planning"""
 
     # Deadlines.
-    request_seconds: Seconds = Field(
-        90.0, description="seconds after which a request is answered with the best front so far"
-    )
-    drain_seconds: Annotated[int, _whole(0, _WEEK)] = Field(
-        20, description="seconds to finish requests in progress after SIGTERM"
-    )
-    body_seconds: Seconds = Field(30.0, description="how long a body may take to arrive")
+    request_seconds: Seconds = 90.0
+    """seconds after which a request is answered with the best front so far"""
+    drain_seconds: Annotated[int, _whole(0, _WEEK)] = 20
+    """seconds to finish requests in progress after SIGTERM"""
+    body_seconds: Seconds = 30.0
+    """how long a body may take to arrive"""
 
     # The store of fronts and jobs.
-    store: str = Field(
-        ":memory:",
-        description="file for fronts and jobs, which survive a restart; by default memory",
-    )
-    store_entries: Annotated[int, _whole(1, _MOST_ENTRIES)] = Field(
-        256, description="the most fronts kept; when full, the client with most loses its oldest"
-    )
-    store_bytes: Annotated[int, _whole(1, _MOST_BYTES)] = Field(
-        STORE_BYTES,
-        description="the most bytes of all fronts kept",
-    )
-    store_seconds: KeptSeconds = Field(3600.0, description="how long a front is kept")
-    redis_url: RedisUrl | None = Field(
-        None,
-        description="Redis shared by all replicas: rates, fronts, and jobs for `paretour work`",
-    )
+    store: str = ":memory:"
+    """file for fronts and jobs, which survive a restart; by default memory"""
+    store_entries: Annotated[int, _whole(1, _MOST_ENTRIES)] = 256
+    """the most fronts kept; when full, the client with most loses its oldest"""
+    store_bytes: Annotated[int, _whole(1, _MOST_BYTES)] = STORE_BYTES
+    """the most bytes of all fronts kept"""
+    store_seconds: KeptSeconds = 3600.0
+    """how long a front is kept"""
+    redis_url: RedisUrl | None = None
+    """Redis shared by all replicas: rates, fronts, and jobs for `paretour work`"""
 
     # The routing engine.
-    router_url: Address | None = Field(
-        None, description="address of the routing engine; without it costs by road are refused"
-    )
-    router: RouterName = Field(
-        "valhalla", description="interface of the routing engine: valhalla or osrm"
-    )
-    router_profile: Name | None = Field(
-        None,
-        description="its profile, such as auto; by default auto for valhalla, driving for osrm",
-    )
-    router_snap: Annotated[float, _number(_LEAST, 10_000)] = Field(
-        250.0, description="the most metres from a stop to a road"
-    )
-    router_seconds: Seconds = Field(
-        20.0,
-        description="how long the routing engine may take for one request's costs, or streets",
-    )
-    router_pairs: Annotated[int, _whole(1, 10_000)] = Field(
-        2500, description="the most pairs of stops in one question to the routing engine"
-    )
-    router_cache_bytes: Annotated[int, _whole(0, _MOST_BYTES)] = Field(
-        2**26,
-        description="the most bytes of remembered costs and streets, which are asked for once",
-    )
-    router_cache_seconds: KeptSeconds = Field(
-        3600.0, description="how long costs and streets are remembered"
-    )
-    router_legs: Annotated[int, _whole(1, _MOST_ENTRIES)] = Field(
-        5000, description="the most legs whose streets one answer draws"
-    )
-    router_positions: Annotated[int, _whole(2, 2**24)] = Field(
-        2**20, description="the most positions in all lines along streets of one answer"
-    )
+    router_url: Address | None = None
+    """address of the routing engine; without it costs by road are refused"""
+    router: RouterName = "valhalla"
+    """interface of the routing engine: valhalla or osrm"""
+    router_profile: Name | None = None
+    """its profile, such as auto; by default auto for valhalla, driving for osrm"""
+    router_snap: Annotated[float, _number(_LEAST, 10_000)] = 250.0
+    """the most metres from a stop to a road"""
+    router_seconds: Seconds = 20.0
+    """how long the routing engine may take for one request's costs, or streets"""
+    router_pairs: Annotated[int, _whole(1, 10_000)] = 2500
+    """the most pairs of stops in one question to the routing engine"""
+    router_cache_bytes: Annotated[int, _whole(0, _MOST_BYTES)] = 2**26
+    """the most bytes of remembered costs and streets, which are asked for once"""
+    router_cache_seconds: KeptSeconds = 3600.0
+    """how long costs and streets are remembered"""
+    router_legs: Annotated[int, _whole(1, _MOST_ENTRIES)] = 5000
+    """the most legs whose streets one answer draws"""
+    router_positions: Annotated[int, _whole(2, 2**24)] = 2**20
+    """the most positions in all lines along streets of one answer"""
 
     # Access.
-    api_keys: KeyHashes = Field(
-        (),
-        description="callers and their keys, as CALLER:HASH,CALLER:HASH; without it all may call",
-    )
-    rate: Rate = Field(
-        "1000/minute", description="the most requests of each caller; without keys, of each address"
-    )
-    origins: Words = Field(
-        (), description="origins whose pages may call (CORS), separated by commas; or *"
-    )
+    api_keys: KeyHashes = ()
+    """callers and their keys, as CALLER:HASH,CALLER:HASH; without it all may call"""
+    rate: Rate = "1000/minute"
+    """the most requests of each caller; without keys, of each address"""
+    origins: Words = ()
+    """origins whose pages may call (CORS), separated by commas; or *"""
 
     # Observation.
-    traces: str | None = Field(
-        None,
-        validation_alias="OTEL_EXPORTER_OTLP_ENDPOINT",
-        description="where OpenTelemetry traces go, over HTTP",
-    )
+    traces: str | None = Field(None, validation_alias="OTEL_EXPORTER_OTLP_ENDPOINT")
+    """where OpenTelemetry traces go, over HTTP"""
 
     @property
     def roads(self) -> RouterSettings | None:
         """The routing engine, if there is one."""
         if self.router_url is None:
             return None
-        return RouterSettings(
-            url=self.router_url,
-            router=self.router,
-            profile=self.router_profile or DEFAULT_PROFILES[self.router],
-            snap=self.router_snap,
-            # Less than the request's, so that the error names the slow engine as the cause.
-            seconds=min(self.router_seconds, _ROUTER_SHARE * self.request_seconds),
-            pairs=self.router_pairs,
-            cache_bytes=self.router_cache_bytes,
-            cache_seconds=self.router_cache_seconds,
-            legs=self.router_legs,
-            positions=self.router_positions,
-        )
+        named = {name.removeprefix("router_"): value for name, value in self if "router_" in name}
+        named["profile"] = self.router_profile or DEFAULT_PROFILES[self.router]
+        # Less than the request's, so that the error names the slow engine as the cause.
+        named["seconds"] = min(self.router_seconds, _ROUTER_SHARE * self.request_seconds)
+        return RouterSettings(router=self.router, **named)
 
     @property
     def limits(self) -> Limits:
-        """The limits of a request."""
-        return Limits(
-            body_bytes=self.max_body_bytes,
-            cities=self.max_cities,
-            matrix_cities=self.max_matrix_cities,
-            network_cities=self.max_network_cities,
-            fleet_stops=self.max_fleet_stops,
-            cells=self.max_cells,
-            path_cells=self.max_path_cells,
-            preferences=self.max_preferences,
-            repairs=self.max_repairs,
-            size=self.max_size,
-            seconds=self.max_time_limit,
-            roads=self.router_url is not None,
-        )
+        """The limits of a request: the settings whose names begin with `max_`."""
+        named = {name.removeprefix("max_"): value for name, value in self if name[:4] == "max_"}
+        seconds = named.pop("time_limit")
+        return Limits(**named, seconds=seconds, roads=self.router_url is not None)
 
 
 PREFIX = "PARETOUR_"

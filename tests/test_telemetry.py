@@ -45,7 +45,7 @@ def test_a_warning_of_python_is_a_line_of_the_log_in_worker_processes_too() -> N
 def test_the_runner_of_every_worker_is_loaded_with_the_log_as_objects() -> None:
     code = (
         "import logging; from service.settings import Settings; from service import server;"
-        "server._make_runner(Settings(), None)(); logging.getLogger('x').warning('a line')"
+        "server._make_runner(Settings())(); logging.getLogger('x').warning('a line')"
     )
     process = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
     assert json.loads(process.stderr)["message"] == "a line"

@@ -1,5 +1,5 @@
--- What is done with records. Each call happens at once for everybody, or not at all.
--- ARGV: what to do, the time in seconds, and what else that needs. stored_records.lua comes before.
+-- The verbs of the script. Each call happens for everybody at once, or not at all.
+-- ARGV: the verb, the time in seconds, and the arguments of the verb. stored_records.lua comes before.
 
 -- Counts of fields come before them, because a list of lists cannot be given.
 local function rest(first) return {unpack(ARGV, first)} end
@@ -20,7 +20,7 @@ function verbs.put(now)
   put(now, id, fields, work)
 end
 
--- The reply to a repeat; nil for a record that is none, or repeats one that failed.
+-- The reply to a repeat; nil if the record repeats nothing, or only one that failed.
 local function repeated(caller, key, digest)
   local earlier = key ~= '' and redis.call('GET', key_of(caller, key))
   if not earlier then return nil end
@@ -59,7 +59,7 @@ function verbs.latest(_)
   local caller, client = ARGV[3], ARGV[4]
   for _, id in ipairs(redis.call('ZREVRANGE', owned_by(client), 0, -1)) do
     local its = redis.call('HGET', front_of(id), 'caller')
-    -- Of a damaged record the caller may be missing: who reads it drops it.
+    -- A damaged record may lack its caller. The replica that reads it drops it.
     if not its or its == caller then return {id, redis.call('HGETALL', front_of(id))} end
   end
   return redis.call('EXISTS', gone_of(client)) == 1 and 'expired' or 'unknown'
@@ -69,7 +69,7 @@ function verbs.source(_) return redis.call('HGETALL', work_of(ARGV[3])) end
 
 function verbs.forget(_) forget(ARGV[3]) end
 
--- A record that cannot be read: who follows it is told that it has ended.
+-- Drop a record that cannot be read, and tell those who follow it that it has ended.
 function verbs.drop(_)
   local id, caller = ARGV[3], ARGV[4]
   drop(id, caller)
@@ -80,8 +80,7 @@ function verbs.repair(_) repair(ARGV[3]) end
 
 function verbs.messages(_) return redis.call('LLEN', ARGV[3]) end
 
--- How many workers there are. Fails where Redis takes no more data, which it tells only who would
--- write.
+-- How many workers there are. It writes something, because only then Redis says that it is full.
 function verbs.write(now)
   redis.call('SET', P .. 'written', now)
   redis.call('ZREMRANGEBYSCORE', WORKERS, '-inf', now - 5)
@@ -96,7 +95,7 @@ function verbs.unfinished(_)
   return found
 end
 
--- What follows is for records that are worked on.
+-- The other verbs are for records that are being planned.
 
 local function tell(id)
   redis.call('PUBLISH', TOLD, id .. ':' .. redis.call('HGET', front_of(id), 'status'))
@@ -107,7 +106,7 @@ local function workers_at(now)
   return redis.call('ZCARD', WORKERS)
 end
 
--- What is removed before lets this through where Redis is full: whoever is there stays there.
+-- A script may write when Redis is full, once it has removed something. So workers stay registered.
 function verbs.present(now)
   workers_at(now)
   redis.call('ZADD', WORKERS, now, ARGV[3])
@@ -157,7 +156,7 @@ end
 
 function verbs.check_place(now) return refusal(now) or 'new' end
 
--- Admission to the queue and to the records at once. Who waits for the front needs a worker now.
+-- Admit a record and give it a place. A client that waits for the front needs a worker now.
 function verbs.submit(now)
   local waits = ARGV[6] ~= ''
   local reply = repeated(unpack(ARGV, 8, 10)) or (waits and workers_at(now) == 0 and 'alone')
@@ -169,7 +168,7 @@ function verbs.submit(now)
 end
 
 -- The record that waits and is next, in the order of service/jobs/fair_queue.py: clients without a
--- running record come first; of these newcomers, then who has waited longest since the last turn.
+-- running record come first, and among them newcomers, then those whose last turn is longest ago.
 local function next_in_turn()
   local first, waiting, served = {}, {}, {}
   for _, id in ipairs(redis.call('ZRANGE', UNFINISHED, 0, -1)) do
@@ -197,8 +196,8 @@ local function next_in_turn()
   return first[found]
 end
 
--- The record that the worker of a message is to plan. A message is a turn, of whichever record is
--- next; but where it comes again, and its worker is lost, of the same one.
+-- The record that a worker plans for a message. A message stands for a turn, which is that of the
+-- next record. If the message comes again because its worker is lost, it is the same record.
 local function record_of(now, message, lease, known)
   for _, id in ipairs(redis.call('ZRANGE', UNFINISHED, 0, -1)) do
     local status, seen, began_by = unpack(redis.call('HMGET', front_of(id), 'status', 'seen', 'message'))
@@ -211,7 +210,7 @@ local function record_of(now, message, lease, known)
   return next_in_turn()
 end
 
--- Nothing where no record waits, and none has lost the worker of this message.
+-- Nothing if no record waits and no record has lost the worker of this message.
 function verbs.begin(now)
   local message, worker, lease, known = ARGV[3], ARGV[4], tonumber(ARGV[5]), ARGV[6]
   local id = record_of(now, message, lease, known)
@@ -226,7 +225,7 @@ end
 
 local function has(id, worker) return redis.call('HGET', front_of(id), 'worker') == worker end
 
--- A worker is at it: whether it is to stop, and why.
+-- A worker still plans the record. The reply says why it is to stop, if it is.
 function verbs.seen(now)
   local id, worker = ARGV[3], ARGV[4]
   if not has(id, worker) then return 'taken' end
@@ -242,7 +241,7 @@ function verbs.progress(_)
   end
 end
 
--- A worker that ends gives it to another, and it counts as no attempt.
+-- A worker that shuts down leaves the record to another. This does not count as an attempt.
 function verbs.hand_back(now)
   local id, worker = ARGV[3], ARGV[4]
   if has(id, worker) then
@@ -258,7 +257,7 @@ function verbs.stop(_)
   if redis.call('EXISTS', front_of(id)) == 1 then redis.call('HSETNX', front_of(id), 'stop', why) end
 end
 
--- Whatever ends it first ends it. Its source is there already, and stays unless it failed.
+-- Only the first end of a record counts. Its source is stored already, and stays unless it failed.
 function verbs.finish(now)
   local id, fields = ARGV[3], split(4)
   local status = redis.call('HGET', front_of(id), 'status')
@@ -270,7 +269,7 @@ function verbs.finish(now)
   end
 end
 
--- To the first who asks, what a record ended with.
+-- The fields of a record that is done, for the first replica that asks.
 function verbs.claim(_)
   local id = ARGV[3]
   if redis.call('HGET', front_of(id), 'status') ~= 'done' then return false end
@@ -278,8 +277,8 @@ function verbs.claim(_)
   return redis.call('HGETALL', front_of(id))
 end
 
--- Those of which the worker was not seen for so long, or the message is lost, and when one was
--- last sent is as long ago.
+-- The records whose worker was not seen for the time of a lease, or whose message is lost, unless
+-- they were sent again within that time.
 function verbs.stale(now)
   local lease, messages = tonumber(ARGV[3]), ARGV[4]
   local found = {}

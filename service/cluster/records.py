@@ -1,23 +1,19 @@
-"""The form of a record in Redis: the fields of its hashes, and the script that changes them.
+"""The form of a record in Redis: the fields of its hashes.
 
 Replicas and workers of different releases share one Redis. The names of fields and stop reasons,
 the columns in `jobs.store` and the keys in `stored_records.lua` therefore stay as they are.
 """
 
 import json
-import logging
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path
 from typing import Any
 
 from pydantic_core import to_json
-from redis import exceptions
 
 from service.errors import Cancelled, DeadlineExceeded
-from service.errors.printable import printable
 from service.front import Progress
+from service.jobs.engine import JobState
 from service.jobs.record import Record, StopReason
 from service.jobs.store import (
     SOURCE_COLUMNS,
@@ -30,15 +26,10 @@ from service.jobs.store import (
 from service.kinds.front_document import FrontDocument
 from service.requests.task import TaskSource
 
-SCRIPT = "".join(
-    (Path(__file__).parent / name).read_text() for name in ("stored_records.lua", "records.lua")
-)
-LEASE = 5.0  # seconds without a sign of life after which a worker is lost
-CHANNEL = "paretour:told"  # where the script publishes "id:status" after each change
-
 # Fields beside the columns. The script sets the first two.
 REQUESTED_AT = "kept"  # seconds since 1970
 ATTEMPTS = "attempts"
+PROCESS = "process"  # the id of the process that plans, on the machine of the worker
 GAINED = "gained"
 PROGRESS = "progress"
 CLIENT = "client"
@@ -47,31 +38,16 @@ STOP_REASONS: Mapping[StopReason, bytes] = {Cancelled: b"Stopped", DeadlineExcee
 REASON_OF = {name: reason for reason, name in STOP_REASONS.items()}
 TAKEN_OVER = b"taken"
 
-# Redis does not answer, is full, or is a read-only replica.
-UNAVAILABLE = (
-    exceptions.ConnectionError,
-    exceptions.TimeoutError,
-    exceptions.OutOfMemoryError,
-    exceptions.ReadOnlyError,
-)
-# How errors begin where Redis cannot write to its disk, or to enough copies.
-REFUSES_WRITES = ("MISCONF", "NOREPLICAS")
-
-# The script's error where a key holds foreign data, with the name of that key in JSON.
-_DAMAGED = re.compile(r'damaged ("(?:[^"\\]|\\.)*")')
-
-Argument = str | bytes | float
+Argument = str | bytes | float  # of the script
 _TEXTS = ("id", "caller", "request_id", "status", "key", "digest", "kind", CLIENT)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class StoredRecord:
+class StoredRecord(JobState):
     """A record as it stands in Redis. `requested_at` is in seconds since 1970."""
 
-    record: Record
     requested_at: float
     attempts: int
-    progress: Progress | None
 
 
 def record_arguments(record: Record) -> list[Argument]:
@@ -90,24 +66,14 @@ def record_arguments(record: Record) -> list[Argument]:
     return [len(fields), *fields, *_names_and_values(source)]
 
 
-def progress_arguments(progress: Progress, front: FrontDocument) -> list[Argument]:
+def report_arguments(
+    process: int | None, progress: Progress | None, front: FrontDocument | None
+) -> list[Argument]:
     """Return the fields that a worker's report changes, as arguments of the script."""
-    return _names_and_values({**front_columns(front), PROGRESS: to_json(asdict(progress))})
-
-
-def damaged_key(error: exceptions.ResponseError) -> str | None:
-    """Return the key with foreign data, if that is why the script has failed."""
-    found = _DAMAGED.search(str(error))
-    return None if found is None else str(json.loads(found[1]))
-
-
-def log_repaired(key: str, error: exceptions.ResponseError) -> None:
-    """Log that a key was put aside, because it held foreign data."""
-    logging.getLogger("paretour").error(
-        "key %s of Redis is damaged, put aside as paretour:damaged and made anew: %s",
-        printable(key)[:200],
-        error,
-    )
+    fields: dict[str, Argument] = {} if front is None else {**front_columns(front)}
+    if progress is not None:
+        fields[PROGRESS] = to_json(asdict(progress))
+    return _names_and_values({**fields, PROCESS: process or ""})
 
 
 def stored_record(*hashes: Iterable[bytes]) -> StoredRecord:

@@ -7,20 +7,14 @@ from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import suppress
 from functools import partial
 from time import time
+from weakref import WeakValueDictionary
 
 from redis.asyncio import Redis
-from redis.backoff import NoBackoff
-from redis.retry import Retry
 
 from service.cluster.celery_app import QUEUE, make_celery, send_record
-from service.cluster.pubsub import Subscriptions
-from service.cluster.records import (
-    LEASE,
-    STOP_REASONS,
-    StoredRecord,
-    record_arguments,
-)
+from service.cluster.records import STOP_REASONS, StoredRecord, record_arguments
 from service.cluster.redis_store import RedisStore
+from service.cluster.script import CHANNEL, LEASE, UNAVAILABLE, connect_redis
 from service.errors import (
     Cancelled,
     DeadlineExceeded,
@@ -31,14 +25,63 @@ from service.errors import (
 )
 from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
-from service.jobs.record import Record, StopReason, as_ended, as_failed
+from service.jobs.record import UNFINISHED, Record, StopReason, as_ended, as_failed
 from service.jobs.store import STORE_BYTES
 from service.kinds.front_document import FrontDocument
 from service.requests.task import Task
 
 _POLL = 2.0  # seconds without a notification after which a record is read all the same
 _GRACE = 1.0  # seconds for a worker to stop by itself
+_LISTEN_PAUSE = 0.2  # seconds between two tries to listen
+_SILENT = 5.0  # seconds without a message after which the connection is tested
 _SWEEP = 2.0  # seconds between two searches for jobs that lost their worker or message
+
+
+class Subscriptions:
+    """Tells those who wait when a record has changed, or may have changed.
+
+    `on_finished` is called with the id of each record that is finished.
+    """
+
+    def __init__(self, redis: Redis, on_finished: Callable[[str], None]) -> None:
+        self._redis = redis
+        self._on_finished = on_finished
+        self._changes = WeakValueDictionary[str, Event]()  # while somebody has them
+
+    def next_change(self, id: str) -> Event:  # noqa: A002
+        """Return an event that is set at the next change of a record."""
+        return self._changes.setdefault(id, Event())
+
+    async def listen(self) -> None:
+        """Receive notifications, until the task is cancelled."""
+        while True:
+            try:
+                await self._listen()
+            except UNAVAILABLE:
+                await asyncio.sleep(_LISTEN_PAUSE)
+
+    async def _listen(self) -> None:
+        async with self._redis.pubsub() as channel:
+            await channel.subscribe(CHANNEL)
+            # Messages that were sent before the subscription are lost.
+            for id_ in list(self._changes):
+                self._wake(id_)
+            while True:
+                message = await channel.get_message(timeout=_SILENT)
+                if message is None:
+                    await channel.ping()  # which raises where the connection is lost
+                elif message["type"] == "message":
+                    id_, _, status = message["data"].decode(errors="replace").partition(":")
+                    self._handle(id_, status)
+
+    def _handle(self, id: str, status: str) -> None:  # noqa: A002
+        if status not in UNFINISHED:
+            self._on_finished(id)
+        self._wake(id)
+
+    def _wake(self, id: str) -> None:  # noqa: A002
+        if changed := self._changes.pop(id, None):
+            changed.set()
 
 
 class RedisEngine:
@@ -69,7 +112,7 @@ class RedisEngine:
         self._queue = queue
         self._share = share
         self._on_front = on_front
-        self._subscriptions = Subscriptions(redis, self._on_finished)
+        self._subscriptions = Subscriptions(redis, lambda id_: self._spawn(self._claim(id_)))
         self._tasks: set[asyncio.Task[None]] = set()
         self._stats = EngineStats(waiting=0, working=0, lost=0)
         self._closed = False
@@ -144,7 +187,7 @@ class RedisEngine:
         first = await self._store.submit(record, self._queue, self._share, waits)
         if first.id == record.id:
             try:
-                await self._send_id(record.id)
+                await asyncio.to_thread(self._send, record.id)
             except Exception:
                 await self._store.delete(record)
                 await self._store.call("messages", QUEUE)  # which repairs them, if that is why
@@ -161,18 +204,18 @@ class RedisEngine:
     async def watch(self, record: Record) -> AsyncIterator[JobState]:
         """Yield the state of a job now and after each change, until it is finished."""
         last = None
-        with self._subscriptions.changes(record.id) as changed:
-            while True:
-                changed.clear()
-                with suppress(StoreUnavailable):
-                    stored = await self._stored(record)
-                    record, progress = stored.record, stored.progress
-                    if (record.status, progress) != last:
-                        last = record.status, progress
-                        yield JobState(record, progress)
-                if record.finished:
-                    return
-                await _wait(changed, _POLL)
+        while True:
+            changed = self._subscriptions.next_change(record.id)
+            with suppress(StoreUnavailable):
+                stored = await self._stored(record)
+                record = stored.record
+                if (record.status, stored.progress) != last:
+                    last = record.status, stored.progress
+                    yield stored
+            if record.finished:
+                return
+            with suppress(TimeoutError):
+                await asyncio.wait_for(changed.wait(), _POLL)
 
     async def cancel(self, record: Record) -> Record:
         """End a job at once, with what was found so far, and return its final record."""
@@ -185,7 +228,7 @@ class RedisEngine:
             return await self._store.find("get", record.caller, record.id)
         except (NotFound, Expired):
             deleted = as_failed(record, Cancelled(), record.front)
-            return StoredRecord(record=deleted, requested_at=0, attempts=0, progress=None)
+            return StoredRecord(deleted, requested_at=0, attempts=0)
 
     async def _stop(self, record: Record, reason: StopReason) -> None:
         """Ask the worker to end a job; if it does not in time, end the job here."""
@@ -199,9 +242,6 @@ class RedisEngine:
             seconds = time() - stored.requested_at
             ended = as_ended(stored.record, stored.record.front, reason, seconds)
             await self._store.call("finish", record.id, *record_arguments(ended))
-
-    async def _send_id(self, id: str) -> None:  # noqa: A002
-        await asyncio.to_thread(self._send, id)
 
     async def _sweep(self) -> None:
         while True:
@@ -218,10 +258,7 @@ class RedisEngine:
         for id_ in await self._store.call("stale", LEASE, QUEUE):
             name = id_.decode(errors="replace")
             self._log.warning("front %s has lost its worker, sent again", name[:80])
-            await self._send_id(name)
-
-    def _on_finished(self, id: str) -> None:  # noqa: A002
-        self._spawn(self._claim(id))
+            await asyncio.to_thread(self._send, name)
 
     async def _claim(self, id: str) -> None:  # noqa: A002
         """Pass a finished front on, unless another replica has."""
@@ -236,15 +273,6 @@ class RedisEngine:
         task.add_done_callback(self._tasks.discard)
 
 
-async def _wait(changed: Event, seconds: float) -> None:
-    with suppress(TimeoutError):
-        async with asyncio.timeout(seconds):
-            await changed.wait()
-
-
-_SECONDS = 2.0  # the longest that one reply of Redis may take
-
-
 def connect(  # noqa: PLR0913  a setting each
     redis_url: str,
     *,
@@ -257,10 +285,7 @@ def connect(  # noqa: PLR0913  a setting each
     on_front: Callable[[FrontDocument], None] = lambda _: None,
 ) -> tuple[RedisStore, RedisEngine]:
     """Return the store and the engine of a replica at this Redis."""
-    # Tried once more, because the connection may be to a Redis that was restarted.
-    redis = Redis.from_url(
-        redis_url, retry=Retry(NoBackoff(), 1), socket_timeout=_SECONDS, socket_keepalive=True
-    )
+    redis = connect_redis(redis_url)
     store = RedisStore(redis, entries=entries, max_age=max_age, max_bytes=max_bytes)
     send = partial(send_record, make_celery(redis_url, seconds))
     return store, RedisEngine(redis, store, send, queue=queue, share=share, on_front=on_front)

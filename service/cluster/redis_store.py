@@ -1,24 +1,18 @@
 """The store in Redis, shared by all replicas."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from time import time
 from typing import Any
 
 from redis.asyncio import Redis
-from redis.exceptions import ResponseError
 
 from service.cluster.records import (
-    REFUSES_WRITES,
-    SCRIPT,
-    UNAVAILABLE,
     Argument,
     StoredRecord,
-    damaged_key,
-    log_repaired,
     record_arguments,
-    stored_record,
     stored_source,
 )
+from service.cluster.script import RecordScript
 from service.errors import (
     Expired,
     IdempotencyMismatch,
@@ -26,20 +20,18 @@ from service.errors import (
     NoWorker,
     QueueFull,
     ShareFull,
-    StoreUnavailable,
 )
 from service.jobs.record import Record
-from service.jobs.store import STORE_BYTES, UnreadableRecord, log_dropped
+from service.jobs.store import STORE_BYTES
 from service.requests.task import TaskSource
 
 NOBODY = "none of the cluster was there in the last 5 s"
 
 
-class RedisStore:
+class RedisStore(RecordScript):
     """Keeps at most `entries` finished records of `max_bytes`, none older than `max_age` seconds.
 
-    Of those that were dropped it remembers the last `tombstones` ids. Only `unfinished` returns
-    records with their sources.
+    Of those that were dropped it remembers the last `tombstones` ids.
     """
 
     def __init__(
@@ -52,25 +44,8 @@ class RedisStore:
         tombstones: int = 10_000,
         clock: Callable[[], float] = time,
     ) -> None:
-        self._redis = redis
-        self._script = redis.register_script(SCRIPT)
+        super().__init__(redis, clock)
         self._bounds = (max_age, entries, tombstones, max_bytes)
-        self._clock = clock
-
-    async def put(self, record: Record) -> None:
-        """Store a record, in place of an earlier one with its id."""
-        await self.call("put", record.id, *record_arguments(record))
-        await self._evict()
-
-    async def admit(self, record: Record) -> Record:
-        """Store a new record and return it, or return the one that has its idempotency key."""
-        await self._evict()
-        arguments = (*_identity(record), *record_arguments(record))
-        return await self._earlier(record.caller, "admit", *arguments) or record
-
-    async def repeated(self, record: Record) -> Record | None:
-        """Return the record that has the idempotency key of this one, if one has and succeeded."""
-        return await self._earlier(record.caller, "repeated", *_identity(record)[1:])
 
     async def submit(self, record: Record, queue: int, share: float, waits: bool = False) -> Record:
         """Admit a record if there is a place for it; a repeat needs none.
@@ -113,39 +88,6 @@ class RedisStore:
         """Delete a record, and leave no trace of it."""
         await self.call("forget", record.id)
 
-    async def unfinished(self) -> list[Record]:
-        """Return all unfinished records with their sources, the oldest first."""
-        found = [await self.read(*each, whole=True) for each in await self.call("unfinished")]
-        return [stored.record for stored in found if stored is not None]
-
-    async def close(self) -> None:
-        """Close the connections."""
-        await self._redis.aclose()
-
-    async def call(self, verb: str, *arguments: Argument) -> Any:
-        """Run a verb of the script and return its reply.
-
-        Raises:
-            StoreUnavailable: Redis does not answer, or takes no more data where the verb writes.
-        """
-        try:
-            return await self._script(args=[verb, self._clock(), *arguments])
-        except UNAVAILABLE as error:
-            raise StoreUnavailable from error
-        except ResponseError as error:
-            if str(error).startswith(REFUSES_WRITES):
-                raise StoreUnavailable from error
-            await self._repair(error)
-            raise StoreUnavailable from error
-
-    async def _repair(self, error: ResponseError) -> None:
-        """Recreate the key at which the script failed; raise the error if it names none."""
-        key = damaged_key(error)
-        if key is None:
-            raise error
-        log_repaired(key, error)
-        await self._script(args=["repair", self._clock(), key])
-
     async def check_ready(self) -> None:
         """Raise StoreUnavailable if Redis accepts no more data, NoWorker if no worker runs."""
         if await self.call("write") == 0:
@@ -171,31 +113,6 @@ class RedisStore:
                     if stored is not None:
                         return stored
 
-    async def read(
-        self,
-        id: bytes,  # noqa: A002
-        *hashes: Iterable[bytes],
-        caller: str = "",
-        whole: bool = False,
-    ) -> StoredRecord | None:
-        """Return the record in these hashes; if it cannot be read, drop it and return None.
-
-        Args:
-            id: Its id, which may be missing in the hashes.
-            hashes: As HGETALL gives them.
-            caller: Its caller, if known.
-            whole: Whether an unfinished record must have its source.
-        """
-        try:
-            stored = stored_record(*hashes)
-            if whole and stored.record.source is None:
-                raise UnreadableRecord("what to plan is missing")
-        except UnreadableRecord as error:
-            log_dropped(id.decode(errors="replace")[:80], error)
-            await self.call("drop", id, *([caller] if caller else []))
-            return None
-        return stored
-
     async def _earlier(self, caller: str, verb: str, *arguments: Argument) -> Record | None:
         """Return the earlier record that an admission finds, if there is one that can be read."""
         while True:
@@ -216,14 +133,7 @@ def _identity(record: Record) -> tuple[str, str, str, str]:
 
 
 def _check_reply(reply: Any) -> None:
-    """Raise a refusal if the reply to an admission is one.
-
-    Raises:
-        IdempotencyMismatch: The key was used with another body.
-        QueueFull: No place is left.
-        ShareFull: The client holds its share of the places.
-        NoWorker: The client would wait for a worker, and none runs.
-    """
+    """Raise a refusal if the reply to an admission is one; see `RedisStore.submit`."""
     match reply:
         case b"mismatch":
             raise IdempotencyMismatch

@@ -1,269 +1,279 @@
-"""A worker of the cluster: Celery with a pool of processes, each planning one record at a time.
+"""A worker of the cluster: Celery brings messages, and a pool of processes plans their records.
 
-In each process a `RecordWorker` plans. Another thread checks whether the record is still
-wanted. If planning does not stop at once, the thread stores the best front so far; if it does not
-stop for seconds, the thread kills the process, which Celery replaces.
+The pool is that of the local engine. It starts, watches, replaces, stops and kills the processes.
+Here a record is taken from Redis for each message, given to the pool, and followed: its progress
+goes to Redis, and if it is no longer wanted, the pool is told to stop it.
 """
 
-import ctypes
+import asyncio
 import logging
 import os
-import signal
-import time
 import uuid
-from collections.abc import Callable
-from dataclasses import dataclass
-from multiprocessing.sharedctypes import RawValue
-from socket import gethostname
-from threading import Event, Thread, Timer
+from asyncio import AbstractEventLoop
+from collections.abc import Callable, Coroutine
+from contextlib import suppress
+from dataclasses import dataclass, field
+from socket import gethostname, socketpair
+from threading import Thread
+from time import time
 from typing import Any
 
 from celery import Celery, current_task
+from celery.concurrency.thread import TaskPool
 from celery.exceptions import Reject
-from celery.signals import setup_logging, worker_process_init, worker_shutting_down
+from celery.signals import setup_logging, worker_shutting_down
 
 from service.cluster.celery_app import TASK
 from service.cluster.records import StoredRecord
+from service.cluster.script import connect_redis
 from service.cluster.worker_store import TakenOver, WorkerStore
-from service.errors import Cancelled, DeadlineExceeded, WorkerLost
-from service.front import Progress
-from service.jobs.deadline import Deadline
-from service.jobs.record import Record, StopReason, as_ended, as_failed
-from service.jobs.runner import MakeRunner, Reporter, Runner
-from service.jobs.submission import MOST_ATTEMPTS
-from service.jobs.workers.worker_pool import GRACE, STOP_SECONDS
-from service.kinds.front_document import FrontDocument
+from service.errors import Cancelled, NoWorker, WarmingUp, WorkerLost
+from service.jobs.record import as_failed
+from service.jobs.submission import MOST_ATTEMPTS, Submission
+from service.jobs.workers.worker_pool import WorkerPool
+from service.jobs.workers.worker_process import MakeRunner
+from service.requests.task import Task, TaskSource
+from service.roads.client import RoadClient
 
 _CHECK_EVERY = 0.05  # seconds between two checks whether a record is still wanted
-_TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: a call may be about to begin
 _HEARTBEAT_EVERY = 1.0  # seconds between two signs of life
 
-IsDraining = Callable[[], bool]
 
-
-class Draining(Exception):
+class Draining(Cancelled):
     """The worker shuts down and leaves its record to another."""
 
 
 class RecordWorker:
-    """Plans the fronts of records in this process, each within a time limit."""
+    """Plans the fronts of records in an event loop, as many at a time as it has processes.
+
+    A process that is lost is counted in Redis, so the pool leaves it to this worker to try again.
+
+    Args:
+        make_runner: Called in each process; it must be picklable.
+        read: Reads the stored task of a record.
+        redis_url: The Redis with the records.
+        workers: How many processes there are.
+        seconds: The time limit of a record.
+        roads: The client of a routing engine.
+    """
 
     def __init__(
-        self, runner: Runner, store: WorkerStore, seconds: float, is_draining: IsDraining
+        self,
+        make_runner: MakeRunner,
+        read: Callable[[TaskSource], Task],
+        redis_url: str,
+        *,
+        workers: int,
+        seconds: float,
+        roads: RoadClient | None = None,
     ) -> None:
-        self._runner = runner
-        self._store = store
-        self._seconds = seconds
-        self._is_draining = is_draining
+        self._pool = WorkerPool(
+            make_runner,
+            workers=workers,
+            queue=workers,
+            seconds=seconds,
+            attempts=1,
+            roads=roads,
+            on_failed=self._fail,
+        )
+        self._failure = ""
+        machine = f"{gethostname()}:{os.getpid()}"
+        self._stores = [
+            WorkerStore(connect_redis(redis_url), f"{machine}:{uuid.uuid4().hex}")
+            for _ in range(workers)
+        ]
+        self._free = list(self._stores)
+        self.workers = workers
+        self._read = read
+        self._draining = False
 
-    def start(self) -> None:
-        """Warm up, and send heartbeats from then on."""
-        self._runner.warm_up()
-        Thread(target=self._send_heartbeats, name="heartbeat", daemon=True).start()
+    async def start(self) -> None:
+        """Start the processes, wait until one is ready, and send heartbeats from then on.
 
-    def plan(self, id: str, known_lost: bool) -> None:  # noqa: A002
-        """Plan the front of the record whose turn it is, unless none waits.
+        Raises:
+            NoWorker: No process gets ready in three tries.
+        """
+        await self._pool.start()
+        while not self._is_ready():
+            if self._failure:
+                await self._pool.close()
+                raise NoWorker(self._failure)
+            await asyncio.sleep(_CHECK_EVERY)
+        self._heartbeats = asyncio.create_task(self._send_heartbeats())
+
+    async def close(self) -> None:
+        """End the processes."""
+        self._heartbeats.cancel()
+        await self._pool.close()
+
+    def drain(self) -> None:
+        """Hand the records back that are being planned."""
+        self._draining = True
+
+    async def plan(self, id: str, known_lost: bool) -> None:  # noqa: A002
+        """Plan the front of the record that is next, if one waits.
 
         Args:
-            id: The id in the message, which stands for a turn.
+            id: The id in the message. The message stands for a turn, not for that record.
             known_lost: Whether the worker that had the message before is lost.
 
         Raises:
             Draining: The worker shuts down; the record is queued again.
         """
-        stored = self._store.begin(id, known_lost)
-        if stored is None:
-            return
-        if stored.attempts > MOST_ATTEMPTS:
-            self._store.finish(as_failed(stored.record, WorkerLost(), stored.record.front))
-            return
-        deadline = Deadline.after(self._seconds)
-        supervisor = _Supervisor(
-            stored, self._store, deadline, self._is_draining, self._runner.terminate
-        )
-        result = self._result(stored, supervisor)
-        supervisor.end()
-        if supervisor.reason is Draining:
-            self._store.hand_back(stored.record.id)
-            raise Draining
-        if supervisor.reason is not TakenOver:
-            self._store.finish(result)
-
-    def _result(self, stored: StoredRecord, supervisor: "_Supervisor") -> Record:
-        source = stored.record.source
-        assert source is not None
+        store = self._free.pop()
         try:
-            reporter = Reporter(supervisor.report)
-            task = self._runner.read(source)
-            front = self._runner.run(task, supervisor.stop.is_set, reporter)
+            while (stored := await store.begin(id, known_lost)) is not None:
+                if stored.attempts > MOST_ATTEMPTS:
+                    await store.finish(as_failed(stored.record, WorkerLost(), stored.record.front))
+                    return
+                try:
+                    await self._plan(store, stored)
+                except WorkerLost:
+                    known_lost = True
+                else:
+                    return
+        finally:
+            self._free.append(store)
+
+    async def _plan(self, store: WorkerStore, stored: StoredRecord) -> None:
+        """Plan a record and store what became of it.
+
+        Raises:
+            WorkerLost: The process was lost.
+            Draining: The worker shuts down; the record is queued again.
+        """
+        record = stored.record
+        assert record.source is not None
+        try:
+            task = await asyncio.to_thread(self._read, record.source)
+            submission = self._pool.submit(task)
         except Exception as error:
-            if supervisor.reason is None:
-                return as_failed(stored.record, error, supervisor.front)
-            return supervisor.ended(supervisor.front)
-        return supervisor.ended(front)
-
-    def _send_heartbeats(self) -> None:
-        while True:
-            self._store.send_heartbeat()
-            time.sleep(_HEARTBEAT_EVERY)
-
-
-class _Supervisor:
-    """Checks in a thread whether a record is still wanted, and ends its planning if it is not."""
-
-    def __init__(
-        self,
-        stored: StoredRecord,
-        store: WorkerStore,
-        deadline: Deadline,
-        is_draining: IsDraining,
-        terminate: Callable[[], None],
-    ) -> None:
-        self.stop = Event()
-        self.reason: StopReason | type[TakenOver | Draining] | None = None
-        self.front = stored.record.front
-        self._stored = stored
-        self._store = store
-        self._deadline = deadline
-        self._is_draining = is_draining
-        self._terminate = terminate
-        self._over = Event()
-        self._thread = Thread(target=self._check_often, name="supervisor", daemon=True)
-        self._thread.start()
-
-    def report(self, progress: Progress, front: FrontDocument) -> None:
-        """Store the progress and the best front so far."""
-        self.front = front
-        self._store.report(self._stored.record.id, progress, front)
-
-    def ended(self, front: FrontDocument) -> Record:
-        """Return the record, ended now with this front."""
-        reason = self.reason if self.reason in (Cancelled, DeadlineExceeded) else None
-        seconds = time.time() - self._stored.requested_at
-        return as_ended(self._stored.record, front, reason, seconds)
-
-    def end(self) -> None:
-        """Stop checking: planning is over."""
-        self._over.set()
-        self._thread.join()
-
-    def _check_often(self) -> None:
-        while not self._over.wait(_CHECK_EVERY):
-            self.reason = self._current_reason()
-            if self.reason is not None:
-                self.stop.set()
-                self._wait_or_kill()
-
-    def _wait_or_kill(self) -> None:
-        """Wait until planning has stopped; kill this process if it does not."""
-        if self._is_over_within(GRACE):
+            await store.finish(as_failed(record, error, record.front))
             return
-        self._let_go()
-        if not self._is_over_within(STOP_SECONDS):
-            os.kill(os.getpid(), signal.SIGKILL)
+        submission.waited = time() - stored.requested_at
+        await self._follow(store, record.id, submission)
+        if submission.stop_reason is Draining:
+            await store.hand_back(record.id)
+        elif submission.stop_reason is not TakenOver:
+            await store.finish(await submission.final(record))
+        # A process that does not stop at once is given no other record meanwhile.
+        while submission in self._pool.running:
+            await asyncio.sleep(_CHECK_EVERY)
+        if submission.stop_reason is Draining:
+            raise Draining
 
-    def _is_over_within(self, seconds: float) -> bool:
-        """Terminate the runner's calls again and again, and return whether planning is over."""
-        deadline = Deadline.after(seconds)
-        while not deadline.over():
-            self._terminate()
-            if self._over.wait(_TERMINATE_EVERY):
-                return True
+    async def _follow(self, store: WorkerStore, id: str, submission: Submission) -> None:  # noqa: A002
+        """Report on a submission, and stop it once it is not wanted, until it ends."""
+        ended = asyncio.Event()
+        submission.when_ended(ended.set)
+        reported: object = None, None
+        while True:
+            with suppress(TimeoutError):
+                await asyncio.wait_for(ended.wait(), _CHECK_EVERY)
+            if submission.ended:
+                return
+            reason = Draining if self._draining else await store.stop_reason(id)
+            if reason is not None:
+                self._pool.stop(submission, reason)
+            process, progress = self._pool.running.get(submission), submission.progress
+            if (process, progress) != reported:
+                reported = process, progress
+                await store.report(id, process, progress, submission.best_front)
+
+    def _fail(self, reason: str) -> None:
+        self._failure = reason
+
+    def _is_ready(self) -> bool:
+        with suppress(NoWorker, WarmingUp):
+            self._pool.check_ready()
+            return True
         return False
 
-    def _current_reason(self) -> StopReason | type[TakenOver | Draining] | None:
-        if self._deadline.over():
-            return DeadlineExceeded
-        return Draining if self._is_draining() else self._store.stop_reason(self._stored.record.id)
-
-    def _let_go(self) -> None:
-        """Store the record as it is known, and give it up although planning goes on."""
-        if self.reason is Draining:
-            self._store.hand_back(self._stored.record.id)
-        elif self.reason is not TakenOver:
-            self._store.finish(self.ended(self.front))
+    async def _send_heartbeats(self) -> None:
+        while True:
+            try:
+                for store in self._stores if self._is_ready() else ():
+                    await store.send_heartbeat()
+            except Exception:
+                # Otherwise this worker would never be counted again.
+                logging.getLogger("paretour").exception("a sign of life could not be sent")
+            await asyncio.sleep(_HEARTBEAT_EVERY)
 
 
-def make_record_worker(
-    make_runner: MakeRunner, redis_url: str, seconds: float, is_draining: IsDraining
-) -> RecordWorker:
-    """Return the worker of this process, with a unique name."""
-    name = f"{gethostname()}:{os.getpid()}:{uuid.uuid4().hex}"
-    return RecordWorker(make_runner(), WorkerStore(redis_url, name), seconds, is_draining)
+class _Threads(TaskPool):  # type: ignore[misc]  # Celery has no types
+    """Celery's pool of threads, each of which waits for a record.
 
+    It wakes Celery's event loop after each record, to fetch the next message at once.
+    """
 
-MakeRecordWorker = Callable[[IsDraining], RecordWorker]
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self._waking, self._awoken = socketpair()
+
+    def register_with_event_loop(self, hub: Any) -> None:
+        """Have the event loop wake up when a record has ended."""
+        hub.add_reader(self._awoken, self._awoken.recv, 1)
+
+    def on_apply(self, *args: Any, **options: Any) -> Any:
+        """Run a task in a thread."""
+        result = super().on_apply(*args, **options)
+        result.f.add_done_callback(lambda _: self._waking.send(b"\0"))
+        return result
 
 
 @dataclass(frozen=True, kw_only=True)
 class CeleryWorker:
-    """A Celery worker with a number of processes.
+    """A Celery worker, which gives each message to a worker of records.
 
-    When it is told to shut down, its processes have `drain_seconds` to finish their records, and
-    then hand them back.
+    After it was told to shut down, it finishes its records for `drain_seconds`, and then hands back
+    those that are left.
     """
 
     celery: Celery
-    make_record_worker: MakeRecordWorker
-    workers: int
+    records: RecordWorker
     drain_seconds: float
+    loop: AbstractEventLoop = field(default_factory=asyncio.new_event_loop)
+
+    def start(self) -> None:
+        """Start the processes, and wait until one is ready.
+
+        Raises:
+            NoWorker: No process gets ready in three tries.
+        """
+        Thread(target=self.loop.run_forever, name="records", daemon=True).start()
+        self._wait_for(self.records.start())
 
     def run(self) -> int:
         """Plan records until told to shut down, and return the exit status."""
-        pool = _ProcessPool(self.make_record_worker, self.drain_seconds)
-        self.celery.task(pool.plan, name=TASK)
-        worker_process_init.connect(pool.init_process)
-        worker_shutting_down.connect(pool.shut_down)
+        self.celery.task(self._plan, name=TASK)
+        worker_shutting_down.connect(self._drain_soon)
         setup_logging.connect(_keep_logging)
         worker = self.celery.Worker(
             hostname=f"paretour@{gethostname()}-{os.getpid()}",
-            pool="prefork",
-            concurrency=self.workers,
+            pool=_Threads,
+            concurrency=self.records.workers,
             quiet=True,
             without_gossip=True,
             without_mingle=True,
             without_heartbeat=True,
         )
         worker.start()
+        self._wait_for(self.records.close())
         return int(worker.exitcode or 0)
 
-
-class _ProcessPool:
-    """Celery's callbacks: those in each forked process, and the one in their parent."""
-
-    def __init__(self, make_record_worker: MakeRecordWorker, drain_seconds: float) -> None:
-        self._make_record_worker = make_record_worker
-        self._drain_seconds = drain_seconds
-        self._record_worker: RecordWorker | None = None
-        # Shared memory without a lock: a process could die while it holds one.
-        self._draining = RawValue(ctypes.c_bool, False)
-
-    def init_process(self, **_: Any) -> None:
-        """Make the worker of a process after its fork, which no session or connection survives."""
-        try:
-            self._record_worker = self._make_record_worker(lambda: self._draining.value)
-            self._record_worker.start()
-        except Exception:
-            logging.getLogger("paretour").exception("a worker could not begin")
-            raise SystemExit(1) from None
-
-    def plan(self, id: str) -> None:  # noqa: A002
+    def _plan(self, id: str) -> None:  # noqa: A002
         """Plan a record. If its message was delivered before, that worker was lost."""
-        assert self._record_worker is not None
         redelivered = bool(current_task.request.delivery_info.get("redelivered"))
         try:
-            self._record_worker.plan(id, known_lost=redelivered)
+            self._wait_for(self.records.plan(id, known_lost=redelivered))
         except Draining:
             raise Reject(requeue=True) from None
 
-    def shut_down(self, **_: Any) -> None:
-        """Begin to drain after `drain_seconds`, in the parent of the processes."""
-        timer = Timer(self._drain_seconds, self._drain)
-        timer.daemon = True
-        timer.start()
+    def _drain_soon(self, **_: Any) -> None:
+        self.loop.call_soon_threadsafe(self.loop.call_later, self.drain_seconds, self.records.drain)
 
-    def _drain(self) -> None:
-        self._draining.value = True
+    def _wait_for(self, coroutine: Coroutine[Any, Any, None]) -> None:
+        asyncio.run_coroutine_threadsafe(coroutine, self.loop).result()
 
 
 def _keep_logging(**_: Any) -> None:

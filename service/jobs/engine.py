@@ -70,11 +70,11 @@ class Engine(Protocol):
         """
 
     async def submit(self, record: Record, task: Task) -> Record:
-        """Store and begin a job, and return its record; or that of which it is a repeat.
+        """Store and begin a job and return its record, or that of the job that it repeats.
 
         The task is that of the record's source.
 
-        Either both happens or nothing: nobody sees a record that was not begun.
+        Storing and beginning succeed together or fail together: every job in the store was begun.
 
         Raises:
             QueueFull: No place is left.
@@ -105,7 +105,7 @@ async def record_in_time(engine: Engine, record: Record, deadline: Deadline) -> 
 
     Raises:
         DeadlineExceeded: Nothing was found in time. The job goes on.
-        ShuttingDown: It is left unfinished for the next start.
+        ShuttingDown: The service ends and leaves the job to its next start.
     """
     try:
         async with asyncio.timeout(deadline.left() + _GRACE):
@@ -124,7 +124,7 @@ async def final_record(engine: Engine, record: Record) -> Record:
     """Wait until a job is finished and return its record.
 
     Raises:
-        ShuttingDown: It is left unfinished for the next start.
+        ShuttingDown: The service ends and leaves the job to its next start.
     """
     async for state in engine.watch(record):
         record = state.record

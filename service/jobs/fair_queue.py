@@ -1,22 +1,10 @@
-"""A queue that takes submissions in turn by client, and the places that a client may hold."""
+"""A queue that takes submissions in turn by client."""
 
-import math
 from collections import deque
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Container, Iterator
 from itertools import chain, count
 
-from service.errors import QueueFull, ShareFull
 from service.jobs.submission import Submission
-
-
-def places_of_client(workers: int, queue: int, share: float) -> int:
-    """Return how many places one client may hold: its share, and at least one more than workers.
-
-    >>> places_of_client(2, 16, 0.5), places_of_client(4, 2, 0.5), places_of_client(1, 0, 0.5)
-    (9, 5, 2)
-    """
-    return max(math.ceil(share * (workers + queue)), workers + 1)
-
 
 _REMEMBERED = 1000  # clients whose latest turn is remembered
 
@@ -88,23 +76,3 @@ class FairQueue:
             waiting.remove(submission)
             if not waiting:
                 del self._by_client[submission.client]
-
-
-def check_place(held: Iterable[Submission], client: str, places: int, of_client: int) -> None:
-    """Raise a refusal if no place is left for one more submission of a client.
-
-    Args:
-        held: The submissions that hold a place.
-        client: The client with one more submission.
-        places: How many may be held in all.
-        of_client: How many the client may hold.
-
-    Raises:
-        QueueFull: All places are held.
-        ShareFull: The client holds its share of the places.
-    """
-    clients = [submission.client for submission in held]
-    if len(clients) >= places:
-        raise QueueFull
-    if clients.count(client) >= of_client:
-        raise ShareFull(of_client)

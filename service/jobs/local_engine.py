@@ -5,6 +5,7 @@ import logging
 from asyncio import Future
 from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import suppress
+from dataclasses import replace
 
 from service.errors import (
     Cancelled,
@@ -15,21 +16,97 @@ from service.errors import (
     ShuttingDown,
     StoreUnavailable,
     WarmingUp,
+    WorkerLost,
 )
 from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
-from service.jobs.record import Record, as_cancelled, as_failed, as_finished
-from service.jobs.retries import UnsavedRecords
-from service.jobs.running_job import RunningJob
-from service.jobs.store import Store
+from service.jobs.record import Record, Status, as_cancelled, as_failed, as_finished
+from service.jobs.sqlite_store import SqliteStore
 from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
-from service.requests.road_measurer import measured_by_road, needs_roads
 from service.requests.task import Task, TaskSource
-from service.roads.client import RoadClient
 
 _PAUSE = 0.5  # seconds between tries to resume the job of an earlier process
+_PATIENCE = 600.0  # seconds for which storing a front is tried
+_SAVE_PAUSE = 2.0  # seconds between two tries
 _LOG = logging.getLogger("paretour")
+
+
+class _Job:
+    """An unfinished job: its record, its submission once it has one, and an event for watchers."""
+
+    def __init__(self, record: Record) -> None:
+        self.record = record
+        self.ended = False
+        self.submission: Submission | None = None
+        self.changed = asyncio.Event()  # which is set at the next change
+
+    @property
+    def state(self) -> JobState:
+        """The present state."""
+        record, submission = self.record, self.submission
+        if record.finished or submission is None:
+            return JobState(record)
+        status: Status = "running" if submission.attempts else "queued"
+        front = submission.best_front or record.front
+        return JobState(replace(record, status=status, front=front), submission.progress)
+
+    def reserve(self, workers: WorkerPool, task: Task) -> None:
+        """Take a place in the queue for its task; it raises what WorkerPool.reserve raises."""
+        self.submission = workers.reserve(task, self._notify, client=self.record.client)
+
+    def end(self, record: Record) -> None:
+        """Take the final record."""
+        self.record = record
+        self.ended = True
+        self._notify()
+
+    def _notify(self) -> None:
+        changed, self.changed = self.changed, asyncio.Event()
+        changed.set()
+
+
+class UnsavedRecords:
+    """Saves records that the store did not accept at first."""
+
+    def __init__(self, store: SqliteStore, patience: float = _PATIENCE) -> None:
+        self._store = store
+        self._patience = patience
+        self._ids: set[str] = set()
+
+    def check_none(self) -> None:
+        """Raise StoreUnavailable while the store has not accepted some record."""
+        if self._ids:
+            raise StoreUnavailable
+
+    async def save(self, record: Record, error: Exception) -> None:
+        """Try to store a finished record until the store accepts it.
+
+        After some minutes the front is given up, and a failed record is stored instead.
+
+        Args:
+            record: The record.
+            error: What the store raised at first.
+        """
+        self._ids.add(record.id)
+        _LOG.error("front %s cannot be stored, and is tried again", record.id, exc_info=error)
+        deadline = Deadline.after(self._patience)
+        try:
+            while not await self._is_saved(record):
+                if deadline.over() and record.front.tours:
+                    empty = record.front.without_tours()
+                    record = as_failed(record, StoreUnavailable(), empty)
+                await asyncio.sleep(_SAVE_PAUSE)
+        finally:
+            self._ids.discard(record.id)
+        _LOG.info("front %s is stored", record.id)
+
+    async def _is_saved(self, record: Record) -> bool:
+        try:
+            await self._store.put(record)
+        except Exception:
+            return False
+        return True
 
 
 class LocalEngine:
@@ -39,38 +116,30 @@ class LocalEngine:
     store resumes them. If the store does not accept a finished record, its front is reported all
     the same and stored later; until then no new job is accepted.
 
-    This process asks for costs by road, not the workers: a job that waits for the routing engine
-    holds its place, but no process.
+    Args:
+        workers: The processes that plan.
+        store: Where records are kept.
+        read: Reads the stored task of a job that an earlier process left unfinished.
     """
 
     def __init__(
         self,
         workers: WorkerPool,
-        store: Store,
+        store: SqliteStore,
         read: Callable[[TaskSource], Task],
-        roads: RoadClient | None = None,
     ) -> None:
-        """Make an engine.
-
-        Args:
-            workers: The processes that plan.
-            store: Where records are kept.
-            read: Reads the stored task of a job that an earlier process left unfinished.
-            roads: The client of a routing engine.
-        """
         self._workers = workers
         self._store = store
         self._read = read
-        self._roads = roads
         self._unsaved = UnsavedRecords(store)
-        self._jobs: dict[str, RunningJob] = {}
+        self._jobs: dict[str, _Job] = {}
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def start(self) -> None:
         """Start the workers, and resume the jobs that an earlier process left unfinished."""
         await self._workers.start()
-        resumed = [RunningJob(record) for record in await self._store.unfinished()]
-        self._jobs.update({job.id: job for job in resumed})
+        resumed = [_Job(record) for record in await self._store.unfinished()]
+        self._jobs.update({job.record.id: job for job in resumed})
         if resumed:
             self._spawn(self._resume(resumed))
 
@@ -80,8 +149,6 @@ class LocalEngine:
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
-        if self._roads is not None:
-            await self._roads.close()
 
     async def stats(self) -> EngineStats:
         """Return the numbers for the metrics."""
@@ -111,8 +178,7 @@ class LocalEngine:
     ) -> Record:
         """Run a new job while its client waits; when that disconnects, cancel it."""
         self._unsaved.check_none()
-        submission = self._workers.reserve(task, deadline=deadline, client=record.client)
-        self._queue(submission)
+        submission = self._workers.submit(task, deadline=deadline, client=record.client)
         disconnected.add_done_callback(lambda _: self._workers.stop(submission))
         try:
             front = await submission.front()
@@ -127,7 +193,7 @@ class LocalEngine:
 
     async def submit(self, record: Record, task: Task) -> Record:
         """Store and begin a job at once, or return the earlier one that it is a repeat of."""
-        job = RunningJob(record)
+        job = _Job(record)
         try:
             self._unsaved.check_none()
             job.reserve(self._workers, task)
@@ -137,17 +203,18 @@ class LocalEngine:
                 return earlier
             raise
         # Before it is stored: a client that sees it in the store must find it here too.
-        self._jobs[job.id] = job
+        self._jobs[record.id] = job
+        first = None
         try:
             first = await self._admit(record)
-        except BaseException:
-            self._drop(job)
-            raise
-        if first.id == job.id:
-            self._begin(job)
-        else:
-            self._drop(job)
-        return first
+            return first
+        finally:
+            assert job.submission is not None
+            if first is not None and first.id == record.id:
+                self._begin(job)
+            else:
+                del self._jobs[record.id]
+                self._workers.give_back(job.submission)
 
     def state(self, record: Record) -> JobState:
         """Return the present state of a job, given its record in the store."""
@@ -196,45 +263,17 @@ class LocalEngine:
             _LOG.error("front %s cannot be stored", record.id, exc_info=error)
             raise StoreUnavailable from error
 
-    def _begin(self, job: RunningJob) -> None:
+    def _begin(self, job: _Job) -> None:
         assert job.submission is not None
-        self._queue(job.submission)
+        self._workers.queue(job.submission)
         self._spawn(self._follow(job))
-
-    def _queue(self, submission: Submission) -> None:
-        """Queue a submission that has a place, at once or when its costs by road are there."""
-        if self._roads is None or not needs_roads(submission.task):
-            self._workers.queue(submission)
-        else:
-            self._spawn(self._queue_measured(submission, self._roads))
-
-    async def _queue_measured(self, submission: Submission, roads: RoadClient) -> None:
-        """Ask for the costs by road of a submission, until it ends, and queue it with them."""
-        asking = asyncio.create_task(measured_by_road(submission.task, roads))
-        submission.when_ended(asking.cancel)
-        try:
-            await asyncio.wait((asking,))
-            if not asking.cancelled():
-                submission.task = asking.result()
-        except Exception as error:
-            submission.fail(error)
-        finally:
-            asking.cancel()
-            # One that has ended only returns its place.
-            self._workers.queue(submission)
-
-    def _drop(self, job: RunningJob) -> None:
-        """Give up a job that was not admitted."""
-        del self._jobs[job.id]
-        if job.submission is not None:
-            self._workers.give_back(job.submission)
 
     def _spawn(self, coroutine: Coroutine[None, None, None]) -> None:
         task = asyncio.create_task(coroutine)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    async def _resume(self, jobs: list[RunningJob]) -> None:
+    async def _resume(self, jobs: list[_Job]) -> None:
         """Begin the jobs of an earlier process, except those cancelled meanwhile."""
         for job in jobs:
             try:
@@ -245,7 +284,7 @@ class LocalEngine:
             except Exception as error:
                 await self._end(job, as_failed(job.record, error, job.record.front))
 
-    def _is_resumed(self, job: RunningJob, task: Task) -> bool:
+    def _is_resumed(self, job: _Job, task: Task) -> bool:
         """Begin a job, and return whether there was a place for it."""
         with suppress(QueueFull, WarmingUp, ShuttingDown):
             self._workers.check_warm()
@@ -253,18 +292,18 @@ class LocalEngine:
             self._begin(job)
         return job.submission is not None
 
-    async def _follow(self, job: RunningJob) -> None:
+    async def _follow(self, job: _Job) -> None:
         """Wait for the front of a job, and end it."""
         try:
             await self._end(job, await self._result(job))
         except ShuttingDown:
-            _LOG.info("front %s is left for the next start", job.id)
+            _LOG.info("front %s is left for the next start", job.record.id)
         finally:
             if not job.ended:
                 job.end(job.record)
-            self._jobs.pop(job.id, None)
+            self._jobs.pop(job.record.id, None)
 
-    async def _end(self, job: RunningJob, ended: Record) -> None:
+    async def _end(self, job: _Job, ended: Record) -> None:
         """Store the final record of a job, then report it; if it cannot be stored, report it first.
 
         The job remains, with its final record, until that is stored.
@@ -275,16 +314,11 @@ class LocalEngine:
             job.end(ended)
             await self._unsaved.save(ended, error)
         job.end(ended)
-        self._jobs.pop(job.id, None)
+        self._jobs.pop(job.record.id, None)
 
-    async def _result(self, job: RunningJob) -> Record:
-        submission, record = job.submission, job.record
-        assert submission is not None
+    async def _result(self, job: _Job) -> Record:
+        assert job.submission is not None
         try:
-            return as_finished(record, await submission.front(), submission.stop_reason)
-        except Cancelled:
-            return as_cancelled(record)
-        except ShuttingDown:
-            raise
-        except Exception as error:
-            return as_failed(record, error, submission.best_front or record.front)
+            return await job.submission.final(job.record)
+        except WorkerLost as error:
+            return as_failed(job.record, error, job.submission.best_front or job.record.front)

@@ -23,10 +23,10 @@ class Record:
         caller: The name of the API key, which alone may see the record.
         request_id: Of the request that submitted the job; it is named in the problem document.
         front: The best front found so far.
-        source: The task as it is stored. Stores keep that of a finished job where they can, and
-            return it by itself; None of a job that failed.
+        source: The task as it is stored; None where the job has failed. Stores return the source
+            of a finished job apart from its record, if they have kept it.
         key: The Idempotency-Key, if the request had one.
-        digest: SHA-256 of the body, which tells a repeat from a key used twice.
+        digest: SHA-256 of the body. A second request with the key is a repeat if it has the same.
         problem: The problem document of a job that failed.
         client: The client whose share of the places it takes: the caller, or an address where
             there are no keys. It is not stored.

@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
 from time import time
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from service.errors import Expired, IdempotencyMismatch, NotFound, StoreUnavailable
 from service.jobs.record import Record
@@ -56,13 +56,12 @@ _LARGEST_OUT = f"""
 SELECT min(number) FROM front WHERE {_FINISHED} GROUP BY client
 ORDER BY count(*) > 1 DESC, sum(size) DESC, min(number) LIMIT 1
 """
-_Condition = tuple[str] | tuple[str, float] | tuple[str, float, float]
 
 
 class SqliteStore:
     """Keeps at most `entries` finished records of `max_bytes`, none older than `max_age` seconds.
 
-    Of those that were dropped it remembers the last `tombstones` ids. The file belongs to one
+    Of the records that were dropped it remembers the last `tombstones` ids. The file belongs to one
     process at a time.
 
     Raises:
@@ -86,8 +85,8 @@ class SqliteStore:
         self._clock = clock
         # All calls that touch the file are made in this thread, in their order.
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="store")
-        # Short records that are not yet written, with the time when they were put. In memory there
-        # nothing can be lost by that, and writing many at once takes less time for each.
+        # Short records that are not yet written, with the time when they were put. Nothing in
+        # memory can be lost by that, and writing many at once takes less time for each.
         self._unwritten: deque[tuple[float, Record]] = deque()
         self._most_unwritten = _AT_ONCE if path == IN_MEMORY else 0
         self._puts = self._bytes_put = 0  # since records were last evicted
@@ -106,11 +105,21 @@ class SqliteStore:
             await self._in_thread(self._put, record, self._clock())
 
     async def admit(self, record: Record) -> Record:
-        """Store a new record and return it, or return the one that has its idempotency key."""
+        """Store a new record and return it, or return the one that has its idempotency key.
+
+        A failed record loses its key, so that a repeat is a new try.
+
+        Raises:
+            IdempotencyMismatch: The caller used the key for another body.
+        """
         return await self._in_thread(self._admit, record)
 
     async def repeated(self, record: Record) -> Record | None:
-        """Return the record that has the idempotency key of this one, if one has and succeeded."""
+        """Return the record that has the idempotency key of this one, if one has and succeeded.
+
+        Raises:
+            IdempotencyMismatch: The caller used the key for another body.
+        """
         return await self._in_thread(self._repeated, record)
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
@@ -131,7 +140,7 @@ class SqliteStore:
 
     async def unfinished(self) -> list[Record]:
         """Return all unfinished records with their sources, the oldest first."""
-        return await self._in_thread(self._unfinished)
+        return await self._in_thread(self._select, f"{UNFINISHED} ORDER BY number")
 
     async def close(self) -> None:
         """Close the file."""
@@ -182,7 +191,8 @@ class SqliteStore:
     def _put(self, record: Record, kept: float) -> None:
         self._delete(record.id)
         columns = record_columns(record)
-        if record.finished and _source_size(columns) > self._max_bytes // SOURCE_SHARE:
+        source_size = record_size({name: columns[name] for name in SOURCE_COLUMNS})
+        if record.finished and source_size > self._max_bytes // SOURCE_SHARE:
             columns |= dict.fromkeys(SOURCE_COLUMNS)
         places = ", ".join("?" * (len(columns) + 3))
         insert = f"INSERT INTO front (kept, size, client, {_COLUMNS}) VALUES ({places})"
@@ -226,9 +236,6 @@ class SqliteStore:
         known = self._database.execute(f"SELECT 1 FROM gone WHERE {where}", values).fetchone()
         return Expired if known else NotFound
 
-    def _unfinished(self) -> list[Record]:
-        return self._select(f"{UNFINISHED} ORDER BY number")
-
     def _select(self, where: str, *values: str) -> list[Record]:
         """Return the records that can be read; the others are dropped."""
         query = f"SELECT number, client, {_READ} FROM front WHERE {where}"
@@ -260,11 +267,19 @@ class SqliteStore:
         self._database.execute("DELETE FROM front WHERE id = ?", (id,))
 
     def _evict(self) -> None:
+        """Drop finished records that are too old, too many or too large."""
         self._puts = self._bytes_put = 0
         oldest = self._clock() - self._max_age
-        limits = oldest, self._entries, self._max_bytes
-        while (out := _next_out(self._database, *limits)) is not None:
-            self._drop(*out)
+        while True:
+            count, size, first, longest = self._database.execute(_SUMS).fetchone()
+            if count and (first < oldest or longest > self._max_bytes):
+                self._drop(f"{_FINISHED} AND (kept < ? OR size > ?)", oldest, self._max_bytes)
+            elif count > self._entries:
+                self._drop(f"number IN ({_FIRST_OUT})", count - self._entries)
+            elif size > self._max_bytes:
+                self._drop(f"number = ({_LARGEST_OUT})")
+            else:
+                return
 
     def _drop(self, where: str, *values: float) -> None:
         """Delete records, but remember that they were there."""
@@ -283,27 +298,3 @@ def _is_short(record: Record) -> bool:
     source = record.source
     length = 0 if source is None else len(source.body) + len(source.upload or b"")
     return length + len(record.front.tours) <= SHORT
-
-
-def _source_size(columns: dict[str, Any]) -> int:
-    """Return the bytes that the source of a record takes, given all its columns."""
-    return record_size({name: columns[name] for name in SOURCE_COLUMNS})
-
-
-def _next_out(
-    database: sqlite3.Connection, oldest: float, entries: int, max_bytes: int
-) -> _Condition | None:
-    """Return the finished records to drop next, as a condition with its values; None for none.
-
-    Args:
-        database: The store's file.
-        oldest: The time before which no record may have been kept.
-        entries: How many records there may be.
-        max_bytes: The most bytes of all together, and so of each.
-    """
-    count, size, first, longest = database.execute(_SUMS).fetchone()
-    if count and (first < oldest or longest > max_bytes):
-        return f"{_FINISHED} AND (kept < ? OR size > ?)", oldest, max_bytes
-    if count > entries:
-        return f"number IN ({_FIRST_OUT})", count - entries
-    return (f"number = ({_LARGEST_OUT})",) if size > max_bytes else None

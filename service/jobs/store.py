@@ -1,4 +1,4 @@
-"""The interface of stores, and the stored form of a record, which all of them share.
+"""The interface of stores that requests use, and the form in which every store keeps a record.
 
 The names of the columns are read by other releases and stay as they are.
 """
@@ -26,29 +26,10 @@ class Store(Protocol):
 
     Finished ones are returned without their source, which only `source` reads.
 
-    When finished ones are too many, or take too many bytes, the oldest of the client with the most
-    is dropped; a client's last one only if nobody has two, or if it is too large for the store.
-    A client is a caller, or an address where there are no keys.
+    When finished records are too many or too large together, the oldest one of the client with the
+    most is dropped. A client loses its last one only if no client has two, or if that record alone
+    is too large for the store. A client is a caller, or an address where there are no keys.
     """
-
-    async def put(self, record: Record) -> None:
-        """Store a record, in place of an earlier one with its id."""
-
-    async def admit(self, record: Record) -> Record:
-        """Store a new record and return it, or return the one that has its idempotency key.
-
-        A failed record loses its key, so that a repeat is a new try.
-
-        Raises:
-            IdempotencyMismatch: The caller used the key for another body.
-        """
-
-    async def repeated(self, record: Record) -> Record | None:
-        """Return the record that has the idempotency key of this one, if one has and succeeded.
-
-        Raises:
-            IdempotencyMismatch: The caller used the key for another body.
-        """
 
     async def get(self, caller: str, id: str) -> Record:  # noqa: A002
         """Return the caller's record with this id.
@@ -74,10 +55,7 @@ class Store(Protocol):
         """
 
     async def delete(self, record: Record) -> None:
-        """Delete a record, and leave no trace of it."""
-
-    async def unfinished(self) -> list[Record]:
-        """Return all unfinished records with their sources, the oldest first."""
+        """Delete a record. Afterwards it is unknown, as if it had never been there."""
 
     async def close(self) -> None:
         """Close the file or the connections."""
@@ -152,7 +130,7 @@ def source_from(columns: Mapping[str, Any]) -> TaskSource:
 
 
 def log_dropped(id: str, error: UnreadableRecord) -> None:  # noqa: A002
-    """Log that a record was dropped because it cannot be decoded."""
+    """Log that a record that cannot be decoded was dropped."""
     logging.getLogger("paretour").warning("front %s cannot be read and is dropped: %s", id, error)
 
 

@@ -5,9 +5,9 @@ from asyncio import Future, TimerHandle
 from collections.abc import Callable
 from time import perf_counter
 
-from service.errors import Cancelled, DeadlineExceeded
+from service.errors import Cancelled, DeadlineExceeded, ShuttingDown, WorkerLost
 from service.front import Progress
-from service.jobs.record import StopReason
+from service.jobs.record import Record, StopReason, as_ended, as_failed, as_finished
 from service.kinds.front_document import FrontDocument
 from service.requests.task import Task
 
@@ -35,14 +35,13 @@ class Submission:
         self.task = task
         self.client = client
         self.attempts = 0
+        self.waited = 0.0  # seconds, before it was submitted
         self.stop_reason: StopReason | None = None
         self.progress: Progress | None = None
         self.best_front: FrontDocument | None = None
         self.timer: TimerHandle | None = None
         self._on_change = on_change
         self._future: Future[FrontDocument] = asyncio.get_running_loop().create_future()
-        # In addition to the future, which is cancelled with the task that waits for it.
-        self._has_ended = asyncio.Event()
         self._submitted = perf_counter()
 
     @property
@@ -59,12 +58,28 @@ class Submission:
         """Wait for the front and return it. Planning goes on if the waiting task is cancelled.
 
         Raises:
-            WorkerLost: Two workers died over it.
+            WorkerLost: Too many workers died over it.
             Cancelled: It was cancelled before a tour was found.
             DeadlineExceeded: It took too long, and no tour was found.
         """
-        await self._has_ended.wait()
-        return self._future.result()
+        return await asyncio.shield(self._future)
+
+    async def final(self, record: Record) -> Record:
+        """Wait for the end, and return the record of this submission as it is then.
+
+        Raises:
+            WorkerLost: Too many workers died over it.
+            ShuttingDown: The pool was closed before.
+        """
+        try:
+            front = await self.front()
+        except (WorkerLost, ShuttingDown):
+            raise
+        except (Cancelled, DeadlineExceeded):  # at most an earlier attempt has found something
+            return as_ended(record, record.front, self.stop_reason, self._seconds)
+        except Exception as error:
+            return as_failed(record, error, self.best_front or record.front)
+        return as_finished(record, front, self.stop_reason)
 
     def when_ended(self, callback: Callable[[], object]) -> None:
         """Register a function to be called soon after the end."""
@@ -88,9 +103,8 @@ class Submission:
         if self.ended:
             return
         self._cancel_timer()
-        seconds = perf_counter() - self._submitted
-        self._future.set_result(front.ended(seconds, late=self.stop_reason is DeadlineExceeded))
-        self._has_ended.set()
+        late = self.stop_reason is DeadlineExceeded
+        self._future.set_result(front.ended(self._seconds, late=late))
 
     def fail(self, error: Exception) -> None:
         """End with an error, unless it has ended."""
@@ -100,7 +114,6 @@ class Submission:
         self._future.set_exception(error)
         # Read once, so that asyncio does not warn if nobody waits for it.
         self._future.exception()
-        self._has_ended.set()
 
     def cut_short(self) -> None:
         """End with the best front so far; without one, with the reason of the stop."""
@@ -108,6 +121,10 @@ class Submission:
             self.fail((self.stop_reason or Cancelled)())
         else:
             self.finish(self.best_front)
+
+    @property
+    def _seconds(self) -> float:
+        return self.waited + perf_counter() - self._submitted
 
     def _cancel_timer(self) -> None:
         if self.timer is not None:

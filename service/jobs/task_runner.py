@@ -12,8 +12,7 @@ from service.kinds.kind import NamedActor, Report, Tools
 from service.kinds.run import RUNS
 from service.requests.limits import Limits
 from service.requests.road_measurer import BlockingMeasurer, needs_roads
-from service.requests.task import Task, TaskSource
-from service.requests.task_codec import read_task
+from service.requests.task import Task
 from service.roads.client import RoadClient
 from service.roads.router import RouterSettings
 
@@ -39,10 +38,6 @@ class TaskRunner:
     def infos(self) -> Mapping[str, ActorInfo]:
         """The metadata of the actors by name."""
         return {name: actor.info for name, actor in self.actors.items()}
-
-    def read(self, source: TaskSource) -> Task:
-        """Return a stored task; errors as of `read_task`."""
-        return read_task(source, self.limits, self.infos)
 
     def run(self, task: Task, stop: Callable[[], bool], report: Report) -> FrontDocument:
         """Return the front of a task."""

@@ -1,5 +1,6 @@
 """Many machines and what may befall them: real processes, a real Redis, and kill -9."""
 
+import asyncio
 import os
 import signal
 import subprocess
@@ -16,8 +17,8 @@ import pytest
 import redis
 
 from service.__main__ import main
+from service.cluster import worker_store
 from service.cluster.celery_app import QUEUE
-from service.cluster.worker_store import takes_work
 from tests.helpers.cluster_state import ClusterState
 from tests.helpers.command import paretour
 from tests.helpers.jobs import (
@@ -35,6 +36,11 @@ from tests.helpers.jobs import (
 from tests.helpers.processes import ServeProcess, serve_process, work_process
 from tests.helpers.redis_server import LASTING, Redis, redis_server
 from tests.helpers.serving import problem
+
+
+def takes_work(redis_url: str) -> bool:
+    return asyncio.run(worker_store.takes_work(redis_url))
+
 
 SOME_SECONDS: dict[str, Any] = {"coordinates": CITIES, "time_limit": 1.5}
 

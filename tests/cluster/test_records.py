@@ -1,14 +1,8 @@
 """Names that travel over Redis: replicas and workers of other releases read them."""
 
 from service.cluster.celery_app import QUEUE, TASK
-from service.cluster.records import (
-    CHANNEL,
-    SCRIPT,
-    STOP_REASONS,
-    TAKEN_OVER,
-    progress_arguments,
-    record_arguments,
-)
+from service.cluster.records import STOP_REASONS, TAKEN_OVER, record_arguments, report_arguments
+from service.cluster.script import CHANNEL, SCRIPT
 from service.errors import Cancelled, DeadlineExceeded
 from service.front import Progress
 from service.jobs.record import UNFINISHED
@@ -40,9 +34,9 @@ def test_fields_of_a_record_keep_their_names() -> None:
 
 
 def test_fields_of_a_report_keep_their_names() -> None:
-    arguments = progress_arguments(Progress(0.5, 0.25, 3), document(None))
-    assert arguments[::2] == ["members", "tours", "ends", "angles", "progress"]
-    assert arguments[-1] == b'{"seconds":0.5,"hypervolume":0.25,"points":3}'
+    arguments = report_arguments(17, Progress(0.5, 0.25, 3), document(None))
+    assert arguments[::2] == ["members", "tours", "ends", "angles", "progress", "process"]
+    assert arguments[-3] == b'{"seconds":0.5,"hypervolume":0.25,"points":3}'
 
 
 def test_the_script_sets_the_fields_that_are_read() -> None:

@@ -10,14 +10,14 @@ import redis as redis_client
 from redis.asyncio import Redis as AsyncRedis
 
 from service.cluster.redis_engine import connect
-from service.cluster.redis_store import RedisStore
+from service.cluster.script import connect_redis
 from service.cluster.worker_store import WorkerStore
 from service.errors import Expired, StoreUnavailable
 from service.front import Progress
 from service.requests.task import TaskSource
 from tests.helpers.redis_server import Redis, redis_server
 from tests.helpers.released_records import ANSWERS, REDIS_HASHES, REDIS_SETS
-from tests.helpers.stores import job, record, redis_store
+from tests.helpers.stores import FullRedisStore, Worker, job, record, redis_store
 
 
 def test_a_store_that_does_not_answer_is_unavailable(tmp_path: Path) -> None:
@@ -39,7 +39,7 @@ def test_records_of_the_last_release_are_read(redis: Redis) -> None:
             await connection.hset(key, mapping=fields)
         for key, ids in REDIS_SETS.items():
             await connection.zadd(key, ids)
-        store = RedisStore(connection, entries=9, max_age=60, clock=lambda: 1001.0)
+        store = FullRedisStore(connection, entries=9, max_age=60, clock=lambda: 1001.0)
         done = await store.get("us", "done")
         assert (done.json(), done.front.gained) == (ANSWERS["done"], 0.0625)
         assert (await store.latest("us", "us")).id == "done"
@@ -114,7 +114,7 @@ def test_a_worker_drops_a_record_that_it_cannot_read_and_whoever_waits_is_told(
     with connection.pubsub() as channel:
         channel.subscribe("paretour:told")
         channel.get_message(timeout=1)
-        worker = WorkerStore(redis.url, "host:1:aa")
+        worker = Worker(redis.url, "host:1:aa")
         for id_ in "ab":
             assert worker.begin(id_, known_lost=False) is None
             assert worker.begin(id_, known_lost=True) is None
@@ -141,9 +141,9 @@ def test_what_replicas_of_the_last_release_store_is_counted(redis: Redis) -> Non
             await connection.zadd("paretour:finished", {str(number): number})
             await connection.zadd(f"paretour:caller:{caller}", {str(number): number})
         bounds = {"max_age": 60, "clock": lambda: 1001.0}
-        by_entries = RedisStore(connection, entries=10, **bounds)
+        by_entries = FullRedisStore(connection, entries=10, **bounds)
         assert (await by_entries.latest("us", "us")).id == "0"
-        by_bytes = RedisStore(connection, entries=99, max_bytes=3_000, **bounds)
+        by_bytes = FullRedisStore(connection, entries=99, max_bytes=3_000, **bounds)
         assert (await by_bytes.latest("us", "us")).id == "0"
         assert await connection.zcard("paretour:finished") < 10
         assert int(await connection.get("paretour:total")) <= 3_000
@@ -160,8 +160,9 @@ def test_without_keys_the_records_of_one_address_leave_those_of_another(redis: R
             for id_ in map(str, range(9)):
                 await store.put(record(id_, client="192.0.2.2"))
             assert (await store.get("us", "a")).client == "192.0.2.1"
-            worker = WorkerStore(redis.url, "host:1:aa")
-            begun = worker.begin("b", known_lost=False)
+            worker = WorkerStore(connect_redis(redis.url), "host:1:aa")
+            begun = await worker.begin("b", known_lost=False)
+            await worker.close()
             assert begun is not None
             assert begun.record.client == "192.0.2.1"
             await store.put(replace(begun.record, status="done", source=None))
@@ -179,9 +180,11 @@ def test_a_redis_that_takes_no_more_is_unavailable(tmp_path: Path) -> None:
     async def test() -> None:
         with redis_server(tmp_path) as redis:
             store, engine = connect(redis.url, entries=9, max_age=60, queue=1, seconds=60)
-            await store.put(record("a"))
+            await store.submit(record("a"), queue=1, share=1.0)
             connection = redis_client.Redis.from_url(redis.url)
-            WorkerStore(redis.url, "a worker").send_heartbeat()
+            worker = WorkerStore(connect_redis(redis.url), "a worker")
+            await worker.send_heartbeat()
+            await worker.close()
             for refuse, accept in (
                 (("maxmemory", 1), ("maxmemory", 0)),
                 (("min-replicas-to-write", 1), ("min-replicas-to-write", 0)),

@@ -39,11 +39,9 @@ def test_the_worker_asks_the_engine_and_refuses_what_it_cannot_reach(redis: Redi
             rate=UNLIMITED,
         )
         assert settings.redis_url is not None
-        make_runner = partial(
-            load_runner, settings.actors, 1, settings.limits, None, settings.roads
-        )
+        make_runner = partial(load_runner, settings.actors, 1, settings.limits)
         with (
-            celery_worker(settings.redis_url, make_runner, 60.0, 1),
+            celery_worker(settings.redis_url, make_runner, 60.0, 1, settings.roads),
             serving(build(settings, Ending())) as url,
         ):
             while not ClusterState(settings.redis_url).workers():

@@ -53,7 +53,7 @@ GARBAGE = [
 )
 def test_addresses_mean_what_they_mean_to_kombus_own(url: str, ssl: object) -> None:
     connection = make_celery(url, seconds=1).connection_for_read()
-    assert connection.transport_cls.endswith("transport:Transport")
+    assert connection.transport_cls.endswith("celery_app:Transport")
     found = (connection.hostname, connection.port, connection.virtual_host, connection.password)
     assert found == ("127.0.0.1", 7, "3", "pass")
     assert connection.ssl == ssl

@@ -4,15 +4,17 @@ from socket import gethostname
 from time import time
 from typing import Any
 
+import redis
+
 from service.cluster.celery_app import QUEUE
-from service.cluster.worker_store import connect_script
+from service.cluster.script import SCRIPT
 
 
 class ClusterState:
     """The workers of a cluster and its unfinished records, each under its id."""
 
     def __init__(self, redis_url: str) -> None:
-        self._script = connect_script(redis_url)
+        self._script = redis.Redis.from_url(redis_url).register_script(SCRIPT)
 
     def workers(self) -> set[bytes]:
         """Return the names of the workers of this machine, and of those that have a record."""
@@ -31,7 +33,7 @@ class ClusterState:
     def planning(self, id: str) -> int | None:  # noqa: A002
         """Return the process that plans a front, if one does."""
         fields = self._running().get(id)
-        return None if fields is None else int(fields[b"worker"].split(b":")[1])
+        return int(fields.get(b"process") or 0) or None if fields else None
 
     def searching(self) -> dict[str, int]:
         """Return the process that plans each front that has a tour already."""

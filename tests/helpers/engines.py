@@ -18,12 +18,14 @@ import redis
 from service.api.app import Edge
 from service.cluster.celery_app import make_celery
 from service.cluster.redis_engine import connect
-from service.cluster.worker import CeleryWorker, make_record_worker
-from service.jobs.compiled_code import warm_up
-from service.jobs.runner import MakeRunner
+from service.cluster.worker import CeleryWorker, RecordWorker
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
+from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.kind import NamedActor
+from service.requests.task_codec import read_task
+from service.roads.client import RoadClient
+from service.roads.router import RouterSettings
 from tests.helpers.cluster_state import ClusterState
 from tests.helpers.redis_server import Redis
 from tests.helpers.serving import LIMITS, app_of, engine_app, runner_of, serving, workers_of
@@ -137,11 +139,15 @@ def _searching(workers: WorkerPool) -> Mapping[Hashable, int]:
 
 @contextmanager
 def celery_worker(
-    url: str, make_runner: MakeRunner, seconds: float, workers: int
+    url: str,
+    make_runner: Callable[[], TaskRunner],
+    seconds: float,
+    workers: int,
+    roads: RouterSettings | None = None,
 ) -> Iterator[BaseProcess]:
     """A worker of the cluster with a number of processes."""
     context = multiprocessing.get_context("forkserver")
-    worker = context.Process(target=_work, args=(url, make_runner, seconds, workers))
+    worker = context.Process(target=_work, args=(url, make_runner, seconds, workers, roads))
     worker.start()
     try:
         yield worker
@@ -150,14 +156,29 @@ def celery_worker(
         worker.join()
 
 
-def _work(url: str, make_runner: MakeRunner, seconds: float, workers: int) -> None:
-    warm_up()
-    CeleryWorker(
+def _work(
+    url: str,
+    make_runner: Callable[[], TaskRunner],
+    seconds: float,
+    workers: int,
+    roads: RouterSettings | None,
+) -> None:
+    runner = make_runner()
+    read = partial(read_task, limits=runner.limits, actors=runner.infos)
+    worker = CeleryWorker(
         celery=make_celery(url, seconds),
-        make_record_worker=partial(make_record_worker, make_runner, url, seconds),
-        workers=workers,
+        records=RecordWorker(
+            make_runner,
+            read,
+            url,
+            workers=workers,
+            seconds=seconds,
+            roads=roads and RoadClient(roads),
+        ),
         drain_seconds=5,
-    ).run()
+    )
+    worker.start()
+    worker.run()
 
 
 @contextmanager

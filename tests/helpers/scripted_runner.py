@@ -19,7 +19,7 @@ from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report
 from service.kinds.tour_document import encode_front
 from service.requests.stops import Plane, Stops
-from service.requests.task import Task, TaskSource
+from service.requests.task import Task
 
 _TERMINATED = Event()  # of the process that runs
 
@@ -40,10 +40,6 @@ class ScriptedRunner:
         while self.warm is not None and not self.warm.exists():
             time.sleep(0.01)
 
-    def read(self, source: TaskSource) -> Task:
-        """Return the task of a source whose body says what to do."""
-        return task(source.body.decode())
-
     def run(  # noqa: C901
         self, task: Task, stop: Callable[[], bool], report: Report
     ) -> FrontDocument:
@@ -62,6 +58,8 @@ class ScriptedRunner:
             case "call":
                 _TERMINATED.wait()
                 raise RuntimeError("terminated")
+            case "grow":
+                np.ones(2**27)  # 1 GiB
             case "hang":
                 time.sleep(600)
             case "report and hang":

@@ -2,7 +2,7 @@
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -17,11 +17,11 @@ from service.api.transport.connections import ConnectionLimits, Connections
 from service.api.transport.listener import bound_sockets
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
-from service.jobs.runner import MakeRunner
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
 from service.jobs.task_runner import TaskRunner
 from service.jobs.workers.worker_pool import WorkerPool
+from service.jobs.workers.worker_process import MakeRunner
 from service.kinds.kind import NamedActor
 from service.requests.limits import Limits
 from service.requests.task_codec import read_task
@@ -46,7 +46,9 @@ class ColdRunner(TaskRunner):
             time.sleep(0.005)
 
 
-def runner_of(*actors: NamedActor, limits: Limits = LIMITS, warm: Path | None = None) -> MakeRunner:
+def runner_of(
+    *actors: NamedActor, limits: Limits = LIMITS, warm: Path | None = None
+) -> Callable[[], TaskRunner]:
     """Return a picklable factory of runners with these actors, by default two that shuffle.
 
     With `warm`, the path of a file, their warm-up lasts until it exists.

@@ -7,9 +7,8 @@ import pytest
 
 from service.errors import NotFound, StoreUnavailable
 from service.jobs.deadline import Deadline
-from service.jobs.local_engine import LocalEngine
+from service.jobs.local_engine import LocalEngine, UnsavedRecords
 from service.jobs.record import Record, as_finished
-from service.jobs.retries import UnsavedRecords
 from service.jobs.submission import Submission
 from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.front_document import FrontDocument

@@ -11,7 +11,7 @@ import pytest
 
 from service.errors import Expired, IdempotencyMismatch, NotFound
 from service.jobs.record import Record
-from service.jobs.store import SOURCE_SHARE, Store
+from service.jobs.store import SOURCE_SHARE
 from service.requests.task import TaskSource
 from tests.helpers.stores import job, record, redis_store, sqlite_store
 
@@ -39,7 +39,7 @@ def run(request: pytest.FixtureRequest) -> Run:
     if request.param == "redis":
         stores = partial(redis_store, request.getfixturevalue("redis").url)
 
-    def run(test: Callable[[Store], Awaitable[None]], **options: Any) -> None:
+    def run(test: Callable[[Any], Awaitable[None]], **options: Any) -> None:
         async def with_store() -> None:
             async with stores(**{"entries": 2, "max_age": 60, **options}) as store:
                 await test(store)
@@ -50,7 +50,7 @@ def run(request: pytest.FixtureRequest) -> Run:
 
 
 def test_what_was_put_is_given_again_as_it_was(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         a, b = record("a"), record("b", problem={"code": "overdue"})
         await store.put(a)
         await store.put(b)
@@ -62,7 +62,7 @@ def test_what_was_put_is_given_again_as_it_was(run: Run) -> None:
 
 
 def test_an_id_never_used_is_unknown(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         with pytest.raises(NotFound):
             await store.get("us", "a")
         with pytest.raises(NotFound):
@@ -72,7 +72,7 @@ def test_an_id_never_used_is_unknown(run: Run) -> None:
 
 
 def test_a_caller_sees_its_own_alone(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         await store.put(record("a", caller="us"))
         await store.put(record("b", caller="them"))
         assert (await store.latest("us", "us")).id == "a"
@@ -89,7 +89,7 @@ def test_a_caller_sees_its_own_alone(run: Run) -> None:
 
 
 def test_the_latest_of_a_client_is_not_that_of_another_without_a_key(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         await store.put(record("a", client="192.0.2.1"))
         await store.put(record("b", client="192.0.2.2"))
         assert (await store.latest("us", "192.0.2.1")).id == "a"
@@ -114,7 +114,7 @@ def test_the_latest_of_a_client_is_not_that_of_another_without_a_key(run: Run) -
 
 
 def test_the_oldest_makes_way_when_the_store_is_full(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         for id_ in "abc":
             await store.put(record(id_))
         with pytest.raises(Expired):
@@ -124,7 +124,7 @@ def test_the_oldest_makes_way_when_the_store_is_full(run: Run) -> None:
     run(test)
 
 
-async def kept(store: Store, caller: str, ids: Iterable[str]) -> list[str]:
+async def kept(store: Any, caller: str, ids: Iterable[str]) -> list[str]:
     found = []
     for id_ in ids:
         with suppress(Expired):
@@ -133,7 +133,7 @@ async def kept(store: Store, caller: str, ids: Iterable[str]) -> list[str]:
 
 
 def test_many_records_of_one_caller_leave_those_of_another(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         await store.admit(record("a", key="k", digest="1"))
         for id_ in map(str, range(300)):
             await store.put(record(id_, caller="them"))
@@ -150,7 +150,7 @@ def test_many_records_of_one_caller_leave_those_of_another(run: Run) -> None:
 
 
 def test_large_records_of_one_caller_leave_those_of_another(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         for id_ in "abc":
             await store.put(record(id_))
         for id_ in "defg":
@@ -162,7 +162,7 @@ def test_large_records_of_one_caller_leave_those_of_another(run: Run) -> None:
 
 
 def test_the_last_record_of_a_caller_is_kept_while_others_have_two(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         await store.put(large("a"))
         for id_ in "bcd":
             await store.put(large(id_, 2_000, caller="them"))
@@ -177,7 +177,7 @@ def test_the_last_record_of_a_caller_is_kept_while_others_have_two(run: Run) -> 
 
 
 def test_a_record_that_no_store_could_hold_moves_no_other(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         await store.put(record("a"))
         await store.put(large("b", 30_000, caller="them"))
         with pytest.raises(Expired):
@@ -188,7 +188,7 @@ def test_a_record_that_no_store_could_hold_moves_no_other(run: Run) -> None:
 
 
 def test_what_is_deleted_or_stored_anew_is_counted_no_longer(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         for _ in range(9):
             await store.put(large("a"))
             await store.put(large("b"))
@@ -202,7 +202,7 @@ def test_what_is_deleted_or_stored_anew_is_counted_no_longer(run: Run) -> None:
 def test_asking_for_a_front_does_not_keep_it_longer(run: Run) -> None:
     clock = Clock()
 
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         await store.put(record("a"))
         clock.now = 60
         assert (await store.get("us", "a")).id == "a"
@@ -216,7 +216,7 @@ def test_asking_for_a_front_does_not_keep_it_longer(run: Run) -> None:
 
 
 def test_only_so_many_of_the_gone_are_remembered(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         for id_ in "abcd":
             await store.put(record(id_))
         with pytest.raises(NotFound):
@@ -229,7 +229,7 @@ def test_only_so_many_of_the_gone_are_remembered(run: Run) -> None:
 
 
 def test_what_is_forgotten_leaves_nothing(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         await store.put(record("a"))
         await store.delete(record("a"))
         with pytest.raises(NotFound):
@@ -243,7 +243,7 @@ def test_unfinished_work_never_makes_way_and_its_front_counts_as_new_when_it_is_
 ) -> None:
     clock = Clock()
 
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         await store.put(job("a"))
         clock.now = 100
         for id_ in "bcd":
@@ -259,7 +259,7 @@ def test_unfinished_work_never_makes_way_and_its_front_counts_as_new_when_it_is_
 
 
 def test_a_key_gives_the_record_that_it_was_first_used_for(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         first = job("a", key="k", digest="1")
         assert await store.admit(first) is first
         assert (await store.admit(job("b", key="k", digest="1"))).id == "a"
@@ -279,7 +279,7 @@ def test_a_key_gives_the_record_that_it_was_first_used_for(run: Run) -> None:
 
 
 def test_a_finished_record_has_its_source_beside_it(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         source = TaskSource("front", b"{}", b"\0")
         await store.put(record("a", source=source))
         await store.put(record("b"))
@@ -292,7 +292,7 @@ def test_a_finished_record_has_its_source_beside_it(run: Run) -> None:
 
 
 def test_a_source_too_large_for_its_share_is_not_kept_and_its_record_is(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         most = 100_000 // SOURCE_SHARE
         small = TaskSource("front", b" " * (most - 5), None)
         await store.put(record("a", source=small))
@@ -304,7 +304,7 @@ def test_a_source_too_large_for_its_share_is_not_kept_and_its_record_is(run: Run
 
 
 def test_sources_count_among_the_bytes_of_a_store(run: Run) -> None:
-    async def test(store: Store) -> None:
+    async def test(store: Any) -> None:
         for id_ in "abcdef":
             await store.put(record(id_, source=TaskSource("front", b" " * 24_900, None)))
         assert await kept(store, "us", "abcdef") == ["d", "e", "f"]

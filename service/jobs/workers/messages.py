@@ -2,21 +2,17 @@
 
 import pickle
 import struct
-from collections.abc import Iterator, Mapping
+from asyncio import StreamReader
+from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass
-from socket import socket
-from typing import Any
+from enum import Enum
+from typing import Any, BinaryIO
 
 from service.front import Progress
 from service.kinds.front_document import FrontDocument
 from service.requests.task import Task
 
 _LENGTH = struct.Struct("!Q")
-
-
-@dataclass(frozen=True)
-class WarmUp:
-    """To a worker: compile the search, or load it from the cache."""
 
 
 @dataclass(frozen=True)
@@ -33,9 +29,18 @@ class Stop:
     number: int
 
 
-@dataclass(frozen=True)
-class Started:
-    """From a worker: its networks are loaded."""
+class Order(Enum):
+    """To a worker."""
+
+    WARM_UP = "compile the search, or load it from the cache"
+
+
+class Stage(Enum):
+    """From a worker: what it has come to."""
+
+    STARTED = "its networks are loaded"
+    WARM = "the search is compiled"
+    SPENT = "it has grown too large, and ends after the results that follow"
 
 
 @dataclass(frozen=True)
@@ -43,11 +48,6 @@ class Unable:
     """From a worker: it cannot work and ends, for this reason."""
 
     reason: str
-
-
-@dataclass(frozen=True)
-class Warm:
-    """From a worker: the search is compiled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,34 +81,30 @@ def encode(*messages: object) -> bytes:
     return b"".join(_LENGTH.pack(len(content)) + content for content in contents)
 
 
-def decode(received: bytearray) -> Iterator[Any]:
-    """Yield the messages that have been received whole, and remove each from the bytes."""
-    while len(received) >= _LENGTH.size:
-        (length,) = _LENGTH.unpack_from(received)
-        end = _LENGTH.size + length
-        if len(received) < end:
+async def received(reader: StreamReader) -> AsyncIterator[Any]:
+    """Yield each message that a process sends, until the process is gone."""
+    while True:
+        try:
+            (length,) = _LENGTH.unpack(await reader.readexactly(_LENGTH.size))
+            content = await reader.readexactly(length)
+        except (EOFError, OSError):
             return
-        message = pickle.loads(received[_LENGTH.size : end])
-        del received[:end]
-        yield message
+        yield pickle.loads(content)
 
 
-def receive_blocking(connection: socket) -> Any:
-    """Wait for the next message and return it. No byte beyond it is read.
+def receive(file: BinaryIO) -> Any:
+    """Wait for the next message and return it.
 
     Raises:
         EOFError: The sender is gone.
         OSError: Likewise.
     """
-    (length,) = _LENGTH.unpack(_receive_exactly(connection, _LENGTH.size))
-    return pickle.loads(_receive_exactly(connection, length))
+    (length,) = _LENGTH.unpack(_read(file, _LENGTH.size))
+    return pickle.loads(_read(file, length))
 
 
-def _receive_exactly(connection: socket, size: int) -> bytearray:
-    content = bytearray()
-    while len(content) < size:
-        chunk = connection.recv(size - len(content))
-        if not chunk:
-            raise EOFError
-        content += chunk
+def _read(file: BinaryIO, size: int) -> bytes:
+    content = file.read(size)
+    if len(content) < size:
+        raise EOFError
     return content

@@ -1,5 +1,8 @@
 """A pool of worker processes with a queue: gives them tasks, and stops what takes too long.
 
+A task that lacks its costs by road waits until the routing engine has answered. It holds its place
+meanwhile, but no process.
+
 Brief tasks that wait share a turn of a process, which answers them together.
 
 Stopping a task does not end its process: the client is answered at once, and the process takes no
@@ -12,16 +15,26 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from itertools import count
 
-from service.errors import Cancelled, DeadlineExceeded, ShuttingDown, WarmingUp, WorkerLost
+from service.errors import (
+    Cancelled,
+    DeadlineExceeded,
+    QueueFull,
+    ShareFull,
+    ShuttingDown,
+    WarmingUp,
+    WorkerLost,
+)
 from service.jobs.deadline import Deadline
-from service.jobs.fair_queue import FairQueue, check_place, places_of_client
+from service.jobs.fair_queue import FairQueue
 from service.jobs.record import StopReason
-from service.jobs.runner import MakeRunner
 from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.workers.messages import Do, Done, Failed, Found, Stop
+from service.jobs.workers.worker_process import MakeRunner
 from service.jobs.workers.worker_set import Worker, WorkerSet
 from service.kinds.front_document import FrontDocument
+from service.requests.road_measurer import measured_by_road, needs_roads
 from service.requests.task import Task
+from service.roads.client import RoadClient
 
 GRACE = 0.15  # seconds for a stopped task to give its front; then its last report is the answer
 _MOST_TOGETHER = 4  # brief submissions in one turn of a process, whose answers come together
@@ -38,6 +51,8 @@ class WorkerPool:
         share: The share of all places, of workers and queue, that one client may hold. It may
             always hold one more than there are workers.
         seconds: The time limit of a submission without a deadline.
+        attempts: How many processes may be lost over one submission.
+        roads: The client of a routing engine.
         stop_seconds: How long a stopped task may go on until its process is killed.
         on_front: Called with every front as the worker wrote it.
         on_failed: Called with the reason where no process gets ready in three tries.
@@ -51,6 +66,8 @@ class WorkerPool:
         queue: int,
         share: float = 1.0,
         seconds: float = 90.0,
+        attempts: int = MOST_ATTEMPTS,
+        roads: RoadClient | None = None,
         stop_seconds: float = STOP_SECONDS,
         on_front: Callable[[FrontDocument], None] = lambda _: None,
         on_failed: Callable[[str], None] = lambda _: None,
@@ -58,12 +75,16 @@ class WorkerPool:
         self._workers = WorkerSet(make_runner, workers, self._handle, self._requeue_from, on_failed)
         self._size = workers
         self._places = workers + queue
-        self._places_of_client = places_of_client(workers, queue, share)
+        # As in service/cluster/records.lua.
+        self._places_of_client = max(math.ceil(share * self._places), workers + 1)
         self._seconds = seconds
+        self._attempts = attempts
+        self._roads = roads
         self._stop_seconds = stop_seconds
         self._on_front = on_front
         self._queue = FairQueue()
         self._reserved: set[Submission] = set()
+        self._measuring: set[asyncio.Task[None]] = set()
         self._numbers = count()
         self._closed = False
 
@@ -108,6 +129,8 @@ class WorkerPool:
             submission.fail(ShuttingDown())
         self._queue = FairQueue()
         await self._workers.close()
+        if self._roads is not None:
+            await self._roads.close()
 
     def check_open(self) -> None:
         """Raise ShuttingDown when the pool is closed."""
@@ -117,8 +140,11 @@ class WorkerPool:
     def check_place(self, client: str = "") -> None:
         """Raise QueueFull or ShareFull when no place is left for one more task of a client."""
         running = (each for each in self.running if not each.ended)
-        held = (*self._reserved, *self._queue, *running)
-        check_place(held, client, self._places, self._places_of_client)
+        clients = [each.client for each in (*self._reserved, *self._queue, *running)]
+        if len(clients) >= self._places:
+            raise QueueFull
+        if clients.count(client) >= self._places_of_client:
+            raise ShareFull(self._places_of_client)
 
     def check_warm(self) -> None:
         """Raise WarmingUp until one process has compiled the search: others will soon load it."""
@@ -159,7 +185,28 @@ class WorkerPool:
         return submission
 
     def queue(self, submission: Submission) -> None:
-        """Queue a submission that has a place, unless it was stopped there."""
+        """Queue a submission that has a place, at once or when its costs by road are there."""
+        if self._roads is None or not needs_roads(submission.task):
+            self._append(submission)
+            return
+        measuring = asyncio.create_task(self._measure(submission, self._roads))
+        self._measuring.add(measuring)
+        measuring.add_done_callback(self._measuring.discard)
+
+    async def _measure(self, submission: Submission, roads: RoadClient) -> None:
+        """Ask for the costs by road of a submission, until it ends, and queue it with them."""
+        asking = asyncio.create_task(measured_by_road(submission.task, roads))
+        submission.when_ended(asking.cancel)
+        await asyncio.wait((asking,))
+        if not asking.cancelled():
+            try:
+                submission.task = asking.result()
+            except Exception as error:
+                submission.fail(error)
+        self._append(submission)
+
+    def _append(self, submission: Submission) -> None:
+        """Queue a submission, unless it has ended; it gives its reserved place back."""
         self._reserved.discard(submission)
         if not submission.ended:
             self._queue.append(submission)
@@ -211,7 +258,7 @@ class WorkerPool:
                 continue
             if submission.stop_reason:
                 submission.cut_short()
-            elif submission.attempts >= MOST_ATTEMPTS:
+            elif submission.attempts >= self._attempts:
                 submission.fail(WorkerLost())
             else:
                 self._queue.put_first(submission)
@@ -243,7 +290,8 @@ class WorkerPool:
         for worker in self._workers:
             # Before the first is warm, no task that needs compiled code is admitted.
             able = worker.warm if self._workers.was_warm else worker.started
-            if able and not worker.submissions and self._queue:
+            idle = able and not worker.spent and not worker.submissions
+            if idle and self._queue:
                 worker.submissions = {each.number: each for each in self._next_submissions()}
                 self._begin(worker)
 

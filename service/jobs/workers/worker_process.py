@@ -1,38 +1,47 @@
-"""Worker processes: the loop inside one, and its handle in the service's event loop."""
+"""Worker processes: what runs tasks in one, the loop around it, and its handle in the service."""
 
 import asyncio
 import multiprocessing
 import os
 import pickle
+import resource
 import signal
 import tempfile
 import time
 import traceback
-from asyncio import Protocol, WriteTransport
-from collections.abc import Callable
+from asyncio import StreamReader, StreamWriter
+from collections.abc import AsyncIterator, Callable
 from contextlib import ExitStack, suppress
 from multiprocessing.context import ForkServerProcess
+from pathlib import Path
 from socket import socket, socketpair
-from threading import Lock, Thread
+from threading import Condition, Lock, Thread
+from typing import Protocol
 
-from service.jobs.runner import MakeRunner, Reporter, Runner
+from service.front import Progress
 from service.jobs.workers.messages import (
     Do,
     Done,
     Failed,
     Found,
-    Started,
+    Order,
+    Stage,
     Stop,
     Unable,
-    Warm,
-    WarmUp,
-    decode,
     encode,
-    receive_blocking,
+    receive,
+    received,
 )
+from service.kinds.front_document import FrontDocument
+from service.kinds.kind import Report
+from service.requests.limits import Limits
 from service.requests.task import Task
 
 NICENESS = 5  # of a worker: the event loop comes first, and needs little
+_LARGE = 1_000_000  # kilobytes to which a process may grow; after that task a fresh one follows
+_REPORT_TOURS = 100  # at most in a reported front
+_REPORT_SECONDS = 0.25  # at least between two reports
+_REPORT_SHARE = 0.05  # the share of the time that reports may take
 _TERMINATE_EVERY = 0.02  # seconds, while a stopped task runs: it may just begin a call
 
 _CONTEXT = multiprocessing.get_context("forkserver")
@@ -42,13 +51,65 @@ _LONGEST_FOLDER = 107 - 32  # bytes; the path of a socket has at most 107
 _SHORT_FOLDERS = ("/tmp", "/var/tmp", "/dev/shm")
 
 
+class Runner(Protocol):
+    """Runs tasks, one at a time."""
+
+    def warm_up(self) -> None:
+        """Compile the search, or load it from the cache."""
+
+    def run(self, task: Task, stop: Callable[[], bool], report: Report) -> FrontDocument:
+        """Return the front of a task.
+
+        Args:
+            task: The task.
+            stop: Called often; planning ends soon after it returns True.
+            report: Called now and then with the progress, and with a function that writes the best
+                n tours found so far, which is valid until the report returns.
+        """
+
+    def terminate(self) -> None:
+        """End the running call of a network, if one runs; from any thread."""
+
+
+MakeRunner = Callable[[], Runner]
+
+
+class Reporter:
+    """Sends progress with the best front now and then; less often if sending takes long."""
+
+    def __init__(self, send: Callable[[Progress, FrontDocument], None]) -> None:
+        self._send = send
+        self._next = time.monotonic() + _REPORT_SECONDS
+
+    def __call__(self, progress: Progress, best: Callable[[int], FrontDocument]) -> None:
+        """Send a report, if one is due."""
+        began = time.monotonic()
+        if began < self._next:
+            return
+        self._send(progress, best(_REPORT_TOURS))
+        ended = time.monotonic()
+        self._next = ended + max(_REPORT_SECONDS, (ended - began) / _REPORT_SHARE)
+
+
+def make_runner(
+    actors: Path,
+    threads: int,
+    limits: Limits,
+    own_actors: Path | None = None,
+) -> Runner:
+    """Return a runner as `load_runner` does, which is imported only by the process that calls."""
+    from service.jobs.task_runner import load_runner
+
+    return load_runner(actors, threads, limits, own_actors)
+
+
 def run_worker(tasks: socket, signals: socket, make_runner: MakeRunner) -> None:
     """Run tasks until the service closes the connections.
 
     Args:
-        tasks: Over it tasks come, and results go.
-        signals: Over it comes what does not wait for the task that is being run.
-        make_runner: Makes what runs them.
+        tasks: Brings tasks and takes results.
+        signals: Brings messages that must not wait until the present task is done.
+        make_runner: Makes the runner of the tasks.
     """
     # An interrupt from a terminal goes to all processes; the service tells its workers to end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -64,88 +125,80 @@ def run_worker(tasks: socket, signals: socket, make_runner: MakeRunner) -> None:
 
 
 class _WorkerLoop:
-    """Runs tasks in one thread, reads signals in another, and warms up in a third."""
+    """Runs tasks in one thread. Others read signals, terminate calls, and warm up."""
 
     def __init__(self, tasks: socket, signals: socket, runner: Runner) -> None:
         self._tasks = tasks
-        self._signals = signals
+        self._incoming = tasks.makefile("rb")
+        self._signals = signals.makefile("rb")
         self._runner = runner
         self._sending = Lock()
-        self._changing = Lock()  # held while these change, and while a call is terminated
+        self._changing = Condition()  # held while these change, and while a call is terminated
         self._running: int | None = None
         self._stopped: set[int] = set()
 
     def run(self) -> None:
-        """Run tasks, one after another, until the service closes the connection.
+        """Run tasks, one after another, until the process is large or the service is gone.
 
         Raises:
             EOFError: The service is gone.
             OSError: Likewise.
         """
         Thread(target=self._read_signals, name="signals", daemon=True).start()
-        self._send(Started())
+        Thread(target=self._terminate_stopped, name="terminate", daemon=True).start()
+        self._send(Stage.STARTED)
         while True:
-            do: Do = receive_blocking(self._tasks)
+            do: Do = receive(self._incoming)
             results = [self._result(number, task) for number, task in do.tasks.items()]
-            # Before these are sent, as what is stopped then may be a task that is still to come.
+            # Before the results are sent: after that a signal may be about a task still to come.
             self._stopped.clear()
+            if resource.getrusage(resource.RUSAGE_SELF).ru_maxrss > _LARGE:
+                self._send(Stage.SPENT, *results)
+                return
             self._send(*results)
 
     def _read_signals(self) -> None:
         """Handle signals; exit at once when the service is gone, even in the middle of a task."""
         try:
             while True:
-                self._handle(receive_blocking(self._signals))
+                match receive(self._signals):
+                    case Stop(number=number):
+                        self._stop(number)
+                    case Order.WARM_UP:
+                        Thread(target=self._warm_up, name="warm-up", daemon=True).start()
         except (EOFError, OSError):
             os._exit(0)
         except BaseException:
             traceback.print_exc()
             os._exit(1)
 
-    def _handle(self, message: object) -> None:
-        match message:
-            case Stop():
-                self._stop(message.number)
-            case WarmUp():
-                Thread(target=self._warm_up, name="warm-up", daemon=True).start()
-
-    def _begin(self, number: int) -> None:
+    def _set_running(self, number: int | None) -> None:
         with self._changing:
             self._running = number
-            if number in self._stopped:  # a signal may come before the task
-                self._terminate_soon(number)
-
-    def _end(self) -> None:
-        with self._changing:
-            self._running = None
+            self._changing.notify()
 
     def _stop(self, number: int) -> None:
         with self._changing:
-            self._stopped.add(number)
-            if self._running == number:
-                self._terminate_soon(number)
+            self._stopped.add(number)  # which may come before the task
+            self._changing.notify()
 
-    def _terminate_soon(self, number: int) -> None:
-        Thread(target=self._terminate, args=[number], daemon=True).start()
-
-    def _terminate(self, number: int) -> None:
-        """Terminate the calls of the runner until the task of this number has ended."""
+    def _terminate_stopped(self) -> None:
+        """Terminate the calls of the runner again and again, while a stopped task runs."""
         while True:
             with self._changing:
-                if self._running != number:
-                    return
+                self._changing.wait_for(lambda: self._running in self._stopped)
                 self._runner.terminate()
             time.sleep(_TERMINATE_EVERY)
 
     def _result(self, number: int, task: Task) -> Done | Failed:
         report = Reporter(lambda progress, front: self._send(Found(number, progress, front)))
-        self._begin(number)
+        self._set_running(number)
         try:
             return Done(number, self._runner.run(task, lambda: number in self._stopped, report))
         except Exception as error:
             return Failed(number, _picklable(error))
         finally:
-            self._end()
+            self._set_running(None)
 
     def _warm_up(self) -> None:
         try:
@@ -156,7 +209,7 @@ class _WorkerLoop:
                 self._send(Unable(repr(error)))
             os._exit(1)
         with suppress(OSError):
-            self._send(Warm())
+            self._send(Stage.WARM)
 
     def _send(self, *messages: object) -> None:
         content = encode(*messages)
@@ -174,55 +227,21 @@ def _picklable(error: Exception) -> Exception:
     return error
 
 
-class _Inbox(Protocol):
-    """Receives the messages of a process, and gives each to a function as soon as it is whole."""
-
-    def __init__(self) -> None:
-        self._received = bytearray()
-        self._on_message: Callable[[object], None] | None = None
-        self._gone = asyncio.get_running_loop().create_future()
-
-    async def deliver(self, on_message: Callable[[object], None]) -> None:
-        """Call a function with each message until the process is gone; raise what it raises."""
-        self._on_message = on_message
-        self._deliver_received()
-        await self._gone
-
-    def data_received(self, data: bytes) -> None:
-        """Deliver the messages that are whole now."""
-        self._received += data
-        self._deliver_received()
-
-    def connection_lost(self, exc: Exception | None) -> None:  # noqa: ARG002
-        """Take note that the process is gone."""
-        if not self._gone.done():
-            self._gone.set_result(None)
-
-    def _deliver_received(self) -> None:
-        if self._on_message is None or self._gone.done():
-            return
-        try:
-            for message in decode(self._received):
-                self._on_message(message)
-        except Exception as error:
-            self._gone.set_exception(error)
-
-
 class WorkerProcess:
     """The handle of a worker process: the process and the sockets to it.
 
-    When the service is gone, the process ends; when the process is gone, `deliver_messages` ends.
+    When the service is gone, the process ends; when the process is gone, its messages end.
     """
 
     def __init__(
         self,
         process: ForkServerProcess,
-        inbox: _Inbox,
-        tasks: WriteTransport,
-        signals: WriteTransport,
+        results: StreamReader,
+        tasks: StreamWriter,
+        signals: StreamWriter,
     ) -> None:
         self._process = process
-        self._inbox = inbox
+        self._results = results
         self._tasks = tasks
         self._signals = signals
 
@@ -233,7 +252,6 @@ class WorkerProcess:
         Raises:
             OSError: No descriptors or processes are left.
         """
-        loop = asyncio.get_running_loop()
         with ExitStack() as ours:  # closed where this fails, with which the process ends
             with ExitStack() as theirs:
                 own_tasks, tasks = _socket_pair(ours, theirs)
@@ -244,29 +262,25 @@ class WorkerProcess:
                 )
                 _use_short_temporary_folder()
                 process.start()
-            writing, inbox = await loop.create_connection(_Inbox, sock=own_tasks)
+            results, writing = await asyncio.open_connection(sock=own_tasks)
             ours.callback(writing.close)
-            signalling, _ = await loop.create_connection(Protocol, sock=own_signals)
+            _, signalling = await asyncio.open_connection(sock=own_signals)
             ours.pop_all()
-        return cls(process, inbox, writing, signalling)
+        return cls(process, results, writing, signalling)
 
     @property
     def pid(self) -> int | None:
         """The id of the process."""
         return self._process.pid
 
-    def send(self, message: Do | Stop | WarmUp) -> None:
+    def send(self, message: Do | Stop | Order) -> None:
         """Send a message; one to a process that is gone is lost."""
         connection = self._tasks if isinstance(message, Do) else self._signals
         connection.write(encode(message))
 
-    async def deliver_messages(self, on_message: Callable[[object], None]) -> None:
-        """Call a function with each message of the process, until it is gone.
-
-        Raises:
-            Exception: What the function raised, or a message that cannot be decoded.
-        """
-        await self._inbox.deliver(on_message)
+    def messages(self) -> AsyncIterator[object]:
+        """Yield each message of the process, until it is gone."""
+        return received(self._results)
 
     @property
     def exit_status(self) -> int | None:

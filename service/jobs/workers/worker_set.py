@@ -7,14 +7,11 @@ import asyncio
 import logging
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from functools import partial
 
 from service.errors import NoWorker, WarmingUp
-from service.jobs.retries import GrowingPause
-from service.jobs.runner import MakeRunner
 from service.jobs.submission import Submission
-from service.jobs.workers.messages import Started, Unable, Warm, WarmUp
-from service.jobs.workers.worker_process import WorkerProcess
+from service.jobs.workers.messages import Order, Stage, Unable
+from service.jobs.workers.worker_process import MakeRunner, WorkerProcess
 
 _SHORTEST_PAUSE = 0.5  # seconds until a process that could not even start is tried again
 _LONGEST_PAUSE = 15.0
@@ -30,6 +27,7 @@ class Worker:
     started: bool = False
     warming: bool = False
     warm: bool = False
+    spent: bool = False  # it takes no more submissions
     reason: str = ""  # why it ends, if it has told
     submissions: dict[int, Submission] = field(default_factory=dict)
 
@@ -93,32 +91,33 @@ class WorkerSet:
 
     async def _keep_worker(self) -> None:
         """Keep one process running until the set is closed, whatever fails."""
-        pause = GrowingPause(_SHORTEST_PAUSE, _LONGEST_PAUSE)
         while True:
-            try:
-                if await self._run_worker():
-                    pause.reset()
-                    continue
-            except Exception as error:
-                self._log_failure(error)
-            await pause.wait()
+            for seconds in _growing_pauses():
+                try:
+                    if await self._run_worker():
+                        break
+                except Exception as error:
+                    self._log_failure(error)
+                await asyncio.sleep(seconds)
 
     async def _run_worker(self) -> bool:
-        """Start a process, handle its messages until it is lost, and return whether it started."""
+        """Start a process, handle its messages until it ends, and return whether it started."""
         worker = Worker(await WorkerProcess.start(self._make_runner))
         self._workers.append(worker)
         try:
-            await worker.process.deliver_messages(partial(self._handle, worker))
-            self.lost += 1
-            _LOG.warning("worker %s was lost and is replaced", worker.process.pid)
+            async for message in worker.process.messages():
+                self._handle(worker, message)
+            if not worker.spent:
+                self.lost += 1
+                _LOG.warning("worker %s was lost and is replaced", worker.process.pid)
         finally:
-            idle = not worker.submissions  # else what it ran may be what it died of
+            idle = not worker.submissions  # else it may have died of one of them
             worker.process.kill()
             self._workers.remove(worker)
             self._warm_up()
             self._on_lost(worker)
             await worker.process.join()
-        if idle and not self.was_warm:
+        if idle and not self.was_warm and not worker.spent:
             status = worker.process.exit_status
             self._fail(worker.reason or f"a process ended with status {status} while it loaded")
         return worker.started
@@ -139,11 +138,13 @@ class WorkerSet:
 
     def _handle(self, worker: Worker, message: object) -> None:
         match message:
-            case Started():
+            case Stage.STARTED:
                 worker.started = True
                 self._failing = False
-            case Warm():
+            case Stage.WARM:
                 worker.warm = self.was_warm = True
+            case Stage.SPENT:
+                worker.spent = True
             case Unable():
                 worker.reason = message.reason
         self._warm_up()
@@ -155,4 +156,12 @@ class WorkerSet:
             first = not any(other.warming for other in self._workers)
             if worker.started and not worker.warming and (self.was_warm or first):
                 worker.warming = True
-                worker.process.send(WarmUp())
+                worker.process.send(Order.WARM_UP)
+
+
+def _growing_pauses() -> Iterator[float]:
+    """Yield seconds to wait, each time twice as many, up to the longest pause."""
+    seconds = _SHORTEST_PAUSE
+    while True:
+        yield seconds
+        seconds = min(2 * seconds, _LONGEST_PAUSE)

@@ -23,8 +23,8 @@ from service.errors import (
     WorkerLost,
 )
 from service.jobs.deadline import Deadline
-from service.jobs.runner import Runner
 from service.jobs.workers.worker_pool import WorkerPool
+from service.jobs.workers.worker_process import Runner
 from service.kinds.front_document import FrontDocument
 from tests.helpers.scripted_runner import ScriptedRunner, brief_task, task, worker_pool
 
@@ -375,6 +375,19 @@ def test_a_process_killed_while_idle_is_replaced() -> None:
         assert killed not in workers.pids
 
     run(test)
+
+
+def test_a_process_that_has_grown_large_answers_and_is_replaced() -> None:
+    async def test(workers: WorkerPool) -> None:
+        await until(lambda: is_ready(workers))
+        [grown] = workers.pids
+        grows, following = workers.submit(task("grow")), workers.submit(task())
+        assert (await grows.front()).terminated == "converged"
+        assert (await following.front()).terminated == "converged"
+        assert grown not in workers.pids
+        assert (following.attempts, workers.lost) == (1, 0)
+
+    run(test, queue=1)
 
 
 def test_compiled_code_may_not_be_used_before_it_is_warm(tmp_path: Path) -> None:

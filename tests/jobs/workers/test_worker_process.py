@@ -6,7 +6,7 @@ import sys
 import tempfile
 from pathlib import Path
 from socket import socketpair
-from threading import Event
+from threading import Event, Thread
 
 import pytest
 
@@ -99,12 +99,13 @@ def test_a_task_that_is_stopped_before_it_has_come_is_terminated_when_it_begins(
     try:
         runner = TerminatedRunner()
         loop = _WorkerLoop(tasks[0], signals[0], runner)
+        Thread(target=loop._terminate_stopped, daemon=True).start()
         loop._stop(3)
-        loop._begin(2)
+        loop._set_running(2)
         assert not runner.terminated.wait(0.1)
-        loop._begin(3)
+        loop._set_running(3)
         assert runner.terminated.wait(5)
-        loop._end()
+        loop._set_running(None)
     finally:
         for connection in (*tasks, *signals):
             connection.close()
