@@ -20,14 +20,15 @@ file. So they do it one after another, and an index never names a file that is n
 import fcntl
 import os
 import secrets
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from itertools import count
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, NoReturn, ParamSpec, TypeVar
 
 import numba
-from numba.core import caching
+from numba import types
+from numba.core import caching, config
 from numba.core.bytecode import FunctionIdentity
 
 P = ParamSpec("P")
@@ -88,9 +89,8 @@ def _can_be_cached() -> bool:
     return True
 
 
+_tuple_of: Any = types.BaseTuple.from_types
 CACHED = _can_be_cached()  # whether later processes load what is compiled
-
-_njit = partial(numba.njit, cache=CACHED, nogil=True, error_model="numpy")
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
@@ -98,17 +98,60 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 
     Division follows numpy, and the interpreter's lock is released.
     """
-    kernel: Callable[P, R] = _njit(_nrt=False)(function)
-    return kernel
+    return _kernel(function, _nrt=False)
 
 
 def inlined(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile as `compiled` does, and inline the code at every call: for parts of hot loops."""
-    kernel: Callable[P, R] = _njit(_nrt=False, forceinline=True)(function)
-    return kernel
+    """Compile as `compiled` does, and inline the code at every call: for parts of hot loops.
+
+    Only compiled code can call it.
+    """
+    return _kernel(function, _nrt=False, forceinline=True, no_cpython_wrapper=True)
 
 
 def allocating(function: Callable[P, R]) -> Callable[P, R]:
     """Compile as `compiled` does, for a function that creates arrays."""
-    kernel: Callable[P, R] = _njit(_nrt=True)(function)
-    return kernel
+    return _kernel(function, _nrt=True)
+
+
+def _kernel(function: Callable[P, R], **options: bool) -> Callable[P, R]:
+    """Compile a function at its first call with each combination of argument types."""
+    options |= {"nogil": True, "no_cfunc_wrapper": True}
+    compile_lazily: Any = numba.njit  # whose types know fewer options than it takes
+    kernel = compile_lazily(cache=CACHED, error_model="numpy", **options)(function)
+    if not config.DISABLE_JIT:  # type: ignore[attr-defined]  # set from the environment
+        kernel.get_call_template = partial(_call_template, kernel.get_call_template)
+        if "no_cpython_wrapper" in options:
+            _refuse_python(kernel)
+    typed: Callable[P, R] = kernel
+    return typed
+
+
+def _call_template(template: Any, types: Sequence[Any], named: Mapping[str, Any]) -> Any:
+    """Return how a kernel is called by another one, whose arguments have the given types."""
+    return template(
+        tuple(map(_widest, types)), {name: _widest(each) for name, each in named.items()}
+    )
+
+
+def _widest(given: Any) -> Any:
+    """Return the type as which a kernel takes an argument from another one.
+
+    Otherwise it would be compiled for each width of an index, and for each number in the source.
+    """
+    given = given if not isinstance(given, types.Literal) else given.literal_type
+    if given in types.signed_domain:
+        return types.int64
+    if isinstance(given, types.Tuple | types.UniTuple):
+        return _tuple_of([_widest(each) for each in given])
+    return given
+
+
+def _refuse_python(kernel: Any) -> None:
+    """Let Python's calls of a kernel fail: without code that unpacks arguments they would crash."""
+
+    def refuse(*_: object) -> NoReturn:
+        raise TypeError(f"{kernel.__name__} can be called by compiled code alone")
+
+    kernel._insert = lambda *_, **__: None  # noqa: SLF001  # no compiled code is found for a call
+    kernel._compile_for_args = refuse  # noqa: SLF001

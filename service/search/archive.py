@@ -56,7 +56,7 @@ def count_up_to(archive: Archive, bound: float) -> int:
     return low
 
 
-@inlined
+@compiled
 def accepts(archive: Archive, first: float, second: float) -> bool:
     """Return whether no point dominates or equals the given one, but for rounding. O(log m)."""
     slack = 1 + ROUNDING * archive.tours.shape[1]

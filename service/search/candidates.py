@@ -68,7 +68,7 @@ def fill_in_blocks(pool: CandidatePool, costs: Costs, weights: Array) -> Iterato
     if len(costs.matrix):
         compared = n
     else:
-        compared = 0 if costs.closing is None else 1  # the invented city is in no plane
+        compared = 1 if costs.closing.size else 0  # the invented city is in no plane
         trees = make_kd_trees(weights, np.arange(compared, n, dtype=np.int32))
         for k in range(len(weights)):
             fill_kd_tree(trees, costs, k)

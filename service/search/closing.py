@@ -5,8 +5,7 @@ which all steps are free of cost. Where an end is fixed, the step between it and
 the search it costs so much less than nothing that no move gains by its removal. Lengths leave all
 steps of city 0 out, so that neither sum nor difference of lengths ever holds such a cost.
 
-A closed instance has no such city, and None for its costs: numba compiles the functions here for
-each of the two types, and for closed tours nothing is left of them.
+A closed instance has no such city, and its costs are empty, of shape (2, 0).
 """
 
 import numpy as np
@@ -25,8 +24,11 @@ NEVER_ADDED = 2.0**900  # above the cost of any step
 def closing_costs(instance: Instance, barrier: float) -> Array:
     """Return the costs from city 0 to each city, and from each city to city 0, shape (2, n + 1).
 
-    A barrier is what kept and forbidden steps count: the greater of largest_steps().
+    They are empty, of shape (2, 0), for closed tours. A barrier is what kept and forbidden steps
+    count: the greater of largest_steps().
     """
+    if instance.closed:
+        return np.zeros((2, 0))
     costs = np.zeros((2, instance.n + 1))
     if instance.symmetric:
         if len(instance.fixed_ends) == len(costs):
@@ -84,32 +86,30 @@ def with_end_last(instance: Instance, tour: NDArray[np.int32]) -> NDArray[np.int
 
 
 @inlined
-def is_closing(closing: Array | None, i: int, j: int) -> bool:
-    """Return whether a step is to or from the invented city."""
-    if closing is None:
-        return False
-    return i == 0 or j == 0
+def is_open(closing: Array) -> bool:
+    """Return whether there is an invented city."""
+    return closing.shape[1] > 0
 
 
 @inlined
-def closing_cost(closing: Array | None, i: int, j: int) -> float:
+def is_closing(closing: Array, i: int, j: int) -> bool:
+    """Return whether a step is to or from the invented city."""
+    return is_open(closing) and (i == 0 or j == 0)
+
+
+@inlined
+def closing_cost(closing: Array, i: int, j: int) -> float:
     """Return the cost of a step to or from the invented city."""
-    if closing is None:
-        return 0.0
     return closing[0, j] if i == 0 else closing[1, i]
 
 
 @inlined
-def is_kept(closing: Array | None, i: int, j: int) -> bool:
+def is_kept(closing: Array, i: int, j: int) -> bool:
     """Return whether a step has to stay in the tour."""
-    if closing is None:
-        return False
-    return (i == 0 or j == 0) and closing_cost(closing, i, j) < 0
+    return is_closing(closing, i, j) and closing_cost(closing, i, j) < 0
 
 
 @inlined
-def is_free_end(closing: Array | None, city: int, after: int) -> bool:
+def is_free_end(closing: Array, city: int, after: int) -> bool:
     """Return whether a city is an end of the route, beside the invented city, that may change."""
-    if closing is None:
-        return False
-    return after == 0 and closing_cost(closing, city, 0) == 0
+    return is_open(closing) and after == 0 and closing_cost(closing, city, 0) == 0

@@ -7,7 +7,12 @@ from numpy.typing import NDArray
 
 from service.instance import Instance
 from service.jit import compiled, inlined
-from service.search.closing import closing_cost, closing_costs, is_closing, largest_steps
+from service.search.closing import (
+    closing_cost,
+    closing_costs,
+    is_closing,
+    largest_steps,
+)
 
 Array = NDArray[np.float64]
 
@@ -31,7 +36,7 @@ class Costs(NamedTuple):
     cities: Array  # (n, 4)
     matrix: Array  # (n, n, 2), or (0, 0, 2) where the coordinates are used
     symmetric: bool
-    closing: Array | None  # (2, n), the costs from city 0 and to it; None of closed tours
+    closing: Array  # (2, n), the costs from city 0 and to it; (2, 0) of closed tours
     largest: Array  # (2,), of any step: what rounding can add to a gain is a share of these
 
 
@@ -42,8 +47,8 @@ def make_costs(instance: Instance) -> Costs:
     nor tiny units overflow or underflow in a product of two lengths.
     """
     largest = largest_steps(instance)
-    closing = None if instance.closed else closing_costs(instance, float(largest.max()))
-    added = 0 if closing is None else 1
+    closing = closing_costs(instance, float(largest.max()))
+    added = 1 if closing.size else 0
     n = added + instance.n
     cities = np.zeros((n, 4))
     if instance.coordinates is None:
@@ -51,7 +56,7 @@ def make_costs(instance: Instance) -> Costs:
         planes = np.ldexp(instance.penalised_matrices, instance.shifts[:, None, None])
         matrix = np.empty((n, n, 2))
         matrix[added:, added:] = planes.transpose(1, 2, 0)
-        if closing is not None:
+        if added:
             matrix[0], matrix[:, 0] = closing[0, :, None], closing[1, :, None]
         return Costs(cities, matrix, instance.symmetric, closing, largest)
     corner = instance.coordinates.min(axis=0)

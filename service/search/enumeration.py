@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from service.instance import Instance, least_steps
 from service.jit import compiled, inlined
 from service.search.archive import ROUNDING, Archive, accepts, insert, make_archive
-from service.search.closing import closing_cost, opened_tours
+from service.search.closing import closing_cost, is_open, opened_tours
 from service.search.costs import Costs, lengths, make_costs, travel_costs
 
 Array = NDArray[np.float64]
@@ -72,7 +72,7 @@ def enumerate_tours(costs: Costs, archive: Archive) -> Iterator[None]:
         insert(archive, (0.0, 0.0), tour)
         return
     steps = costs.matrix.transpose(2, 0, 1).copy()
-    if costs.closing is not None:
+    if costs.closing.size:
         steps[:, 0] = steps[:, :, 0] = 0.0  # which adds nothing to lengths
     least = np.ascontiguousarray(least_steps(steps)[0].T)
     # Rounded down to few digits, sums and differences of them are exact.
@@ -147,9 +147,9 @@ def swap(tour: Cities, i: int, j: int) -> None:
 
 
 @inlined
-def may_follow(closing: Array | None, tour: Cities, place: int) -> bool:
+def may_follow(closing: Array, tour: Cities, place: int) -> bool:
     """Return whether a route may begin with the city at place 1, or end with that at the last."""
-    if closing is None:
+    if not is_open(closing):
         return True
     if place == 1 and closing_cost(closing, 0, tour[1]) > least_cost(closing):
         return False

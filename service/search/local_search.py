@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from service.jit import compiled, inlined
 from service.search.archive import Archive, accepts, insert
 from service.search.candidates import Scalarization
-from service.search.closing import is_kept
+from service.search.closing import is_kept, is_open
 from service.search.costs import lengths
 from service.search.moves import apply_move, block_swap, length_change, or_opt, two_opt
 from service.search.working_tour import (
@@ -97,12 +97,8 @@ def descend(
 
 
 @inlined
-def removes_kept_step(
-    working: QueuedTour, closing: Array | None, start: int, a: int, b: int
-) -> bool:
+def removes_kept_step(working: QueuedTour, closing: Array, start: int, a: int, b: int) -> bool:
     """Return whether a swap of two blocks removes a step that has to stay in the tour."""
-    if closing is None:
-        return False
     tour, n = working.tour, len(working.tour)
     return (
         is_kept(closing, tour[wrap(start - 1, n)], tour[start])
@@ -112,19 +108,11 @@ def removes_kept_step(
 
 
 @inlined
-def often_at_an_end(
-    working: QueuedTour,
-    closing: Array | None,
-    random: NDArray[np.int64],
-    start: int,
-    size: int,
-) -> int:
-    """Return a position for `size` cities: `start`, or often that beside an end of an open route.
+def often_at_an_end(working: QueuedTour, random: NDArray[np.int64], start: int, size: int) -> int:
+    """Return a position in a route for `size` cities: `start`, or often that beside an end.
 
     Which cities are the best ends is found late where they change as seldom as any other step.
     """
-    if closing is None:
-        return start
     if random_below(random, KICKS_PER_END) > 0:
         return start
     place = working.position[0]  # of the invented city, after a route's last city
@@ -145,9 +133,10 @@ def draw_swap(
     start = random_below(random, n)
     a, b = 1 + random_below(random, longest), 1 + random_below(random, longest)
     closing = scalarization.costs.closing
-    start = often_at_an_end(working, closing, random, start, a + b)
-    while removes_kept_step(working, closing, start, a, b):
-        start = random_below(random, n)
+    if is_open(closing):
+        start = often_at_an_end(working, random, start, a + b)
+        while removes_kept_step(working, closing, start, a, b):
+            start = random_below(random, n)
     return start, a, b
 
 

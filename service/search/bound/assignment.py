@@ -88,8 +88,18 @@ def augment(costs: Costs, w0: float, w1: float, assignment: Assignment, first: i
             end = closest
         else:
             least = arc_cost(costs, w0, w1, city, closest) - prices[closest]
-    prices -= np.where(settled, reached - distance, 0.0)
+    lower_prices(prices, settled, distance, reached)
     apply_path(assignment, via, end, first)
+
+
+@inlined
+def lower_prices(
+    prices: Array, settled: NDArray[np.bool_], distance: Array, reached: float
+) -> None:
+    """Lower the price of each settled city by what it was nearer than the path's end."""
+    for j in range(len(prices)):
+        if settled[j]:
+            prices[j] -= reached - distance[j]
 
 
 @compiled

@@ -107,7 +107,8 @@ def walk_paths(scalarization: Scalarization, paths: Paths, tour: Cities) -> None
     n = len(tour)
     ends = np.flatnonzero(paths.degree < 2).astype(np.int32)
     place = np.full(n, -1, np.int32)
-    place[ends] = np.arange(len(ends))
+    for k in range(len(ends)):
+        place[ends[k]] = k
     count = len(ends)
     city = tour[0] if place[tour[0]] >= 0 else ends[0]
     before = -1

@@ -70,7 +70,8 @@ def find_in_direction(
     """
     after = neighbour(working, city, direction)
     removed = weighted_cost(scalarization, city, after)
-    most = np.inf if is_free_end(scalarization.costs.closing, city, after) else removed
+    free = removed == 0 and is_free_end(scalarization.costs.closing, city, after)
+    most = np.inf if free else removed
     for k in range(scalarization.candidates.shape[1]):
         other = scalarization.candidates[city, k]
         gain = removed - scalarization.candidate_costs[city, k]
