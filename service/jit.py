@@ -13,6 +13,9 @@ inside np.sort from those inside np.argsort. Of two cached by different processe
 number, whichever is loaded first is called in the other's place, and the process dies
 (numba#10486). So each process begins at a random number, far from those of all others.
 
+numba compiles a function anew where its own module has changed, but not where a function that it
+calls has. So what is cached belongs to one state of all modules with compiled code.
+
 Nor does numba expect two processes to save code of one function at once: both would take the same
 file. So they do it one after another, and an index never names a file that is not written yet.
 """
@@ -23,7 +26,9 @@ import secrets
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
+from hashlib import sha256
 from itertools import count
+from pathlib import Path
 from typing import Any, NoReturn, ParamSpec, TypeVar
 
 import numba
@@ -43,11 +48,23 @@ _number_from_a_random_number()
 os.register_at_fork(after_in_child=_number_from_a_random_number)
 
 
+def _digest() -> str:
+    """Return a digest of the modules whose functions and numbers are compiled."""
+    package = Path(__file__).parent
+    folders = (package / name for name in ("coverage", "fleet", "replanning", "search"))
+    modules = [*package.glob("*.py"), *(path for each in folders for path in each.rglob("*.py"))]
+    return sha256(b"".join(path.read_bytes() for path in sorted(modules))).hexdigest()
+
+
+_DIGEST = _digest()
 _NumbaCacheFile: Any = caching.IndexDataCacheFile  # it has no types
 
 
 class _CacheFile(_NumbaCacheFile):  # type: ignore[misc]
     """The cache of one function, which processes write in turn."""
+
+    def __init__(self, cache_path: str, filename_base: str, source_stamp: object) -> None:
+        super().__init__(cache_path, filename_base, (source_stamp, _DIGEST))
 
     def save(self, key: Any, data: Any) -> None:
         with _locked(self._cache_path):

@@ -1,9 +1,12 @@
 """Compiled code works without a place to cache it in, and beside that of other processes."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
+
+import service
 
 KERNEL = """
 import sys, time
@@ -72,3 +75,48 @@ def test_processes_that_compile_one_function_at_once_keep_what_each_compiled(
     printed, _ = run(f"{code}; print(half.stats.cache_misses)", 0).communicate()
     assert printed == "[1.5, 1.5, 0.5]\nCounter()\n"
     assert len(list(tmp_path.rglob("*.nbc"))) == len(numbers)
+
+
+def test_a_function_is_compiled_anew_where_one_that_it_calls_has_changed(tmp_path: Path) -> None:
+    """numba looks at the module of the function alone."""
+    modules = tmp_path / "service" / "search"
+    modules.mkdir(parents=True)
+    shutil.copy(Path(service.__file__).parent / "jit.py", modules.parent)
+    (modules.parent / "__init__.py").touch()
+    (modules / "outer.py").write_text(
+        "from service.jit import compiled\nfrom service.search.inner import inner\n"
+        "@compiled\ndef outer():\n    return inner()\n"
+    )
+    code = "from service.search.outer import outer; print(outer())"
+    printed = []
+    for number in ("1", "2"):
+        (modules / "inner.py").write_text(
+            f"from service.jit import inlined\n@inlined\ndef inner():\n    return {number}\n"
+        )
+        ran = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True)
+        printed.append(ran.stdout)
+    assert printed == [b"1\n", b"2\n"]
+
+
+def test_python_cannot_call_what_only_compiled_code_calls(tmp_path: Path) -> None:
+    """It has no code that unpacks Python's arguments: the call would end the process."""
+    code = "from kernel import eighth, quarter; print(eighth(16.0)); quarter(8.0)"
+    kernels = (
+        "@jit.inlined\ndef quarter(number):\n    return half(half(number))\n"
+        "@jit.compiled\ndef eighth(number):\n    return half(quarter(number))\n"
+    )
+    (tmp_path / "kernel.py").write_text(KERNEL + kernels)
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": f"{tmp_path}:."}
+    command = [sys.executable, "-c", code, "0"]
+    ran = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert ran.stdout == "2.0\n"
+    assert "quarter can be called by compiled code alone" in ran.stderr
+
+
+def test_all_compiled_code_lies_where_a_change_is_noticed() -> None:
+    package = Path(service.__file__).parent
+    users = [
+        path for path in package.rglob("*.py") if "from service.jit import" in path.read_text()
+    ]
+    folders = {path.relative_to(package).parts[0] for path in users}
+    assert folders <= {"coverage", "fleet", "replanning", "search"}

@@ -1,10 +1,10 @@
 """The compiled code that requests need: compiled once, and loaded by later processes.
 
-Compiling takes one process a minute and a half. With several processors and a cache, several
-processes compile a part each into the cache, and the process that needs it all loads it from there.
+Compiling takes one process a minute. With several processors and a cache, several processes compile
+parts into the cache, and the process that needs them all loads them from there.
 
-`python -m service.jobs.compiled_code FIRST STEP` compiles every STEP-th part from the FIRST on, and
-ends when its standard input does.
+`python -m service.jobs.compiled_code QUEUE` compiles the parts whose numbers it reads from a pipe,
+one after another, and ends when its standard input does. All processes read from the same pipe.
 """
 
 import os
@@ -12,7 +12,6 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from functools import partial
 from threading import Thread
 
 from numba import config
@@ -24,16 +23,11 @@ from service.kinds import fleet
 from service.replanning import insertion
 from service.search import improve
 
-
-def _compile_beside() -> None:
-    insertion.warm_up()
-    shortest_paths.warm_up()
-    fleet.warm_up()
-
-
 _PARTS: Sequence[Callable[[], None]] = (
-    *(partial(improve.warm_up_kind, *kind) for kind in improve.KINDS),
-    _compile_beside,
+    *improve.PARTS,
+    insertion.warm_up,
+    shortest_paths.warm_up,
+    fleet.warm_up,
 )
 
 
@@ -80,12 +74,17 @@ def _compile_elsewhere(processes: int) -> None:
     """Compile all parts into the cache in processes, which end with this one at the latest."""
     # In a process group of its own, so that Ctrl-C does not end it.
     environment = {**os.environ, **own_code.variables()}
+    queue, end_of_queue = os.pipe()
+    os.write(end_of_queue, bytes(range(len(_PARTS))))
+    os.close(end_of_queue)
     with ExitStack() as stack:
+        stack.callback(os.close, queue)
         running = []
-        for first in range(min(processes, len(_PARTS))):
+        for _ in range(min(processes, len(_PARTS))):
             process = subprocess.Popen(
-                [sys.executable, "-m", __name__, str(first), str(processes)],
+                [sys.executable, "-m", __name__, str(queue)],
                 stdin=subprocess.PIPE,
+                pass_fds=[queue],
                 env=environment,
                 process_group=0,
             )
@@ -102,5 +101,5 @@ def _end_with_parent() -> None:
 
 if __name__ == "__main__":
     Thread(target=_end_with_parent, daemon=True).start()
-    for compile_part in _PARTS[int(sys.argv[1]) :: int(sys.argv[2])]:
-        compile_part()
+    while number := os.read(int(sys.argv[1]), 1):
+        _PARTS[number[0]]()

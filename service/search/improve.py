@@ -29,7 +29,6 @@ from service.search.three_opt.undoable_tour import make_undoable_tour
 Array = NDArray[np.float64]
 
 REPORT_EVERY = 0.1  # seconds
-KINDS = ((True, True), (False, True), (True, False), (False, False))  # closed, of coordinates
 
 
 def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a default
@@ -146,25 +145,38 @@ def _front(instance: Instance, tours: NDArray[np.integer], terminated: Terminati
 
 
 def warm_up() -> None:
-    """Compile all that a request can need, or load it from the cache of an earlier process."""
-    for closed, coordinates in KINDS:
-        warm_up_kind(closed, coordinates)
+    """Compile all that a search can need, or load it from the cache of an earlier process."""
+    for compile_part in PARTS:
+        compile_part()
 
 
-def warm_up_kind(closed: bool, coordinates: bool) -> None:
-    """Compile or load what a request can need of one kind, with coordinates or matrices."""
-    best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
-    exact_tours(_instance(5, closed, coordinates))
-    instance = _instance(12, closed, coordinates)
+def _warm_up_few_cities() -> None:
+    """Compile what up to a thousand cities need, by symmetric costs: what most requests need."""
+    instance = _instance(12, coordinates=True)
     improve(instance, np.arange(12)[np.newaxis], iterations=5_000)
+    best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
+    exact_tours(_instance(5, coordinates=True))
     hypervolume_bound(instance, instance.reference_point)
+
+
+def _warm_up_three_opt() -> None:
+    """Compile what costs that differ by direction need, and the moves of many cities."""
+    matrices = _instance(12, coordinates=False)
+    improve(matrices, np.arange(12)[np.newaxis], iterations=5_000)
+    hypervolume_bound(matrices, matrices.reference_point)
+    _step_through_three_opt(_instance(12, coordinates=True))
+
+
+def _warm_up_many_cities() -> None:
+    """Compile what finds the candidates and the first tour of many cities."""
+    instance = _instance(12, coordinates=True)
     candidates.warm_up(instance)
-    if coordinates:
-        _warm_up_three_opt(instance)
+    search = Search(instance, 0, instance.reference_point)
+    constructed_tour(instance, search.descents.scalarization(WEIGHTS // 2), greedy=True)
 
 
-def _warm_up_three_opt(instance: Instance) -> None:
-    """Compile, with a few steps of a search, what instances of many cities are searched by."""
+def _step_through_three_opt(instance: Instance) -> None:
+    """Take a few steps of the search of many cities."""
     search = Search(instance, 0, instance.reference_point)
     three_opt = ThreeOptSearch(search.state, make_undoable_tour(search.n))
     search.local_search = search.descents.local_search = three_opt
@@ -172,14 +184,17 @@ def _warm_up_three_opt(instance: Instance) -> None:
         pass
     for _ in search.descents.descend_from_neighbours(WEIGHTS // 2, assembling=True):
         pass
-    constructed_tour(instance, search.descents.scalarization(WEIGHTS // 2), greedy=True)
 
 
-def _instance(n: int, closed: bool, coordinates: bool) -> Instance:
-    """Return an instance of n cities of a kind that is compiled apart."""
+def _instance(n: int, *, coordinates: bool) -> Instance:
+    """Return an instance of n cities, by coordinates or by matrices that differ by direction."""
     cities = np.arange(float(n))
     if coordinates:
         planes = np.stack([cities, cities**2 % 11, cities**2 % 7, cities], axis=1)
-        return Instance(coordinates=planes, closed=closed)
+        return Instance(coordinates=planes)
     matrices = np.triu(np.outer(cities, cities)[None] % np.array([7, 5]).reshape(2, 1, 1))
-    return Instance(matrices=matrices, closed=closed)
+    return Instance(matrices=matrices)
+
+
+# In order of use: several processes compile a part each.
+PARTS = (_warm_up_few_cities, _warm_up_three_opt, _warm_up_many_cities)

@@ -8,9 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance
-from service.search.candidates import Scalarization, weighted_cost
+from service.search.candidates import Scalarization
+from service.search.candidates import weighted_cost as weighted_cost_kernel
 from service.search.costs import make_costs
 from service.search.open_routes import moved_ends
+from tests.helpers.kernels import for_python
+
+weighted_cost = for_python(weighted_cost_kernel)
 
 KINDS = ("coordinates", "symmetric", "asymmetric")
 ENDS = ("no", "start", "end", "both")  # which ends of an open route are fixed

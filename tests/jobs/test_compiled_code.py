@@ -61,7 +61,16 @@ def test_what_is_not_in_the_cache_is_not_compiled_by_loading_it(tmp_path: Path) 
 
 
 def test_a_process_that_compiles_ends_with_the_one_that_needs_it(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "service.jobs.compiled_code", "0", "1"]
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-    ran = subprocess.run(command, stdin=subprocess.DEVNULL, check=False, env=environment)
+    queue, end_of_queue = os.pipe()
+    os.write(end_of_queue, bytes([0]))
+    command = [sys.executable, "-m", "service.jobs.compiled_code", str(queue)]
+    ran = subprocess.run(
+        command,
+        stdin=subprocess.DEVNULL,
+        pass_fds=[queue],
+        check=False,
+        env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)},
+    )
+    os.close(queue)
+    os.close(end_of_queue)
     assert ran.returncode == 1

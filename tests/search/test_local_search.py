@@ -6,9 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from service.search.costs import lengths
-from service.search.local_search import improve_at
-from service.search.working_tour import dequeue, enqueue_cities, load, make_working_tour
+from service.search.local_search import improve_at as improve_at_kernel
+from service.search.working_tour import dequeue as dequeue_kernel
+from service.search.working_tour import enqueue_cities, load, make_working_tour
 from tests.helpers.instances import random_matrices, scalarization_of
+from tests.helpers.kernels import for_python
+
+improve_at = for_python(improve_at_kernel)
+dequeue = for_python(dequeue_kernel)
 
 
 @settings(max_examples=30)

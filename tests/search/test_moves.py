@@ -6,9 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from service.search.costs import lengths
-from service.search.moves import apply_move, length_change, two_opt
+from service.search.moves import apply_move as apply_move_kernel
+from service.search.moves import length_change as length_change_kernel
+from service.search.moves import two_opt as two_opt_kernel
 from service.search.working_tour import make_working_tour
 from tests.helpers.instances import opened, random_matrices, scalarization_of
+from tests.helpers.kernels import for_python
+
+apply_move = for_python(apply_move_kernel)
+length_change = for_python(length_change_kernel)
+two_opt = for_python(two_opt_kernel)
 
 
 @given(seed=st.integers(0, 10**6), flip=st.booleans(), data=st.data())

@@ -6,13 +6,27 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from service.search.working_tour import (
-    dequeue,
-    enqueue,
+    dequeue as dequeue_kernel,
+)
+from service.search.working_tour import (
+    enqueue as enqueue_kernel,
+)
+from service.search.working_tour import (
     enqueue_cities,
     make_working_tour,
-    reverse_block,
-    swap_blocks,
 )
+from service.search.working_tour import (
+    reverse_block as reverse_block_kernel,
+)
+from service.search.working_tour import (
+    swap_blocks as swap_blocks_kernel,
+)
+from tests.helpers.kernels import for_python
+
+dequeue = for_python(dequeue_kernel)
+enqueue = for_python(enqueue_kernel)
+reverse_block = for_python(reverse_block_kernel)
+swap_blocks = for_python(swap_blocks_kernel)
 
 
 def from_city_0(tour: NDArray[np.int32]) -> list[int]:

@@ -4,13 +4,24 @@ import numpy as np
 
 from service.search.edge_assembly.cut_tour import (
     CutTour,
-    add_cut,
     lay_out,
-    link,
     make_cut_tour,
-    segment_at,
     trace_circuits,
 )
+from service.search.edge_assembly.cut_tour import (
+    add_cut as add_cut_kernel,
+)
+from service.search.edge_assembly.cut_tour import (
+    link as link_kernel,
+)
+from service.search.edge_assembly.cut_tour import (
+    segment_at as segment_at_kernel,
+)
+from tests.helpers.kernels import for_python
+
+add_cut = for_python(add_cut_kernel)
+link = for_python(link_kernel)
+segment_at = for_python(segment_at_kernel)
 
 N = 11
 

@@ -9,17 +9,23 @@ from service.search.archive import accepts, make_archive
 from service.search.candidates import Scalarization
 from service.search.costs import lengths
 from service.search.three_opt.deepening import deepen
-from service.search.three_opt.exchanges import NONE, make_exchange
-from service.search.three_opt.finding import find_exchanges, nothing_found
+from service.search.three_opt.exchanges import NONE
+from service.search.three_opt.exchanges import make_exchange as make_exchange_kernel
+from service.search.three_opt.finding import find_exchanges as find_exchanges_kernel
+from service.search.three_opt.finding import nothing_found as nothing_found_kernel
 from service.search.three_opt.local_search import descend, iterated_local_search
 from service.search.three_opt.undoable_tour import (
     UndoableTour,
     load,
     make_undoable_tour,
-    save,
     undo,
 )
-from service.search.working_tour import dequeue, enqueue, enqueue_cities
+from service.search.three_opt.undoable_tour import (
+    save as save_kernel,
+)
+from service.search.working_tour import dequeue as dequeue_kernel
+from service.search.working_tour import enqueue as enqueue_kernel
+from service.search.working_tour import enqueue_cities
 from tests.helpers.instances import (
     opened,
     random_matrices,
@@ -27,6 +33,14 @@ from tests.helpers.instances import (
     steps_of,
     weighted_length,
 )
+from tests.helpers.kernels import for_python
+
+make_exchange = for_python(make_exchange_kernel)
+find_exchanges = for_python(find_exchanges_kernel)
+nothing_found = for_python(nothing_found_kernel)
+save = for_python(save_kernel)
+dequeue = for_python(dequeue_kernel)
+enqueue = for_python(enqueue_kernel)
 
 N = 9
 LEAST = 1e-9  # of gains, above what rounding adds

@@ -13,18 +13,23 @@ from service.search.archive import accepts, make_archive
 from service.search.candidates import Scalarization
 from service.search.closing import closed_tours
 from service.search.costs import lengths
-from service.search.moves import block_swap
-from service.search.three_opt.exchanges import swap_adjacent
-from service.search.three_opt.local_search import descend, iterated_local_search, perturb
-from service.search.three_opt.swap_chains import MOST_SWAPS, improve_by_swaps
+from service.search.moves import block_swap as block_swap_kernel
+from service.search.three_opt.exchanges import swap_adjacent as swap_adjacent_kernel
+from service.search.three_opt.local_search import descend, iterated_local_search
+from service.search.three_opt.local_search import perturb as perturb_kernel
+from service.search.three_opt.swap_chains import MOST_SWAPS
+from service.search.three_opt.swap_chains import improve_by_swaps as improve_by_swaps_kernel
 from service.search.three_opt.undoable_tour import (
     UndoableTour,
     load,
     make_undoable_tour,
-    save,
     undo,
 )
-from service.search.working_tour import dequeue, enqueue_cities
+from service.search.three_opt.undoable_tour import (
+    save as save_kernel,
+)
+from service.search.working_tour import dequeue as dequeue_kernel
+from service.search.working_tour import enqueue_cities
 from tests.helpers.instances import (
     ENDS,
     opened,
@@ -33,7 +38,15 @@ from tests.helpers.instances import (
     scalarization_of,
     weighted_length,
 )
+from tests.helpers.kernels import for_python
 from tests.search.three_opt.test_exchanges import LEAST, left_to_see, shuffled
+
+block_swap = for_python(block_swap_kernel)
+swap_adjacent = for_python(swap_adjacent_kernel)
+perturb = for_python(perturb_kernel)
+improve_by_swaps = for_python(improve_by_swaps_kernel)
+save = for_python(save_kernel)
+dequeue = for_python(dequeue_kernel)
 
 Steps = set[tuple[int, int]]
 
