@@ -80,7 +80,7 @@ def log_loading(app: Any, check_ready: Callable[[], Awaitable[None]]) -> None:
 
 async def _log_until_ready(check_ready: Callable[[], Awaitable[None]]) -> None:
     began = time.monotonic()
-    with logging_every("loading the search; the first time it is compiled, for a minute or two"):
+    with logging_every("loading the search; the first time it is compiled, for about a minute"):
         while True:
             try:
                 await check_ready()

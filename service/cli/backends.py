@@ -15,7 +15,7 @@ from service.cli.errors import UsageError
 from service.cli.options import Service
 from service.cli.progress import interrupt_flag, progress_bar, until_done
 
-LOADING = "loading the search; the first time it is compiled, for a minute or two"
+LOADING = "loading the search; the first time it is compiled, for about a minute"
 
 
 class Backend(Protocol):

@@ -34,6 +34,7 @@ _NAMES = (
     "shapes",
     "soak",
     "solomon",
+    "start",
     "tables",
     "training",
     "weights",

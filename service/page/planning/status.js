@@ -7,7 +7,7 @@ const element = (id) => document.getElementById(id);
 
 const SAID = {
   "warming-up":
-    "The search is being compiled, once, for a minute or two. The network’s front is shown as soon as there is one, and improves by itself.",
+    "The search is being compiled, once, for about a minute. The network’s front is shown as soon as there is one, and improves by itself.",
   queued: "This is the network’s front; the search waits for its turn.",
   running: "The search is improving the network’s front.",
 };
