@@ -224,14 +224,14 @@ def _ordinary(costs: Array) -> float:
     """Return the largest cost that is at most a hundred times the typical cost to the nearest stop.
 
     A typical leg is not the measure: with two clusters, half of all legs lead from one to the
-    other.
+    other. Legs that are too short to be scaled count as the shortest that can be.
     """
     nearest = np.where(costs > 0, costs, inf).min(axis=1)
     nearest = nearest[np.isfinite(nearest)]
     if not len(nearest):
         return 1.0
     limit = OUTLYING * float(np.median(nearest))
-    return float(costs.max(where=costs <= limit, initial=0.0))
+    return max(_TINY, float(costs.max(where=costs <= limit, initial=0.0)))
 
 
 def _stepwise(huge: Array, ordinary: float, ratio: float) -> Array:

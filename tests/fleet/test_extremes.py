@@ -1,6 +1,7 @@
 """Fleets of extreme numbers: each is planned, or refused with a reason."""
 
 import json
+import random
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from service.errors import Refusal
 from service.jobs.task_runner import TaskRunner
 from service.requests.parser import parse_task
 from service.requests.task import TaskSource
+from tests.fuzz.fleets import extreme_fleet
 from tests.helpers.fleet_requests import LIMITS
 
 NUMBERS = [0.0, 1.0, 3.5, 0.1, 123456.789, 7e16, *(10.0**each for each in (-300, -150, -9, 9, 150))]
@@ -17,22 +19,22 @@ NUMBERS = [0.0, 1.0, 3.5, 0.1, 123456.789, 7e16, *(10.0**each for each in (-300,
 
 def extreme_request(seed: int) -> dict[str, Any]:
     """Return a request of up to eleven stops with numbers of any size in every field."""
-    random = np.random.default_rng(seed)
-    n = int(random.integers(2, 12))
-    clock = ["a", "b", None][random.integers(3)]
+    generator = np.random.default_rng(seed)
+    n = int(generator.integers(2, 12))
+    clock = ["a", "b", None][generator.integers(3)]
 
     def number() -> float:
-        return float(random.choice(NUMBERS))
+        return float(generator.choice(NUMBERS))
 
     def given(**members: Any) -> dict[str, Any]:
-        return {name: value for name, value in members.items() if random.random() < 0.3}
+        return {name: value for name, value in members.items() if generator.random() < 0.3}
 
     def stop(index: int) -> dict[str, Any]:
         timed = given(window=sorted((number(), number())), service=number()) if clock else {}
         return {"id": str(index), **given(demand=[10**9], prize=number()), **timed}
 
     unit = number()
-    whole = (unit * random.integers(0, 5, (2, n, n))).tolist()
+    whole = (unit * generator.integers(0, 5, (2, n, n))).tolist()
     mixed = [[[number() for _ in range(n)] for _ in range(n)] for _ in range(2)]
     first, second = whole if seed % 2 else mixed
     shift = given(shift=sorted((number(), number()))) if clock else {}
@@ -42,7 +44,7 @@ def extreme_request(seed: int) -> dict[str, Any]:
         "vehicles": [{**vehicle, **given(fixed=number(), longest=number() or 1.0)}],
         "objectives": [
             {"name": "a", "matrix": first},
-            {"name": "b", "matrix": second, "over": ["sum", "max"][random.integers(2)]},
+            {"name": "b", "matrix": second, "over": ["sum", "max"][generator.integers(2)]},
         ],
         "clock": clock,
         "time_limit": 0.02,
@@ -51,7 +53,17 @@ def extreme_request(seed: int) -> dict[str, Any]:
 
 @pytest.mark.parametrize("seed", range(60))
 def test_extreme_numbers_are_planned_or_refused(seed: int) -> None:
-    source = TaskSource("fleet", json.dumps(extreme_request(seed)).encode())
+    check(TaskSource("fleet", json.dumps(extreme_request(seed)).encode()))
+
+
+@pytest.mark.parametrize("seed", [47, 390, 3924, 5727, 6846, 6866])
+def test_legs_of_almost_no_cost_beside_outliers_are_planned_or_refused(seed: int) -> None:
+    """Their typical leg is below the least normal double."""
+    check(extreme_fleet(random.Random(seed)))
+
+
+def check(source: TaskSource) -> None:
+    """Check that a fleet gets a front of finite lengths, or is refused with a reason."""
     try:
         task = parse_task(source, LIMITS, {})
         document = TaskRunner({}, LIMITS).run(task, lambda: False, lambda *_: None)
