@@ -87,15 +87,19 @@ def test_a_function_is_compiled_anew_where_one_that_it_calls_has_changed(tmp_pat
         "from service.jit import compiled\nfrom service.search.inner import inner\n"
         "@compiled\ndef outer():\n    return inner()\n"
     )
-    code = "from service.search.outer import outer; print(outer())"
+    code = (
+        f"import sys; sys.path.insert(0, {str(tmp_path)!r});"
+        "from service.search.outer import outer; print(outer())"
+    )
     printed = []
     for number in ("1", "2"):
         (modules / "inner.py").write_text(
             f"from service.jit import inlined\n@inlined\ndef inner():\n    return {number}\n"
         )
-        ran = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True)
-        printed.append(ran.stdout)
-    assert printed == [b"1\n", b"2\n"]
+        command = [sys.executable, "-c", code]
+        ran = subprocess.run(command, capture_output=True, text=True)
+        printed.append((ran.stdout, ran.stderr))
+    assert printed == [("1\n", ""), ("2\n", "")]
 
 
 def test_python_cannot_call_what_only_compiled_code_calls(tmp_path: Path) -> None:

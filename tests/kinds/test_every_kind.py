@@ -127,7 +127,8 @@ def kind_while_queued(client: httpx.Client, asked: Asked) -> httpx.Response:
 
 
 def events(client: httpx.Client, asked: Asked) -> httpx.Response:
-    accepted = post(client, asked, LATER, time_limit=LIMIT)
+    # Long enough for a busy machine to report while it searches.
+    accepted = post(client, asked, LATER, time_limit=5 * LIMIT)
     seen = list(events_of(client, accepted.json()["id"]))
     progress = [data for name, data in seen if name == "progress"]
     assert progress[-1]["hypervolume"] > 0
