@@ -52,11 +52,9 @@ class Horizon:
         if rules.clock is None:
             return cls()
         route = rules.n * leg + _services(rules)
-        bounds = [time for span in rules.spans for time in span if 0 < time < inf]
-        first = min(bounds, default=0.0) - route
-        begin = max(0.0, first, min(vehicle.shift[0] for vehicle in rules.vehicles))
-        latest = max((begin for begin, _ in rules.spans), default=0.0)
-        return cls(begin, max(begin, latest) + 2 * route)
+        first, last = _first_and_last(rules)
+        begin = max(0.0, first - route, min(vehicle.shift[0] for vehicle in rules.vehicles))
+        return cls(begin, max(begin, last) + 2 * route)
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,9 +244,14 @@ def _stepwise(huge: Array, ordinary: float, ratio: float) -> Array:
 
 def _waiting(rules: Rules) -> float:
     """Return the time from the first bound of any window or shift to the last begin."""
+    first, last = _first_and_last(rules)
+    return max(0.0, last - first)
+
+
+def _first_and_last(rules: Rules) -> tuple[float, float]:
+    """Return the first bound above 0 of any window or shift, and the last begin; 0 without."""
     bounds = [time for span in rules.spans for time in span if 0 < time < inf]
-    last = max((begin for begin, _ in rules.spans), default=0.0)
-    return max(0.0, last - min(bounds, default=0.0))
+    return min(bounds, default=0.0), max((begin for begin, _ in rules.spans), default=0.0)
 
 
 def _most_legs(rules: Rules) -> float:

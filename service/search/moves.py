@@ -47,8 +47,7 @@ def two_opt(working: WorkingTour, scalarization: Scalarization, city: int, least
     for direction in (1, -1):
         after = neighbour(working, city, direction)
         removed = weighted_cost(scalarization, city, after)
-        free = removed == 0 and is_free_end(scalarization.costs.closing, city, after)
-        most = np.inf if free else removed
+        most = np.inf if is_free_end(scalarization.costs.closing, city, after) else removed
         for k in range(scalarization.candidates.shape[1]):
             other = scalarization.candidates[city, k]
             added = scalarization.candidate_costs[city, k]

@@ -70,8 +70,7 @@ def find_in_direction(
     """
     after = neighbour(working, city, direction)
     removed = weighted_cost(scalarization, city, after)
-    free = removed == 0 and is_free_end(scalarization.costs.closing, city, after)
-    most = np.inf if free else removed
+    most = np.inf if is_free_end(scalarization.costs.closing, city, after) else removed
     for k in range(scalarization.candidates.shape[1]):
         other = scalarization.candidates[city, k]
         gain = removed - scalarization.candidate_costs[city, k]
