@@ -1,9 +1,10 @@
 """plan_fleet(...): from a fleet to its front of plans."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import islice
 from math import inf
 
 import numpy as np
@@ -108,7 +109,7 @@ def _searched(
     report: ReportOf[FleetFront],
     began: float,
 ) -> FleetFront:
-    """Return the front that a search finds; if it found none, a front of one simple plan."""
+    """Return the front that a search finds; if it found none, a front of one plain plan."""
     search = _Search(fleet, options, stop, report, began)
     if constructor is not None and not fleet.rules.shipments:
         search.begin_at(constructor)
@@ -117,10 +118,26 @@ def _searched(
         search = _Search(fleet, options, stop, report, began, loose=True)
         terminated = search.run()
     if not search.archive and terminated != "cancelled":
-        plan = _one_route(fleet)
-        if not violations(fleet, plan):
-            return _front(fleet, options, [plan], terminated, began)
+        for plan in _plain_plans(fleet, stop):
+            if not violations(fleet, plan):
+                return _front(fleet, options, [plan], terminated, began)
     return search.front(options.size, terminated)
+
+
+def _plain_plans(fleet: Fleet, stop: Callable[[], bool]) -> Iterator[Plan]:
+    """Yield plans that take tenths of a second, for when a search had none: they may break rules.
+
+    One route first, then that route cut in the best places.
+    """
+    plan = _one_route(fleet)
+    yield plan
+    if not plan.routes or fleet.rules.shipments:
+        return
+    try:
+        cutter = Cutter(fleet, [np.array(plan.routes[0].stops, np.int64)], stop)
+    except Refusal:  # too large to be cut
+        return
+    yield from islice(cutter.plans(), 1)
 
 
 def _one_route(fleet: Fleet) -> Plan:

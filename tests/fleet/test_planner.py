@@ -178,6 +178,17 @@ def test_what_was_not_found_in_time_is_said_so() -> None:
         plan_fleet(Fleet(rules=tight, costs=fleet.costs), FleetOptions(time_limit=0.1))
 
 
+@pytest.mark.parametrize("over", [("sum", "sum"), ("sum", "max")])
+def test_where_capacities_have_room_there_is_a_plan_in_any_time(over: tuple[Over, Over]) -> None:
+    costs = deliveries(99).costs
+    visits = (Visit(), *(Visit(demand=(1,)),) * 99)
+    vans = VehicleType(start=0, end=0, capacity=(30,), count=4)
+    fleet = Fleet(rules=Rules(visits=visits, vehicles=(vans,), over=over), costs=costs)
+    front = plan_fleet(fleet, FleetOptions(time_limit=1e-300))
+    assert len(front.plans) == 1
+    assert violations(fleet, front.plans[0]) == []
+
+
 @pytest.mark.parametrize("time_limit", [1e-300, 1e-3])
 @pytest.mark.parametrize("over", [("sum", "sum"), ("sum", "max")])
 @pytest.mark.parametrize("n", [1, 2, 5, 40])
