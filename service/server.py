@@ -97,7 +97,7 @@ def build(settings: Settings, ending: Ending) -> FastAPI:
     )
     if settings.traces:
         trace(app)
-    log_loading(app, engine.check_ready)
+    log_loading(app, engine.check_ready, lambda: engine.compiling)
     return app
 
 

@@ -6,7 +6,7 @@ import logging.config
 import sys
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
-from contextlib import AbstractAsyncContextManager, asynccontextmanager, contextmanager
+from contextlib import AbstractAsyncContextManager, asynccontextmanager, contextmanager, suppress
 from threading import Event, Thread
 from typing import Any, TypeVar
 
@@ -15,7 +15,7 @@ from service.errors.printable import printable_lines
 
 T = TypeVar("T")
 _POLL_SECONDS = 0.2  # between two checks whether the search is loaded
-_SAY_SECONDS = 10.0  # between two lines that say how long something has taken so far
+_SAY_SECONDS = 5.0  # between two lines that say how long something has taken so far
 _KNOWN = frozenset(vars(logging.makeLogRecord({}))) | {"message", "asctime", "color_message"}
 
 _VERBOSE = (  # loggers whose lines repeat what the service logs itself
@@ -64,30 +64,45 @@ def logging_config(level: str = "INFO", plain: bool = False) -> dict[str, Any]:
     }
 
 
-def log_loading(app: Any, check_ready: Callable[[], Awaitable[None]]) -> None:
-    """Make an application log, from its start on, how long its search takes to load."""
+def log_loading(
+    app: Any, check_ready: Callable[[], Awaitable[None]], compiling: Callable[[], object | None]
+) -> None:
+    """Make an application log, from its start on, how far its search is loaded.
+
+    Args:
+        app: The application.
+        check_ready: Raises a refusal until it is ready.
+        compiling: Returns how far the compilation is, which may go on after that; else None.
+    """
     lifespan: Callable[[Any], AbstractAsyncContextManager[Any]] = app.router.lifespan_context
 
     @asynccontextmanager
     async def lifespan_with_log(app: Any) -> AsyncIterator[Any]:
         async with lifespan(app) as state:
-            logged = asyncio.create_task(_log_until_ready(check_ready))
+            logged = asyncio.create_task(_log_until_loaded(check_ready, compiling))
             yield state
             logged.cancel()
 
     app.router.lifespan_context = lifespan_with_log
 
 
-async def _log_until_ready(check_ready: Callable[[], Awaitable[None]]) -> None:
-    began = time.monotonic()
-    with logging_every("loading the search; the first time it is compiled, for about a minute"):
-        while True:
-            try:
-                await check_ready()
-                break
-            except Refusal:
-                await asyncio.sleep(_POLL_SECONDS)
-    logging.getLogger("paretour").info("ready after %.1f s", time.monotonic() - began)
+async def _log_until_loaded(
+    check_ready: Callable[[], Awaitable[None]], compiling: Callable[[], object | None]
+) -> None:
+    log = logging.getLogger("paretour")
+    began = said = time.monotonic()
+    log.info("loading the search")
+    ready = False
+    while not ready or compiling() is not None:
+        with suppress(Refusal):
+            await check_ready()
+            if not ready:
+                log.info("ready after %.1f s", time.monotonic() - began)
+            ready = True
+        if (progress := compiling()) is not None and time.monotonic() > said + _SAY_SECONDS:
+            said = time.monotonic()
+            log.info("%s", progress)
+        await asyncio.sleep(_POLL_SECONDS)
 
 
 @contextmanager

@@ -17,7 +17,7 @@ from service.instance import Instance, RouteEnds, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.planner import plan
 from service.preferences import fan
-from service.search.improve import warm_up
+from service.search.warm_up import warm_up
 from service.settings import Settings
 from tests.helpers.instances import ENDS, KINDS, every_tour, opened, small_integers
 

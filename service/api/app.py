@@ -186,9 +186,12 @@ def _health_router(engine: Engine) -> APIRouter:
         openapi_extra=public,
     )
     async def check_ready() -> Response:
-        """Say whether the process takes work of every kind."""
+        """Say whether the process plans, and what is still being compiled for rarer requests."""
         await engine.check_ready()
-        return json_response({"status": "ready"})
+        compiling = engine.compiling
+        return json_response(
+            {"status": "ready", **({"compiling": asdict(compiling)} if compiling else {})}
+        )
 
     # Some probes ask for the status alone.
     router.head(

@@ -224,8 +224,6 @@ class PlanRoutes:
             await self._engine.check_place(client_of(request))
 
     async def _new_record(self, request: Request, task: Task, body: _Body) -> Record:
-        if task.needs_compiled_code:
-            await self._engine.check_warm()
         key = idempotency_key(request)
         long = body.source.length > _LONG
         return Record(

@@ -308,10 +308,18 @@ class FileAnswer(BaseModel):
     name: str
 
 
+class CompilingAnswer(BaseModel):
+    """How far the compilation of the code is that some requests need; they wait for it."""
+
+    share: float = Field(description="what is done, 0 to 1")
+    seconds_left: float = Field(description="about how long the rest takes")
+
+
 class HealthAnswer(BaseModel):
     """The state of the service."""
 
     status: str
+    compiling: CompilingAnswer | None = None
 
 
 def json_response(answer: Any, status: int = 200) -> Response:

@@ -137,7 +137,7 @@ async def find_record(store: Store, request: Request, id: str | None) -> Record:
 
 async def _events(states: AsyncIterator[JobState]) -> AsyncIterator[bytes]:
     """Yield the states of a job as server-sent events, until it is finished."""
-    status, progress = None, None
+    status, progress, compiling = None, None, None
     coming = asyncio.ensure_future(anext(states, None))
     try:
         while True:
@@ -152,6 +152,9 @@ async def _events(states: AsyncIterator[JobState]) -> AsyncIterator[bytes]:
             if state.progress is not None and state.progress is not progress:
                 progress = state.progress
                 yield _event("progress", asdict(progress))
+            if state.compiling is not None and state.compiling is not compiling:
+                compiling = state.compiling
+                yield _event("compiling", asdict(compiling))
             if state.record.status != status:
                 status = state.record.status
                 yield _event("status", {"id": state.record.id, "status": status})

@@ -4,7 +4,7 @@ import json
 from dataclasses import asdict, dataclass
 from functools import partial
 from http import HTTPStatus
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 import httpx
 from paretour import Actor, Client, FrontOfAnyKind, Job, Plan, Progress, Refused
@@ -15,7 +15,10 @@ from service.cli.errors import UsageError
 from service.cli.options import Service
 from service.cli.progress import interrupt_flag, progress_bar, until_done
 
-LOADING = "loading the search; the first time it is compiled, for about a minute"
+if TYPE_CHECKING:
+    from service.requests.task import Task
+
+LOADING = "loading the search"
 
 
 class Backend(Protocol):
@@ -83,7 +86,6 @@ class LocalBackend:
         """
         from service.cli.configuration import load_settings, load_with
         from service.errors import Cancelled, Refusal
-        from service.jobs.compiled_code import warm_up
         from service.jobs.task_runner import load_runner
         from service.requests.parser import parse_task
         from service.requests.task import TaskKind, TaskSource
@@ -105,9 +107,7 @@ class LocalBackend:
             task = parse_task(source, runner.limits, runner.infos)
             if task.actor in runner.actors:
                 runner.actors[task.actor].load()  # before the clock of its time limit starts
-            if task.needs_compiled_code:
-                with console.status(LOADING):
-                    warm_up()
+            _warm_up(task, console)
             with interrupt_flag() as interrupted, progress_bar(console, plan.seconds) as show:
                 run = partial(
                     runner.run, task, interrupted, lambda found, _: show(Progress(**asdict(found)))
@@ -132,6 +132,21 @@ class LocalBackend:
             load_settings(),
         )
         return tuple(Actor(**asdict(actor.info)) for _, actor in sorted(loaded.items()))
+
+
+def _warm_up(task: "Task", console: Console) -> None:
+    """Compile what a task needs, or load it, and show how far that is."""
+    from service.jobs.compiled_code import warm_up
+    from service.jobs.parts import Compiling, Part, parts_of
+
+    if parts := parts_of(task):
+        with console.status(LOADING) as shown:
+
+            def show(told: Part | Compiling) -> None:
+                if isinstance(told, Compiling):
+                    shown.update(str(told))
+
+            warm_up(parts, show)
 
 
 def _result(job: Job[FrontOfAnyKind], plan: Plan, console: Console) -> FrontOfAnyKind:

@@ -25,6 +25,7 @@ from service.errors import (
 )
 from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
+from service.jobs.parts import Compiling
 from service.jobs.record import UNFINISHED, Record, StopReason, as_ended, as_failed
 from service.jobs.store import STORE_BYTES
 from service.kinds.front_document import FrontDocument
@@ -146,8 +147,10 @@ class RedisEngine:
         """Raise QueueFull or ShareFull when no place is left for one more job of a client."""
         await self._store.check_place(client, self._queue, self._share)
 
-    async def check_warm(self) -> None:
-        """Do nothing: jobs wait in the queue until a worker has the compiled search."""
+    @property
+    def compiling(self) -> Compiling | None:
+        """None: workers compile, on other machines."""
+        return None
 
     async def check_ready(self) -> None:
         """Raise ShuttingDown, NoWorker, or StoreUnavailable if Redis does not answer or is full."""

@@ -26,6 +26,7 @@
 `problems.py` has the status and the sentence of each code.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from http import HTTPStatus
@@ -173,9 +174,13 @@ class ShuttingDown(Refusal):
 
 
 class WarmingUp(Refusal):
-    """The search is still being loaded, or compiled, which happens once."""
+    """The search is still being loaded, or compiled, which happens once: so far `progress`."""
 
     code = "warming-up"
+
+    def __init__(self, progress: str = "compiling the search", seconds_left: float = 1.0) -> None:
+        headers = {"Retry-After": str(max(1, math.ceil(seconds_left)))}
+        super().__init__(progress=progress, headers=headers)
 
 
 class WorkerLost(Refusal):

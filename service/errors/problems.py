@@ -157,8 +157,7 @@ PROBLEMS: Mapping[str, Problem] = {
     ),
     "warming-up": Problem(
         503,
-        "the search is being compiled, once: ask again, or for the network alone, with time_limit"
-        " and repairs 0",
+        "{progress}: ask again, or for the network alone, with time_limit and repairs 0",
         (*_PLANS, "GET /health/ready"),
     ),
     "worker-lost": Problem(

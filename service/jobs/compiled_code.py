@@ -1,58 +1,98 @@
 """The compiled code that requests need: compiled once, and loaded by later processes.
 
-Compiling takes one process a minute. With several processors and a cache, several processes compile
-parts into the cache, and the process that needs them all loads them from there.
+Compiling takes one process most of a minute. With several processors and a cache, several processes
+compile pieces into the cache, and the process that needs them loads them from there.
 
-`python -m service.jobs.compiled_code QUEUE` compiles the parts whose numbers it reads from a pipe,
-one after another, and ends when its standard input does. All processes read from the same pipe.
+`python -m service.jobs.compiled_code QUEUE DONE` compiles the pieces whose numbers it reads from a
+pipe, one after another, and ends when its standard input does. All processes read from the same
+pipe. To another they write a number when a piece is done, and a sign for each function.
 """
 
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
-from threading import Thread
+import time
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from threading import Thread, get_ident
 
 from numba import config
 from numba.core.event import Event, Listener, install_listener
 
 from service import jit, own_code
 from service.coverage import shortest_paths
+from service.jobs.parts import Compiling, Part
 from service.kinds import fleet
 from service.replanning import insertion
-from service.search import improve
+from service.search import warm_up as search
 
-_PARTS: Sequence[Callable[[], None]] = (
-    *improve.PARTS,
-    insertion.warm_up,
-    shortest_paths.warm_up,
-    fleet.warm_up,
-)
+Compile = Callable[[], None]
+Told = Callable[[Part | Compiling], None]
+
+# Each part with what compiles it whole, or loads it. A part of the search has two pieces, which two
+# processes compile side by side.
+_PARTS: dict[Part, tuple[Compile, Sequence[Compile]]] = {
+    Part.FEW_CITIES: (search.few_cities, (search.two_opt, search.beside_two_opt)),
+    Part.MORE_CITIES: (search.more_cities, (search.three_opt, search.beside_three_opt)),
+    Part.MAPS: (shortest_paths.warm_up, (shortest_paths.warm_up,)),
+    Part.CHANGES: (insertion.warm_up, (insertion.warm_up,)),
+    Part.FLEETS: (fleet.warm_up, (fleet.warm_up,)),
+    Part.MANY_CITIES: (search.many_cities, (search.many_cities,)),
+}
+_PIECES = [(part, piece) for part, (_, pieces) in _PARTS.items() for piece in pieces]
+_SECONDS = {  # that each part takes of a processor, about
+    Part.FEW_CITIES: 30,
+    Part.MORE_CITIES: 30,
+    Part.MAPS: 3,
+    Part.CHANGES: 1,
+    Part.FLEETS: 10,
+    Part.MANY_CITIES: 12,
+}
+_A_FUNCTION = 0.25  # seconds that one of the functions takes, on average
+_TELL_EVERY = 0.25  # seconds
+_FUNCTION = 255  # the sign for a function
 
 
-def warm_up() -> None:
-    """Compile all parts, or load them from the cache, unless that is done."""
-    if load_from_cache():
+def warm_up(parts: Collection[Part] = tuple(Part), tell: Told = lambda _: None) -> None:
+    """Compile parts, or load them from the cache.
+
+    Args:
+        parts: The parts.
+        tell: Called with each part once it is loaded, and while some are compiled a few times a
+            second with how far that is.
+    """
+    missing = []
+    for part in (each for each in Part if each in parts):
+        if load_from_cache(part):
+            tell(part)
+        else:
+            missing.append(part)
+    if not missing:
         return
-    processes = len(os.sched_getaffinity(0))
-    if jit.CACHED and processes > 1:
-        _compile_elsewhere(processes)
-    for compile_part in _PARTS:  # or load it
-        compile_part()
+    processes = len(os.sched_getaffinity(0)) if jit.CACHED else 1
+    progress = _CompilationProgress(missing, processes, tell)
+    if processes > 1:
+        for part in _compiled_elsewhere(missing, processes, progress):
+            _PARTS[part][0]()
+            tell(part)
+            missing.remove(part)
+    with install_listener("numba:compile", _Count(progress.count)):
+        for part in missing:
+            _PARTS[part][0]()
+            tell(part)
 
 
-def load_from_cache() -> bool:
-    """Load all parts from the cache; stop and return False if one would have to be compiled.
+def load_from_cache(part: Part) -> bool:
+    """Load a part from the cache; stop and return False if something would have to be compiled.
 
-    Where numba's compilation is switched off, none has to be.
+    Where numba's compilation is switched off, nothing has to be.
     """
     if config.DISABLE_JIT:  # type: ignore[attr-defined]  # set from the environment
         return True
     try:
         with install_listener("numba:compile", _RefuseCompilation()):
-            for load_part in _PARTS:
-                load_part()
+            _PARTS[part][0]()
     except _NotCached:
         return False
     return True
@@ -63,35 +103,108 @@ class _NotCached(Exception):
 
 
 class _RefuseCompilation(Listener):
+    """Refuses to compile in the thread that makes it: another may be planning."""
+
+    def __init__(self) -> None:
+        self._thread = get_ident()
+
     def on_start(self, event: Event) -> None:  # noqa: ARG002  # numba's interface
-        raise _NotCached
+        if get_ident() == self._thread:
+            raise _NotCached
 
     def on_end(self, event: Event) -> None:
         """Do nothing: nothing was begun."""
 
 
-def _compile_elsewhere(processes: int) -> None:
-    """Compile all parts into the cache in processes, which end with this one at the latest."""
-    # In a process group of its own, so that Ctrl-C does not end it.
-    environment = {**os.environ, **own_code.variables()}
-    queue, end_of_queue = os.pipe()
-    os.write(end_of_queue, bytes(range(len(_PARTS))))
-    os.close(end_of_queue)
+class _Count(Listener):
+    """Calls a function after each compilation."""
+
+    def __init__(self, count: Callable[[], object]) -> None:
+        self._count = count
+
+    def on_start(self, event: Event) -> None:
+        """Do nothing: it has not been compiled."""
+
+    def on_end(self, event: Event) -> None:  # noqa: ARG002  # numba's interface
+        self._count()
+
+
+class _CompilationProgress:
+    """Counts functions that are compiled, and tells now and then how far that is.
+
+    Args:
+        parts: The parts that are compiled.
+        processes: In how many processes.
+        tell: Called with how far it is.
+    """
+
+    def __init__(self, parts: Iterable[Part], processes: int, tell: Told) -> None:
+        seconds = sum(_SECONDS[part] for part in parts)
+        self._expected = seconds / processes
+        self._functions = seconds / _A_FUNCTION
+        self._tell = tell
+        self._began = self._told = time.monotonic()
+        self._compiled = 0
+
+    def count(self) -> None:
+        """Count a function."""
+        self._compiled += 1
+        now = time.monotonic()
+        if now - self._told >= _TELL_EVERY:
+            self._told = now
+            share = min(self._compiled / self._functions, 0.99)
+            # In all it takes what was expected, and the further it is, what has been seen.
+            seconds = (1 - share) * self._expected + now - self._began
+            self._tell(Compiling(share, (1 - share) * seconds))
+
+
+def _compiled_elsewhere(
+    parts: Sequence[Part], processes: int, progress: _CompilationProgress
+) -> Iterator[Part]:
+    """Compile parts into the cache in other processes, and yield each when it is there.
+
+    One is never yielded if a process that compiled some of it was killed.
+    """
+    numbers = [number for number, (part, _) in enumerate(_PIECES) if part in parts]
+    left = Counter(_PIECES[number][0] for number in numbers)
+    with _compilers(numbers, processes) as done:
+        while signs := os.read(done, 1024):
+            for sign in signs:
+                if sign == _FUNCTION:
+                    progress.count()
+                    continue
+                part, _ = _PIECES[sign]
+                left[part] -= 1
+                if not left[part]:
+                    yield part
+
+
+@contextmanager
+def _compilers(numbers: Sequence[int], processes: int) -> Iterator[int]:
+    """Compile pieces in processes, which end with this one at the latest.
+
+    Yields:
+        What they write to a pipe, which ends when the last of them does.
+    """
     with ExitStack() as stack:
+        queue, end_of_queue = os.pipe()
+        os.write(end_of_queue, bytes(numbers))
+        os.close(end_of_queue)
         stack.callback(os.close, queue)
-        running = []
-        for _ in range(min(processes, len(_PARTS))):
+        done, tell = os.pipe()
+        stack.callback(os.close, done)
+        for _ in range(min(processes, len(numbers))):
             process = subprocess.Popen(
-                [sys.executable, "-m", __name__, str(queue)],
+                [sys.executable, "-m", __name__, str(queue), str(tell)],
                 stdin=subprocess.PIPE,
-                pass_fds=[queue],
-                env=environment,
-                process_group=0,
+                pass_fds=[queue, tell],
+                env={**os.environ, **own_code.variables()},
+                process_group=0,  # so that Ctrl-C does not end it
             )
-            running.append(stack.enter_context(process))
+            stack.enter_context(process)
             stack.callback(process.kill)
-        for process in running:
-            process.wait()
+        os.close(tell)
+        yield done
 
 
 def _end_with_parent() -> None:
@@ -99,7 +212,15 @@ def _end_with_parent() -> None:
     os._exit(1)
 
 
+def _compile_pieces(queue: int, done: int) -> None:
+    """Compile the pieces whose numbers are in a pipe, and say to another what is done."""
+    with install_listener("numba:compile", _Count(lambda: os.write(done, bytes([_FUNCTION])))):
+        while number := os.read(queue, 1):
+            _, compile_piece = _PIECES[number[0]]
+            compile_piece()
+            os.write(done, number)
+
+
 if __name__ == "__main__":
     Thread(target=_end_with_parent, daemon=True).start()
-    while number := os.read(int(sys.argv[1]), 1):
-        _PARTS[number[0]]()
+    _compile_pieces(*map(int, sys.argv[1:]))

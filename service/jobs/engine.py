@@ -6,19 +6,27 @@ from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from typing import Protocol
 
-from service.errors import DeadlineExceeded, ShuttingDown
+from service.errors import DeadlineExceeded, ShuttingDown, WarmingUp
 from service.front import Progress
 from service.jobs.deadline import Deadline
+from service.jobs.parts import Compiling
 from service.jobs.record import Record
 from service.requests.task import Task
 
 
 @dataclass(frozen=True, eq=False)
 class JobState:
-    """A record with its status and front as of now, and the progress of its search, if it runs."""
+    """A record with its status and front as of now, and what is known of its progress.
+
+    Args:
+        record: The record.
+        progress: That of its search, if it runs.
+        compiling: How far the compilation is for which it waits, if it does.
+    """
 
     record: Record
     progress: Progress | None = None
+    compiling: Compiling | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,8 +56,9 @@ class Engine(Protocol):
     async def check_place(self, client: str) -> None:
         """Raise QueueFull or ShareFull when no place is left for one more job of a client."""
 
-    async def check_warm(self) -> None:
-        """Raise WarmingUp until the search is compiled."""
+    @property
+    def compiling(self) -> Compiling | None:
+        """How far this machine's compilation of the code is; None before it and after it."""
 
     async def check_ready(self) -> None:
         """Raise a refusal when some kinds of tasks would be refused at the moment."""
@@ -63,6 +72,7 @@ class Engine(Protocol):
 
         Raises:
             DeadlineExceeded: Nothing was found in time.
+            WarmingUp: The code that it needs was not compiled in time.
             QueueFull: No place is left.
             ShareFull: The client holds its share of the places.
             ShuttingDown: No more jobs are taken.
@@ -105,13 +115,17 @@ async def record_in_time(engine: Engine, record: Record, deadline: Deadline) -> 
 
     Raises:
         DeadlineExceeded: Nothing was found in time. The job goes on.
+        WarmingUp: The code that it needs is still being compiled. The job waits for it.
         ShuttingDown: The service ends and leaves the job to its next start.
     """
+    state = JobState(record)
     try:
         async with asyncio.timeout(deadline.left() + _GRACE):
             async for state in engine.watch(record):
                 record = state.record
     except TimeoutError:
+        if state.compiling is not None:
+            raise WarmingUp(str(state.compiling), state.compiling.seconds_left) from None
         if not record.front.tours:
             raise DeadlineExceeded from None
         return record

@@ -1,7 +1,7 @@
 """A queue that takes submissions in turn by client."""
 
 from collections import deque
-from collections.abc import Container, Iterator
+from collections.abc import Callable, Container, Iterator
 from itertools import chain, count
 
 from service.jobs.submission import Submission
@@ -39,27 +39,29 @@ class FairQueue:
         """Add a submission before all others."""
         self._first.appendleft(submission)
 
-    def take(self, served: Container[str] = ()) -> Submission:
-        """Remove the next submission and return it.
+    def next(
+        self, served: Container[str] = (), able: Callable[[Submission], bool] = lambda _: True
+    ) -> Submission | None:
+        """Return the next submission, which stays; None if none waits that can be run.
 
         Args:
             served: The clients with a running submission.
-
-        Raises:
-            IndexError: None waits.
+            able: Returns whether the worker can run a submission.
         """
-        submission = self.next(served)
-        if not self._first:
+        for submission in filter(able, self._first):
+            return submission
+        firsts = (next(filter(able, waiting), None) for waiting in self._by_client.values())
+        return min(
+            (first for first in firsts if first is not None),
+            key=lambda each: (each.client in served, self._turns.get(each.client, -1)),
+            default=None,
+        )
+
+    def take(self, submission: Submission) -> None:
+        """Remove a submission that waits, for which its client had its turn."""
+        if submission not in self._first:
             self._note_turn(submission.client)
         self.remove(submission)
-        return submission
-
-    def next(self, served: Container[str] = ()) -> Submission:
-        """Return the submission that `take` would remove; arguments and errors are the same."""
-        if self._first or not self._by_client:
-            return self._first[0]
-        client = min(self._by_client, key=lambda each: (each in served, self._turns.get(each, -1)))
-        return self._by_client[client][0]
 
     def _note_turn(self, client: str) -> None:
         self._turns.pop(client, None)

@@ -15,11 +15,11 @@ from service.errors import (
     Refusal,
     ShuttingDown,
     StoreUnavailable,
-    WarmingUp,
     WorkerLost,
 )
 from service.jobs.deadline import Deadline
 from service.jobs.engine import EngineStats, JobState, final_record
+from service.jobs.parts import Compiling
 from service.jobs.record import Record, Status, as_cancelled, as_failed, as_finished
 from service.jobs.sqlite_store import SqliteStore
 from service.jobs.submission import Submission
@@ -49,7 +49,8 @@ class _Job:
             return JobState(record)
         status: Status = "running" if submission.attempts else "queued"
         front = submission.best_front or record.front
-        return JobState(replace(record, status=status, front=front), submission.progress)
+        record = replace(record, status=status, front=front)
+        return JobState(record, submission.progress, submission.compiling)
 
     def reserve(self, workers: WorkerPool, task: Task) -> None:
         """Take a place in the queue for its task; it raises what WorkerPool.reserve raises."""
@@ -164,9 +165,10 @@ class LocalEngine:
         self._unsaved.check_none()
         self._workers.check_place(client)
 
-    async def check_warm(self) -> None:
-        """Raise WarmingUp until the search is compiled."""
-        self._workers.check_warm()
+    @property
+    def compiling(self) -> Compiling | None:
+        """How far the compilation of the code is; None before it and after it."""
+        return self._workers.compiling
 
     async def check_ready(self) -> None:
         """Raise a refusal when some kinds of tasks would be refused at the moment."""
@@ -286,8 +288,7 @@ class LocalEngine:
 
     def _is_resumed(self, job: _Job, task: Task) -> bool:
         """Begin a job, and return whether there was a place for it."""
-        with suppress(QueueFull, WarmingUp, ShuttingDown):
-            self._workers.check_warm()
+        with suppress(QueueFull, ShuttingDown):
             job.reserve(self._workers, task)
             self._begin(job)
         return job.submission is not None

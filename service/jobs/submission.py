@@ -7,6 +7,7 @@ from time import perf_counter
 
 from service.errors import Cancelled, DeadlineExceeded, ShuttingDown, WorkerLost
 from service.front import Progress
+from service.jobs.parts import Compiling
 from service.jobs.record import Record, StopReason, as_ended, as_failed, as_finished
 from service.kinds.front_document import FrontDocument
 from service.requests.task import Task
@@ -40,6 +41,7 @@ class Submission:
         self.progress: Progress | None = None
         self.best_front: FrontDocument | None = None
         self.timer: TimerHandle | None = None
+        self.compiling: Compiling | None = None  # while what it needs is compiled
         self._on_change = on_change
         self._future: Future[FrontDocument] = asyncio.get_running_loop().create_future()
         self._submitted = perf_counter()
@@ -85,9 +87,15 @@ class Submission:
         """Register a function to be called soon after the end."""
         self._future.add_done_callback(lambda _: callback())
 
+    def wait(self, compiling: Compiling) -> None:
+        """Take how far the compilation is for which it may be waiting."""
+        self.compiling = compiling
+        self._on_change()
+
     def begin(self) -> None:
         """Count an attempt: a worker begins."""
         self.attempts += 1
+        self.compiling = None
         self._on_change()
 
     def report(self, progress: Progress, front: FrontDocument) -> None:

@@ -1,12 +1,13 @@
 """Run a task in a worker process: from its source to the JSON of its front."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from service.actor import load_actors
 from service.actor_info import ActorInfo
 from service.jobs.compiled_code import warm_up
+from service.jobs.parts import Compiling, Part
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import NamedActor, Report, Tools
 from service.kinds.run import RUNS
@@ -28,11 +29,11 @@ class TaskRunner:
     limits: Limits
     measurer: BlockingMeasurer | None = None
 
-    def warm_up(self) -> None:
-        """Open the networks, and compile the search or load it from the cache."""
+    def warm_up(self, parts: Collection[Part], tell: Callable[[Part | Compiling], None]) -> None:
+        """Open the networks, and compile parts of the code or load them from the cache."""
         for actor in self.actors.values():
             actor.load()
-        warm_up()
+        warm_up(parts, tell)
 
     @property
     def infos(self) -> Mapping[str, ActorInfo]:

@@ -7,7 +7,6 @@ between what they reach are filled. Every nondominated tour that is visited is k
 import time
 from collections.abc import Callable
 from functools import partial
-from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,16 +14,10 @@ from numpy.typing import NDArray
 from service.front import Progress, ReportOf, SearchResult, Termination
 from service.instance import Instance, tour_lengths
 from service.pareto import nondominated
-from service.search import candidates
 from service.search.archive import MAX_POINTS
 from service.search.best_subset import best_subset
-from service.search.bound.hypervolume import hypervolume_bound
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
-from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import Search
-from service.search.starts.constructed_tour import constructed_tour
-from service.search.three_opt.choice import ThreeOptSearch
-from service.search.three_opt.undoable_tour import make_undoable_tour
 
 Array = NDArray[np.float64]
 
@@ -142,59 +135,3 @@ def _front(instance: Instance, tours: NDArray[np.integer], terminated: Terminati
     points = tour_lengths(instance, tours)
     indices = nondominated(points)
     return SearchResult(points[indices], tours[indices].astype(np.int32).__getitem__, terminated)
-
-
-def warm_up() -> None:
-    """Compile all that a search can need, or load it from the cache of an earlier process."""
-    for compile_part in PARTS:
-        compile_part()
-
-
-def _warm_up_few_cities() -> None:
-    """Compile what up to a thousand cities need, by symmetric costs: what most requests need."""
-    instance = _instance(12, coordinates=True)
-    improve(instance, np.arange(12)[np.newaxis], iterations=5_000)
-    best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
-    exact_tours(_instance(5, coordinates=True))
-    hypervolume_bound(instance, instance.reference_point)
-
-
-def _warm_up_three_opt() -> None:
-    """Compile what costs that differ by direction need, and the moves of many cities."""
-    matrices = _instance(12, coordinates=False)
-    improve(matrices, np.arange(12)[np.newaxis], iterations=5_000)
-    hypervolume_bound(matrices, matrices.reference_point)
-    _step_through_three_opt(_instance(12, coordinates=True))
-
-
-def _warm_up_many_cities() -> None:
-    """Compile what finds the candidates and the first tour of many cities."""
-    instance = _instance(12, coordinates=True)
-    candidates.warm_up(instance)
-    search = Search(instance, 0, instance.reference_point)
-    constructed_tour(instance, search.descents.scalarization(WEIGHTS // 2), greedy=True)
-
-
-def _step_through_three_opt(instance: Instance) -> None:
-    """Take a few steps of the search of many cities."""
-    search = Search(instance, 0, instance.reference_point)
-    three_opt = ThreeOptSearch(search.state, make_undoable_tour(search.n))
-    search.local_search = search.descents.local_search = three_opt
-    for _ in islice(search.run(), 2 * WEIGHTS):  # a descent under each weight takes one or more
-        pass
-    for _ in search.descents.descend_from_neighbours(WEIGHTS // 2, assembling=True):
-        pass
-
-
-def _instance(n: int, *, coordinates: bool) -> Instance:
-    """Return an instance of n cities, by coordinates or by matrices that differ by direction."""
-    cities = np.arange(float(n))
-    if coordinates:
-        planes = np.stack([cities, cities**2 % 11, cities**2 % 7, cities], axis=1)
-        return Instance(coordinates=planes)
-    matrices = np.triu(np.outer(cities, cities)[None] % np.array([7, 5]).reshape(2, 1, 1))
-    return Instance(matrices=matrices)
-
-
-# In order of use: several processes compile a part each.
-PARTS = (_warm_up_few_cities, _warm_up_three_opt, _warm_up_many_cities)

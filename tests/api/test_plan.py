@@ -1,6 +1,5 @@
 """POST /front against a live server: fronts, and what the engine says where there is none."""
 
-import asyncio
 import json
 import time
 from collections.abc import Iterator
@@ -16,12 +15,7 @@ import pytest
 from service.actor import OnnxActor
 from service.api.app import Edge
 from service.instance import Instance, step_lengths, tour_lengths
-from service.jobs.deadline import Deadline
-from service.jobs.local_engine import LocalEngine
-from service.jobs.record import Record
-from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.task_runner import load_runner
-from service.requests.task import Task
 from service.server import Ending, build
 from service.settings import Settings
 from tests.helpers.actors import Shuffler
@@ -29,7 +23,7 @@ from tests.helpers.artifacts import by_row_sums
 from tests.helpers.serving import (
     LIMITS,
     app_of,
-    engine_app,
+    events_of,
     problem,
     runner_of,
     serving,
@@ -164,23 +158,36 @@ def test_time_makes_the_front_better_and_no_front_passes_the_bound(client: httpx
     assert before["hypervolume"] < after["hypervolume"] <= after["hypervolume_bound"] + 1e-12
 
 
-def test_before_the_search_is_compiled_only_the_network_answers(tmp_path: Path) -> None:
-    app = app_of(workers=workers_of(runner_of(warm=tmp_path / "warm")))
+def test_before_the_search_is_compiled_the_network_answers_and_the_rest_waits(
+    tmp_path: Path,
+) -> None:
+    workers = workers_of(runner_of(warm=tmp_path / "warm"))
+    app = app_of(workers=workers, edge=Edge(request_seconds=1))
     with serving(app, warm=False) as address, httpx.Client(base_url=address) as client:
         request = {"coordinates": CITIES, "time_limit": 0}
-        assert client.post("/front", json=request, timeout=30).status_code == 200
+        while client.post("/front", json=request, timeout=30).status_code == 504:
+            pass  # until the worker has started
+        assert client.post("/front", json=request).status_code == 200
         for refused in (
             client.get("/health/ready"),
             client.post("/front", json={**request, "time_limit": 0.1}),
             client.post("/front", json={**request, "preferences": 9, "size": 3}),
+            client.post(
+                "/front", json={**request, "bound": True}, headers={"Idempotency-Key": "a"}
+            ),
         ):
-            problem(refused, 503, "warming-up")
-            assert int(refused.headers["Retry-After"]) > 0
+            document = problem(refused, 503, "warming-up")
+            assert document["detail"].startswith("compiling the search: 40 %, about 20 s left")
+            assert refused.headers["Retry-After"] == "20"
+        later = {"Prefer": "respond-async"}
+        posted = client.post("/front", json={**request, "bound": True}, headers=later)
+        events = events_of(client, posted.json()["id"])
+        compiling = next(data for name, data in events if name == "compiling")
+        assert compiling == {"share": 0.4, "seconds_left": 20}
         (tmp_path / "warm").touch()
-        while client.get("/health/ready").status_code == 503:
-            pass
-        answer = client.post("/front", json={**request, "time_limit": 0.1}, timeout=30)
-        assert answer.status_code == 200
+        assert list(events)[-1] == ("status", {"id": posted.json()["id"], "status": "done"})
+        assert client.get("/health/ready").json() == {"status": "ready"}
+        assert client.post("/front", json={**request, "time_limit": 0.1}).status_code == 200
 
 
 def test_a_client_that_goes_away_frees_its_worker() -> None:
@@ -208,30 +215,6 @@ def test_a_request_that_takes_too_long_for_any_front_is_504(tmp_path: Path) -> N
     with serving(app) as address:
         answer = httpx.post(f"{address}/front", json={"coordinates": CITIES}, timeout=60)
         problem(answer, 504, "overdue")
-
-
-class SlowEngine(LocalEngine):
-    """An engine that takes half a second to admit a job, and notes how much time that has left."""
-
-    left: float
-
-    async def check_warm(self) -> None:
-        await asyncio.sleep(0.5)
-
-    async def run(
-        self, record: Record, task: Task, disconnected: asyncio.Future[None], deadline: Deadline
-    ) -> Record:
-        self.left = deadline.left()
-        return await super().run(record, task, disconnected, deadline)
-
-
-def test_the_seconds_of_a_request_count_from_when_it_came() -> None:
-    store = SqliteStore(IN_MEMORY, entries=9, max_age=60)
-    engine = SlowEngine(workers_of(), store, pytest.fail)
-    with serving(engine_app(store, engine, edge=Edge(request_seconds=60))) as address:
-        request = {"coordinates": CITIES, "time_limit": 0.1}
-        assert httpx.post(f"{address}/front", json=request, timeout=60).status_code == 200
-    assert engine.left <= 59.5
 
 
 def test_a_full_queue_is_503_and_health_answers_all_the_while(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from paretour.plans import parse_robots
 from paretour.values import parse_front
 from PIL import Image
 
+from service.api.app import Edge
 from tests.helpers.actors import Shuffler
 from tests.helpers.serving import LIMITS, app_of, problem, runner_of, serving, workers_of
 
@@ -242,9 +243,9 @@ def test_without_an_actor_of_matrices_there_is_no_coverage() -> None:
         problem(httpx.post(f"{url}/coverage", json=TASK), 422, "no-actor")
 
 
-def test_before_the_search_is_compiled_there_is_no_coverage(tmp_path: Path) -> None:
+def test_before_the_ways_over_a_map_are_compiled_there_is_no_coverage(tmp_path: Path) -> None:
     warm = tmp_path / "warm"
-    app = app_of(workers=workers_of(runner_of(warm=warm)))
+    app = app_of(workers=workers_of(runner_of(warm=warm)), edge=Edge(request_seconds=1))
     with serving(app, warm=False) as url:
         answer = httpx.post(f"{url}/coverage", json=changed(time_limit=0))
         problem(answer, 503, "warming-up")

@@ -26,9 +26,10 @@ from service.pareto import hypervolume
 from service.preferences import fan, from_angles
 from service.search.candidates import CANDIDATES_PER_CITY, make_candidate_pool
 from service.search.costs import tabulate
-from service.search.improve import improve, warm_up
+from service.search.improve import improve
 from service.search.pareto_local_search import WEIGHTS
 from service.search.schedule import Search
+from service.search.warm_up import warm_up
 from tests.benchmarks.actors import ACTORS
 from tests.benchmarks.instances import paper_instances, reference_points
 from tests.benchmarks.provenance import load, provenance, store

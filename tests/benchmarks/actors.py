@@ -24,7 +24,7 @@ from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.planner import plan
 from service.preferences import fan, from_angles
-from service.search.improve import warm_up
+from service.search.warm_up import warm_up
 from tests.benchmarks.instances import COUNT, SIZES, check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import provenance, store
 from tests.benchmarks.rivals.construction import greedy_edge, nearest_neighbour, spread_weights

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from service.actor import OnnxActor
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
-from service.search.improve import warm_up
+from service.search.warm_up import warm_up
 from tests.benchmarks.asymmetric import MORE_KINDS, asymmetric, drawn
 from tests.benchmarks.beside import ACTORS, COUNT, Nothing, planned
 from tests.benchmarks.markdown import table

@@ -27,7 +27,7 @@ from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.planner import plan
 from service.preferences import fan, from_angles
-from service.search.improve import warm_up
+from service.search.warm_up import warm_up
 from tests.benchmarks.instances import check_tours
 from tests.benchmarks.provenance import load
 from tests.benchmarks.rivals import ortools_routing

@@ -21,8 +21,9 @@ from tqdm import tqdm
 
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
-from service.search.improve import improve, warm_up
+from service.search.improve import improve
 from service.search.pareto_local_search import bisection_order
+from service.search.warm_up import warm_up
 from tests.benchmarks.instances import check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import PICTURES, load, provenance, store
 from tests.benchmarks.rivals import fast_tsp_weights, ortools_routing

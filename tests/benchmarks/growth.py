@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from service.pareto import hypervolume
-from service.search.improve import warm_up
 from service.search.schedule import Search
+from service.search.warm_up import warm_up
 from tests.benchmarks.growth_table import growth_table
 from tests.benchmarks.rows import Points, resume
 from tests.benchmarks.scale import LIMITS, drawn

@@ -19,7 +19,8 @@ from tqdm import tqdm
 
 from service.instance import Instance
 from service.pareto import hypervolume, nondominated
-from service.search.improve import improve, warm_up
+from service.search.improve import improve
+from service.search.warm_up import warm_up
 from tests.benchmarks.provenance import provenance, store
 
 Array = NDArray[np.float64]

@@ -23,7 +23,7 @@ from service.front import Front, PlanOptions
 from service.instance import Instance
 from service.planner import plan
 from service.preferences import fan
-from service.search.improve import warm_up
+from service.search.warm_up import warm_up
 from tests.benchmarks.beside import Nothing
 from tests.benchmarks.printed import LITERATURE_CORNERS
 from tests.benchmarks.rows import resume

@@ -15,7 +15,8 @@ import numpy as np
 
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
-from service.search.improve import improve, warm_up
+from service.search.improve import improve
+from service.search.warm_up import warm_up
 from tests.benchmarks.instances import COUNT, check_tours, paper_instances
 from tests.benchmarks.markdown import table
 from tests.benchmarks.provenance import load

@@ -26,7 +26,8 @@ import numpy as np
 from models.data.generators import clustered, uniform
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
-from service.search.improve import improve, warm_up
+from service.search.improve import improve
+from service.search.warm_up import warm_up
 from tests.benchmarks.instances import check_tours
 from tests.benchmarks.rivals.construction import Construct, greedy_edge, spread_weights, under_each
 from tests.benchmarks.rows import Points, resume

@@ -17,7 +17,8 @@ from tqdm import tqdm
 
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
-from service.search.improve import improve, warm_up
+from service.search.improve import improve
+from service.search.warm_up import warm_up
 from tests.benchmarks.instances import COUNT, check_tours, paper_instances, reference_points
 from tests.benchmarks.provenance import load, provenance, store
 from tests.benchmarks.rivals.construction import distances, spread_weights

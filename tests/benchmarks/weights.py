@@ -27,7 +27,7 @@ from service.instance import Instance, tour_lengths
 from service.pareto import nondominated
 from service.planner import plan
 from service.preferences import fan
-from service.search.improve import warm_up
+from service.search.warm_up import warm_up
 from tests.benchmarks.instances import check_tours
 from tests.benchmarks.rivals import ortools_routing
 from tests.benchmarks.rows import resume

@@ -121,7 +121,7 @@ def planless(monkeypatch: pytest.MonkeyPatch) -> None:
     settings = configuration.load_settings()
     monkeypatch.setattr(configuration, "load_settings", lambda: settings)
     monkeypatch.setattr(task_runner, "load_runner", lambda *_: Planless())
-    monkeypatch.setattr(compiled_code, "warm_up", lambda: None)
+    monkeypatch.setattr(compiled_code, "warm_up", lambda *_: None)
 
 
 @pytest.mark.usefixtures("planless")

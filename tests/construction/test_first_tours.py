@@ -16,7 +16,7 @@ from service.front import PlanOptions
 from service.instance import Instance
 from service.planner import plan
 from service.preferences import fan, from_angles
-from service.search.improve import warm_up
+from service.search.warm_up import warm_up
 from service.settings import Settings
 
 

@@ -3,7 +3,7 @@
 import os
 import signal
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Collection
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from service.front import Front, PlanOptions, Progress
+from service.jobs.parts import Compiling, Part
 from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report
@@ -35,10 +36,13 @@ class ScriptedRunner:
     lives: Path = Path("/nowhere")
     warm: Path | None = None
 
-    def warm_up(self) -> None:
+    def warm_up(self, parts: Collection[Part], tell: Callable[[Part | Compiling], None]) -> None:
         """Wait until the file exists."""
         while self.warm is not None and not self.warm.exists():
+            tell(Compiling(0.5, 20.0))
             time.sleep(0.01)
+        for part in parts:
+            tell(part)
 
     def run(  # noqa: C901
         self, task: Task, stop: Callable[[], bool], report: Report

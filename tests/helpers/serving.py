@@ -1,8 +1,9 @@
 """The application with stand-ins for its actors, and live servers in a thread of the test."""
 
+import json
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -17,6 +18,7 @@ from service.api.transport.connections import ConnectionLimits, Connections
 from service.api.transport.listener import bound_sockets
 from service.jobs.engine import Engine
 from service.jobs.local_engine import LocalEngine
+from service.jobs.parts import Compiling, Part
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
 from service.jobs.store import Store
 from service.jobs.task_runner import TaskRunner
@@ -40,10 +42,13 @@ class ColdRunner(TaskRunner):
 
     warm: Path = Path("/nowhere")
 
-    def warm_up(self) -> None:
+    def warm_up(self, parts: Collection[Part], tell: Callable[[Part | Compiling], None]) -> None:
         """Wait until the file exists."""
         while not self.warm.exists():
+            tell(Compiling(0.4, 20.0))
             time.sleep(0.005)
+        for part in parts:
+            tell(part)
 
 
 def runner_of(
@@ -149,3 +154,15 @@ def problem(response: httpx.Response, status: int, code: str) -> dict[str, Any]:
     assert document["detail"]
     assert document["request_id"] == response.headers["x-request-id"]
     return document
+
+
+def events_of(client: httpx.Client, front: str) -> Iterator[tuple[str, Any]]:
+    """Yield the events of a job, until it ends or nobody listens."""
+    with client.stream("GET", f"/front/{front}/events") as stream:
+        name = ""
+        for line in stream.iter_lines():
+            field, _, value = line.partition(": ")
+            if field == "event":
+                name = value
+            elif field == "data":
+                yield name, json.loads(value)

@@ -13,6 +13,7 @@ import json, sys
 from pathlib import Path
 import service
 from service.jobs.compiled_code import load_from_cache
+from service.jobs.parts import parts_of
 from service.jobs.task_runner import load_runner
 from service.requests.parser import parse_task
 from service.requests.task import TaskSource
@@ -26,35 +27,49 @@ def compiled():
 
 settings = Settings()
 runner = load_runner(settings.actors, 1, settings.limits)
-load_from_cache()
-before = compiled()
+
+def read(kind, request):
+    source = TaskSource(kind, json.dumps(request).encode(), None)
+    return parse_task(source, runner.limits, runner.infos)
+
+tasks = []
 for path in sorted((Path(service.__file__).parent / "examples").glob("*.json")):
     request = json.loads(path.read_text())
     if "time_limit" not in request:  # the index, and streets
         continue
     kind = "coverage" if "grid" in request else "fleet" if "vehicles" in request else "front"
-    for seconds in (0, 0.2):
-        source = TaskSource(kind, json.dumps({**request, "time_limit": seconds}).encode(), None)
-        runner.run(parse_task(source, runner.limits, runner.infos), lambda: False, lambda *_: None)
-cities = [[x % 97, x % 89, x % 83, x % 79] for x in range(700)]
-for closed in (True, False):
-    request = {"coordinates": cities, "closed": closed, "time_limit": 0.2}
-    source = TaskSource("front", json.dumps(request).encode(), None)
-    runner.run(parse_task(source, runner.limits, runner.infos), lambda: False, lambda *_: None)
-after = compiled()
-print(json.dumps({name: number for name, number in after.items() if number > before.get(name, 0)}))
+    tasks += [read(kind, {**request, "time_limit": seconds}) for seconds in (0, 0.2)]
+for n in (240, 700, 1_500):
+    cities = [[x % 97, x % 89, x % 83, x % 79] for x in range(n)]
+    for closed in (True, False):
+        tasks.append(read("front", {"coordinates": cities, "closed": closed, "time_limit": 0.2}))
+loaded, lacking = set(), {}
+for task in sorted(tasks, key=lambda task: len(parts_of(task))):
+    for part in parts_of(task) - loaded:
+        load_from_cache(part)
+        loaded.add(part)
+    before = compiled()
+    runner.run(task, lambda: False, lambda *_: None)
+    more = {name for name, number in compiled().items() if number > before.get(name, 0)}
+    if more:
+        lacking[f"{task.kind} of {task.subject}"[:80]] = sorted(more)
+print(json.dumps(lacking))
 """
 
 
 @pytest.mark.usefixtures("compiled")
-def test_the_examples_and_many_cities_need_nothing_that_is_not_compiled() -> None:
+def test_tasks_need_no_more_compiled_code_than_their_parts() -> None:
     command = [sys.executable, "-c", PLANS]
     ran = subprocess.run(command, capture_output=True, check=True, cwd=Path(__file__).parents[2])
     assert json.loads(ran.stdout) == {}
 
 
 def test_what_is_not_in_the_cache_is_not_compiled_by_loading_it(tmp_path: Path) -> None:
-    load = "from service.jobs.compiled_code import load_from_cache; load_from_cache()"
+    load = """
+from service.jobs.compiled_code import load_from_cache
+from service.jobs.parts import Part
+assert not any([load_from_cache(part) for part in Part])
+"""
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
     subprocess.run([sys.executable, "-c", load], check=True, env=environment)
     assert not list(tmp_path.rglob("*.nbc"))
@@ -63,7 +78,7 @@ def test_what_is_not_in_the_cache_is_not_compiled_by_loading_it(tmp_path: Path) 
 def test_a_process_that_compiles_ends_with_the_one_that_needs_it(tmp_path: Path) -> None:
     queue, end_of_queue = os.pipe()
     os.write(end_of_queue, bytes([0]))
-    command = [sys.executable, "-m", "service.jobs.compiled_code", str(queue)]
+    command = [sys.executable, "-m", "service.jobs.compiled_code", str(queue), "1"]
     ran = subprocess.run(
         command,
         stdin=subprocess.DEVNULL,

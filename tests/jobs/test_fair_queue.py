@@ -12,6 +12,14 @@ from tests.helpers.scripted_runner import task
 from tests.helpers.turns import EVENTS, clients_by_policy
 
 
+def take_next(queue: FairQueue, served: Sequence[str] = ()) -> Submission:
+    """Take the submission whose turn it is."""
+    following = queue.next(served)
+    assert following is not None
+    queue.take(following)
+    return following
+
+
 def turns(before: str, then: str, taken: int = 1, served: Sequence[str] = ()) -> str:
     """Return the clients in the order of their turns, a letter for each submission.
 
@@ -26,13 +34,11 @@ def turns(before: str, then: str, taken: int = 1, served: Sequence[str] = ()) ->
         queue = FairQueue()
         for number, client in enumerate(before):
             queue.append(Submission(number, task(), lambda: None, client))
-        order = [queue.take().client for _ in range(taken)]
+        order = [take_next(queue).client for _ in range(taken)]
         for number, client in enumerate(then, len(before)):
             queue.append(Submission(number, task(), lambda: None, client))
         while len(queue):
-            following = queue.next(served)
-            assert queue.take(served) is following
-            order.append(following.client)
+            order.append(take_next(queue, served).client)
         return "".join(order)
 
     return asyncio.run(take())
@@ -68,11 +74,28 @@ def test_turns_follow_the_policy(events: str) -> None:
             elif event != ".":
                 queue.append(Submission(number, task(), lambda: None, event))
             elif len(queue):
-                running.append(queue.take(running).client)
+                running.append(take_next(queue, running).client)
                 turns += running[-1]
         return turns
 
     assert asyncio.run(take()) == clients_by_policy(events)
+
+
+def test_who_cannot_be_served_yet_is_overtaken_and_keeps_the_turn() -> None:
+    async def take() -> list[int]:
+        queue = FairQueue()
+        for number, client in enumerate("aab"):
+            queue.append(Submission(number, task(), lambda: None, client))
+        order = []
+        for unable in ({0}, {0}, set[int]()):
+            following = queue.next(able=lambda each, unable=unable: each.number not in unable)
+            assert following is not None
+            queue.take(following)
+            order.append(following.number)
+        assert queue.next() is None
+        return order
+
+    assert asyncio.run(take()) == [1, 2, 0]
 
 
 def test_turns_of_many_clients_take_little_memory() -> None:
@@ -81,7 +104,7 @@ def test_turns_of_many_clients_take_little_memory() -> None:
         for number in range(3000):
             submission = Submission(number, task(), lambda: None, str(number))
             queue.append(submission)
-            queue.take()
+            queue.take(submission)
         return len(queue._turns)
 
     assert asyncio.run(take()) == 1000

@@ -49,13 +49,6 @@ class NoProcesses(WorkerPool):
         self.check_open()
 
 
-class Warm(NoProcesses):
-    """Workers that have compiled the search."""
-
-    def check_warm(self) -> None:
-        pass
-
-
 class Immediate:
     """A store whose answer waits for no other thread. It may be full, or admit nothing."""
 
@@ -192,7 +185,7 @@ def test_a_job_that_cannot_be_resumed_ends() -> None:
     async def test() -> None:
         store = Immediate()
         await store.put(replace(new_record(), source=None))
-        engine = LocalEngine(Warm(), store, read)
+        engine = LocalEngine(NoProcesses(), store, read)
         following = replace(new_record(), source=None)
         await engine.start()
         async with asyncio.timeout(2):

@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 from service.cli import backends
 from service.cli.commands import app as command_line
 from service.jobs.sqlite_store import IN_MEMORY, SqliteStore
-from tests.helpers.serving import LIMITS, app_of, problem, serving
+from tests.helpers.serving import LIMITS, app_of, events_of, problem, serving
 from tests.kinds.requests import CITIES, Asked, as_input, requests, rest_of
 
 Ask = Callable[[httpx.Client, Asked], httpx.Response]
@@ -83,18 +83,6 @@ def post(
     """Ask for a front, by default for what the network finds."""
     body = {"time_limit": 0, **asked.body, **options}
     return client.post(asked.path, json=body, headers=headers)
-
-
-def events_of(client: httpx.Client, front: str) -> Iterator[tuple[str, Any]]:
-    """Yield the events of a job, until it ends or nobody listens."""
-    with client.stream("GET", f"/front/{front}/events") as stream:
-        name = ""
-        for line in stream.iter_lines():
-            field, _, value = line.partition(": ")
-            if field == "event":
-                name = value
-            elif field == "data":
-                yield name, json.loads(value)
 
 
 def wait(client: httpx.Client, asked: Asked) -> httpx.Response:

@@ -3,12 +3,13 @@
 import pickle
 import struct
 from asyncio import StreamReader
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Collection, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, BinaryIO
 
 from service.front import Progress
+from service.jobs.parts import Part
 from service.kinds.front_document import FrontDocument
 from service.requests.task import Task
 
@@ -29,17 +30,24 @@ class Stop:
     number: int
 
 
-class Order(Enum):
-    """To a worker."""
+@dataclass(frozen=True)
+class WarmUp:
+    """To a worker: compile these parts of the code, or load them from the cache."""
 
-    WARM_UP = "compile the search, or load it from the cache"
+    parts: Collection[Part]
+
+
+@dataclass(frozen=True)
+class Warm:
+    """From a worker: it has this part of the compiled code."""
+
+    part: Part
 
 
 class Stage(Enum):
     """From a worker: what it has come to."""
 
     STARTED = "its networks are loaded"
-    WARM = "the search is compiled"
     SPENT = "it has grown too large, and ends after the results that follow"
 
 

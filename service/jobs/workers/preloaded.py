@@ -13,7 +13,10 @@ import scipy.ndimage  # noqa: F401  # as the first survey does
 
 import service.kinds.run  # noqa: F401
 from service.jobs.compiled_code import load_from_cache
+from service.jobs.parts import Part
 from service.jobs.workers import messages  # noqa: F401
 from service.requests import road_measurer  # noqa: F401
 
-load_from_cache()
+for part in Part:
+    if not load_from_cache(part):
+        break

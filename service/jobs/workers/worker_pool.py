@@ -6,13 +6,13 @@ meanwhile, but no process.
 Brief tasks that wait share a turn of a process, which answers them together.
 
 Stopping a task does not end its process: the client is answered at once, and the process takes no
-new task until it has noticed the stop. It is killed only if it does not notice for seconds. Until
-the search is compiled, processes run only tasks that need just the network.
+new task until it has noticed the stop. It is killed only if it does not notice for seconds. A task
+waits until the parts of the compiled code are there that it needs; others overtake it.
 """
 
 import asyncio
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import count
 
 from service.errors import (
@@ -21,11 +21,11 @@ from service.errors import (
     QueueFull,
     ShareFull,
     ShuttingDown,
-    WarmingUp,
     WorkerLost,
 )
 from service.jobs.deadline import Deadline
 from service.jobs.fair_queue import FairQueue
+from service.jobs.parts import Compiling, Part, parts_of
 from service.jobs.record import StopReason
 from service.jobs.submission import MOST_ATTEMPTS, Submission
 from service.jobs.workers.messages import Do, Done, Failed, Found, Stop
@@ -146,13 +146,13 @@ class WorkerPool:
         if clients.count(client) >= self._places_of_client:
             raise ShareFull(self._places_of_client)
 
-    def check_warm(self) -> None:
-        """Raise WarmingUp until one process has compiled the search: others will soon load it."""
-        if not self._workers.was_warm:
-            raise WarmingUp
+    @property
+    def compiling(self) -> Compiling | None:
+        """How far the compilation of all parts is; None before it and after it."""
+        return self._workers.compiling
 
     def check_ready(self) -> None:
-        """Raise ShuttingDown when closed, NoWorker or WarmingUp while no process is warm."""
+        """Raise ShuttingDown when closed, NoWorker or WarmingUp while no process can search."""
         self.check_open()
         self._workers.check_ready()
 
@@ -241,6 +241,8 @@ class WorkerPool:
                 loop.call_later(self._stop_seconds, self._kill_if_still_running, worker, submission)
                 return
         self._queue.remove(submission)
+        if reason is DeadlineExceeded and not _needs(submission) <= self._workers.compiled:
+            submission.fail(self._workers.warming_up())
         submission.cut_short()
 
     def _kill_if_still_running(self, worker: Worker, submission: Submission) -> None:
@@ -271,6 +273,10 @@ class WorkerPool:
                 return
             case Done() | Failed():
                 self._end(worker.submissions.pop(message.number), message)
+            case Compiling():
+                for submission in self._queue:
+                    if not _needs(submission) <= self._workers.compiled:
+                        submission.wait(message)
         self._assign()
 
     def _end(self, submission: Submission, message: Done | Failed) -> None:
@@ -288,25 +294,28 @@ class WorkerPool:
     def _assign(self) -> None:
         """Send queued submissions to idle processes."""
         for worker in self._workers:
-            # Before the first is warm, no task that needs compiled code is admitted.
-            able = worker.warm if self._workers.was_warm else worker.started
-            idle = able and not worker.spent and not worker.submissions
-            if idle and self._queue:
-                worker.submissions = {each.number: each for each in self._next_submissions()}
+            idle = worker.started and not worker.spent and not worker.submissions
+            if idle and (taken := self._next_submissions(worker.warm)):
+                worker.submissions = {each.number: each for each in taken}
                 self._begin(worker)
 
-    def _next_submissions(self) -> list[Submission]:
-        """Take the next submission from the queue, or of brief ones this worker's share.
+    def _next_submissions(self, parts: Collection[Part]) -> list[Submission]:
+        """Take the next submission from the queue, or of brief ones a worker's share.
 
         What runs between two networks runs several times as fast when it has just run.
+
+        Args:
+            parts: The parts of the compiled code that the worker has.
         """
         share = min(math.ceil(len(self._queue) / self._size), _MOST_TOGETHER)
-        taken = [self._queue.take(self._clients())]
-        while len(taken) < share and taken[0].is_brief:
+        taken: list[Submission] = []
+        while len(taken) < share and all(each.is_brief for each in taken):
             clients = self._clients(taken)
-            if not self._queue.next(clients).is_brief:
+            following = self._queue.next(clients, lambda each: _needs(each).issubset(parts))
+            if following is None or (taken and not following.is_brief):
                 break
-            taken.append(self._queue.take(clients))
+            self._queue.take(following)
+            taken.append(following)
         return taken
 
     def _clients(self, taken: Sequence[Submission] = ()) -> set[str]:
@@ -327,3 +336,7 @@ class WorkerPool:
             for submission in worker.submissions.values():
                 submission.fail(error)
             worker.submissions = {}
+
+
+def _needs(submission: Submission) -> frozenset[Part]:
+    return parts_of(submission.task)

@@ -10,24 +10,27 @@ import tempfile
 import time
 import traceback
 from asyncio import StreamReader, StreamWriter
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Collection
 from contextlib import ExitStack, suppress
 from multiprocessing.context import ForkServerProcess
 from pathlib import Path
+from queue import SimpleQueue
 from socket import socket, socketpair
 from threading import Condition, Lock, Thread
 from typing import Protocol
 
 from service.front import Progress
+from service.jobs.parts import Compiling, Part
 from service.jobs.workers.messages import (
     Do,
     Done,
     Failed,
     Found,
-    Order,
     Stage,
     Stop,
     Unable,
+    Warm,
+    WarmUp,
     encode,
     receive,
     received,
@@ -54,8 +57,8 @@ _SHORT_FOLDERS = ("/tmp", "/var/tmp", "/dev/shm")
 class Runner(Protocol):
     """Runs tasks, one at a time."""
 
-    def warm_up(self) -> None:
-        """Compile the search, or load it from the cache."""
+    def warm_up(self, parts: Collection[Part], tell: Callable[[Part | Compiling], None]) -> None:
+        """Compile parts of the code, or load them; tell each that is there, and how far it is."""
 
     def run(self, task: Task, stop: Callable[[], bool], report: Report) -> FrontDocument:
         """Return the front of a task.
@@ -133,6 +136,7 @@ class _WorkerLoop:
         self._signals = signals.makefile("rb")
         self._runner = runner
         self._sending = Lock()
+        self._to_warm_up: SimpleQueue[WarmUp] = SimpleQueue()
         self._changing = Condition()  # held while these change, and while a call is terminated
         self._running: int | None = None
         self._stopped: set[int] = set()
@@ -146,6 +150,7 @@ class _WorkerLoop:
         """
         Thread(target=self._read_signals, name="signals", daemon=True).start()
         Thread(target=self._terminate_stopped, name="terminate", daemon=True).start()
+        Thread(target=self._warm_up, name="warm-up", daemon=True).start()
         self._send(Stage.STARTED)
         while True:
             do: Do = receive(self._incoming)
@@ -164,8 +169,8 @@ class _WorkerLoop:
                 match receive(self._signals):
                     case Stop(number=number):
                         self._stop(number)
-                    case Order.WARM_UP:
-                        Thread(target=self._warm_up, name="warm-up", daemon=True).start()
+                    case WarmUp() as warm_up:
+                        self._to_warm_up.put(warm_up)
         except (EOFError, OSError):
             os._exit(0)
         except BaseException:
@@ -201,15 +206,19 @@ class _WorkerLoop:
             self._set_running(None)
 
     def _warm_up(self) -> None:
+        """Compile or load what the service asks for, one part after another."""
         try:
-            self._runner.warm_up()
+            while True:
+                self._runner.warm_up(self._to_warm_up.get().parts, self._tell)
         except Exception as error:
             traceback.print_exc()
             with suppress(OSError):
                 self._send(Unable(repr(error)))
             os._exit(1)
+
+    def _tell(self, told: Part | Compiling) -> None:
         with suppress(OSError):
-            self._send(Stage.WARM)
+            self._send(Warm(told) if isinstance(told, Part) else told)
 
     def _send(self, *messages: object) -> None:
         content = encode(*messages)
@@ -273,7 +282,7 @@ class WorkerProcess:
         """The id of the process."""
         return self._process.pid
 
-    def send(self, message: Do | Stop | Order) -> None:
+    def send(self, message: Do | Stop | WarmUp) -> None:
         """Send a message; one to a process that is gone is lost."""
         connection = self._tasks if isinstance(message, Do) else self._signals
         connection.write(encode(message))

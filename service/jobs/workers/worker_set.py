@@ -1,6 +1,6 @@
 """A set of worker processes: each is started, warmed up, and replaced when it is lost.
 
-The first process compiles the search, and the others load what it has compiled.
+The first process compiles the code, part by part, and the others load what it has compiled.
 """
 
 import asyncio
@@ -9,8 +9,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from service.errors import NoWorker, WarmingUp
+from service.jobs.parts import Compiling, Part
 from service.jobs.submission import Submission
-from service.jobs.workers.messages import Order, Stage, Unable
+from service.jobs.workers.messages import Stage, Unable, Warm, WarmUp
 from service.jobs.workers.worker_process import MakeRunner, WorkerProcess
 
 _SHORTEST_PAUSE = 0.5  # seconds until a process that could not even start is tried again
@@ -21,12 +22,15 @@ _LOG = logging.getLogger("paretour")
 
 @dataclass(eq=False)
 class Worker:
-    """A worker process, its stage, and the submissions that it runs, by number."""
+    """A worker process, its stage, and the submissions that it runs, by number.
+
+    It has `warm` parts of the compiled code, and was asked to load those in `asked`.
+    """
 
     process: WorkerProcess
     started: bool = False
-    warming: bool = False
-    warm: bool = False
+    warm: set[Part] = field(default_factory=set)
+    asked: set[Part] = field(default_factory=set)
     spent: bool = False  # it takes no more submissions
     reason: str = ""  # why it ends, if it has told
     submissions: dict[int, Submission] = field(default_factory=dict)
@@ -44,7 +48,8 @@ class WorkerSet:
 
     Attributes:
         lost: The number of processes that were lost and replaced.
-        was_warm: Whether a process has compiled the search.
+        compiled: The parts of the code that a process has compiled, or loaded.
+        compiling: How far the first process is that compiles; None before, and when all is there.
     """
 
     def __init__(
@@ -66,7 +71,8 @@ class WorkerSet:
         self._failures = 0
         self._reason = ""
         self.lost = 0
-        self.was_warm = False
+        self.compiled: set[Part] = set()
+        self.compiling: Compiling | None = None
 
     def __iter__(self) -> Iterator[Worker]:
         """Iterate over the present workers."""
@@ -83,11 +89,17 @@ class WorkerSet:
         await asyncio.gather(*self._keepers, return_exceptions=True)
 
     def check_ready(self) -> None:
-        """Raise NoWorker while none can be started, WarmingUp while none has the search."""
+        """Raise NoWorker while none can be started, WarmingUp while none can search few cities."""
         if self._failing and not any(worker.started for worker in self._workers):
             raise NoWorker(self._reason)
-        if not any(worker.warm for worker in self._workers):
-            raise WarmingUp
+        if not any(Part.FEW_CITIES in worker.warm for worker in self._workers):
+            raise self.warming_up()
+
+    def warming_up(self) -> WarmingUp:
+        """Return the refusal of what needs more than is compiled."""
+        if self.compiling is None:
+            return WarmingUp()
+        return WarmingUp(str(self.compiling), self.compiling.seconds_left)
 
     async def _keep_worker(self) -> None:
         """Keep one process running until the set is closed, whatever fails."""
@@ -117,7 +129,7 @@ class WorkerSet:
             self._warm_up()
             self._on_lost(worker)
             await worker.process.join()
-        if idle and not self.was_warm and not worker.spent:
+        if idle and not self.compiled and not worker.spent:
             status = worker.process.exit_status
             self._fail(worker.reason or f"a process ended with status {status} while it loaded")
         return worker.started
@@ -141,8 +153,13 @@ class WorkerSet:
             case Stage.STARTED:
                 worker.started = True
                 self._failing = False
-            case Stage.WARM:
-                worker.warm = self.was_warm = True
+            case Warm(part):
+                worker.warm.add(part)
+                self.compiled.add(part)
+                if len(self.compiled) == len(Part):
+                    self.compiling = None
+            case Compiling():
+                self.compiling = message
             case Stage.SPENT:
                 worker.spent = True
             case Unable():
@@ -151,12 +168,13 @@ class WorkerSet:
         self._on_message(worker, message)
 
     def _warm_up(self) -> None:
-        """Let one process compile the search, and once it has, the others load it."""
+        """Let one process compile everything, and the others load each part once it has that."""
         for worker in self._workers:
-            first = not any(other.warming for other in self._workers)
-            if worker.started and not worker.warming and (self.was_warm or first):
-                worker.warming = True
-                worker.process.send(Order.WARM_UP)
+            is_compiled = any(other.asked == set(Part) for other in self._workers)
+            parts = (self.compiled if is_compiled else set(Part)) - worker.asked
+            if worker.started and parts:
+                worker.asked |= parts
+                worker.process.send(WarmUp(frozenset(parts)))
 
 
 def _growing_pauses() -> Iterator[float]:

@@ -14,8 +14,8 @@ const FINAL = ["done", "cancelled", "failed"];
 /**
  * A front being planned. It yields states `{ stage, alone, answer, growth }`: the front of the
  * network alone, if it is known; the best front so far; and its growth, in rows of seconds and
- * hypervolume. Stages: "warming-up" (the search is not compiled yet), "queued", "running", "done"
- * and "cancelled".
+ * hypervolume. Stages: "warming-up" (it waits for the search, with `compiling` if it is known how
+ * far that is), "queued", "running", "done" and "cancelled".
  */
 export class Planning {
   #service;
@@ -88,6 +88,10 @@ export class Planning {
       for await (const [name, data] of this.#service.events(`${path}/events`, this.#signal)) {
         if (name === "progress" && data.hypervolume > 0) growth.push([data.seconds, data.hypervolume]);
         if (FINAL.includes(data.status)) break;
+        if (name === "compiling") {
+          yield { stage: "warming-up", compiling: data, alone, answer: alone, growth };
+          continue;
+        }
         if (performance.now() < looked + GLANCE) continue;
         answer = await this.#service.get(path, this.#signal);
         if (FINAL.includes(answer.status)) break; // before the stream says so

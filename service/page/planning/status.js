@@ -6,8 +6,6 @@ import { counted } from "../common/numbers.js";
 const element = (id) => document.getElementById(id);
 
 const SAID = {
-  "warming-up":
-    "The search is being compiled, once, for about a minute. The network’s front is shown as soon as there is one, and improves by itself.",
   queued: "This is the network’s front; the search waits for its turn.",
   running: "The search is improving the network’s front.",
 };
@@ -23,7 +21,16 @@ const SEARCH_ALONE = { queued: "The search waits for its turn.", running: "The s
 
 /** The sentence for a state of a planning. */
 export const sentence = (state) =>
+  (state.stage === "warming-up" && warmingUp(state)) ||
   (!state.alone && SEARCH_ALONE[state.stage]) || SAID[state.stage] || ended(state);
+
+function warmingUp({ compiling, alone }) {
+  const far = compiling
+    ? `: ${Math.round(100 * compiling.share)} %, about ${Math.ceil(compiling.seconds_left)} s left`
+    : "";
+  const shown = alone ? "This is the network’s front" : "The network’s front is shown as soon as there is one";
+  return `The search is being compiled, once${far}. ${shown}, and it improves by itself.`;
+}
 
 function ended({ stage, answer }) {
   if (!answer) return "Stopped before anything was found.";

@@ -23,6 +23,7 @@ from service.errors import (
     WorkerLost,
 )
 from service.jobs.deadline import Deadline
+from service.jobs.parts import Compiling
 from service.jobs.workers.worker_pool import WorkerPool
 from service.jobs.workers.worker_process import Runner
 from service.kinds.front_document import FrontDocument
@@ -390,25 +391,48 @@ def test_a_process_that_has_grown_large_answers_and_is_replaced() -> None:
     run(test, queue=1)
 
 
-def test_compiled_code_may_not_be_used_before_it_is_warm(tmp_path: Path) -> None:
+def test_work_waits_for_its_compiled_code_and_what_needs_none_overtakes_it(
+    tmp_path: Path,
+) -> None:
     async def test(workers: WorkerPool) -> None:
-        assert (await front(workers)).terminated == "converged"
-        for check in (workers.check_warm, workers.check_ready):
-            with pytest.raises(WarmingUp):
-                check()
+        told: list[None] = []
+        waiting = workers.submit(task(), lambda: told.append(None))
+        assert (await workers.submit(brief_task()).front()).terminated == "converged"
+        await until(lambda: len(told) > 1)
+        assert (waiting.compiling, waiting.attempts) == (Compiling(0.5, 20.0), 0)
+        with pytest.raises(WarmingUp, match="50 %, about 20 s left") as refused:
+            workers.check_ready()
+        assert refused.value.headers["Retry-After"] == "20"
         (tmp_path / "warm").touch()
-        await until(lambda: is_warm(workers))
-        assert (await front(workers)).terminated == "converged"
+        assert (await waiting.front()).terminated == "converged"
+        assert (waiting.compiling, workers.compiling) == (None, None)
         workers.check_ready()
 
+    run(test, ScriptedRunner(warm=tmp_path / "warm"), workers=2, queue=2)
+
+
+def test_work_whose_deadline_is_over_while_its_code_is_compiled_is_told_to_come_again(
+    tmp_path: Path,
+) -> None:
+    async def test(workers: WorkerPool) -> None:
+        await until(lambda: workers.compiling is not None)
+        with pytest.raises(WarmingUp, match="about 20 s left"):
+            await workers.submit(task(), deadline=Deadline.after(0.1)).front()
+        assert workers.waiting == 0
+
+    run(test, ScriptedRunner(warm=tmp_path / "warm"))
+
+
+def test_all_is_compiled_where_the_process_that_began_is_lost(tmp_path: Path) -> None:
+    async def test(workers: WorkerPool) -> None:
+        await until(lambda: workers.compiling is not None)
+        for pid in workers.pids:
+            os.kill(pid or 0, signal.SIGKILL)
+        (tmp_path / "warm").touch()
+        assert (await front(workers)).terminated == "converged"
+        await until(lambda: workers.compiling is None)
+
     run(test, ScriptedRunner(warm=tmp_path / "warm"), workers=2)
-
-
-def is_warm(workers: WorkerPool) -> bool:
-    with suppress(WarmingUp):
-        workers.check_warm()
-        return True
-    return False
 
 
 def test_after_the_close_no_work_is_taken_and_none_is_waited_for_in_vain() -> None:

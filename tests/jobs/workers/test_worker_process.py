@@ -84,7 +84,7 @@ class TerminatedRunner:
     def __init__(self) -> None:
         self.terminated = Event()
 
-    def warm_up(self) -> None:
+    def warm_up(self, *_: object) -> None:
         pass
 
     def run(self, *_: object) -> FrontDocument:

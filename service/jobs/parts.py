@@ -1,0 +1,65 @@
+"""The parts of the compiled code, which of them a task needs, and how far their compilation is.
+
+Compiling all takes most of a minute, once, and some parts are needed far more often than others. So
+a task waits for its own parts alone. This module loads no compiled code.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from service.requests.stops import Stops
+from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
+
+# As the search does, which cannot be imported here.
+_THREE_OPT = 250  # cities from which on three-opt searches; fewer where costs differ by direction
+_MANY = {"coordinates": 600, "matrices": 2_000}  # from which on candidates or tours come otherwise
+
+
+class Part(Enum):
+    """A part of the compiled code. They are compiled in this order: by how often they are used."""
+
+    FEW_CITIES = "few-cities"
+    MORE_CITIES = "more-cities"  # and costs that differ by direction
+    MAPS = "maps"
+    CHANGES = "changes"
+    FLEETS = "fleets"
+    MANY_CITIES = "many-cities"
+
+
+@dataclass(frozen=True)
+class Compiling:
+    """How far the compilation of all parts is.
+
+    Args:
+        share: What is done, from 0 to 1.
+        seconds_left: About how long the rest takes.
+    """
+
+    share: float
+    seconds_left: float
+
+    def __str__(self) -> str:
+        """Return a sentence about it."""
+        return (
+            f"compiling the search: {100 * self.share:.0f} %, about {self.seconds_left:.0f} s left"
+        )
+
+
+def parts_of(task: Task) -> frozenset[Part]:
+    """Return the parts that a task needs."""
+    match task.subject:
+        case SharedCoverage():
+            return frozenset(Part) - {Part.CHANGES}
+        case UnmeasuredFleet():
+            return frozenset({Part.FEW_CITIES, Part.FLEETS})
+        case Stops() as stops:
+            if not task.needs_compiled_code:
+                return frozenset()
+            few = stops.kind == "coordinates" and stops.n < _THREE_OPT and task.earlier is None
+            parts = {Part.FEW_CITIES} if few else {Part.FEW_CITIES, Part.MORE_CITIES}
+            if stops.n >= _MANY[stops.kind]:
+                parts.add(Part.MANY_CITIES)
+            if task.earlier is not None:
+                parts.add(Part.CHANGES)
+            return frozenset(parts)
+    return frozenset(Part) - {Part.FLEETS}

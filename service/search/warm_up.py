@@ -1,0 +1,142 @@
+"""Compile the search, or load it from the cache: by searches of a few cities that use all of it.
+
+Two processes compile a part side by side. So each part has two pieces, which share little: the one
+begins with what the local search calls, and the other compiles what that needs last.
+"""
+
+from itertools import islice
+
+import numpy as np
+
+from service.instance import Instance
+from service.search import candidates
+from service.search.archive import insert
+from service.search.best_subset import best_subset
+from service.search.bound.hypervolume import hypervolume_bound
+from service.search.candidates import Scalarization, rank_candidates
+from service.search.costs import lengths
+from service.search.edge_assembly.assembly import assemble
+from service.search.enumeration import exact_tours
+from service.search.improve import improve
+from service.search.local_search import least_gain
+from service.search.pareto_local_search import WEIGHTS, fill_gaps
+from service.search.schedule import Search
+from service.search.starts.constructed_tour import constructed_tour
+from service.search.three_opt.choice import LocalSearch, ThreeOptSearch
+from service.search.three_opt.undoable_tour import make_undoable_tour
+from service.search.working_tour import enqueue_cities
+
+_N = 12  # cities: one too many to enumerate at once
+_TOUR = np.arange(_N, dtype=np.int32)
+
+
+def warm_up() -> None:
+    """Compile the whole search."""
+    for compile_part in (few_cities, more_cities, many_cities):
+        compile_part()
+
+
+def few_cities() -> None:
+    """Compile what a few hundred cities need whose costs are the same both ways."""
+    two_opt()
+    beside_two_opt()
+    improve(_instance(coordinates=True), _TOUR[np.newaxis], iterations=5_000)
+
+
+def two_opt() -> None:
+    """Compile the local search by two-opt."""
+    search = _search(_instance(coordinates=True))
+    _descend(search, search.local_search)
+    fill_gaps(search.state, 1)
+
+
+def beside_two_opt() -> None:
+    """Compile what a search by two-opt needs besides: archive, candidates, bound, enumeration."""
+    instance = _instance(coordinates=True)
+    search = _search(instance)
+    insert(search.state.archive, (1.0, 1.0), _TOUR)
+    for _ in search.pool_candidates():
+        pass
+    scalarization = search.descents.scalarization(0)
+    rank_candidates(search.pool, scalarization)
+    constructed_tour(instance, scalarization)
+    exact_tours(_instance(coordinates=True, n=5))
+    best_subset(np.array([[1.0, 3.0], [2.0, 2.0], [3.0, 1.0]]), 2, np.full(2, 4.0))
+    hypervolume_bound(instance, instance.reference_point)
+
+
+def more_cities() -> None:
+    """Compile what hundreds of cities need, and costs that differ by direction."""
+    three_opt()
+    beside_three_opt()
+    matrices = _instance(coordinates=False)
+    improve(matrices, _TOUR[np.newaxis], iterations=5_000)
+    _step_through_three_opt(_instance(coordinates=True))
+
+
+def three_opt() -> None:
+    """Compile the local search by three-opt."""
+    search = _search(_instance(coordinates=True))
+    _descend(search, ThreeOptSearch(search.state, make_undoable_tour(search.n)))
+
+
+def beside_three_opt() -> None:
+    """Compile the assembly of tours, and the bound where costs differ by direction."""
+    search = _search(_instance(coordinates=True))
+    tour, scalarization = _TOUR.copy(), search.descents.scalarization(WEIGHTS // 2)
+    _rank_candidates(scalarization)
+    assemble((tour, tour.copy(), tour[::-1].copy()), scalarization, 0.0, search.state.random)
+    matrices = _instance(coordinates=False)
+    hypervolume_bound(matrices, matrices.reference_point)
+
+
+def many_cities() -> None:
+    """Compile what finds the candidates and the first tour of many cities."""
+    instance = _instance(coordinates=True)
+    candidates.warm_up(instance)
+    search = _search(instance)
+    constructed_tour(instance, search.descents.scalarization(WEIGHTS // 2), greedy=True)
+
+
+def _search(instance: Instance) -> Search:
+    return Search(instance, 0, instance.reference_point)
+
+
+def _descend(search: Search, local_search: LocalSearch) -> None:
+    """Descend and iterate from a tour, with a local search."""
+    scalarization = search.descents.scalarization(WEIGHTS // 2)
+    _rank_candidates(scalarization)
+    local_search.load(_TOUR, *lengths(scalarization.costs, _TOUR))
+    enqueue_cities(local_search.working, _TOUR)
+    local_search.descend(scalarization, least_gain(scalarization, 1.0), 1)
+    local_search.iterate(scalarization, 1)
+
+
+def _rank_candidates(scalarization: Scalarization) -> None:
+    """Rank candidates without compiled code, which the other piece compiles meanwhile."""
+    costs = scalarization.costs.matrix @ (scalarization.w0, scalarization.w1)
+    np.fill_diagonal(costs, -1.0)
+    order = costs.argsort(axis=1)[:, 1 : 1 + scalarization.candidates.shape[1]]
+    scalarization.candidates[:] = order
+    scalarization.candidate_costs[:] = np.take_along_axis(costs, order, axis=1)
+
+
+def _step_through_three_opt(instance: Instance) -> None:
+    """Take a few steps of the search of many cities."""
+    search = _search(instance)
+    three_opt = ThreeOptSearch(search.state, make_undoable_tour(search.n))
+    search.local_search = search.descents.local_search = three_opt
+    for _ in islice(search.run(), 2 * WEIGHTS):  # a descent under each weight takes one or more
+        pass
+    for _ in search.descents.descend_from_neighbours(WEIGHTS // 2, assembling=True):
+        pass
+
+
+def _instance(*, coordinates: bool, n: int = _N) -> Instance:
+    """Return an instance of n cities, by coordinates or by matrices that differ by direction."""
+    cities = np.arange(float(n))
+    if coordinates:
+        planes = np.stack([cities, cities**2 % 11, cities**2 % 7, cities], axis=1)
+        return Instance(coordinates=planes)
+    matrices = np.triu(np.outer(cities, cities)[None] % np.array([7, 5]).reshape(2, 1, 1))
+    return Instance(matrices=matrices)
