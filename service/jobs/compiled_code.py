@@ -13,9 +13,10 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from threading import Thread, get_ident
+from typing import NamedTuple
 
 from numba import config
 from numba.core.event import Event, Listener, install_listener
@@ -30,25 +31,30 @@ from service.search import warm_up as search
 Compile = Callable[[], None]
 Told = Callable[[Part | Compiling], None]
 
-# Each part with what compiles it whole, or loads it. A part of the search has two pieces, which two
-# processes compile side by side.
-_PARTS: dict[Part, tuple[Compile, Sequence[Compile]]] = {
-    Part.FEW_CITIES: (search.few_cities, (search.two_opt, search.beside_two_opt)),
-    Part.MORE_CITIES: (search.more_cities, (search.three_opt, search.beside_three_opt)),
-    Part.MAPS: (shortest_paths.warm_up, (shortest_paths.warm_up,)),
-    Part.CHANGES: (insertion.warm_up, (insertion.warm_up,)),
-    Part.FLEETS: (fleet.warm_up, (fleet.warm_up,)),
-    Part.MANY_CITIES: (search.many_cities, (search.many_cities,)),
+
+class _Work(NamedTuple):
+    """What compiles a part, or loads it.
+
+    Args:
+        whole: Compiles all of it.
+        pieces: Compile most of it, and share little, so that processes do it side by side.
+        seconds: That it takes of a processor, about.
+    """
+
+    whole: Compile
+    pieces: Sequence[Compile]
+    seconds: int
+
+
+_WORK: Mapping[Part, _Work] = {
+    Part.FEW_CITIES: _Work(search.few_cities, (search.two_opt, search.beside_two_opt), 30),
+    Part.MORE_CITIES: _Work(search.more_cities, (search.three_opt, search.beside_three_opt), 30),
+    Part.MAPS: _Work(shortest_paths.warm_up, (shortest_paths.warm_up,), 3),
+    Part.CHANGES: _Work(insertion.warm_up, (insertion.warm_up,), 1),
+    Part.FLEETS: _Work(fleet.warm_up, (fleet.warm_up,), 10),
+    Part.MANY_CITIES: _Work(search.many_cities, (search.many_cities,), 12),
 }
-_PIECES = [(part, piece) for part, (_, pieces) in _PARTS.items() for piece in pieces]
-_SECONDS = {  # that each part takes of a processor, about
-    Part.FEW_CITIES: 30,
-    Part.MORE_CITIES: 30,
-    Part.MAPS: 3,
-    Part.CHANGES: 1,
-    Part.FLEETS: 10,
-    Part.MANY_CITIES: 12,
-}
+_PIECES = [(part, piece) for part, work in _WORK.items() for piece in work.pieces]
 _A_FUNCTION = 0.25  # seconds that one of the functions takes, on average
 _TELL_EVERY = 0.25  # seconds
 _FUNCTION = 255  # the sign for a function
@@ -74,12 +80,12 @@ def warm_up(parts: Collection[Part] = tuple(Part), tell: Told = lambda _: None) 
     progress = _CompilationProgress(missing, processes, tell)
     if processes > 1:
         for part in _compiled_elsewhere(missing, processes, progress):
-            _PARTS[part][0]()
+            _WORK[part].whole()
             tell(part)
             missing.remove(part)
     with install_listener("numba:compile", _Count(progress.count)):
         for part in missing:
-            _PARTS[part][0]()
+            _WORK[part].whole()
             tell(part)
 
 
@@ -92,7 +98,7 @@ def load_from_cache(part: Part) -> bool:
         return True
     try:
         with install_listener("numba:compile", _RefuseCompilation()):
-            _PARTS[part][0]()
+            _WORK[part].whole()
     except _NotCached:
         return False
     return True
@@ -139,7 +145,7 @@ class _CompilationProgress:
     """
 
     def __init__(self, parts: Iterable[Part], processes: int, tell: Told) -> None:
-        seconds = sum(_SECONDS[part] for part in parts)
+        seconds = sum(_WORK[part].seconds for part in parts)
         self._expected = seconds / processes
         self._functions = seconds / _A_FUNCTION
         self._tell = tell
