@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-from anyio import BrokenWorkerProcess, CapacityLimiter, Lock, to_process
+from anyio import BrokenWorkerProcess, CancelScope, CapacityLimiter, Lock, to_process
 
 from service.actor_info import ActorInfo
 from service.errors import QueueFull, Refusal
@@ -144,6 +144,8 @@ class TaskParser:
         for _ in range(_ATTEMPTS):
             # Joining the body took a while, and so will sending it: let other requests in between.
             await asyncio.sleep(0)
+            with CancelScope(shield=True):  # anyio does not end a process that is left as it starts
+                await to_process.run_sync(_nothing, limiter=self._processes)
             try:
                 # After that time the call is cancelled, which kills the process.
                 async with asyncio.timeout(seconds):
@@ -167,6 +169,10 @@ class TaskParser:
             except TimeoutError:
                 raise _too_complex(f"within {seconds:g} s, and was not") from None
         raise _too_complex("without the loss of its process, and two were lost")
+
+
+def _nothing() -> None:
+    """Do nothing, in a process that is started for it if none is idle."""
 
 
 def _parse_bounded(

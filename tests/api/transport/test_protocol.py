@@ -29,7 +29,8 @@ GONE, RELEASED = "gone", "released"
 
 @pytest.fixture(scope="module")
 def url() -> Iterator[str]:
-    with serving(app_of(), warm=False) as address:
+    patient = ConnectionLimits(head_seconds=120)  # a crowd takes this long on a busy machine
+    with serving(app_of(), warm=False, connections=patient) as address:
         yield address
 
 
