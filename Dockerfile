@@ -3,17 +3,17 @@
 
 FROM python:3.11-slim AS build
 WORKDIR /source
-COPY pyproject.toml README.md LICENSE ./
+COPY pyproject.toml hatch_build.py README.md LICENSE ./
 COPY service ./service
 COPY models ./models
 COPY export ./export
 RUN python -m venv /opt/paretour \
     && /opt/paretour/bin/pip install --no-cache-dir -c service/deploy/constraints.txt '.[cluster,tracing]' \
-    && mkdir /var/lib/paretour
-# Compile the search now, outside the source, where the installed package would be shadowed.
+    && mkdir /var/lib/paretour /var/cache/paretour
+# Compile the search into the package: on x86-64, for processors of any name. Outside the source,
+# where the installed package would be shadowed.
 WORKDIR /opt/paretour
-ENV NUMBA_CACHE_DIR=/var/cache/paretour
-RUN ["/opt/paretour/bin/python", "-c", "from service.jobs.compiled_code import warm_up; warm_up()"]
+RUN ["/opt/paretour/bin/python", "-m", "service.jobs.precompile"]
 
 # The same interpreter at the same path, so that the virtual environment works as it is.
 FROM python:3.11-slim
@@ -30,8 +30,8 @@ ENV PATH=/opt/paretour/bin:$PATH \
     PARETOUR_PORT=8000
 # A number, so that an orchestrator can tell that it is not root.
 USER 10001:10001
-# numba insists on a cache that it can write to. A volume stays writable where the root is not,
-# starts with what the build has compiled, and takes what another processor needs compiled anew.
+# Empty, and stays so, unless the build compiled for another level of processors. What is compiled
+# anew for these is kept there: a volume stays writable where the root is not.
 VOLUME /var/cache/paretour
 EXPOSE 8000
 HEALTHCHECK --interval=10s --timeout=3s --start-period=10s --retries=3 \

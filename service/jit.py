@@ -18,13 +18,20 @@ calls has. So what is cached belongs to one state of all modules with compiled c
 
 Nor does numba expect two processes to save code of one function at once: both would take the same
 file. So they do it one after another, and an index never names a file that is not written yet.
+
+numba compiles for the processor that it runs on, and what it compiles is of no use to another. The
+search is as fast if it is compiled for the level x86-64-v3, which most such processors since 2015
+are of. So it is compiled for that level wherever the processor is of it. A wheel or an image can
+then carry compiled code in the folder PRECOMPILED. Its name says for which processes it is, and
+others do not look into it: they use numba's own cache.
 """
 
 import fcntl
 import os
 import secrets
+import sys
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from hashlib import sha256
 from itertools import count
@@ -32,9 +39,11 @@ from pathlib import Path
 from typing import Any, NoReturn, ParamSpec, TypeVar
 
 import numba
+from llvmlite import binding
 from numba import types
 from numba.core import caching, config
 from numba.core.bytecode import FunctionIdentity
+from numba.core.codegen import get_host_cpu_features
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -48,15 +57,52 @@ _number_from_a_random_number()
 os.register_at_fork(after_in_child=_number_from_a_random_number)
 
 
+_LEVEL = "x86-64-v3"
+_FEATURES_OF_THE_LEVEL = (  # as LLVM names them
+    *("crc32", "cx16", "popcnt", "sahf", "sse3", "sse4.1", "sse4.2", "ssse3"),  # x86-64-v2
+    *("avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe", "xsave"),
+)
+
+
+def _compile_for_the_level() -> None:
+    """Compile for the level and not for this processor, if it has what the level demands.
+
+    NUMBA_CPU_NAME and NUMBA_CPU_FEATURES, where they are set, are obeyed.
+    """
+    settings: Any = config
+    if settings.CPU_NAME is not None or settings.CPU_FEATURES is not None:
+        return
+    if {f"+{name}" for name in _FEATURES_OF_THE_LEVEL} <= set(get_host_cpu_features().split(",")):
+        settings.CPU_NAME, settings.CPU_FEATURES = _LEVEL, ""
+
+
+_compile_for_the_level()
+_PACKAGE = Path(__file__).parent
+
+
 def _digest() -> str:
     """Return a digest of the modules whose functions and numbers are compiled."""
-    package = Path(__file__).parent
-    folders = (package / name for name in ("coverage", "fleet", "replanning", "search"))
-    modules = [*package.glob("*.py"), *(path for each in folders for path in each.rglob("*.py"))]
+    folders = (_PACKAGE / name for name in ("coverage", "fleet", "replanning", "search"))
+    modules = [*_PACKAGE.glob("*.py"), *(path for each in folders for path in each.rglob("*.py"))]
     return sha256(b"".join(path.read_bytes() for path in sorted(modules))).hexdigest()
 
 
 _DIGEST = _digest()
+
+
+def _precompiled() -> Path:
+    """Return the folder for code of these modules, this numba, this Python and this processor."""
+    settings: Any = config
+    processor = (
+        binding.get_process_triple(),
+        settings.CPU_NAME or binding.get_host_cpu_name(),
+        get_host_cpu_features() if settings.CPU_FEATURES is None else settings.CPU_FEATURES,
+    )
+    described = (_DIGEST, numba.__version__, sys.implementation.cache_tag, *processor)
+    return _PACKAGE / "precompiled" / sha256(repr(described).encode()).hexdigest()[:16]
+
+
+PRECOMPILED = _precompiled()  # does not exist where nothing was compiled in advance
 _NumbaCacheFile: Any = caching.IndexDataCacheFile  # it has no types
 
 
@@ -67,6 +113,8 @@ class _CacheFile(_NumbaCacheFile):  # type: ignore[misc]
         super().__init__(cache_path, filename_base, (source_stamp, _DIGEST))
 
     def save(self, key: Any, data: Any) -> None:
+        if not os.access(self._cache_path, os.W_OK):
+            return
         with _locked(self._cache_path):
             files = self._load_index()
             if key not in files:
@@ -80,6 +128,27 @@ class _CacheFile(_NumbaCacheFile):  # type: ignore[misc]
 
 
 caching.IndexDataCacheFile = _CacheFile  # type: ignore[misc]
+_NumbaLocator: Any = caching.InTreeCacheLocator
+
+
+class _PrecompiledLocator(_NumbaLocator):  # type: ignore[misc]
+    """Finds the folder of a module's code in PRECOMPILED, which need not be writable."""
+
+    def __init__(self, function: object, module: str) -> None:
+        super().__init__(function, module)
+        self._cache_path = str(PRECOMPILED / Path(module).parent.relative_to(_PACKAGE))
+
+    def ensure_cache_path(self) -> None:
+        with suppress(OSError):
+            super().ensure_cache_path()
+
+    @classmethod
+    def from_function(cls, function: object, module: str) -> "_PrecompiledLocator | None":
+        carried = PRECOMPILED.is_dir() and Path(module).is_relative_to(_PACKAGE)
+        return cls(function, module) if carried else None
+
+
+caching.CacheImpl._locator_classes.insert(0, _PrecompiledLocator)  # noqa: SLF001  # no setter
 
 
 @contextmanager
@@ -95,9 +164,9 @@ def _locked(folder: str) -> Iterator[None]:
 
 
 def _can_be_cached() -> bool:
-    """Return whether numba finds a folder for its cache: beside this file, or the user's.
+    """Return whether numba finds a folder: PRECOMPILED, beside this file, or the user's.
 
-    A read-only container has none, and each start compiles anew.
+    A read-only container may have none, and each start compiles anew.
     """
     try:
         numba.njit(cache=True)(lambda: None)

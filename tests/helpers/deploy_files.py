@@ -94,9 +94,8 @@ def all_services() -> dict[str, dict[str, Any]]:
 
 
 def containers_of(pod: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yield the containers of a pod template, those of its start first."""
-    for part in ("initContainers", "containers"):
-        yield from pod["spec"].get(part, [])
+    """Yield the containers of a pod template."""
+    yield from pod["spec"]["containers"]
 
 
 def is_ours(container: dict[str, Any]) -> bool:

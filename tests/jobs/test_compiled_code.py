@@ -8,6 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from service import jit
+from tests.helpers.processors import ANOTHER_NAME
+
 PLANS = """
 import json, sys
 from pathlib import Path
@@ -62,6 +65,15 @@ def test_tasks_need_no_more_compiled_code_than_their_parts() -> None:
     command = [sys.executable, "-c", PLANS]
     ran = subprocess.run(command, capture_output=True, check=True, cwd=Path(__file__).parents[2])
     assert json.loads(ran.stdout) == {}
+
+
+@pytest.mark.usefixtures("compiled")
+def test_a_processor_of_another_name_loads_all_that_was_compiled() -> None:
+    if jit.config.CPU_NAME is None:
+        pytest.skip("this processor is not of the level that is compiled for")
+    load = "from service.jobs.compiled_code import load_from_cache; print(load_from_cache())"
+    command = [sys.executable, "-c", ANOTHER_NAME + load]
+    assert subprocess.run(command, capture_output=True, check=True).stdout == b"True\n"
 
 
 def test_what_is_not_in_the_cache_is_not_compiled_by_loading_it(tmp_path: Path) -> None:

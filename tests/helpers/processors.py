@@ -1,0 +1,12 @@
+"""Other processors, for child processes: code to run before the service is imported."""
+
+_OTHER = """
+from llvmlite import binding
+features = binding.get_host_cpu_features()
+features.update({changes})
+binding.get_host_cpu_name = lambda: "another"
+binding.get_host_cpu_features = lambda: features
+"""
+
+ANOTHER_NAME = _OTHER.format(changes={"avx512f": True, "sse4a": False})
+WITHOUT_AVX2 = _OTHER.format(changes={"avx2": False})
