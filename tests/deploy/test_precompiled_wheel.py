@@ -53,7 +53,7 @@ def wheel_of(project: Path, folder: Path, precompile: str) -> Path:
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The wheel of a copy of the project, in which little is to be compiled."""
     project = tmp_path_factory.mktemp("project")
-    for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE"):
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, project)
     ignored = shutil.ignore_patterns("__pycache__", "precompiled")
     shutil.copytree(ROOT / "service", project / "service", ignore=ignored)

@@ -71,7 +71,11 @@ def test_tasks_need_no_more_compiled_code_than_their_parts() -> None:
 def test_a_processor_of_another_name_loads_all_that_was_compiled() -> None:
     if jit.config.CPU_NAME is None:
         pytest.skip("this processor is not of the level that is compiled for")
-    load = "from service.jobs.compiled_code import load_from_cache; print(load_from_cache())"
+    load = """
+from service.jobs.compiled_code import load_from_cache
+from service.jobs.parts import Part
+print(all([load_from_cache(part) for part in Part]))
+"""
     command = [sys.executable, "-c", ANOTHER_NAME + load]
     assert subprocess.run(command, capture_output=True, check=True).stdout == b"True\n"
 
