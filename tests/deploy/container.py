@@ -6,7 +6,7 @@ started again. Prints the size of the image, what it is made of, and the seconds
 
 Where no registry of images can be reached, `--debian URL` makes the base image with debootstrap
 from a mirror of Debian. `--mount PATH` shows the build a file or folder of this machine, such as
-the settings of pip. `--run OPTION` is passed on to `podman run`.
+the settings of pip. `--run OPTION` is passed on to `podman run`, and `--runtime` to Podman.
 """
 
 import argparse
@@ -41,15 +41,15 @@ def main() -> None:
     parser = argparse.ArgumentParser("python -m tests.deploy.container", description=__doc__)
     parser.add_argument("--debian", metavar="URL")
     parser.add_argument("--mount", action="append", default=[], metavar="PATH")
-    parser.add_argument(
-        "--run", action="append", default=[], metavar="OPTION", help="of podman run"
-    )
+    parser.add_argument("--run", action="append", default=[], metavar="OPTION")
+    parser.add_argument("--runtime", default="crun")
     given = parser.parse_args()
     if given.debian is not None:
         make_base(given.debian)
     build(given.mount)
-    measured: dict[str, Any] = {"image, MB": size(), "largest, MB": largest()}
-    with container(given.run) as name:
+    options = [f"--runtime={given.runtime}", "run", "--network=host", *given.run]
+    measured: dict[str, Any] = {"image, MB": size(), "largest, MB": largest(options)}
+    with container(options) as name:
         measured["ready, s"] = ready()
         measured["points"] = {path: points(path) for path in PLANS}
         began = time.monotonic()
@@ -78,9 +78,10 @@ def make_base(mirror: str) -> None:
 
 
 def build(mounts: Sequence[str]) -> None:
-    """Build the image."""
+    """Build the image, in the format that knows health checks."""
     shown = [f"--volume={path}:{path}:ro" for path in mounts]
-    podman("build", "--isolation=chroot", "--network=host", *shown, "--tag", IMAGE, str(ROOT))
+    how = ["--format=docker", "--isolation=chroot", "--network=host", *shown]
+    podman("build", *how, "--tag", IMAGE, str(ROOT))
 
 
 def size() -> int:
@@ -88,9 +89,9 @@ def size() -> int:
     return int(podman("image", "inspect", "--format={{.Size}}", IMAGE)) // 10**6
 
 
-def largest() -> dict[str, int]:
+def largest(options: Sequence[str]) -> dict[str, int]:
     """Return the megabytes of the largest packages in the image."""
-    sizes = podman("run", "--rm", "--network=host", IMAGE, "du", "-m", "-d1", PACKAGES).splitlines()
+    sizes = podman(*options, "--rm", IMAGE, "du", "-m", "-d1", PACKAGES).splitlines()
     by_name = {Path(path).name: int(megabytes) for megabytes, path in map(str.split, sizes)}
     return dict(sorted(by_name.items(), key=lambda item: -item[1])[:12])
 
@@ -100,7 +101,7 @@ def container(options: Sequence[str]) -> Iterator[str]:
     """Run the image until the block ends, and yield the container's name."""
     name = f"{IMAGE}-tried"
     variables = [f"--env=PARETOUR_PORT={PORT}", "--env=PARETOUR_HOST=127.0.0.1"]
-    podman("run", "-d", f"--name={name}", "--network=host", *HARDENED, *variables, *options, IMAGE)
+    podman(*options, "-d", f"--name={name}", *HARDENED, *variables, IMAGE)
     try:
         yield name
     finally:
