@@ -62,7 +62,7 @@ class Actor(nn.Module, ABC):
         """The stack of layers whose depth is a setting."""
 
     @abstractmethod
-    def tours(self, instances: Tensor, preferences: Float[Tensor, "k 2"]) -> Int[Tensor, "b k n"]:
+    def tours(self, instances: Tensor, preferences: Float[Tensor, "k m"]) -> Int[Tensor, "b k n"]:
         """Return the greedy tour of each instance for each preference."""
 
     def repaired_tours(
