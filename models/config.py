@@ -5,11 +5,11 @@ from typing import Any
 
 from models.networks.actor import Architecture
 from models.networks.build import ACTORS
+from models.networks.pa_one import OneActor
 from models.options import setting
 
 NAMES = tuple(ACTORS)
 OBJECTIVES = ("lagrangian", "weighted-sum", "imitation", "repairs")
-MOST_OBJECTIVES = 4  # of an instance
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +93,7 @@ class TrainingConfig:
             )
         if self.objective == "repairs" and not self.network.repairs:
             raise ValueError(f"{self.network.name} makes no repairs to learn from")
-        most = MOST_OBJECTIVES if self.network.name == "pa-one" else 2
+        most = OneActor.most_objectives if self.network.name == "pa-one" else 2
         if not 2 <= self.objectives <= most:
             raise ValueError(
                 f"objectives of {self.network.name} must be from 2 to {most}, got {self.objectives}"

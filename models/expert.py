@@ -15,12 +15,12 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from models.config import MOST_OBJECTIVES
 from models.data.dataset import Shard
 from models.data.generators import PLANES
 from models.data.instances import distance_matrices
 from models.data.matrices import any_matrices
 from models.data.preferences import FLAT, directions, weights
+from models.networks.pa_one import OneActor
 from models.options import add_options, from_options, setting
 from service import preferences as of_service
 from service.instance import Instance
@@ -50,7 +50,7 @@ class ExpertConfig:
             raise ValueError(f"kind must be coordinates or matrices, got {self.kind}")
         if not 0 <= self.shaped <= 1:
             raise ValueError(f"shaped must be from 0 to 1, got {self.shaped}")
-        most = MOST_OBJECTIVES if self.kind == "coordinates" else FLAT
+        most = OneActor.most_objectives if self.kind == "coordinates" else FLAT
         if not FLAT <= self.objectives <= most:
             raise ValueError(
                 f"objectives of {self.kind} must be from 2 to {most}, got {self.objectives}"

@@ -51,7 +51,7 @@ def fan_or_lattice(k: int, objectives: int, device: torch.device) -> Float[Tenso
     """
     if objectives == FLAT:
         return fan_of_preferences(k, device)
-    steps = next(s for s in count() if math.comb(s + objectives - 1, objectives - 1) >= k)
+    steps = next(s for s in count(1) if math.comb(s + objectives - 1, objectives - 1) >= k)
     multiples = [x for x in product(range(steps + 1), repeat=objectives) if sum(x) == steps]
     return directions(torch.tensor(multiples, dtype=torch.float32, device=device) / steps)
 

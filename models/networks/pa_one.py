@@ -86,6 +86,7 @@ class OneActor(Actor):
     precisions = ("float32",)
     imitates_starts = False  # it learns edges
     repairs_tours = True
+    most_objectives = 4  # it knows no number of them; so many were tried
     has_directions: ClassVar[bool] = False  # or all steps cost as much as the step back
     candidates: ClassVar[int] = CANDIDATES  # of each end
     # Of fragments, for one evaluation of the network: in building tours, in building those of many
@@ -191,10 +192,20 @@ class OneActor(Actor):
     def problem(self, instance: Tensor, weights: Float[Tensor, "r m"]) -> Problem:
         """Return the problem that one instance is under the weights of each row."""
         costs = self.costs(instance)
+        if weights.shape[1] > FLAT:
+            return Problem(costs, weights, self.own_prices(costs, weights))
         return priced_problem(costs, weights, self.known_prices(costs))
 
     def known_prices(self, costs: Planes | Matrices) -> Prices | None:  # noqa: ARG002
-        """Return the prices of the cities at each knot, if there are any."""
+        """Return the prices of the cities at each knot of two objectives, if there are any."""
+        return None
+
+    def own_prices(
+        self,
+        costs: Planes | Matrices,  # noqa: ARG002
+        weights: Float[Tensor, "r m"],  # noqa: ARG002
+    ) -> Prices | None:
+        """Return the prices of the cities in each row, if there are any."""
         return None
 
     def first_candidates(self, problem: Problem) -> Candidates:

@@ -120,7 +120,7 @@ class Matrices(NamedTuple):
 
     def _at(self, entries: Int[Tensor, "..."]) -> Costs:
         # Of single numbers ONNX Runtime gathers those of each objective by themselves faster.
-        in_each = entries.flatten()[None].expand(len(self.means), -1)
+        in_each = entries.flatten()[None].expand(self.means.shape[0], -1)
         return Costs(
             *(table.flatten(1).gather(1, in_each).view(-1, *entries.shape) for table in self)
         )
@@ -234,8 +234,13 @@ def costs_between(problem: Problem, cities: Int[Tensor, "r e"]) -> Costs:
 def weighted_sums(
     lengths: Float[Tensor, "o r x"], weights: Float[Tensor, "r o"]
 ) -> Float[Tensor, "r x"]:
-    """Return the sum of the lengths under the weights of each row."""
-    return (weights.T[..., None] * lengths).sum(dim=0)
+    """Return the sum of the lengths under the weights of each row.
+
+    ONNX Runtime adds few long tables by a product with ones four times as fast as by a sum.
+    """
+    products = weights.T[..., None] * lengths
+    ones = torch.ones_like(weights[:1])
+    return (ones @ products.flatten(1)).view_as(products[0])
 
 
 def _weighted(costs: Float[Tensor, "o n m"], weights: Float[Tensor, "r o"]) -> Tensor:

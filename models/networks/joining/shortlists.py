@@ -124,7 +124,7 @@ def _beginning_at(some: Int[Tensor, " b"], costs: Planes | Matrices, fill: int |
     traced for its export.
     """
     means, leans = costs.beginning_at(some)
-    own = some[None, :, None].expand(len(means), -1, -1)
+    own = some[None, :, None].expand(means.shape[0], -1, -1)
     means = means.scatter(2, own, torch.full_like(means[:, :, :1], NEVER))
     more = (0, cast(int, fill))
     means = nn.functional.pad(means, more, value=NEVER)
