@@ -19,7 +19,7 @@ from models.data.dataset import Shard
 from models.data.generators import PLANES
 from models.data.instances import distance_matrices
 from models.data.matrices import any_matrices
-from models.data.preferences import FLAT, directions, weights
+from models.data.preferences import FLAT, directions_of, weights
 from models.networks.pa_one import OneActor
 from models.options import add_options, from_options, setting
 from service import preferences as of_service
@@ -110,7 +110,7 @@ def _preferences(config: ExpertConfig, generator: Generator) -> Array:
     """Draw one preference of each of equal parts of the angles; or of any weights, where more."""
     if config.objectives > FLAT:
         drawn = generator.dirichlet(np.ones(config.objectives), config.preferences)
-        return directions(torch.from_numpy(drawn)).numpy()
+        return directions_of(torch.from_numpy(drawn)).numpy()
     shares = (np.arange(config.preferences) + generator.random(config.preferences)) * 90
     return of_service.from_angles(shares / config.preferences)
 

@@ -69,8 +69,9 @@ def hypervolume(points: Array, reference_point: Array) -> float:
     inside = points[(points < reference_point).all(axis=1)]
     inside = inside[inside[:, -1].argsort()]
     levels = np.append(inside[:, -1], reference_point[-1]) / reference_point[-1]
-    return sum(
+    slices = (
         (levels[i + 1] - levels[i]) * hypervolume(inside[: i + 1, :-1], reference_point[:-1])
         for i in range(len(inside))
         if levels[i + 1] > levels[i]
     )
+    return float(sum(slices))

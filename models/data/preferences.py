@@ -53,7 +53,7 @@ def fan_or_lattice(k: int, objectives: int, device: torch.device) -> Float[Tenso
         return fan_of_preferences(k, device)
     steps = next(s for s in count(1) if math.comb(s + objectives - 1, objectives - 1) >= k)
     multiples = [x for x in product(range(steps + 1), repeat=objectives) if sum(x) == steps]
-    return directions(torch.tensor(multiples, dtype=torch.float32, device=device) / steps)
+    return directions_of(torch.tensor(multiples, dtype=torch.float32, device=device) / steps)
 
 
 def random_preferences(
@@ -63,10 +63,10 @@ def random_preferences(
     if objectives == FLAT:
         return spread_preferences(k, generator, device)
     drawn = torch.empty(k, objectives).exponential_(generator=generator)
-    return directions((drawn / drawn.sum(-1, keepdim=True)).to(device))
+    return directions_of((drawn / drawn.sum(-1, keepdim=True)).to(device))
 
 
-def directions(rows: Float[Tensor, "k m"]) -> Float[Tensor, "k m"]:
+def directions_of(rows: Float[Tensor, "k m"]) -> Float[Tensor, "k m"]:
     """Return the unit vectors that go with weights; a weight of zero becomes a small one."""
     return nn.functional.normalize(weights(rows.clamp(min=_LEAST_WEIGHT)), dim=-1)
 
