@@ -37,7 +37,6 @@ _NAMES = (
     "start",
     "tables",
     "training",
-    "tri",
     "weights",
 )
 
