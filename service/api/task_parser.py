@@ -144,9 +144,9 @@ class TaskParser:
         for _ in range(_ATTEMPTS):
             # Joining the body took a while, and so will sending it: let other requests in between.
             await asyncio.sleep(0)
-            with CancelScope(shield=True):  # anyio does not end a process that is left as it starts
-                await to_process.run_sync(_nothing, limiter=self._processes)
             try:
+                with CancelScope(shield=True):  # anyio does not end one that is left as it starts
+                    await to_process.run_sync(_nothing, limiter=self._processes)
                 # After that time the call is cancelled, which kills the process.
                 async with asyncio.timeout(seconds):
                     result, caught = await to_process.run_sync(
