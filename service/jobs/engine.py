@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from typing import Protocol
 
-from service.errors import DeadlineExceeded, ShuttingDown, WarmingUp
+from service.errors import DeadlineExceeded, ShuttingDown
 from service.front import Progress
 from service.jobs.deadline import Deadline
 from service.jobs.parts import Compiling
@@ -125,7 +125,7 @@ async def record_in_time(engine: Engine, record: Record, deadline: Deadline) -> 
                 record = state.record
     except TimeoutError:
         if state.compiling is not None:
-            raise WarmingUp(str(state.compiling), state.compiling.seconds_left) from None
+            raise state.compiling.refusal from None
         if not record.front.tours:
             raise DeadlineExceeded from None
         return record

@@ -7,6 +7,7 @@ a task waits for its own parts alone. This module loads no compiled code.
 from dataclasses import dataclass
 from enum import Enum
 
+from service.errors import WarmingUp
 from service.requests.stops import Stops
 from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
 
@@ -43,6 +44,11 @@ class Compiling:
         return (
             f"compiling the search: {100 * self.share:.0f} %, about {self.seconds_left:.0f} s left"
         )
+
+    @property
+    def refusal(self) -> WarmingUp:
+        """The refusal of what cannot wait until it is done."""
+        return WarmingUp(str(self), self.seconds_left)
 
 
 def parts_of(task: Task) -> frozenset[Part]:

@@ -97,9 +97,7 @@ class WorkerSet:
 
     def warming_up(self) -> WarmingUp:
         """Return the refusal of what needs more than is compiled."""
-        if self.compiling is None:
-            return WarmingUp()
-        return WarmingUp(str(self.compiling), self.compiling.seconds_left)
+        return WarmingUp() if self.compiling is None else self.compiling.refusal
 
     async def _keep_worker(self) -> None:
         """Keep one process running until the set is closed, whatever fails."""
