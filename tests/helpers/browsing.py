@@ -182,6 +182,32 @@ def open_files(page: Page, files: dict[str, str]) -> None:
     wait_until_read(page)
 
 
+class Held:
+    """Requests that are held back until they are released, as are all later ones."""
+
+    def __init__(self, page: Page, pattern: str) -> None:
+        self._page = page
+        self._routes: list[Route] | None = []
+        page.route(pattern, self._take)
+
+    def _take(self, route: Route) -> None:
+        if self._routes is None:
+            route.continue_()
+        else:
+            self._routes.append(route)
+
+    def release(self) -> None:
+        """Let them pass, once there is one."""
+        for _ in range(1000):
+            if self._routes:
+                break
+            self._page.wait_for_timeout(20)
+        assert self._routes
+        routes, self._routes = self._routes, None
+        for route in routes:
+            route.continue_()
+
+
 def wait_until_read(page: Page) -> None:
     """Wait until files that were opened are read, or refused: until then nothing can be planned."""
     expect(page.get_by_role("button", name="Plan", exact=True)).to_be_enabled()

@@ -11,6 +11,7 @@ from service.api.app import Edge
 from service.api.auth import Access, KeyHash, new_key
 from service.settings import Settings
 from tests.helpers.browsing import (
+    Held,
     curl_body,
     needs_chromium,
     open_files,
@@ -178,8 +179,7 @@ def test_a_table_that_is_pasted_keeps_its_rows(opened: Page) -> None:
 def test_nothing_is_planned_while_a_file_is_read_and_the_last_one_opened_is_shown(
     opened: Page,
 ) -> None:
-    held: list[Route] = []
-    opened.route("**/files", lambda route: held.append(route))
+    held = Held(opened, "**/files")
     button = opened.get_by_role("button", name="Plan", exact=True)
     names = opened.get_by_label("Open files")
     rows = b"id,lon,lat\na,24.9,60.1\nb,24.8,60.2\n"
@@ -187,8 +187,7 @@ def test_nothing_is_planned_while_a_file_is_read_and_the_last_one_opened_is_show
         names.set_input_files([{"name": name, "mimeType": "text/csv", "buffer": rows}])
         expect(button).to_be_disabled()
     expect(opened.locator("#status")).to_have_text("The file is being read.")
-    for route in reversed(held):  # the first one's answer comes last
-        route.continue_()
+    held.release()
     wait_until_read(opened)
     opened.unroute_all(behavior="wait")
     expect(opened.locator("#file-notes p")).to_contain_text("second.csv")

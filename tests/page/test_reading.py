@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, Route, expect
+from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.helpers.browsing import (
     CLIPBOARD,
+    Held,
     curl_body,
     needs_chromium,
     open_files,
@@ -31,32 +32,6 @@ def opened(window: Page) -> Iterator[Page]:
     expect(window.locator("#count")).to_have_text("3 stops")
     yield window
     window.unroute_all()
-
-
-class Held:
-    """Requests that are held back until they are released, as are all later ones."""
-
-    def __init__(self, page: Page, pattern: str) -> None:
-        self._page = page
-        self._routes: list[Route] | None = []
-        page.route(pattern, self._take)
-
-    def _take(self, route: Route) -> None:
-        if self._routes is None:
-            route.continue_()
-        else:
-            self._routes.append(route)
-
-    def release(self) -> None:
-        """Let them pass, once there is one."""
-        for _ in range(1000):
-            if self._routes:
-                break
-            self._page.wait_for_timeout(20)
-        assert self._routes
-        routes, self._routes = self._routes, None
-        for route in routes:
-            route.continue_()
 
 
 def choose(page: Page, text: str, name: str = "chosen.csv") -> None:
