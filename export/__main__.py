@@ -34,9 +34,10 @@ _EXPORTERS: dict[str, Callable[[Any], ModelProto]] = {
 
 
 def to_onnx(actor: Actor) -> ModelProto:
-    """Return the actor as one graph: an instance and preferences (k, 2) to tours (k, n).
+    """Return the actor as one graph: an instance and preferences (k, m) to tours (k, n).
 
-    The instance is cities (n, 4) or matrices (2, n, n), as the actor reads it.
+    The instance is cities (n, 2m) or matrices (m, n, n), as the actor reads it; m is 2 but for
+    PA-One.
     """
     return _EXPORTERS[actor.construction](actor)
 
@@ -92,13 +93,18 @@ def describe(model: ModelProto, trained: Trained, name: str) -> None:
             "seconds": f"{trained.seconds:.0f}",
             "sizes": json.dumps([config.least_cities, config.most_cities]),
             "angles": json.dumps([0, 90]),
-            "figures": json.dumps(_hypervolumes(model, trained.actor.reads)),
+            "objectives": json.dumps([2, trained.actor.most_objectives]),
+            "figures": json.dumps(_hypervolumes(model, trained)),
         },
     )
 
 
-def _hypervolumes(model: ModelProto, reads: str) -> dict[str, float]:
-    """Return the mean hypervolume by number of cities, reference point (n, n)."""
+def _hypervolumes(model: ModelProto, trained: Trained) -> dict[str, float]:
+    """Return the mean hypervolume by number of cities, reference point (n, n, ...).
+
+    It is that under as many objectives as the actor was trained with.
+    """
+    reads, objectives = trained.actor.reads, trained.config.objectives
     running = session(model)
     return {
         str(validation.cities): round(
@@ -110,7 +116,7 @@ def _hypervolumes(model: ModelProto, reads: str) -> dict[str, float]:
             ),
             5,
         )
-        for validation in validation_sets(reads, COUNTS, torch.device("cpu"))
+        for validation in validation_sets(reads, COUNTS, torch.device("cpu"), objectives)
     }
 
 

@@ -1,6 +1,7 @@
 """Comparison of an ONNX file with the actor in torch: their tours must be the same."""
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 import torch
@@ -9,7 +10,7 @@ from onnx import ModelProto
 from torch import Generator, Tensor
 
 from models.data.instances import uniform_cities
-from models.data.preferences import fan_of_preferences
+from models.data.preferences import fan_or_lattice
 from models.networks.actor import Actor
 from models.rollout_repairs import from_the_first_city
 from service.onnx_runtime import onnxruntime
@@ -34,7 +35,7 @@ def session(model: ModelProto) -> onnxruntime.InferenceSession:
 def onnx_tours(
     running: onnxruntime.InferenceSession, instance: Tensor, preferences: Tensor, repairs: int = 0
 ) -> NDArray[np.int64]:
-    """Return the tours, shape (k, n), that the file builds of an instance, preferences (k, 2)."""
+    """Return the tours, shape (k, n), that the file builds of an instance, preferences (k, m)."""
     names = [value.name for value in running.get_inputs()]
     inputs = {names[0]: instance.numpy(), "preferences": preferences.numpy()}
     if "repairs" in names:
@@ -52,29 +53,29 @@ def compare(
 ) -> None:
     """Build tours both ways, for all these numbers of cities and of preferences.
 
-    Those of PA-One are repaired, for each of these numbers of repairs; above 200 cities once at
-    most.
+    They are built under two objectives, then under each greater number that the actor takes. Those
+    of PA-One are repaired, for each of these numbers of repairs; above 200 cities once at most.
 
     Raises:
         TourMismatch: some tour differs, and not only after a tie; or a dimension of the graph's
             interface that should be dynamic is fixed.
     """
-    _check_dimensions(model)
+    _check_dimensions(model, actor)
     running = session(model)
-    for n in sizes:
+    for m, n in product(range(2, actor.most_objectives + 1), sizes):
         generator = Generator().manual_seed(n)
-        instance = _instance(actor, n, generator)
+        instance = _instance(actor, n, generator, m)
         for k in counts:
-            preferences = fan_of_preferences(k, torch.device("cpu"))
+            preferences = fan_or_lattice(k, m, torch.device("cpu"))
             for times in _numbers_of_repairs(actor, n, repairs):
                 _compare_tours(actor, running, instance, preferences, times)
 
 
-def _instance(actor: Actor, n: int, generator: Generator) -> Tensor:
+def _instance(actor: Actor, n: int, generator: Generator, objectives: int) -> Tensor:
     """Draw an instance as the actor reads it; matrices differ by direction."""
     if actor.reads == "matrices":
-        return torch.rand(1, 2, n, n, generator=generator)
-    return uniform_cities(1, n, generator, torch.device("cpu"))
+        return torch.rand(1, objectives, n, n, generator=generator)
+    return uniform_cities(1, n, generator, torch.device("cpu"), objectives)
 
 
 def _numbers_of_repairs(actor: Actor, n: int, repairs: Sequence[int]) -> Sequence[int]:
@@ -105,11 +106,12 @@ def _compare_tours(
         )
 
 
-def _check_dimensions(model: ModelProto) -> None:
+def _check_dimensions(model: ModelProto, actor: Actor) -> None:
+    is_of_two = actor.most_objectives == 2
     expected = {
-        "cities": ["n", 4],
-        "matrices": [2, "n", "n"],
-        "preferences": ["k", 2],
+        "cities": ["n", 4 if is_of_two else "x"],
+        "matrices": [2 if is_of_two else "m", "n", "n"],
+        "preferences": ["k", 2 if is_of_two else "m"],
         "repairs": [],
         "tours": ["k", "n"],
         "visited": ["k", "n"],

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from export.pa_one_names import MATRICES, Names
-from export.pa_one_text import BLOCKS, GRAPH, JOINING, REJOINING
+from export.pa_one_text import BLOCKS, GRAPH, JOINING, PRICES, REJOINING
 from models.networks.joining.shortlists import Sizes
 from models.rollout_repairs import Cut
 
@@ -57,19 +57,18 @@ def graph(names: Names, opset: int, sizes: GraphSizes) -> str:
         late_cut=sizes.late.cities,
         late_from=sizes.late_from,
         given=names.instance,
-        instance="float[2, n, n]" if is_matrices else "float[n, 4]",
+        instance="float[m, n, n]" if is_matrices else "float[n, x]",
         cities_axis="start = 1, end = 2" if is_matrices else "start = 0, end = 1",
-        prepared=_listed((*names.problem, *names.known)),
+        prepared=_listed((*names.tables, "weights")),
+        prices=_prices(names) if is_matrices else "",
         knots=sizes.lists.knots,
         no_lists=_listed(("no_cities",) + ("no_costs",) * (len(names.lists) - 1)),
         lists=_listed(names.lists),
-        lists_so_far=_types_of_lists(names, "so_far_", "done"),
-        more_lists=_types_of_lists(names, "longer_", "grown"),
+        lists_so_far=_types_of_lists(names.lists, "so_far_", "[g, done, l]"),
+        more_lists=_types_of_lists(names.lists, "longer_", "[g, grown, l]"),
         new_lists=_listed(names.lists, "new_"),
         tables_and_known=_listed((*names.tables, *names.known)),
-        lists_appended="\n".join(
-            f"longer_{name} = Concat <axis = 1> (so_far_{name}, new_{name})" for name in names.lists
-        ),
+        lists_appended=_appended(names.lists, axis=1),
         blocks_of_rows=BLOCKS.substitute(times="blocks", size="size", entries="entries", count="k"),
         blocks_of_cities=BLOCKS.substitute(
             times="times", size="at_a_time", entries="costs_of_a_city", count="n"
@@ -87,11 +86,48 @@ def graph(names: Names, opset: int, sizes: GraphSizes) -> str:
     )
 
 
-def _types_of_lists(names: Names, prefix: str, cities: str) -> str:
-    kinds = ("int64", *("float",) * (len(names.lists) - 1))
+def _types_of_lists(names: tuple[str, ...], prefix: str, shape: str) -> str:
+    kinds = ("int64", *("float",) * (len(names) - 1))
     return ", ".join(
-        f"{kind}[g, {cities}, l] {prefix}{name}"
-        for kind, name in zip(kinds, names.lists, strict=True)
+        f"{kind}{shape} {prefix}{name}" for kind, name in zip(kinds, names, strict=True)
+    )
+
+
+def _appended(names: tuple[str, ...], axis: int) -> str:
+    """Return the lines that append new tensors to those that a loop has so far."""
+    return "\n".join(
+        f"longer_{name} = Concat <axis = {axis}> (so_far_{name}, new_{name})" for name in names
+    )
+
+
+def _prices(names: Names) -> str:
+    """Return the lines that find the prices of all rows, and those that are known at the knots."""
+
+    def typed(given: tuple[str, ...], prefix: str, shape: str) -> str:
+        return ", ".join(f"float{shape} {prefix}{name}" for name in given)
+
+    return PRICES.substitute(
+        prices=_listed(names.prices),
+        known=_listed(names.known),
+        tables=_listed(names.tables),
+        flat_prices=typed(names.prices, "flat_", "[k, n]"),
+        flat_known=typed(names.known, "flat_", "[g, n]"),
+        names_flat_prices=_listed(names.prices, "flat_"),
+        names_flat_known=_listed(names.known, "flat_"),
+        own_prices=typed(names.prices, "own_", "[k, n]"),
+        no_known=typed(names.known, "no_", "[g, n]"),
+        names_own_prices=_listed(names.prices, "own_"),
+        names_no_known="\n".join(
+            f"no_{name} = Identity (no_rows_of_prices)" for name in names.known
+        ),
+        blocks_of_priced_rows=BLOCKS.substitute(
+            times="priced_times", size="priced_at_a_time", entries="pairs_of_cities", count="k"
+        ),
+        no_prices=_listed(("no_rows_of_prices",) * len(names.prices)),
+        prices_so_far=typed(names.prices, "so_far_", "[done, n]"),
+        more_prices=typed(names.prices, "longer_", "[grown, n]"),
+        new_prices=_listed(names.prices, "new_"),
+        prices_appended=_appended(names.prices, axis=0),
     )
 
 
@@ -105,6 +141,23 @@ def _joining(names: Names) -> str:
         costs=_listed(names.costs),
         lists=_listed(names.lists),
         row_lists=_listed(names.row_lists),
+        flat_row_lists=_types_of_lists(names.row_lists, "flat_", "[r, n, l]"),
+        names_flat_row_lists=_listed(names.row_lists, "flat_"),
+        own_row_lists=_types_of_lists(names.row_lists, "own_", "[r, n, l]"),
+        names_own_row_lists=_listed(names.row_lists, "own_"),
+        blocks_of_cities_in_block=BLOCKS.substitute(
+            times="own_times",
+            size="own_at_a_time",
+            entries="costs_of_a_city_in_block",
+            count="n",
+        ),
+        no_row_lists=_listed(
+            ("no_cities_of_rows",) + ("no_costs_of_rows",) * (len(names.row_lists) - 1)
+        ),
+        row_lists_so_far=_types_of_lists(names.row_lists, "so_far_", "[r, done, l]"),
+        more_row_lists=_types_of_lists(names.row_lists, "longer_", "[r, grown, l]"),
+        new_row_lists=_listed(names.row_lists, "new_"),
+        row_lists_appended=_appended(names.row_lists, axis=1),
         begun=_listed(kept),
         last=_listed(kept, "last_"),
         given_to_join=_typed(kept, "all_", "e"),

@@ -5,22 +5,15 @@ from torch import Tensor, nn
 
 from export.onnx_parts import Part
 from export.pa_one_names import Names
-from export.repairs import Rejoin, as_costs, as_problem, as_tensors, left_of, nearly_solved, present
-from models.data.preferences import turned_outwards, weights
+from export.repairs import Rejoin, as_problem, as_tensors, left_of, nearly_solved, present
+from models.data.preferences import weights
 from models.networks.joining.candidates import cheaper_starts
 from models.networks.joining.contraction import contracted, expanded
-from models.networks.joining.costs import Costs, Prices, Problem
+from models.networks.joining.costs import Costs, Matrices, Problem
 from models.networks.joining.fragments import Fragments, all_alone, cleared
-from models.networks.joining.prices import priced_problem
+from models.networks.joining.prices import prices_of
 from models.networks.joining.repairs import last_two_joined
-from models.networks.joining.shortlists import (
-    RowLists,
-    Shortlists,
-    first_of,
-    lists_of_rows,
-    shortlists,
-    shortlists_of,
-)
+from models.networks.joining.shortlists import RowLists, first_of, own_lists, own_lists_of
 from models.networks.joining.walks import (
     Walks,
     begun_at,
@@ -35,52 +28,45 @@ _WALKS = ["onwards", "steps", "begin", "last"]
 
 
 class _Prepare(nn.Module):
-    """The costs in each objective, the weights of each preference, its prices and those known."""
+    """The costs in each objective, and the weights of each preference."""
 
     def __init__(self, actor: OneActor) -> None:
         super().__init__()
         self.actor = actor
 
     def forward(self, instance: Tensor, preferences: Tensor) -> tuple[Tensor, ...]:
-        costs = self.actor.costs(instance)
-        known = self.actor.known_prices(costs)
-        rows = weights(turned_outwards(preferences))
-        return *as_tensors(priced_problem(costs, rows, known)), *(known or ())
+        return *self.actor.costs(instance), weights(preferences)
 
 
-class _List(nn.Module):
-    """The shortlists of some cities."""
+class _OwnPrices(nn.Module):
+    """The prices of the cities in each row, from its own weights."""
 
-    def __init__(self, actor: OneActor) -> None:
-        super().__init__()
-        self.knots = actor.list_sizes.knots
+    def forward(self, tables: tuple[Tensor, ...], rows: Tensor) -> tuple[Tensor, ...]:
+        return prices_of(Matrices(*tables), rows)
+
+
+class _OwnLists(nn.Module):
+    """The lists of some cities in each row, from its own weights."""
 
     def forward(
-        self,
-        tables: tuple[Tensor, ...],
-        known: tuple[Tensor, ...],
-        some: Tensor,
-        listed: Tensor,
+        self, given: tuple[Tensor, ...], some: Tensor, listed: Tensor
     ) -> tuple[Tensor, ...]:
-        prices = Prices(*known) if known else None
-        costs = as_costs(tables)
-        return present(shortlists_of(some, costs, self.knots, listed.shape[0], prices))
+        return present(own_lists_of(some, as_problem(given), listed.shape[0]))
 
 
 class _Begin(nn.Module):
-    """The lists of the rows, the least cost of each city, and the fragments after one round."""
+    """The least cost of each city, and the fragments after one round."""
 
     def __init__(self, actor: OneActor) -> None:
         super().__init__()
         self.actor = actor
 
     def forward(self, given: tuple[Tensor, ...], lists: tuple[Tensor, ...]) -> tuple[Tensor, ...]:
-        problem = as_problem(given)
-        of_rows = lists_of_rows(Shortlists(*lists), problem.weights)
+        problem, of_rows = as_problem(given), RowLists(*lists)
         before = all_alone(of_rows.means[..., 0], leaning=self.actor.has_directions)
         candidates = first_of(of_rows, self.actor.candidates)
         after = self.actor.round(problem, before, candidates, self.actor.joinings)
-        return *present(of_rows), least_costs(candidates), *_listed(self.actor, before, after)
+        return least_costs(candidates), *_listed(self.actor, before, after)
 
 
 class _Round(nn.Module):
@@ -163,10 +149,7 @@ def parts(
     """
     problem, some, more = state
     with torch.no_grad():
-        known = actor.known_prices(problem.costs)
-        sizes = actor.list_sizes.knots, len(listed[1])
-        lists = shortlists(problem.costs, *sizes, known)
-        row_lists = lists_of_rows(lists, problem.weights)
+        row_lists = own_lists(problem, len(listed[1]))
         between, few = contracted(problem, more)
     solved = nearly_solved(actor, between, few, some.ends.shape[1])
     linked = some._replace(links=some.links.clamp(min=0))  # to any cities
@@ -178,24 +161,31 @@ def parts(
         [*names.problem, *in_rows, *fragments],
         after,
     )
+    own_prices: Part = (
+        _OwnPrices(),
+        (tuple(problem.costs), problem.weights),
+        [*names.tables, "weights"],
+        list(names.prices),
+    )
     return {
+        **({"OwnPrices": own_prices} if names.prices else {}),
         "Prepare": (
             _Prepare(actor),
             given,
             [names.instance, "preferences"],
-            [*names.problem, *names.known],
+            [*names.tables, "weights"],
         ),
-        "List": (
-            _List(actor),
-            (tuple(problem.costs), tuple(known or ()), *listed),
-            [*names.tables, *names.known, "some_cities", "on_a_list"],
-            list(names.lists),
+        "OwnLists": (
+            _OwnLists(),
+            (tensors, *listed),
+            [*names.problem, "some_cities", "on_a_list"],
+            list(in_rows),
         ),
         "Begin": (
             _Begin(actor),
-            (tensors, present(lists)),
-            [*names.problem, *names.lists],
-            [*in_rows, "least", *after],
+            (tensors, present(row_lists)),
+            [*names.problem, *in_rows],
+            ["least", *after],
         ),
         "Round": (_Round(actor, actor.joinings), *a_round),
         "RoundOfMany": (_Round(actor, actor.joinings_of_many), *a_round),

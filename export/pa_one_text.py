@@ -9,13 +9,16 @@ domain `paretour` are the parts that `export.pa_one` puts in.
 There is one text for coordinates and for matrices. Where costs have directions, the tables of
 costs, the shortlists and the fragments also have tensors of leans, and there are prices; a block
 takes the prices of its rows.
+
+Under two objectives shortlists are made once, for intervals of weights, and so are prices. Under
+more each row has its own.
 """
 
 from string import Template
 
 GRAPH = Template("""
 <ir_version: 10, opset_import: ["": $opset, "paretour": 1]>
-actor ($instance $given, float[k, 2] preferences, int64 repairs)
+actor ($instance $given, float[k, m] preferences, int64 repairs)
     => (int64[k, n] tours, int64[k, n] visited)
 {
     zero = Constant <value_ints = [0]> ()
@@ -45,8 +48,21 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
     $blocks_of_rows
     shape_of_nothing = Concat <axis = 0> (zero, n)
     nothing = ConstantOfShape <value = int64[1] {0}> (shape_of_nothing)
-    $prepared = paretour.Prepare ($given, preferences)
-
+    m = Shape <start = 1, end = 2> (preferences)
+    two = Constant <value_ints = [2]> ()
+    are_two = Equal (m, two)
+    is_flat = Squeeze (are_two)
+    aimed = If (is_flat) <
+        then_branch = flat () => (float[k, m] turned_preferences)
+        {
+            turned_preferences = paretour.Turn (preferences)
+        },
+        else_branch = round () => (float[k, m] same_preferences)
+        {
+            same_preferences = Identity (preferences)
+        }>
+    $prepared = paretour.Prepare ($given, aimed)
+    $prices
     all_cities = Range (nought, cities_in_all, unit)
     knots = Constant <value_ints = [$knots]> ()
     costs_of_a_city = Mul (n, knots)
@@ -55,7 +71,9 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
     shape_of_no_lists = Concat <axis = 0> (intervals, zero, length)
     no_cities = ConstantOfShape <value = int64[1] {0}> (shape_of_no_lists)
     no_costs = ConstantOfShape <value = float[1] {0}> (shape_of_no_lists)
-    $lists = Loop (times, , $no_lists) <body = add_lists
+    no_times = Constant <value_int = 0> ()
+    times_if_flat = Where (is_flat, times, no_times)
+    $lists = Loop (times_if_flat, , $no_lists) <body = add_lists
         (int64 time, bool before_lists, $lists_so_far) => (bool after_lists, $more_lists)
         {
             after_lists = Identity (before_lists)
@@ -96,10 +114,10 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
     built_points, built_freshness = paretour.Unrepaired ($tables, built)
     tours, points, visited, visited_points, freshness = Loop
         (repairs, , built, built_points, built, built_points, built_freshness) <body = repair
-        (int64 number, bool repairing, int64[k, n] tours_in, float[k, 2] points_in,
-         int64[k, n] visited_in, float[k, 2] visited_points_in, float[k, n] freshness_in)
-        => (bool repair_on, int64[k, n] tours_out, float[k, 2] points_out,
-            int64[k, n] visited_out, float[k, 2] visited_points_out, float[k, n] freshness_out)
+        (int64 number, bool repairing, int64[k, n] tours_in, float[k, m] points_in,
+         int64[k, n] visited_in, float[k, m] visited_points_in, float[k, n] freshness_in)
+        => (bool repair_on, int64[k, n] tours_out, float[k, m] points_out,
+            int64[k, n] visited_out, float[k, m] visited_points_out, float[k, n] freshness_out)
         {
             repair_on = Identity (repairing)
             is_late = GreaterOrEqual (number, late_from)
@@ -121,8 +139,33 @@ actor ($instance $given, float[k, 2] preferences, int64 repairs)
 
 # Of cities, with candidates from lists while many ends are open; then the problem is contracted.
 JOINING = Template("""
-            $row_lists, least_edges, $begun, unfinished = paretour.Begin
-                ($problem_of_block, $lists)
+            $row_lists = If (is_flat) <
+                then_branch = of_intervals () => ($flat_row_lists)
+                {
+                    $names_flat_row_lists = paretour.ListRows (block_weights, $lists)
+                },
+                else_branch = of_rows () => ($own_row_lists)
+                {
+                    rows_of_block = Shape <start = 0, end = 1> (block_weights)
+                    costs_of_a_city_in_block = Mul (n, rows_of_block)
+                    $blocks_of_cities_in_block
+                    shape_of_no_rows = Concat <axis = 0> (rows_of_block, zero, length)
+                    no_cities_of_rows = ConstantOfShape <value = int64[1] {0}> (shape_of_no_rows)
+                    no_costs_of_rows = ConstantOfShape <value = float[1] {0}> (shape_of_no_rows)
+                    $names_own_row_lists = Loop (own_times, , $no_row_lists) <body = add_row_lists
+                        (int64 own_time, bool before_own, $row_lists_so_far)
+                        => (bool after_own, $more_row_lists)
+                        {
+                            after_own = Identity (before_own)
+                            own_first = Mul (own_time, own_at_a_time)
+                            own_beyond = Add (own_first, own_at_a_time)
+                            own_cities = Slice (all_cities, own_first, own_beyond, zero)
+                            $new_row_lists = paretour.OwnLists
+                                ($problem_of_block, own_cities, on_a_list)
+                            $row_lists_appended
+                        }>
+                }>
+            least_edges, $begun, unfinished = paretour.Begin ($problem_of_block, $row_lists)
             $last = Loop (cities_in_all, unfinished, $begun) <body = join
                 (int64 round, bool going_on, $given_to_join)
                 => (bool go_on, $joined)
@@ -145,6 +188,34 @@ JOINING = Template("""
             $rejoining_of_few
             onwards, ahead, begin, last_departure, is_unseen = paretour.Finish
                 ($problem_of_block, $sliced_last, $costs, $solved)
+""")
+
+# Of rows that share those of the knots, or have their own.
+PRICES = Template("""
+    $prices, $known = If (is_flat) <
+        then_branch = of_knots () => ($flat_prices, $flat_known)
+        {
+            $names_flat_known = paretour.Know ($tables)
+            $names_flat_prices = paretour.Price (weights, $names_flat_known)
+        },
+        else_branch = of_each_row () => ($own_prices, $no_known)
+        {
+            pairs_of_cities = Mul (n, n)
+            $blocks_of_priced_rows
+            no_rows_of_prices = ConstantOfShape <value = float[1] {0}> (shape_of_nothing)
+            $names_no_known
+            $names_own_prices = Loop (priced_times, , $no_prices) <body = add_prices
+                (int64 priced_time, bool before_prices, $prices_so_far)
+                => (bool after_prices, $more_prices)
+                {
+                    after_prices = Identity (before_prices)
+                    priced_first = Mul (priced_time, priced_at_a_time)
+                    priced_beyond = Add (priced_first, priced_at_a_time)
+                    priced_weights = Slice (weights, priced_first, priced_beyond, zero)
+                    $new_prices = paretour.OwnPrices ($tables, priced_weights)
+                    $prices_appended
+                }>
+        }>
 """)
 
 # Of a few fragments, until two are left at most.

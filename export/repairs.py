@@ -132,7 +132,7 @@ def repair_parts(
     tables = tuple(costs)
     r, n = len(rows), costs.n
     tours = torch.arange(n).repeat(r, 1)
-    points, freshness = torch.rand(r, 2), torch.rand(r, n)
+    points, freshness = torch.rand(rows.shape), torch.rand(r, n)
     # All different tensors: one that is given twice would be one input.
     state = (tours, points, tours.clone(), points.clone(), freshness)
     sizes = tuple(torch.zeros(count) for count in cities_cut)

@@ -51,7 +51,7 @@ def new_run(config: TrainingConfig, device: torch.device) -> Run:
     actor = build(config.network, config.seed).to(device)
     with torch.random.fork_rng():
         torch.manual_seed(config.seed + 1)
-        critic = Critic(config.network, actor.reads).to(device)
+        critic = Critic(config.network, actor.reads, config.objectives).to(device)
     return Run(
         config=config,
         device=device,

@@ -5,6 +5,7 @@ from typing import Any
 
 from models.networks.actor import Architecture
 from models.networks.build import ACTORS
+from models.networks.pa_one import OneActor
 from models.options import setting
 
 NAMES = tuple(ACTORS)
@@ -49,6 +50,7 @@ class TrainingConfig:
     objective: str = setting(
         "weighted-sum", "lagrangian (the paper's), weighted-sum, imitation or repairs"
     )
+    objectives: int = setting(2, "objectives of an instance, two to four; more than two of PA-One")
     baseline: str = setting("shared", "critic (the paper's) or shared: the mean over starts")
     steps: int = setting(10_000, "steps in all, at whose end the learning rate ends")
     instances: int = setting(8, "instances a step")
@@ -91,6 +93,13 @@ class TrainingConfig:
             )
         if self.objective == "repairs" and not self.network.repairs:
             raise ValueError(f"{self.network.name} makes no repairs to learn from")
+        most = OneActor.most_objectives if self.network.name == "pa-one" else 2
+        if not 2 <= self.objectives <= most:
+            raise ValueError(
+                f"objectives of {self.network.name} must be from 2 to {most}, got {self.objectives}"
+            )
+        if self.objectives > 2 and self.objective == "lagrangian":
+            raise ValueError(f"the Lagrangian is of two objectives, got {self.objectives}")
 
 
 def as_plain(config: TrainingConfig) -> dict[str, Any]:
@@ -99,11 +108,12 @@ def as_plain(config: TrainingConfig) -> dict[str, Any]:
 
 
 def from_plain(plain: dict[str, Any]) -> TrainingConfig:
-    """Return the configuration that `as_plain` wrote.
+    """Return the configuration that `as_plain` wrote; earlier ones were all of two objectives.
 
     Raises:
         ValueError: a name is unknown or missing.
     """
+    plain = {"objectives": 2} | plain
     expected = {f.name for f in fields(TrainingConfig)}
     if set(plain) != expected:
         raise ValueError(f"fields must be {sorted(expected)}, got {sorted(plain)}")

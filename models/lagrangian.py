@@ -1,7 +1,7 @@
 """The objectives that training minimises: the Lagrangian and the weighted sum.
 
 Mehta, Taghipour and Saeedi (2022), arXiv:2203.01298, equations 10 to 18: make the norm of a
-tour's two lengths small, while the vector of lengths points along the preference. The weighted
+tour's lengths small, while the vector of lengths points along the preference. The weighted
 sum is the usual alternative, of the linear scalarisation that the paper compares with.
 """
 
@@ -12,15 +12,15 @@ from models.data.preferences import weights
 
 
 def violation(
-    points: Float[Tensor, "b k 2"], preferences: Float[Tensor, "k 2"]
+    points: Float[Tensor, "b k m"], preferences: Float[Tensor, "k m"]
 ) -> Float[Tensor, "b k"]:
     """Return one minus the cosine of the angle between each point and its preference."""
     return 1 - (points * preferences).sum(-1) / points.norm(dim=-1)
 
 
 def lagrangian(
-    points: Float[Tensor, "b k 2"],
-    preferences: Float[Tensor, "k 2"],
+    points: Float[Tensor, "b k m"],
+    preferences: Float[Tensor, "k m"],
     multipliers: Float[Tensor, " k"],
 ) -> Float[Tensor, "b k"]:
     """Return the norm of each point plus its preference's multiplier times its violation."""
@@ -39,7 +39,7 @@ def ascended(
 
 
 def weighted_sum(
-    points: Float[Tensor, "b k 2"], preferences: Float[Tensor, "k 2"]
+    points: Float[Tensor, "b k m"], preferences: Float[Tensor, "k m"]
 ) -> Float[Tensor, "b k"]:
     """Return the sum of each point's lengths under the weights that go with its preference."""
     return (points * weights(preferences)).sum(-1)

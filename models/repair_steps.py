@@ -13,7 +13,6 @@ from jaxtyping import Float, Int
 from torch import Tensor
 
 from models.checkpoint import Run
-from models.data.preferences import turned_outwards, weights
 from models.networks.joining.costs import Problem
 from models.networks.joining.fragments import Fragments
 from models.networks.joining.repairs import (
@@ -24,7 +23,7 @@ from models.networks.joining.repairs import (
     last_two_joined,
     repair_problem,
 )
-from models.networks.pa_one import OneActor
+from models.networks.pa_one import OneActor, rows_of
 from models.networks.rows import repeated, split, stacked
 from models.rollout_pa_one import joined_by_chance
 from models.rollout_repairs import (
@@ -54,7 +53,7 @@ class _Chain(NamedTuple):
 def repair_step(run: Run) -> StepMeans:
     """Draw instances, build their tours, and descend after each of many repairs."""
     actor = cast(OneActor, run.actor)
-    preferences = weights(turned_outwards(drawn_preferences(run)))
+    preferences = rows_of(drawn_preferences(run))
     chains = [_begun(actor, instance, preferences) for instance in drawn_instances(run)]
     losses = []
     for number in torch.arange(_REPAIRS):
@@ -69,7 +68,7 @@ def repair_step(run: Run) -> StepMeans:
 
 
 @torch.no_grad()
-def _begun(actor: OneActor, instance: Tensor, rows: Float[Tensor, "r 2"]) -> _Chain:
+def _begun(actor: OneActor, instance: Tensor, rows: Float[Tensor, "r m"]) -> _Chain:
     problem = actor.problem(instance, rows)
     least = least_costs(actor.first_candidates(problem))
     return _Chain(problem, least, unrepaired(problem.costs, actor.built(problem)))
@@ -136,5 +135,5 @@ def _after(chain: _Chain, cities: Int[Tensor, "r m"], tours: Int[Tensor, "r n"])
     return chain._replace(state=state)
 
 
-def _weighted(chain: _Chain, points: Float[Tensor, "r 2"]) -> Float[Tensor, " r"]:
+def _weighted(chain: _Chain, points: Float[Tensor, "r m"]) -> Float[Tensor, " r"]:
     return (points * chain.problem.weights).sum(dim=1)

@@ -17,7 +17,7 @@ from models.config import TrainingConfig
 from models.data.dataset import Batch, Labels
 from models.data.instances import city_count, tour_lengths, uniform_cities
 from models.data.matrices import any_matrices
-from models.data.preferences import fan_of_preferences, spread_preferences
+from models.data.preferences import fan_of_preferences, random_preferences
 from models.lagrangian import ascended, lagrangian, violation, weighted_sum
 from models.networks.matrix_features import unit_matrices
 
@@ -109,7 +109,7 @@ def drawn_instances(run: Run) -> Tensor:
     config, generator = run.config, run.instance_generator
     n = city_count(config.least_cities, config.most_cities, generator)
     if run.actor.reads == "coordinates":
-        return uniform_cities(config.instances, n, generator, run.device)
+        return uniform_cities(config.instances, n, generator, run.device, config.objectives)
     drawn = np.stack(
         [any_matrices(n, _numpy_generator(generator)) for _ in range(config.instances)]
     )
@@ -125,7 +125,10 @@ def drawn_preferences(run: Run) -> Tensor:
     """Return the paper's fixed fan if each preference has a multiplier; else draw preferences."""
     if run.config.objective == "lagrangian":
         return fan_of_preferences(run.config.preferences, run.device)
-    return spread_preferences(run.config.preferences, run.instance_generator, run.device)
+    config = run.config
+    return random_preferences(
+        config.preferences, config.objectives, run.instance_generator, run.device
+    )
 
 
 def _baseline(run: Run, instances: Tensor, preferences: Tensor, objectives: Tensor) -> Tensor:

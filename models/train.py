@@ -73,7 +73,7 @@ def main(arguments: list[str] | None = None, counts: dict[int, int] = COUNTS) ->
         raise ValueError(f"{name} trains in {precisions}, got precision {options.precision}")
     run.precision = getattr(torch, options.precision)
     labels = Labels(options.labels) if options.labels else None
-    validation = validation_sets(run.actor.reads, counts, device)
+    validation = validation_sets(run.actor.reads, counts, device, run.config.objectives)
     train(run, run.config.steps, validation, options.out, labels)
 
 

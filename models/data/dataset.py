@@ -16,9 +16,10 @@ from models.data.instances import are_matrices
 
 @dataclass(frozen=True, eq=False)
 class Shard:
-    """Instances, preferences (k, 2) by ascending angle, and their tours (m, k, n).
+    """Instances of m objectives, preferences (k, m), and their tours (b, k, n).
 
-    The instances are cities (m, n, 4) or matrices (m, 2, n, n).
+    Under two objectives, preferences are by ascending angle. The instances are cities (b, n, 2m) or
+    matrices (b, m, n, n).
     """
 
     instances: NDArray[np.float32]
@@ -44,13 +45,14 @@ class Shard:
 
 
 class Batch(NamedTuple):
-    """Instances, cities (b, n, 4) or matrices (b, 2, n, n), and tours of each.
+    """Instances, cities (b, n, 2m) or matrices (b, m, n, n), and tours of each.
 
-    Preferences are by ascending angle; for each there is a tour from several starts.
+    Under two objectives, preferences are by ascending angle. For each there is a tour from several
+    starts.
     """
 
     instances: Tensor
-    preferences: Float[Tensor, "k 2"]
+    preferences: Float[Tensor, "k m"]
     tours: Int[Tensor, "b ks n"]
 
 
@@ -98,22 +100,22 @@ def _one_of_each_stretch(count: int, k: int, generator: Generator) -> Int[Tensor
     return (shares * count).long().clamp(max=count - 1)
 
 
-def _mirrored(cities: Float[Tensor, "b n 4"], generator: Generator) -> Float[Tensor, "b n 4"]:
+def _mirrored(cities: Float[Tensor, "b n x"], generator: Generator) -> Float[Tensor, "b n x"]:
     """Apply one of the eight symmetries of the square to each instance and plane."""
-    b, n, _ = cities.shape
-    planes = cities.view(b, n, 2, 2)
-    swap = torch.rand(b, 1, 2, 1, generator=generator) < 0.5
+    b, m = cities.shape[0], cities.shape[2] // 2
+    planes = cities.unflatten(2, (m, 2))
+    swap = torch.rand(b, 1, m, 1, generator=generator) < 0.5
     planes = torch.where(swap, planes.flip(-1), planes)
-    flip = torch.rand(b, 1, 2, 2, generator=generator) < 0.5
-    return torch.where(flip, 1 - planes, planes).view(b, n, 4)
+    flip = torch.rand(b, 1, m, 2, generator=generator) < 0.5
+    return torch.where(flip, 1 - planes, planes).flatten(2)
 
 
 def _exchanged(batch: Batch) -> Batch:
-    """Exchange the objectives: the preference at angle a becomes that at 90 degrees minus a."""
+    """Exchange the first objective for the last, and so on: of two, the angles ascend again."""
     if are_matrices(batch.instances):
         instances = batch.instances.flip(1)
     else:
-        instances = batch.instances.roll(2, dims=-1)
+        instances = batch.instances.unflatten(2, (-1, 2)).flip(2).flatten(2)
     return Batch(instances, batch.preferences.flip(0, 1), batch.tours.flip(1))
 
 

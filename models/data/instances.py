@@ -1,8 +1,8 @@
 """Instances as tensors: uniform ones, tour lengths, starts.
 
-An instance is given by its cities (n, 4), columns 0-1 in plane 1 and 2-3 in plane 2, or by its
-matrices of costs (2, n, n). A batch has the axis b before: (b, n, 4) or (b, 2, n, n). The last
-axis but one counts the cities of both.
+An instance of m objectives is given by its cities (n, 2m), columns 0-1 in plane 1, 2-3 in plane 2
+and so on, or by its matrices of costs (m, n, n). A batch has the axis b before: (b, n, 2m) or
+(b, m, n, n). The last axis but one counts the cities of both.
 """
 
 import torch
@@ -11,17 +11,22 @@ from torch import Generator, Tensor
 
 
 def uniform_cities(
-    count: int, cities: int, generator: Generator, device: torch.device
-) -> Float[Tensor, "b n 4"]:
-    """Draw cities uniform in the unit square of each plane."""
-    return torch.rand(count, cities, 4, generator=generator).to(device)
+    count: int, cities: int, generator: Generator, device: torch.device, objectives: int = 2
+) -> Float[Tensor, "b n x"]:
+    """Draw cities uniform in the unit square of each plane, one an objective."""
+    return torch.rand(count, cities, 2 * objectives, generator=generator).to(device)
 
 
 def uniform_instances(
-    reads: str, count: int, cities: int, generator: Generator, device: torch.device
+    reads: str,
+    count: int,
+    cities: int,
+    generator: Generator,
+    device: torch.device,
+    objectives: int = 2,
 ) -> Tensor:
     """Draw uniform cities, as an actor reads them: "coordinates", or "matrices" of distances."""
-    drawn = uniform_cities(count, cities, generator, device)
+    drawn = uniform_cities(count, cities, generator, device, objectives)
     return drawn if reads == "coordinates" else distance_matrices(drawn)
 
 
@@ -46,21 +51,23 @@ def are_matrices(instances: Tensor) -> bool:
     return instances.ndim == 4
 
 
-def distance_matrices(cities: Float[Tensor, "b n 4"]) -> Float[Tensor, "b 2 n n"]:
+def distance_matrices(cities: Float[Tensor, "b n x"]) -> Float[Tensor, "b m n n"]:
     """Return the distances in each plane.
 
     Written without cdist, which would freeze n when a network is exported.
     """
-    x, y = cities.transpose(1, 2)[:, 0::2], cities.transpose(1, 2)[:, 1::2]  # (b, 2, n)
+    x, y = cities.transpose(1, 2)[:, 0::2], cities.transpose(1, 2)[:, 1::2]  # (b, m, n)
     squares = (x[..., :, None] - x[..., None, :]) ** 2 + (y[..., :, None] - y[..., None, :]) ** 2
     return squares.sqrt()
 
 
-def tour_lengths(instances: Tensor, tours: Int[Tensor, "b r n"]) -> Float[Tensor, "b r 2"]:
-    """Return both lengths of each closed tour."""
+def tour_lengths(instances: Tensor, tours: Int[Tensor, "b r n"]) -> Float[Tensor, "b r m"]:
+    """Return the lengths of each closed tour."""
     b, r, n = tours.shape
     if are_matrices(instances):
-        steps = (tours * n + tours.roll(-1, dims=2)).view(b, 1, r * n).expand(-1, 2, -1)
-        return instances.flatten(2).gather(2, steps).view(b, 2, r, n).sum(dim=3).mT
-    visited = instances.gather(1, tours.reshape(b, -1, 1).expand(-1, -1, 4)).view(b, r, n, 2, 2)
+        steps = (tours * n + tours.roll(-1, dims=2)).view(b, 1, r * n)
+        steps = steps.expand(-1, instances.shape[1], -1)
+        return instances.flatten(2).gather(2, steps).view(b, -1, r, n).sum(dim=3).mT
+    places = tours.reshape(b, -1, 1).expand(-1, -1, instances.shape[2])
+    visited = instances.gather(1, places).view(b, r, n, -1, 2)
     return (visited - visited.roll(1, dims=2)).norm(dim=-1).sum(dim=2)

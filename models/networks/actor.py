@@ -44,8 +44,8 @@ class Architecture:
 class Actor(nn.Module, ABC):
     """A network that builds tours of instances, one for each preference.
 
-    Instances are cities (b, n, 4) where it reads coordinates, costs (b, 2, n, n) where it reads
-    matrices.
+    Instances of m objectives are cities (b, n, 2m) where it reads coordinates, costs (b, m, n, n)
+    where it reads matrices. Stepwise actors know two objectives.
     """
 
     reads: ClassVar[Literal["coordinates", "matrices"]]
@@ -55,6 +55,7 @@ class Actor(nn.Module, ABC):
     # Whether imitation differs by the city at which a tour starts.
     imitates_starts: ClassVar[bool] = True
     repairs_tours: ClassVar[bool] = False
+    most_objectives: ClassVar[int] = 2  # of an instance; two at least
 
     @property
     @abstractmethod
@@ -62,7 +63,7 @@ class Actor(nn.Module, ABC):
         """The stack of layers whose depth is a setting."""
 
     @abstractmethod
-    def tours(self, instances: Tensor, preferences: Float[Tensor, "k 2"]) -> Int[Tensor, "b k n"]:
+    def tours(self, instances: Tensor, preferences: Float[Tensor, "k m"]) -> Int[Tensor, "b k n"]:
         """Return the greedy tour of each instance for each preference."""
 
     def repaired_tours(

@@ -13,19 +13,19 @@ from models.networks.matrix_features import initial_features
 class Critic(nn.Module):
     """A predictor of the objective of the actor's tour, from an instance and a preference."""
 
-    def __init__(self, config: Architecture, reads: str) -> None:
+    def __init__(self, config: Architecture, reads: str, objectives: int = 2) -> None:
         super().__init__()
         self.encoder = AttentionEncoder(
-            4 if reads == "coordinates" else 12,
+            (2 if reads == "coordinates" else 6) * objectives,
             config.width,
             config.heads,
             config.layers,
             config.feedforward,
         )
-        self.encode_preference = nn.Linear(2, config.width)
+        self.encode_preference = nn.Linear(objectives, config.width)
         self.judge = feedforward(config.width, 1, hidden=config.width)
 
-    def forward(self, instances: Tensor, preferences: Float[Tensor, "k 2"]) -> Float[Tensor, "b k"]:
+    def forward(self, instances: Tensor, preferences: Float[Tensor, "k m"]) -> Float[Tensor, "b k"]:
         """Return the prediction for each instance, cities or matrices, and preference."""
         features = instances
         if are_matrices(instances):

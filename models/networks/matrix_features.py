@@ -11,14 +11,14 @@ from torch import Tensor
 _FAR = 1e9  # above every cost of a matrix whose largest entry is one
 
 
-def unit_matrices(matrices: Float[Tensor, "b 2 n n"]) -> Float[Tensor, "b 2 n n"]:
+def unit_matrices(matrices: Float[Tensor, "b m n n"]) -> Float[Tensor, "b m n n"]:
     """Return the matrices with an empty diagonal, each divided by its largest entry."""
     emptied = torch.where(_diagonal(matrices), 0.0, matrices)
     largest = emptied.amax(dim=(-2, -1), keepdim=True)
     return emptied / torch.where(largest > 0, largest, 1.0)
 
 
-def initial_features(matrices: Float[Tensor, "b 2 n n"]) -> Float[Tensor, "b n 2 6"]:
+def initial_features(matrices: Float[Tensor, "b m n n"]) -> Float[Tensor, "b n m 6"]:
     """Return the mean, least and largest cost of the steps from each city, then of those to it."""
     hidden = torch.where(_diagonal(matrices), _FAR, matrices)
     summaries = [

@@ -17,7 +17,7 @@ from jaxtyping import Bool, Float, Int
 from torch import Generator, Tensor, nn
 
 from models import rollout_pa_one
-from models.data.preferences import turned_outwards, weights
+from models.data.preferences import FLAT, turned_outwards, weights
 from models.networks.actor import Actor, Architecture
 from models.networks.joining.candidates import (
     Candidates,
@@ -47,6 +47,7 @@ from models.networks.joining.shortlists import (
     first_of,
     listed_candidates,
     lists_of_rows,
+    own_lists,
     shortlists,
 )
 from models.networks.layers import feedforward
@@ -70,6 +71,13 @@ _LEAST_ROUNDING, _ROUNDING_OF_A_CITY = 1e-6, 1e-8  # sums of more floats are les
 _ROUNDINGS = 8  # times that cities are moved so
 
 
+def rows_of(preferences: Float[Tensor, "k m"]) -> Float[Tensor, "k m"]:
+    """Return the weights of the row of each preference."""
+    if preferences.shape[1] == FLAT:
+        preferences = turned_outwards(preferences)
+    return weights(preferences)
+
+
 class OneActor(Actor):
     """PA-One. Of the configuration it takes width, layers and feedforward."""
 
@@ -78,6 +86,7 @@ class OneActor(Actor):
     precisions = ("float32",)
     imitates_starts = False  # it learns edges
     repairs_tours = True
+    most_objectives = 4  # it knows no number of them; so many were tried
     has_directions: ClassVar[bool] = False  # or all steps cost as much as the step back
     candidates: ClassVar[int] = CANDIDATES  # of each end
     # Of fragments, for one evaluation of the network: in building tours, in building those of many
@@ -124,17 +133,17 @@ class OneActor(Actor):
         return torch.where(candidates.real, logits, -NEVER)
 
     @torch.no_grad()
-    def tours(self, instances: Tensor, preferences: Float[Tensor, "k 2"]) -> Int[Tensor, "b k n"]:
+    def tours(self, instances: Tensor, preferences: Float[Tensor, "k m"]) -> Int[Tensor, "b k n"]:
         """Return the greedy tour of each instance for each preference."""
-        rows = weights(turned_outwards(preferences))
+        rows = rows_of(preferences)
         return torch.stack([self.built(self.problem(instance, rows)) for instance in instances])
 
     @torch.no_grad()
     def repaired_tours(
-        self, instances: Tensor, preferences: Float[Tensor, "k 2"], repairs: int
+        self, instances: Tensor, preferences: Float[Tensor, "k m"], repairs: int
     ) -> tuple[Int[Tensor, "b k n"], Int[Tensor, "b k n"]]:
         """Return the greedy tours after the repairs, and for each another that they visited."""
-        rows = weights(turned_outwards(preferences))
+        rows = rows_of(preferences)
         built = self.tours(instances, preferences)
         states = [
             self._repaired(self.problem(instance, rows), tours, repairs)
@@ -160,7 +169,7 @@ class OneActor(Actor):
     def are_ties(
         self,
         instance: Tensor,
-        preferences: Float[Tensor, "k 2"],
+        preferences: Float[Tensor, "k m"],
         repairs: int,
         both: tuple[Int[Tensor, "k n"], Int[Tensor, "k n"]],
     ) -> Bool[Tensor, " k"]:
@@ -170,6 +179,10 @@ class OneActor(Actor):
         """
         tours, expected = both
         ties = (tours == expected).all(dim=1)
+        if ties.all():
+            return ties
+        preferences, expected = preferences[~ties], expected[~ties]  # rows are apart
+        moved_away = torch.zeros(len(expected), dtype=torch.bool)
         rounding = max(_LEAST_ROUNDING, _ROUNDING_OF_A_CITY * tours.shape[1])
         generator = Generator().manual_seed(0)
         for _ in range(_ROUNDINGS):
@@ -177,16 +190,27 @@ class OneActor(Actor):
             again = self.repaired_tours(moved, preferences, repairs)[0][0]
             if repairs > 0:
                 again = from_the_first_city(again)
-            ties |= (again != expected).any(dim=1)
+            moved_away |= (again != expected).any(dim=1)
+        ties[~ties] = moved_away
         return ties
 
-    def problem(self, instance: Tensor, weights: Float[Tensor, "r 2"]) -> Problem:
+    def problem(self, instance: Tensor, weights: Float[Tensor, "r m"]) -> Problem:
         """Return the problem that one instance is under the weights of each row."""
         costs = self.costs(instance)
+        if weights.shape[1] > FLAT:
+            return Problem(costs, weights, self.own_prices(costs, weights))
         return priced_problem(costs, weights, self.known_prices(costs))
 
     def known_prices(self, costs: Planes | Matrices) -> Prices | None:  # noqa: ARG002
-        """Return the prices of the cities at each knot, if there are any."""
+        """Return the prices of the cities at each knot of two objectives, if there are any."""
+        return None
+
+    def own_prices(
+        self,
+        costs: Planes | Matrices,  # noqa: ARG002
+        weights: Float[Tensor, "r m"],  # noqa: ARG002
+    ) -> Prices | None:
+        """Return the prices of the cities in each row, if there are any."""
         return None
 
     def first_candidates(self, problem: Problem) -> Candidates:
@@ -197,6 +221,8 @@ class OneActor(Actor):
         """Return the shortlists of each row."""
         costs, sizes = problem.costs, self.list_sizes
         length = sizes.length_of(costs.n)
+        if problem.weights.shape[1] > FLAT:
+            return own_lists(problem, length)
         lists = shortlists(costs, sizes.knots, length, self.known_prices(costs))
         return lists_of_rows(lists, problem.weights)
 
@@ -268,14 +294,14 @@ class OneActor(Actor):
         """Return how this actor judges edges, once for each `joinings` joinings."""
         return Judgement(self.edge_logits, self.candidates, joinings)
 
-    def _weighted_one_by_one(self, instances: Tensor, weights: Float[Tensor, "k 2"]) -> Costs:
+    def _weighted_one_by_one(self, instances: Tensor, weights: Float[Tensor, "k m"]) -> Costs:
         """Return the costs under the weights of each row of each instance, one after the other."""
         return stacked([self.problem(instance, weights).tables for instance in instances])
 
     def sampled_tours_with_log_likelihoods(
         self,
         instances: Tensor,
-        preferences: Float[Tensor, "k 2"],
+        preferences: Float[Tensor, "k m"],
         times: int,
         start_generator: Generator,  # noqa: ARG002, its tours start nowhere
         generator: Generator,
@@ -292,7 +318,7 @@ class OneActor(Actor):
     def imitation_loss(
         self,
         instances: Tensor,
-        preferences: Float[Tensor, "k 2"],
+        preferences: Float[Tensor, "k m"],
         tours: Int[Tensor, "b k n"],
     ) -> Float[Tensor, ""]:
         """Return the binary cross-entropy of each edge to a candidate, summed, for each end."""

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from models.networks.joining.costs import Matrices, Planes, Prices, padded_matrices
-from models.networks.joining.prices import KNOTS, prices_at_knots
+from models.networks.joining.prices import KNOTS, own_prices, prices_at_knots
 from models.networks.joining.shortlists import Sizes
 from models.networks.matrix_features import unit_matrices
 from models.networks.pa_one import OneActor
@@ -25,7 +25,7 @@ class OneMatrixActor(OneActor):
     repair_joinings = 2
     list_sizes = Sizes(KNOTS, length=24, short=24, ends=24, share=2)
 
-    def costs(self, instance: Float[Tensor, "2 n n"]) -> Matrices:
+    def costs(self, instance: Float[Tensor, "m n n"]) -> Matrices:
         """Return the costs of one instance in units of the largest of each matrix."""
         return padded_matrices(unit_matrices(instance[None])[0])
 
@@ -33,3 +33,8 @@ class OneMatrixActor(OneActor):
         """Return the prices of the cities at each knot."""
         assert isinstance(costs, Matrices)
         return prices_at_knots(costs)
+
+    def own_prices(self, costs: Planes | Matrices, weights: Float[Tensor, "r m"]) -> Prices:
+        """Return the prices of the cities in each row."""
+        assert isinstance(costs, Matrices)
+        return own_prices(costs, weights)

@@ -37,6 +37,7 @@ _NAMES = (
     "start",
     "tables",
     "training",
+    "tri",
     "weights",
 )
 

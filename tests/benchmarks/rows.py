@@ -3,7 +3,7 @@
 import os
 import time
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from tests.benchmarks.instances import reference_points
 from tests.benchmarks.provenance import load, provenance, store
 
 Points = NDArray[np.float64]
+Each = TypeVar("Each")  # an instance, as the benchmark measures it
 
 TOURS = 100  # of a front
 
@@ -41,8 +42,8 @@ def resume(
     benchmark: str,
     key: str,
     digest: str,
-    instances: Sequence[Instance],
-    measure: Callable[[Instance], Any],
+    instances: Sequence[Each],
+    measure: Callable[[Each], Any],
 ) -> None:
     """Measures the instances that have no result yet, storing after each.
 

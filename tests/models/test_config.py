@@ -17,6 +17,15 @@ from tests.helpers.small_runs import small_config
         ({"baseline": "critic"}, "starts must be 1"),
         ({"least_cities": 9}, "least <= most"),
         ({"steps": 0}, "steps must be at least 1"),
+        (
+            {"network": NetworkConfig(name="pa-at"), "objectives": 3},
+            "objectives of pa-at must be from 2 to 2",
+        ),
+        ({"objectives": 5}, "must be from 2 to 4"),
+        (
+            {"objectives": 3, "objective": "lagrangian"},
+            "the Lagrangian is of two objectives",
+        ),
     ],
 )
 def test_a_configuration_that_makes_no_sense_is_refused(
@@ -39,6 +48,12 @@ def test_a_configuration_survives_storage() -> None:
     assert from_plain(json.loads(json.dumps(as_plain(config)))) == config
     with pytest.raises(ValueError, match="fields must be"):
         from_plain({**as_plain(config), "surprise": 1})
+
+
+def test_a_configuration_from_before_there_were_three_objectives_is_of_two() -> None:
+    plain = as_plain(small_config())
+    del plain["objectives"]
+    assert from_plain(plain) == small_config(objectives=2)
 
 
 @pytest.mark.parametrize(

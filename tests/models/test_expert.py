@@ -5,9 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
 
 from models import expert
 from models.data.dataset import Shard
+from models.data.instances import tour_lengths
+from models.data.preferences import directions_of
 from models.expert import ExpertConfig, expert_tours
 from service import instance
 from service.instance import Instance
@@ -29,6 +32,19 @@ def test_the_expert_finds_the_best_tour_for_each_preference() -> None:
     found = expert_tours(cities, preferences, iterations=2000, seed=0)
     lengths = instance.tour_lengths(this, found) / this.scale
     assert (lengths * weights(preferences)).sum(axis=1) == pytest.approx(best)
+
+
+def test_the_expert_finds_the_best_tour_for_each_preference_of_three_objectives() -> None:
+    cities = np.random.default_rng(4).random((8, 6)) * (50, 50, 1, 1, 1, 1)
+    every = torch.tensor([(0, *rest) for rest in permutations(range(1, 8))])[None]
+    sides = np.ptp(cities.reshape(8, 3, 2), axis=0).max(axis=1)
+    rows = np.random.default_rng(5).dirichlet(np.ones(3), 6)
+    preferences = directions_of(torch.from_numpy(rows)).numpy()
+    this = torch.from_numpy(cities)[None]
+    best = (tour_lengths(this, every)[0].numpy() / sides @ rows.T).min(axis=0)
+    found = torch.from_numpy(expert_tours(cities, preferences, iterations=400, seed=0))[None]
+    lengths = tour_lengths(this, found)[0].numpy() / sides
+    assert (lengths * rows).sum(axis=1) == pytest.approx(best, rel=1e-2)
 
 
 def test_a_shard_follows_from_seed_and_number() -> None:

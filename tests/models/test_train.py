@@ -10,6 +10,7 @@ import torch
 from models import train
 from models.checkpoint import load_weights, new_run, save
 from models.config import TrainingConfig, from_plain
+from models.expert import ExpertConfig, make_shard
 from models.steps import policy_gradient_step
 from models.validation import validation_sets
 from tests.helpers.small_runs import small_config
@@ -53,6 +54,27 @@ def test_options_that_differ_from_those_of_the_run_are_refused_by_name(tmp_path:
     assert not (tmp_path / "weights.pt").exists()
     train.main(same, counts=COUNTS)
     assert load_weights(tmp_path / "weights.pt").step == 6
+
+
+def test_pa_one_learns_three_objectives_from_tours_and_then_from_repairs(tmp_path: Path) -> None:
+    labels, imitated, repaired = (tmp_path / name for name in ("labels", "imitated", "repaired"))
+    labels.mkdir()
+    config = ExpertConfig(objectives=3, instances=3, preferences=6, least_cities=12, most_cities=12)
+    make_shard(config, 0).save(labels / "shard-00000.npz")
+    command = ["--objectives", "3", "--steps", "1", "--instances", "2", "--preferences", "5"]
+    command += ["--width", "8", "--heads", "2", "--layers", "1", "--feedforward", "8"]
+    imitation = ["--objective", "imitation", "--labels", str(labels), "--baseline", "critic"]
+    train.main(["--out", str(imitated), *imitation, "--starts", "1", *command], COUNTS)
+    repairs = ["--objective", "repairs", "--initial", str(imitated / "weights.pt")]
+    sizes = ["--least-cities", "9", "--most-cities", "9", "--starts", "2"]
+    train.main(["--out", str(repaired), *repairs, *sizes, *command], COUNTS)
+    before, after = (load_weights(path / "weights.pt") for path in (imitated, repaired))
+    assert after.config.objectives == 3
+    pairs = zip(before.actor.parameters(), after.actor.parameters(), strict=True)
+    assert any(not torch.equal(*pair) for pair in pairs)
+    assert all(each.isfinite().all() for each in after.actor.parameters())
+    with (repaired / "log.csv").open() as file:
+        assert 0 < float(next(csv.DictReader(file))["hypervolume_6"]) < 1
 
 
 def test_products_of_less_precision_train_as_well(tmp_path: Path) -> None:

@@ -5,7 +5,8 @@ tours become shorter by the same amount. The remaining costs show better which s
 with the best prices of the assignment problem, only steps of optimal assignments cost nothing. The
 prices here are those of the assignment problem with entropy, which a few products of matrices find
 (Sinkhorn's iteration; Cuturi, 2013, arXiv:1306.0895). They are computed for some weights, the
-knots, and interpolated between these: inexact prices do no harm.
+knots, and interpolated between these: inexact prices do no harm. Under more than two objectives
+they are computed for the weights of each row.
 """
 
 import torch
@@ -14,12 +15,14 @@ from torch import Tensor
 
 from models.networks.joining.costs import Costs, Matrices, Planes, Prices, Problem, weighted_costs
 from models.networks.joining.fragments import NEVER
+from models.networks.rows import stacked
 
 KNOTS = 9  # weights for which prices are found
 _CHEAPEST = 4  # steps of each city, whose mean is the unit of the temperature
 _TEMPERATURE = 0.5
 _ITERATIONS = 10
 _LEAST_UNIT = 1e-6
+_ROOM = 3_000_000  # costs of the rows of which prices are found at a time
 _LEAST = 1e-30  # entry of a kernel: a city so far from all others gets no higher price
 
 
@@ -51,8 +54,19 @@ def priced_problem(
 
 
 def prices_at_knots(costs: Matrices) -> Prices:
-    """Return the prices of the cities at each knot, from the costs in each objective."""
-    return _prices(weighted_costs(costs.tables, knots(costs.means)))
+    """Return the prices of the cities at each knot, from the costs in both objectives."""
+    return prices_of(costs, knots(costs.means))
+
+
+def own_prices(costs: Matrices, weights: Float[Tensor, "r o"]) -> Prices:
+    """Return the prices of the cities in each row, found for some rows at a time."""
+    at_a_time = max(1, _ROOM // costs.n**2)
+    return stacked([prices_of(costs, some) for some in weights.split(at_a_time)])
+
+
+def prices_of(costs: Matrices, weights: Float[Tensor, "r o"]) -> Prices:
+    """Return the prices of the cities under the weights of each row."""
+    return _prices(weighted_costs(costs.tables, weights))
 
 
 def _prices(costs: Costs) -> Prices:

@@ -1,11 +1,12 @@
 """Shortlists: for each city the few others to which a step may cost least, found once.
 
-They are found for intervals of weights between knots, not for each row. With the weights of a knot,
-a step costs S + A and the step back S - A, where A is 0 in planes. Between two knots, S (with
-prices) and A are linear in the weights. So the cheaper direction, S - |A|, is never below the lower
-one of its values at both knots, and cities are listed by that value. The costs of a row are exact:
-they use its own weights. Ends of paths choose their candidates among the open ends on the lists of
-their cities.
+Under two objectives they are found for intervals of weights between knots, not for each row. With
+the weights of a knot, a step costs S + A and the step back S - A, where A is 0 in planes. Between
+two knots, S (with prices) and A are linear in the weights. So the cheaper direction, S - |A|, is
+never below the lower one of its values at both knots, and cities are listed by that value. The
+costs of a row are exact: they use its own weights. Under more objectives there would be as many
+simplices of weights as there are rows, so each row has lists of its own. Ends of paths choose their
+candidates among the open ends on the lists of their cities.
 """
 
 from typing import NamedTuple, cast
@@ -21,6 +22,7 @@ from models.networks.joining.costs import (
     Matrices,
     Planes,
     Prices,
+    Problem,
     weighted_costs,
     without_prices,
 )
@@ -29,6 +31,7 @@ from models.networks.joining.prices import knots, places_among_knots
 from models.networks.rows import changed, stacked
 
 _AT_A_TIME = 1000  # cities
+_ROOM = 3_000_000  # costs in a part of the lists of rows
 
 
 class Sizes(NamedTuple):
@@ -121,7 +124,7 @@ def _beginning_at(some: Int[Tensor, " b"], costs: Planes | Matrices, fill: int |
     traced for its export.
     """
     means, leans = costs.beginning_at(some)
-    own = some[None, :, None].expand(2, -1, -1)
+    own = some[None, :, None].expand(means.shape[0], -1, -1)
     means = means.scatter(2, own, torch.full_like(means[:, :, :1], NEVER))
     more = (0, cast(int, fill))
     means = nn.functional.pad(means, more, value=NEVER)
@@ -135,12 +138,16 @@ def _at_knots(
     found = weighted_costs(in_each, knots(in_each.means, count)[which])
     if known is None:
         return found
-    there = changed(known, lambda part: part[which])
-    fill = found.means.shape[2] - there.fees.shape[1]
+    return _without_prices_from(some, found, changed(known, lambda part: part[which]))
+
+
+def _without_prices_from(some: Int[Tensor, " b"], costs: Costs, prices: Prices) -> Costs:
+    """Return the costs of the steps from some cities to all, and to more, less the prices."""
+    fill = costs.means.shape[2] - prices.fees.shape[1]
     return without_prices(
-        found,
-        changed(there, lambda part: part.index_select(1, some)[..., None]),
-        changed(there, lambda part: nn.functional.pad(part, (0, fill))[:, None]),
+        costs,
+        changed(prices, lambda part: part.index_select(1, some)[..., None]),
+        changed(prices, lambda part: nn.functional.pad(part, (0, fill))[:, None]),
     )
 
 
@@ -159,6 +166,32 @@ def lists_of_rows(lists: Shortlists, weights: Float[Tensor, "r 2"]) -> RowLists:
     if leans is None or rise_of_leans is None:
         return of_rows
     return of_rows._replace(leans=between(leans, rise_of_leans))
+
+
+def own_lists(problem: Problem, length: int) -> RowLists:
+    """Return lists for each row of its own, made for some cities at a time."""
+    n = problem.costs.n
+    cities = torch.arange(n, device=problem.weights.device)
+    at_a_time = max(1, _ROOM // (n * len(problem.weights)))
+    return stacked([own_lists_of(some, problem, length) for some in cities.split(at_a_time)], dim=1)
+
+
+def own_lists_of(some: Int[Tensor, " b"], problem: Problem, length: int | Tensor) -> RowLists:
+    """Return lists of some cities for each row, by its own costs.
+
+    The length is a tensor while the graph is traced for its export.
+    """
+    found = weighted_costs(_beginning_at(some, problem.costs, length), problem.weights)
+    if problem.prices is not None:
+        found = _without_prices_from(some, found, problem.prices)
+    cheapest, cities = found.cheaper_way.topk(cast(int, length), largest=False)
+    is_city = cheapest < NEVER / 2
+
+    def of_listed(table: Tensor, otherwise: float) -> Float[Tensor, "r b l"]:
+        return torch.where(is_city, table.gather(2, cities), otherwise)
+
+    leans = None if found.leans is None else of_listed(found.leans, 0.0)
+    return RowLists(torch.where(is_city, cities, 0), of_listed(found.means, NEVER), leans)
 
 
 def first_of(lists: RowLists, count: int = CANDIDATES) -> Candidates:

@@ -11,7 +11,14 @@ from torch import Generator, Tensor
 
 from models.checkpoint import load_weights
 from models.data.instances import tour_lengths, uniform_instances
-from models.data.preferences import fan_of_preferences, grouped, turned_outwards, weights
+from models.data.preferences import (
+    directions_of,
+    fan_of_preferences,
+    fan_or_lattice,
+    grouped,
+    turned_outwards,
+    weights,
+)
 from service import preferences as service_preferences
 
 CHECKPOINTS = Path(__file__).parents[3] / "models/checkpoints"
@@ -84,6 +91,25 @@ def test_groups_hold_neighbours() -> None:
     rows = grouped(torch.stack((radians.cos(), radians.sin()), dim=-1), 3).rows
     found = torch.atan2(rows[:, 1], rows[:, 0]).rad2deg().tolist()
     assert found == pytest.approx([10, 15, 45, 50, 80, 85], abs=1e-3)
+
+
+@given(st.lists(st.floats(0.01, 1), min_size=2, max_size=4))
+def test_a_direction_has_equal_parts_in_its_weighted_sum(parts: list[float]) -> None:
+    rows = torch.tensor([parts], dtype=torch.float64)
+    rows = rows / rows.sum()
+    found = directions_of(rows)
+    torch.testing.assert_close(found.norm(dim=1), torch.ones(1, dtype=torch.float64))
+    torch.testing.assert_close(found * rows, (found * rows)[:, :1].expand_as(rows))
+    torch.testing.assert_close(weights(found), rows)
+
+
+def test_the_lattice_of_three_objectives_is_that_of_the_literature() -> None:
+    rows = weights(fan_or_lattice(100, 3, CPU))
+    multiples = 13 * rows
+    assert rows.shape == (105, 3)
+    assert (multiples - multiples.round()).abs().max() < 0.03  # no weight is zero
+    assert len({tuple(row) for row in multiples.round().tolist()}) == 105
+    assert torch.equal(fan_or_lattice(100, 2, CPU), fan_of_preferences(100, CPU))
 
 
 @given(angle=st.floats(0.06, 89.94))

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import Generator, Tensor
 
-from models.data.preferences import fan_of_preferences, weights
+from models.data.preferences import fan_of_preferences, fan_or_lattice, weights
 from models.networks.joining.candidates import (
     Candidates,
     cheapest_candidates,
@@ -18,12 +18,13 @@ from models.networks.joining.candidates import (
 from models.networks.joining.contraction import contracted, expanded
 from models.networks.joining.costs import Matrices, Planes, Problem, padded_matrices
 from models.networks.joining.fragments import NEVER, Fragments, mutual_best
-from models.networks.joining.prices import KNOTS, priced_problem, prices_at_knots
+from models.networks.joining.prices import KNOTS, own_prices, priced_problem, prices_at_knots
 from models.networks.joining.shortlists import (
     RowLists,
     first_of,
     listed_candidates,
     lists_of_rows,
+    own_lists,
     shortlists,
 )
 from tests.helpers.small_actors import CPU
@@ -101,6 +102,23 @@ def test_a_list_has_nearly_all_of_the_cheapest_steps(kind: str) -> None:
     problem, lists = problem_of(kind, 100, 1)
     cheapest = cheapest_candidates(problem.tables, single_cities(problem.tables)).costs
     assert (first_of(lists).costs < cheapest + 1e-9).double().mean() > 0.99
+
+
+@pytest.mark.parametrize("kind", ["planes", "matrices"])
+@pytest.mark.parametrize("objectives", [3, 4])
+def test_the_lists_of_a_row_of_its_own_have_its_cheapest_steps(kind: str, objectives: int) -> None:
+    drawn = torch.rand(50, 2 * objectives, generator=Generator().manual_seed(3)).double()
+    rows = weights(fan_or_lattice(4, objectives, CPU)).double()
+    if kind == "planes":
+        problem = Problem(Planes(drawn), rows)
+    else:
+        lengths = torch.rand(objectives, 50, 50, generator=Generator().manual_seed(4)).double()
+        costs = padded_matrices(lengths)
+        problem = Problem(costs, rows, own_prices(costs, rows))
+    found = first_of(own_lists(problem, LENGTH))
+    expected = cheapest_candidates(problem.tables, single_cities(problem.tables))
+    torch.testing.assert_close(found.costs, expected.costs)
+    assert torch.equal(found.positions, expected.positions)
 
 
 def test_in_a_row_out_of_use_nothing_is_listed() -> None:
