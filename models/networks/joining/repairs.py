@@ -94,7 +94,9 @@ def last_two_joined(costs: Costs, fragments: Fragments) -> Fragments:
     beyond = (open_ & (index != one) & (index != across)).long().argmax(dim=1, keepdim=True)
     others = torch.cat((beyond, partners.gather(1, beyond)), dim=1)
     ways = _costs_of_joining(costs, fragments, (one, across), others)
-    mate = others.gather(1, ways.argmin(dim=1, keepdim=True))
+    # Both ways of joining one city are the same tour, and rounding must not choose where it starts.
+    way = torch.where(across == one, 0, ways.argmin(dim=1, keepdim=True))
+    mate = others.gather(1, way)
     mates = torch.where(left[:, None] > 1, torch.cat((mate, one), dim=1), -1)
     both = torch.full_like(partners, -1).scatter(1, torch.cat((one, mate), dim=1), mates)
     return joined_at_cost(costs, fragments, both)

@@ -7,8 +7,8 @@ from torch import Generator, Tensor
 
 from models.data.instances import uniform_cities
 from models.data.preferences import fan_of_preferences, weights
-from models.networks.joining.candidates import single_cities
-from models.networks.joining.costs import Planes, Problem
+from models.networks.joining.candidates import joined_at_cost, single_cities
+from models.networks.joining.costs import Planes, Problem, padded_matrices
 from models.networks.joining.fragments import first_open, joined
 from models.networks.joining.repairs import cut, laid_out, last_two_joined, repair_problem
 from models.networks.joining.walks import tours_from
@@ -54,3 +54,18 @@ def test_two_fragments_are_joined_the_cheaper_way() -> None:
     whole = last_two_joined(costs, sides)
     tour = tours_from(whole, first_open(whole))[0]
     assert steps_of(tour) == {frozenset(e) for e in ((0, 1), (1, 3), (3, 2), (2, 0))}
+
+
+def test_rounding_does_not_choose_where_a_tour_starts() -> None:
+    # City 0 and the path 1-2: joining 0 to either end first gives the same tour.
+    matrix = torch.tensor([[0.0, 1.0, 2.0], [4.0, 0.0, 3.0], [2.0, 5.0, 0.0]])
+    costs = padded_matrices(matrix[None]).tables
+    pair = joined_at_cost(costs, single_cities(costs), torch.tensor([[-1, 2, 1]]))
+    assert pair.leans is not None
+    last_ends = set()
+    for error in (-1e-6, 1e-6):
+        whole = last_two_joined(
+            costs, pair._replace(leans=pair.leans + torch.tensor([0, error, 0]))
+        )
+        last_ends.add(tuple(whole.open[0].tolist()))
+    assert last_ends == {(True, False, True)}
