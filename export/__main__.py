@@ -93,7 +93,7 @@ def describe(model: ModelProto, trained: Trained, name: str) -> None:
             "seconds": f"{trained.seconds:.0f}",
             "sizes": json.dumps([config.least_cities, config.most_cities]),
             "angles": json.dumps([0, 90]),
-            "objectives": json.dumps([2, trained.actor.most_objectives]),
+            "objectives": str(trained.actor.most_objectives),
             "figures": json.dumps(_hypervolumes(model, trained)),
         },
     )
