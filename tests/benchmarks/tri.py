@@ -17,7 +17,6 @@ from pathlib import Path
 
 import moocore
 import numpy as np
-import onnxruntime
 import torch
 from numpy.typing import NDArray
 
@@ -25,6 +24,7 @@ from models.data.instances import tour_lengths
 from models.data.preferences import fan_or_lattice
 from models.expert import expert_tours
 from service.construction.repairs import repairs_worth
+from service.onnx_runtime import onnxruntime
 from tests.benchmarks.printed import TRI_CORNERS
 from tests.benchmarks.rows import resume
 
