@@ -8,7 +8,6 @@ from typing import Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from service.pareto import hypervolume
 from service.preferences import angles
 
 Array = NDArray[np.float64]
@@ -19,7 +18,7 @@ Termination = Literal["converged", "time_limit", "cancelled"]
 
 @dataclass(frozen=True, eq=False)
 class SearchResult:
-    """A front: points, shape (p, 2), by ascending first length, and their tours.
+    """A front: points, shape (p, m), by ascending first length, and their tours.
 
     Args:
         points: The points.
@@ -63,13 +62,13 @@ class PlanOptions:
     """The options of plan(...).
 
     Args:
-        angles: The angles of the preferences for which tours are constructed, in degrees, shape
-            (k,).
+        directions: The preferences for which tours are constructed, shape (k, m), as
+            service.preferences has them.
         fewer: Whether a time limit may reduce the number of preferences to those that fit into the
             network's share of the time. These are evenly spread.
         size: The greatest number of tours of the front.
         start: The city at which every reported closed tour begins.
-        reference_point: The reference point of the hypervolume, shape (2,), in the instance's
+        reference_point: The reference point of the hypervolume, shape (m,), in the instance's
             units; by default the reference point of the instance.
         time_limit: The most seconds for construction, search and selection together, without the
             bound; with 0 only the network plans.
@@ -87,7 +86,7 @@ class PlanOptions:
             Returns the indices of the tours to report. None reports the best subset.
     """
 
-    angles: Array
+    directions: Array
     size: int
     fewer: bool = False
     start: int = 0
@@ -107,19 +106,20 @@ class Front:
     """Nondominated tours and their points, by ascending first length.
 
     Attributes:
-        tours: One tour a row, shape (m, n).
-        points: Their lengths, shape (m, 2).
-        found: The number of nondominated tours found; m of these were kept.
+        tours: One tour a row, shape (k, n).
+        points: Their lengths, shape (k, m).
+        found: The number of nondominated tours found; k of these were kept.
         constructed: The number of tours that the network built.
-        scale: The scale of the instance, shape (2,).
-        reference_point: The reference point of the hypervolumes, shape (2,).
+        scale: The scale of the instance, shape (m,).
+        reference_point: The reference point of the hypervolumes, shape (m,).
+        hypervolume: That of the tours kept.
         terminated: How the search ended; None while it runs.
         timings: Milliseconds by phase.
         bound: A hypervolume that no front of the instance exceeds, if it was asked for.
         gained: By how much the search increased the hypervolume of its initial tours.
         closed: Whether the tours return to where they began.
         kept: In a replanned front, the share of the driven tour's legs that each tour keeps, shape
-            (m,).
+            (k,).
     """
 
     tours: NDArray[np.integer]
@@ -128,6 +128,7 @@ class Front:
     constructed: int
     scale: Array
     reference_point: Array
+    hypervolume: float
     terminated: Termination | None
     timings: dict[str, float]
     bound: float | None = None
@@ -141,11 +142,6 @@ class Front:
         return self.tours.shape[1]
 
     @cached_property
-    def hypervolume(self) -> float:
-        """The hypervolume of the tours kept, with respect to the reference point."""
-        return hypervolume(self.points, self.reference_point)
-
-    @cached_property
     def angles(self) -> Array:
-        """The direction of each point in scaled objective space, in degrees, shape (m,)."""
+        """The direction of each point of two scaled objectives, in degrees, shape (k,)."""
         return angles(self.points, self.scale)

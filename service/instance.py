@@ -12,7 +12,8 @@ from service.errors import InvalidInstance
 
 Array = NDArray[np.float64]
 Kind = Literal["coordinates", "matrices"]
-OBJECTIVES = 2  # lengths of a tour
+OBJECTIVES = 2  # of a request that says nothing else, and of all that knows no more than two
+MOST_OBJECTIVES = 4
 PLANE = 2  # coordinates of a city in the plane of an objective
 MOST_SPREAD = 2.0**-1000  # of a matrix's largest cost; below it a scaled cost would vanish
 OUTLYING = 100.0  # times the typical cost: what is larger does not count for the scale
@@ -33,17 +34,17 @@ CLOSED = RouteEnds()
 
 @dataclass(frozen=True, eq=False)
 class Instance:
-    """Cities, and the cost under each of two objectives of going from one to another.
+    """Cities, and the cost of going from one to another under each of m objectives, two to four.
 
     Exactly one of coordinates and matrices is given. Both are copied and made read-only. Any unit
-    will do, and the two objectives need not share one.
+    will do, and the objectives need not share one.
 
     Args:
-        coordinates: Shape (n, 4), plane 1 in columns 0-1 and plane 2 in columns 2-3. Cost m is the
-            Euclidean distance in plane m.
-        matrices: Shape (2, n, n). Cost m of going from i to j is matrices[m, i, j]. The diagonal
-            is ignored. Infinity means that there is no way from i to j: such a leg is forbidden,
-            and is made infinite under the other objective too.
+        coordinates: Shape (n, 2 m), plane 1 in columns 0-1, plane 2 in columns 2-3 and so on. The
+            cost under an objective is the Euclidean distance in its plane.
+        matrices: Shape (m, n, n). The cost under objective k of going from i to j is
+            matrices[k, i, j]. The diagonal is ignored. Infinity means that there is no way from i
+            to j: such a leg is forbidden, and is made infinite under the other objectives too.
         closed: Whether tours return to where they began. If not, they are open routes.
         start: The city at which every open route starts; None leaves it free.
         end: The city at which every open route ends; None leaves it free.
@@ -83,13 +84,21 @@ class Instance:
         return self.matrices.shape[1]
 
     @property
+    def objectives(self) -> int:
+        """The number of objectives, m."""
+        if self.coordinates is not None:
+            return self.coordinates.shape[1] // PLANE
+        assert self.matrices is not None
+        return len(self.matrices)
+
+    @property
     def kind(self) -> Kind:
         """Whether the instance was made from coordinates or from matrices."""
         return "matrices" if self.coordinates is None else "coordinates"
 
     @cached_property
     def scale(self) -> Array:
-        """The unit of each objective, shape (2,), in which the network and angles work.
+        """The unit of each objective, shape (m,), in which the network and angles work.
 
         That is the longer side of the plane's bounding box, or the largest cost of the matrix; 1
         where this is 0. Outliers do not count: costs of more than 100 times the median positive
@@ -104,7 +113,7 @@ class Instance:
 
     @cached_property
     def reference_point(self) -> Array:
-        """The default reference point of hypervolumes, shape (2,): n times the scale.
+        """The default reference point of hypervolumes, shape (m,): n times the scale.
 
         What no tour can avoid of outliers is added, so that a city far from all others leaves room
         for trade-offs among these: once round the bounding box of a plane, or each outlier that is
@@ -114,7 +123,7 @@ class Instance:
         if (self.extents <= self.scale).all():
             return common
         if self.coordinates is not None:
-            sides = np.ptp(self.coordinates, axis=0).reshape(OBJECTIVES, PLANE)
+            sides = np.ptp(self.coordinates, axis=0).reshape(-1, PLANE)
             return common + np.where(self.extents > self.scale, 2 * sides.sum(axis=1), 0.0)
         assert self.matrices is not None
         least = np.concatenate(least_steps(self.matrices), axis=1)
@@ -123,7 +132,7 @@ class Instance:
 
     @cached_property
     def shifts(self) -> NDArray[np.intp]:
-        """The powers of two, shape (2,), by which costs are multiplied for the search.
+        """The powers of two, shape (m,), by which costs are multiplied for the search.
 
         They bring scale into [1, 2), or where some cost is very much larger, that cost below 2^256.
         As a factor such a power may be infinite or 0 where the product is neither: use np.ldexp.
@@ -133,7 +142,7 @@ class Instance:
 
     @cached_property
     def penalised_matrices(self) -> Array:
-        """Costs, shape (2, n, n), in which a forbidden leg costs more than a tour without one.
+        """Costs, shape (m, n, n), in which a forbidden leg costs more than a tour without one.
 
         Raises:
             InvalidInstance: The instance was made from coordinates.
@@ -156,7 +165,7 @@ class Instance:
 
     @property
     def scaled_coordinates(self) -> Array:
-        """Coordinates, shape (n, 4), with each plane moved and scaled into the unit square.
+        """Coordinates, shape (n, 2 m), with each plane moved and scaled into the unit square.
 
         Cities far from all others, which do not count for the scale, lie outside it.
 
@@ -170,7 +179,7 @@ class Instance:
 
     @property
     def scaled_matrices(self) -> Array:
-        """Costs, shape (2, n, n), each in units of its objective's scale; infinite ones stay so."""
+        """Costs, shape (m, n, n), each in units of its objective's scale; infinite ones stay so."""
         if self.matrices is not None:
             return self.matrices / self.scale[:, np.newaxis, np.newaxis]
         steps = self.scaled_coordinates[:, np.newaxis] - self.scaled_coordinates
@@ -178,9 +187,9 @@ class Instance:
 
     @cached_property
     def _ordinary_boxes(self) -> Array:
-        """The least and greatest coordinates in each plane without outliers, shape (2, 2, 2)."""
+        """The least and greatest coordinates in each plane without outliers, shape (m, 2, 2)."""
         assert self.coordinates is not None
-        planes = self.coordinates.reshape(self.n, OBJECTIVES, PLANE)
+        planes = self.coordinates.reshape(self.n, -1, PLANE)
         boxes = np.stack([planes.min(axis=0), planes.max(axis=0)], axis=1)
         if self.n <= 2:
             return boxes
@@ -198,7 +207,7 @@ class Instance:
         """The longer side of each plane's bounding box, or each matrix's largest finite cost."""
         if self.coordinates is not None:
             with np.errstate(over="ignore"):
-                return np.ptp(self.coordinates, axis=0).reshape(OBJECTIVES, PLANE).max(axis=1)
+                return np.ptp(self.coordinates, axis=0).reshape(-1, PLANE).max(axis=1)
         assert self.matrices is not None
         return largest_costs(self.matrices)
 
@@ -215,7 +224,7 @@ class Instance:
 
 
 def tour_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
-    """Return the lengths, shape (k, 2), of tours, shape (k, n), in the instance's units.
+    """Return the lengths, shape (k, m), of tours, shape (k, n), in the instance's units.
 
     Of closed tours the step from the last city back to the first is included. Tours with a
     forbidden leg are infinitely long. O(k n).
@@ -240,7 +249,7 @@ def tour_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
 def step_lengths(
     instance: Instance, origins: NDArray[np.integer], destinations: NDArray[np.integer]
 ) -> Array:
-    """Return both costs of steps, in the instance's units, with one more axis of 2 at the end.
+    """Return all costs of steps, in the instance's units, with one more axis of m at the end.
 
     A forbidden leg has its penalty as its cost, so that sums and differences stay finite.
     """
@@ -264,7 +273,7 @@ def tour_steps(
 
 
 def least_lengths(instance: Instance) -> Array:
-    """Return lengths, shape (2,), that no tour goes below, by what is cheap. O(n^2).
+    """Return lengths, shape (m,), that no tour goes below, by what is cheap. O(n^2).
 
     In a plane a tour goes from one side of the bounding box to the other, and back where it is
     closed. Of a matrix it has an entry in each row and in each column, none of them on the
@@ -281,11 +290,11 @@ def least_lengths(instance: Instance) -> Array:
     array([3., 3.])
     """
     if instance.coordinates is not None:
-        sides = np.ptp(instance.coordinates, axis=0).reshape(OBJECTIVES, PLANE)
+        sides = np.ptp(instance.coordinates, axis=0).reshape(-1, PLANE)
         return sides.max(axis=1) * (2 if instance.closed else 1)
     assert instance.matrices is not None
     if instance.n == 1:
-        return np.zeros(OBJECTIVES)
+        return np.zeros(instance.objectives)
     leaving, entering = least_steps(instance.matrices)
     if not instance.closed:
         leaving, entering = (np.sort(least)[:, :-1] for least in (leaving, entering))
@@ -293,13 +302,13 @@ def least_lengths(instance: Instance) -> Array:
 
 
 def least_steps(matrices: Array) -> tuple[Array, Array]:
-    """Return the least costs of leaving each city, and of reaching it, shape (2, n) each."""
+    """Return the least costs of leaving each city, and of reaching it, shape (m, n) each."""
     steps = np.where(np.eye(matrices.shape[1], dtype=bool), np.inf, matrices)
     return steps.min(axis=2), steps.min(axis=1)
 
 
 def largest_costs(matrices: Array) -> Array:
-    """Return the largest finite cost of each matrix, shape (2,); 0 where there is none."""
+    """Return the largest finite cost of each matrix, shape (m,); 0 where there is none."""
     largest: Array = matrices.max(axis=(1, 2))
     if np.isfinite(largest).all():
         return largest
@@ -307,12 +316,12 @@ def largest_costs(matrices: Array) -> Array:
 
 
 def ordinary_costs(matrices: Array, largest: Array) -> Array:
-    """Return the largest cost of each matrix that is not an outlier, shape (2,).
+    """Return the largest cost of each matrix that is not an outlier, shape (m,).
 
     An outlier is a cost of more than 100 times the median positive one, among a hundred cities.
 
     Args:
-        matrices: The costs, shape (2, n, n).
+        matrices: The costs, shape (m, n, n).
         largest: What largest_costs() returns of them.
     """
     step = -(-matrices.shape[1] // SAMPLED)
@@ -328,15 +337,6 @@ def _median_positive(costs: Array) -> float:
     """Return the median of the finite positive costs; infinity where there is none."""
     positive = costs[(costs > 0) & (costs < np.inf)]
     return float(np.median(positive)) if len(positive) else np.inf
-
-
-def cumulated_lengths(instance: Instance, tours: NDArray[np.integer]) -> Array:
-    """Return both lengths of tours, shape (k, n), from their first city up to each.
-
-    Shape (k, n + 1, 2) for closed tours, with the return, and (k, n, 2) for open routes. O(k n).
-    """
-    steps = step_lengths(instance, *tour_steps(instance, tours))
-    return np.pad(steps.cumsum(axis=1), ((0, 0), (1, 0), (0, 0)))
 
 
 def _check_ends(instance: Instance) -> None:
@@ -355,10 +355,10 @@ def _check_ends(instance: Instance) -> None:
 def _checked_coordinates(coordinates: Array) -> Array:
     coordinates = np.array(coordinates, dtype=np.float64, order="C")
     shape = coordinates.shape
-    if coordinates.ndim != 2 or shape[1] != OBJECTIVES * PLANE or not shape[0]:
-        columns = OBJECTIVES * PLANE
+    columns = [PLANE * m for m in range(OBJECTIVES, MOST_OBJECTIVES + 1)]
+    if coordinates.ndim != 2 or shape[1] not in columns or not shape[0]:
         raise InvalidInstance(
-            f"coordinates must have shape (n, {columns}) with n at least 1, got {shape}"
+            f"coordinates must have shape (n, 4), (n, 6) or (n, 8) with n at least 1, got {shape}"
         )
     if not np.isfinite(coordinates).all():
         raise InvalidInstance("coordinates must be finite")
@@ -369,9 +369,11 @@ def _checked_coordinates(coordinates: Array) -> Array:
 def _checked_matrices(matrices: Array | None) -> Array:
     matrices = np.array(matrices, dtype=np.float64)
     shape = matrices.shape
-    if matrices.ndim != 3 or shape[0] != OBJECTIVES or shape[1] != shape[2] or not shape[1]:
+    enough = matrices.ndim == 3 and OBJECTIVES <= shape[0] <= MOST_OBJECTIVES
+    if not enough or shape[1] != shape[2] or not shape[1]:
         raise InvalidInstance(
-            f"matrices must have shape ({OBJECTIVES}, n, n) with n at least 1, got {shape}"
+            f"matrices must have shape (m, n, n) with m from {OBJECTIVES} to {MOST_OBJECTIVES} and "
+            f"n at least 1, got {shape}"
         )
     matrices[:, np.arange(shape[1]), np.arange(shape[1])] = 0.0
     if np.isnan(matrices).any():

@@ -1,6 +1,6 @@
-"""Dominance, hypervolume, balance and knee of points of two minimised objectives.
+"""Dominance, losses and knee of points of minimised objectives; hypervolume and balance of two.
 
-A point dominates another if it is at least as good in both objectives and better in one. The
+A point dominates another if it is at least as good in all objectives and better in one. The
 hypervolume of points is the share of the box between the origin and a reference point that they
 dominate: a number from 0 to 1, without a unit.
 """
@@ -10,28 +10,49 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
+OBJECTIVES = 2  # of a front that can be sorted, so that its neighbours are next to each other
 
 
 def nondominated(points: Array) -> Indices:
-    """Return the indices of the nondominated points, by ascending first length.
+    """Return the indices of the nondominated points, by ascending first length, then the second.
 
-    Of equal points the first one stays. So along the result the first length strictly ascends
-    and the second strictly descends. O(m log m).
+    Of equal points the first one stays. Of two objectives the first length strictly ascends along
+    the result and the second strictly descends; O(k log k). Of more objectives O(k^2).
 
     Args:
-        points: Shape (m, 2), in any order and unit; m may be 0.
+        points: Shape (k, m), in any order and unit; k may be 0.
 
     >>> nondominated(np.array([[5, 5], [4, 6], [2, 7], [7, 4], [6, 6], [2, 7]]))
     array([2, 1, 0, 3])
+    >>> nondominated(np.array([[5, 5, 1], [4, 6, 1], [4, 6, 2], [7, 7, 0]]))
+    array([1, 0, 3])
     """
+    if points.shape[1] > OBJECTIVES:
+        return _nondominated_of_several(points)
     order = np.lexsort((points[:, 1], points[:, 0]))
     second = points[order, 1]
     best_before = np.concatenate(([np.inf], np.minimum.accumulate(second)[:-1]))
     return order[second < best_before]
 
 
+def _nondominated_of_several(points: Array) -> Indices:
+    """Return the same for more than two objectives.
+
+    In this order no point is dominated by one after it. One with an infinite length is left out.
+    """
+    order = np.lexsort(points.T[::-1])
+    order = order[np.isfinite(points[order]).all(axis=1)]
+    kept = np.empty_like(points)
+    indices: list[int] = []
+    for index in order.tolist():
+        if not (kept[: len(indices)] <= points[index]).all(axis=1).any():
+            kept[len(indices)] = points[index]
+            indices.append(index)
+    return np.array(indices, np.intp)
+
+
 def hypervolume(points: Array, reference_point: Array) -> float:
-    """Return the hypervolume of points: the share of the box that they dominate, 0 to 1.
+    """Return the hypervolume of points of two objectives: the share of the box they dominate.
 
     Exact, by a sweep over the nondominated points. Dominated points, repeated ones, and those that
     do not lie below the reference point in both objectives add nothing. O(m log m).
@@ -72,26 +93,30 @@ def balances(points: Array) -> Array:
     >>> balances(np.array([[5.0, 5.0]]))
     array([0.5])
     """
-    u, v = _in_box(points).T
+    u, v = losses(points).T
     return (u + 1 - v) / 2
 
 
 def knee(points: Array) -> int:
-    """Return the index of the point with the least u + v, of equal ones the first.
-
-    u and v are the lengths in the points' own box, as of balances().
+    """Return the index of the point with the least sum of losses, of equal ones the first.
 
     Args:
-        points: Shape (m, 2), m at least 1.
+        points: Shape (k, m), k at least 1.
 
     >>> knee(np.array([[2.0, 70.0], [3.0, 40.0], [6.0, 30.0]]))
     1
     """
-    return int(_in_box(points).sum(axis=1).argmin())
+    return int(losses(points).sum(axis=1).argmin())
 
 
-def _in_box(points: Array) -> Array:
-    """Return points in their own box: 0 at the least of a length, 1 at the greatest."""
+def losses(points: Array) -> Array:
+    """Return points in their own box, shape (k, m): 0 at the least of a length, 1 at the greatest.
+
+    >>> losses(np.array([[2.0, 70.0, 1.0], [3.0, 40.0, 1.0], [6.0, 30.0, 1.0]]))
+    array([[0.  , 1.  , 0.  ],
+           [0.25, 0.25, 0.  ],
+           [1.  , 0.  , 0.  ]])
+    """
     if not len(points):
         return points
     least = points.min(axis=0)

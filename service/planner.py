@@ -18,11 +18,12 @@ from service.construction.repairs import repairs_worth
 from service.errors import Cancelled, NoTour, Obstacle
 from service.front import Front, PlanOptions, Progress, ReportOf, SearchResult
 from service.instance import Instance, tour_lengths
-from service.pareto import hypervolume, nondominated
+from service.pareto import nondominated
 from service.search.best_subset import best_subset, selection_seconds
 from service.search.bound.hypervolume import hypervolume_bound
 from service.search.enumeration import MAX_ENUMERATED
 from service.search.forbidden_legs import tightest
+from service.search.hypervolume import hypervolume
 from service.search.improve import improve
 from service.search.open_routes import oriented, plain_tours, rotated
 
@@ -78,7 +79,12 @@ def plan(
             found = best(min(size, options.size))
             tours = _as_reported(instance, options.start, found.tours)
             return front_of(
-                tours=tours, points=found.points, found=progress.points, terminated=None, timings={}
+                tours=tours,
+                points=found.points,
+                hypervolume=hypervolume(found.points, reference_point),
+                found=progress.points,
+                terminated=None,
+                timings={},
             )
 
         report(progress, best_front)
@@ -98,6 +104,7 @@ def plan(
     return front_of(
         tours=_as_reported(instance, options.start, tours),
         points=found.points[chosen],
+        hypervolume=hypervolume(found.points[chosen], reference_point),
         found=len(found.points),
         terminated=found.terminated,
         timings=dict(zip(_PHASES, (1000 * np.diff(times)).tolist(), strict=True)),
@@ -113,7 +120,7 @@ def _constructed(constructor: Constructor, instance: Instance, options: PlanOpti
         repairs = min(repairs, repairs_worth(constructor.estimate.inputs, instance.n))
     limit = options.time_limit if options.time_limit > 0 else None
     within = SHARE * limit if limit is not None and options.fewer else None
-    return construct(constructor, instance, options.angles, repairs, within=within, limit=limit)
+    return construct(constructor, instance, options.directions, repairs, within=within, limit=limit)
 
 
 def _first_tours(instance: Instance, constructed: Tours, options: PlanOptions) -> Tours:
@@ -140,7 +147,7 @@ def _improved(
         instance,
         tours,
         deadline=deadline,
-        reserve=partial(selection_seconds, options.size),
+        reserve=partial(selection_seconds, options.size, objectives=instance.objectives),
         seed=options.seed,
         stop=stop,
         report=report,

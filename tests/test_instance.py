@@ -12,11 +12,11 @@ from hypothesis.extra.numpy import arrays
 from service.errors import InvalidInstance
 from service.instance import (
     Instance,
-    cumulated_lengths,
     least_lengths,
     step_lengths,
     tour_lengths,
 )
+from service.kinds.tours import cumulated_lengths
 from tests.helpers.instances import (
     ENDS,
     KINDS,

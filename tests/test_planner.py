@@ -16,7 +16,7 @@ from service.front import Front, PlanOptions
 from service.instance import Instance, RouteEnds, tour_lengths
 from service.pareto import hypervolume, nondominated
 from service.planner import plan
-from service.preferences import fan
+from service.preferences import fan, spread
 from service.search.warm_up import warm_up
 from service.settings import Settings
 from tests.helpers.instances import ENDS, KINDS, every_tour, opened, small_integers
@@ -75,7 +75,7 @@ def check(front: Front, instance: Instance) -> None:
 
 @given(SMALL)
 def test_of_every_tour_the_front_keeps_the_nondominated(instance: Instance) -> None:
-    front = plan(Everything(), instance, PlanOptions(angles=fan(3), size=1000))
+    front = plan(Everything(), instance, PlanOptions(directions=spread(3), size=1000))
     check(front, instance)
     every = tour_lengths(instance, Everything().tours(instance, fan(1)))
     kept = every[nondominated(every)]
@@ -86,7 +86,7 @@ def test_of_every_tour_the_front_keeps_the_nondominated(instance: Instance) -> N
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 6, 7, 8])
 def test_no_front_is_better_than_brute_force(actor: OnnxActor, n: int) -> None:
     instance = random_instance(n)
-    front = plan(actor, instance, PlanOptions(angles=fan(20), size=100))
+    front = plan(actor, instance, PlanOptions(directions=spread(20), size=100))
     check(front, instance)
     best = tour_lengths(instance, Everything().tours(instance, fan(1)))
     slack = 1e-9
@@ -99,7 +99,7 @@ def test_open_routes_equal_brute_force_on_200_instances(actor: OnnxActor) -> Non
     for seed in range(200):
         n, kind, ends = 3 + seed % 7, KINDS[seed % 3], ENDS[seed % 4]
         instance = opened(small_integers(kind, n, seed), ends, seed)
-        options = PlanOptions(angles=fan(5), size=1000, time_limit=1.0)
+        options = PlanOptions(directions=spread(5), size=1000, time_limit=1.0)
         front = plan(actor if kind == "coordinates" else InOrder(), instance, options)
         check(front, instance)
         assert instance.start is None or (front.tours[:, 0] == instance.start).all()
@@ -119,7 +119,7 @@ def test_without_a_search_the_network_plans_open_routes(
         instance = Instance(matrices=np.random.default_rng(1).random((2, 40, 40)))
     instance = opened(instance, ends)
     network = actor if kind == "coordinates" else matrix_actor
-    options = PlanOptions(angles=fan(20), size=100)
+    options = PlanOptions(directions=spread(20), size=100)
     front = plan(network, instance, options)
     check(front, instance)
     assert instance.start is None or (front.tours[:, 0] == instance.start).all()
@@ -131,7 +131,7 @@ def test_without_a_search_the_network_plans_open_routes(
 def test_open_routes_of_two_cities_go_both_ways() -> None:
     matrices = np.array([[[0, 1], [5, 0]], [[0, 7], [2, 0]]])
     instance = Instance(matrices=matrices, closed=False)
-    front = plan(InOrder(), instance, PlanOptions(angles=fan(3), size=10))
+    front = plan(InOrder(), instance, PlanOptions(directions=spread(3), size=10))
     assert front.tours.tolist() == [[0, 1], [1, 0]]
     assert front.points.tolist() == [[1, 7], [5, 2]]
 
@@ -139,8 +139,8 @@ def test_open_routes_of_two_cities_go_both_ways() -> None:
 @pytest.mark.parametrize("size", [1, 2, 5])
 def test_a_larger_front_is_cut_to_size(size: int) -> None:
     instance = random_instance(6)
-    whole = plan(Everything(), instance, PlanOptions(angles=fan(3), size=1000))
-    cut = plan(Everything(), instance, PlanOptions(angles=fan(3), size=size))
+    whole = plan(Everything(), instance, PlanOptions(directions=spread(3), size=1000))
+    cut = plan(Everything(), instance, PlanOptions(directions=spread(3), size=size))
     check(cut, instance)
     assert len(cut.points) == size < whole.found == cut.found
     assert cut.hypervolume <= whole.hypervolume
@@ -151,19 +151,21 @@ def test_a_larger_front_is_cut_to_size(size: int) -> None:
 def test_every_tour_is_reported_from_the_start(data: st.DataObject) -> None:
     instance = data.draw(SMALL)
     start = data.draw(st.integers(0, instance.n - 1))
-    front = plan(Everything(), instance, PlanOptions(angles=fan(3), size=1000, start=start))
+    front = plan(Everything(), instance, PlanOptions(directions=spread(3), size=1000, start=start))
     assert (front.tours[:, 0] == start).all()
     check(front, instance)
 
 
 @pytest.mark.parametrize("n", [1, 2])
 def test_one_or_two_cities_are_a_front_of_one_tour(actor: OnnxActor, n: int) -> None:
-    front = plan(actor, random_instance(n), PlanOptions(angles=fan(3), size=10, start=n - 1))
+    front = plan(actor, random_instance(n), PlanOptions(directions=spread(3), size=10, start=n - 1))
     assert front.tours.tolist() == [[n - 1, 0][:n]]
 
 
 def test_coincident_cities_are_one_point_at_the_origin(actor: OnnxActor) -> None:
-    front = plan(actor, Instance(coordinates=np.ones((4, 4))), PlanOptions(angles=fan(3), size=10))
+    front = plan(
+        actor, Instance(coordinates=np.ones((4, 4))), PlanOptions(directions=spread(3), size=10)
+    )
     assert front.points.tolist() == [[0, 0]]
     assert (front.hypervolume, front.angles.tolist()) == (1, [45])
     assert front.reference_point.tolist() == [4, 4]
@@ -171,10 +173,12 @@ def test_coincident_cities_are_one_point_at_the_origin(actor: OnnxActor) -> None
 
 def test_the_reference_point_is_n_times_the_scale_unless_given() -> None:
     instance = random_instance(5)
-    front = plan(Everything(), instance, PlanOptions(angles=fan(1), size=9))
+    front = plan(Everything(), instance, PlanOptions(directions=spread(1), size=9))
     np.testing.assert_array_equal(front.reference_point, 5 * instance.scale)
     point = np.array([3.0, 4.0])
-    front = plan(Everything(), instance, PlanOptions(angles=fan(1), size=9, reference_point=point))
+    front = plan(
+        Everything(), instance, PlanOptions(directions=spread(1), size=9, reference_point=point)
+    )
     np.testing.assert_array_equal(front.reference_point, point)
 
 
@@ -187,6 +191,7 @@ def test_angles_are_those_of_scaled_objectives() -> None:
         constructed=3,
         scale=np.array([1.0, 50.0]),
         reference_point=np.array([10.0, 1000.0]),
+        hypervolume=0.0,
         terminated="converged",
         timings={},
     )
@@ -197,7 +202,7 @@ def test_angles_are_those_of_scaled_objectives() -> None:
 def test_what_the_search_gained_is_what_it_added_to_the_first_tours(actor: OnnxActor) -> None:
     warm_up()  # else the time may be up before the search begins
     instance = random_instance(30)
-    demand = PlanOptions(angles=fan(5), size=10_000)
+    demand = PlanOptions(directions=spread(5), size=10_000)
     first = plan(actor, instance, demand)
     improved = plan(actor, instance, replace(demand, time_limit=0.1))
     assert first.gained is None
@@ -208,7 +213,7 @@ def test_what_the_search_gained_is_what_it_added_to_the_first_tours(actor: OnnxA
 
 @pytest.mark.parametrize("n", [40, 200])
 def test_repairs_make_a_front_better_and_may_fill_it_up(actor: OnnxActor, n: int) -> None:
-    instance, demand = random_instance(n), PlanOptions(angles=fan(20), size=100)
+    instance, demand = random_instance(n), PlanOptions(directions=spread(20), size=100)
     plain, repaired = (plan(actor, instance, replace(demand, repairs=r)) for r in (0, 5))
     check(repaired, instance)
     assert repaired.hypervolume > plain.hypervolume
@@ -219,7 +224,7 @@ def test_repairs_make_a_front_better_and_may_fill_it_up(actor: OnnxActor, n: int
 @pytest.mark.parametrize("ends", [RouteEnds(False), RouteEnds(False, 3), RouteEnds(False, 3, 7)])
 def test_repairs_make_open_routes_better(actor: OnnxActor, ends: RouteEnds) -> None:
     instance = replace(random_instance(40), **ends._asdict())
-    demand = PlanOptions(angles=fan(20), size=100)
+    demand = PlanOptions(directions=spread(20), size=100)
     plain, repaired = (plan(actor, instance, replace(demand, repairs=r)) for r in (0, 5))
     check(repaired, instance)
     assert repaired.hypervolume > plain.hypervolume
@@ -227,7 +232,7 @@ def test_repairs_make_open_routes_better(actor: OnnxActor, ends: RouteEnds) -> N
 
 def test_fewer_repairs_are_as_many_as_are_worth_their_time(actor: OnnxActor) -> None:
     instance = random_instance(60)
-    default = PlanOptions(angles=fan(20), size=100, repairs=200, fewer_repairs=True)
+    default = PlanOptions(directions=spread(20), size=100, repairs=200, fewer_repairs=True)
     worth = replace(default, repairs=repairs_worth("coordinates", 60), fewer_repairs=False)
     least = replace(default, repairs=1)
     fronts = [plan(actor, instance, each) for each in (default, worth, least)]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from service.construction.call_estimate import CallEstimate
 from service.errors import Cancelled
 from service.instance import Instance
-from service.preferences import fan, from_angles
+from service.preferences import spread
 from service.search.open_routes import built_tours
 
 Array = NDArray[np.float64]
@@ -33,7 +33,7 @@ class Constructor(Protocol):
     estimate: CallEstimate
 
     def tours(self, instance: Instance, preferences: Array, repairs: int = 0) -> Tours:
-        """Return closed tours, shape (k, n), one a preference (k, 2), or raise Cancelled.
+        """Return closed tours, shape (k, n), one a preference (k, m), or raise Cancelled.
 
         With repairs, each is repaired that many times, and other tours for the same preferences may
         follow in as many rows again.
@@ -46,23 +46,23 @@ class Constructor(Protocol):
 def construct(
     constructor: Constructor,
     instance: Instance,
-    angles: Array,
+    preferences: Array,
     repairs: int = 0,
     *,
     within: float | None = None,
     limit: float | None = None,
 ) -> Tours:
-    """Return tours for each angle, shape (m, n), as a call of the constructor builds them.
+    """Return tours for each preference, shape (t, n), as a call of the constructor builds them.
 
     Args:
         constructor: Builds the tours.
         instance: The instance; of fewer than three cities no tour is built.
-        angles: Of the preferences in degrees, shape (k,); k may be 0.
+        preferences: Directions, shape (k, m); k may be 0.
         repairs: How often each tour is repaired, at most.
         within: Seconds of the call: then it is for at most k evenly spread preferences, as many as
             are estimated to fit, maybe none, and is ended if it takes longer. None honours all
-            angles.
-        limit: Where all angles are honoured, seconds for repairs: as many are made as are
+            preferences.
+        limit: Where all of them are honoured, seconds for repairs: as many are made as are
             estimated to fit, and a call that still takes longer is ended, and made without. That
             one may exceed the limit, but is ended where it takes far longer than estimated. None
             makes all repairs, and ends no call.
@@ -71,16 +71,17 @@ def construct(
         Cancelled: The constructor was told to stop.
     """
     n, estimate = instance.n, constructor.estimate
-    if n < MIN_CONSTRUCTED or not len(angles):
+    if n < MIN_CONSTRUCTED or not len(preferences):
         return np.empty((0, n), np.int64)
     if within is None:
-        return _honoured(constructor, instance, from_angles(angles), repairs, limit)
+        return _honoured(constructor, instance, preferences, repairs, limit)
     aimed = _AIMED * within
-    k = min(len(angles), estimate.fitting(n, aimed * _BUILDING if repairs else aimed))
+    k = min(len(preferences), estimate.fitting(n, aimed * _BUILDING if repairs else aimed))
     if k == 0:
         return np.empty((0, n), np.int64)
     repairs = min(repairs, estimate.fitting_repairs(n, k, aimed))
-    return _tours_within(constructor, instance, from_angles(fan(k)), repairs, within)
+    evenly = spread(k, instance.objectives)
+    return _tours_within(constructor, instance, evenly, repairs, within)
 
 
 def _honoured(

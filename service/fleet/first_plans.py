@@ -25,7 +25,7 @@ from service.fleet.optimal_split import (
 from service.fleet.plans import Plan
 from service.fleet.scales import Horizon
 from service.instance import OBJECTIVES, Instance
-from service.preferences import fan
+from service.preferences import spread
 
 _TOURS = 21  # the number of evenly spread preferences
 _MOST_ROUTES = 2**22  # routes in the tables of all sequences together: 64 MB
@@ -65,7 +65,7 @@ def network_sequences(
     if depot is not None and np.array_equal(costs[0], costs[1]):
         # If both costs are equal, every preference leads to the same tour.
         costs = np.stack((costs[0], _angular_costs(costs[0])))
-    tours = construct(constructor, Instance(matrices=costs), fan(_TOURS), within=within)
+    tours = construct(constructor, Instance(matrices=costs), spread(_TOURS), within=within)
     begun = [np.roll(tour, -int(tour.argmin())) for tour in tours]
     different = np.unique(np.array(begun, np.int64).reshape(-1, len(places)), axis=0)
     return [places[tour] for tour in (different if depot is None else different[:, 1:])]

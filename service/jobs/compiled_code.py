@@ -27,6 +27,7 @@ from service.jobs.parts import Compiling, Part
 from service.kinds import fleet
 from service.replanning import insertion
 from service.search import warm_up as search
+from service.search.several import warm_up as several
 
 Compile = Callable[[], None]
 Told = Callable[[Part | Compiling], None]
@@ -52,6 +53,7 @@ _WORK: Mapping[Part, _Work] = {
     Part.MAPS: _Work(shortest_paths.warm_up, (shortest_paths.warm_up,), 3),
     Part.CHANGES: _Work(insertion.warm_up, (insertion.warm_up,), 1),
     Part.FLEETS: _Work(fleet.warm_up, (fleet.warm_up,), 10),
+    Part.SEVERAL_OBJECTIVES: _Work(several.warm_up, (several.warm_up,), 25),
     Part.MANY_CITIES: _Work(search.many_cities, (search.many_cities,), 12),
 }
 _PIECES = [(part, piece) for part, work in _WORK.items() for piece in work.pieces]

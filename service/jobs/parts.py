@@ -8,11 +8,13 @@ from dataclasses import dataclass
 from enum import Enum
 
 from service.errors import WarmingUp
+from service.instance import OBJECTIVES
 from service.requests.stops import Stops
 from service.requests.task import SharedCoverage, Task, UnmeasuredFleet
 
 # As the search does, which cannot be imported here.
 _THREE_OPT = 250  # cities from which on three-opt searches; fewer where costs differ by direction
+_TABULATED = 1_500  # cities up to which costs under three or four objectives are looked up
 _MANY = {"coordinates": 600, "matrices": 2_000}  # from which on candidates or tours come otherwise
 
 
@@ -24,6 +26,7 @@ class Part(Enum):
     MAPS = "maps"
     CHANGES = "changes"
     FLEETS = "fleets"
+    SEVERAL_OBJECTIVES = "several-objectives"  # three and four
     MANY_CITIES = "many-cities"
 
 
@@ -55,12 +58,14 @@ def parts_of(task: Task) -> frozenset[Part]:
     """Return the parts that a task needs."""
     match task.subject:
         case SharedCoverage():
-            return frozenset(Part) - {Part.CHANGES}
+            return frozenset(Part) - {Part.CHANGES, Part.SEVERAL_OBJECTIVES}
         case UnmeasuredFleet():
             return frozenset({Part.FEW_CITIES, Part.FLEETS})
         case Stops() as stops:
             if not task.needs_compiled_code:
                 return frozenset()
+            if len(stops.sources) > OBJECTIVES:
+                return _of_several(stops, replanned=task.earlier is not None)
             few = stops.kind == "coordinates" and stops.n < _THREE_OPT and task.earlier is None
             parts = {Part.FEW_CITIES} if few else {Part.FEW_CITIES, Part.MORE_CITIES}
             if stops.n >= _MANY[stops.kind]:
@@ -68,4 +73,14 @@ def parts_of(task: Task) -> frozenset[Part]:
             if task.earlier is not None:
                 parts.add(Part.CHANGES)
             return frozenset(parts)
-    return frozenset(Part) - {Part.FLEETS}
+    return frozenset(Part) - {Part.FLEETS, Part.SEVERAL_OBJECTIVES}
+
+
+def _of_several(stops: Stops, *, replanned: bool) -> frozenset[Part]:
+    """Return the parts that stops under three or four objectives need."""
+    parts = {Part.FEW_CITIES, Part.MORE_CITIES, Part.SEVERAL_OBJECTIVES}
+    if stops.n > _TABULATED:
+        parts.add(Part.MANY_CITIES)
+    if replanned:
+        parts.add(Part.CHANGES)
+    return frozenset(parts)

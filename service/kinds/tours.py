@@ -12,7 +12,7 @@ from service.coverage.frame import CoveragePath
 from service.coverage.survey import Survey, survey
 from service.errors import Cancelled, InvalidCoverage, NoTour
 from service.front import Front, reporting
-from service.instance import Instance, cumulated_lengths
+from service.instance import Instance, step_lengths, tour_steps
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report, Tools
 from service.kinds.tour_document import encode_front
@@ -114,8 +114,17 @@ def _plan(
         raise refusal.named(task.city_names) from None
 
 
+def cumulated_lengths(instance: Instance, tours: NDArray[np.integer]) -> NDArray[np.float64]:
+    """Return all lengths of tours, shape (k, n), from their first city up to each.
+
+    Shape (k, n + 1, m) for closed tours, with the return, and (k, n, m) for open routes. O(k n).
+    """
+    steps = step_lengths(instance, *tour_steps(instance, tours))
+    return np.pad(steps.cumsum(axis=1), ((0, 0), (1, 0), (0, 0)))
+
+
 def _arrivals(task: Task, instance: Instance, front: Front) -> NDArray[np.float64] | None:
-    """Return both lengths of each tour up to each of its stops, if the task asks for them."""
+    """Return all lengths of each tour up to each of its stops, if the task asks for them."""
     return cumulated_lengths(instance, front.tours) if task.arrivals else None
 
 

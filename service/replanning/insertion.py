@@ -5,22 +5,24 @@ from numpy.typing import NDArray
 
 from service.instance import Instance, step_lengths, tour_steps
 from service.jit import compiled
+from service.pareto import OBJECTIVES, losses
 from service.replanning.earlier_tours import EarlierTours, Tours
 from service.search.closing import closed_tours, opened_tours
 from service.search.costs import Costs, make_costs, step_costs
+from service.search.several.costs import make_objective_costs, weighted_costs
 
 Array = NDArray[np.float64]
+_LEAST_WEIGHT = 1e-3  # of three or four objectives: so that all count
 
 
 def completed(instance: Instance, earlier: EarlierTours) -> Tours:
-    """Return the earlier tours with the other cities of an instance inserted, shape (m, n).
+    """Return the earlier tours with the other cities of an instance inserted, shape (k, n).
 
     Each city in turn goes where it costs least under a weighted sum of the lengths. The weights
-    differ by tour: those of the tour with the least first length are (1, 0), and those of the tour
-    with the least second length (0, 1). A route between two fixed ends is first reversed if that is
-    shorter under its weights, except for the driven one. O(m n (n - k)).
+    differ by tour, and are greatest for the objective under which it is best. A route between two
+    fixed ends is first reversed if that is shorter under its weights, except for the driven one.
+    O(k n a) for a cities that are inserted.
     """
-    costs = make_costs(instance)
     lengths = _scaled_lengths(instance, earlier.tours)
     weights = _weights(lengths)
     routes = _better_way_round(instance, earlier.tours, (lengths * weights).sum(axis=1), weights)
@@ -29,18 +31,32 @@ def completed(instance: Instance, earlier: EarlierTours) -> Tours:
     tours = np.concatenate((routes, np.tile(added, (len(routes), 1))), axis=1).astype(np.int32)
     tours = closed_tours(instance, tours)
     scaled = weights / np.ldexp(instance.scale, instance.shifts)
-    insert_cheapest(costs, tours, tours.shape[1] - len(added), scaled)
+    begun = tours.shape[1] - len(added)
+    if instance.objectives == OBJECTIVES:
+        insert_cheapest(make_costs(instance), tours, begun, scaled)
+    else:
+        costs, alone = make_objective_costs(instance), np.array([[1.0, 0.0]])
+        for k, each in enumerate(scaled):
+            insert_cheapest(weighted_costs(costs, each), tours[k : k + 1], begun, alone)
     return opened_tours(instance, tours).astype(np.int64)
 
 
 def _scaled_lengths(instance: Instance, tours: Tours) -> Array:
-    """Return lengths in units of scale, shape (m, 2); finite even if a leg is now forbidden."""
+    """Return lengths in units of scale, shape (k, m); finite even if a leg is now forbidden."""
     steps = step_lengths(instance, *tour_steps(instance, tours))
     return steps.sum(axis=1) / instance.scale
 
 
 def _weights(lengths: Array) -> Array:
-    """Return the weights of scaled lengths, shape (m, 2), by the rank of each route in balance."""
+    """Return the weights of scaled lengths, shape (k, m), rows adding to 1.
+
+    Of two objectives they are by the rank of each route in balance: of that with the least first
+    length (1, 0), of that with the least second (0, 1). Of more they are by what it does not lose.
+    """
+    if lengths.shape[1] > OBJECTIVES:
+        kept = (1 - losses(lengths)).clip(_LEAST_WEIGHT)
+        weights: Array = kept / kept.sum(axis=1, keepdims=True)
+        return weights
     rank = (lengths[:, 0] - lengths[:, 1]).argsort(kind="stable").argsort(kind="stable")
     share = rank / max(1, len(lengths) - 1)
     return np.stack((1 - share, share), axis=1)

@@ -17,6 +17,7 @@ from service.replanning.earlier_tours import EarlierTours, Tours, few_enough, to
 from service.replanning.insertion import completed
 from service.replanning.kept_legs import kept_shares, most_like_driven, with_most_kept_at
 from service.search.best_subset import best_subset
+from service.search.hypervolume import hypervolume
 
 _LEAST_SECONDS = 1e-3  # for the search, even if completing the earlier tours took all of the time
 _ROUNDING = 1e-9  # of a share
@@ -88,7 +89,7 @@ def _from_earlier(
     if len(first):
         options = replace(options, touched=touched_cities(instance, earlier, first))
         if options.fewer and options.time_limit > 0:
-            options = replace(options, angles=np.empty(0))
+            options = replace(options, directions=options.directions[:0])
     if earlier.min_kept > 0:
         return replace(options, size=max(options.size, _MOST_CELLS // instance.n))
     if earlier.balance is None:
@@ -112,4 +113,5 @@ def _keeping(
     tours = tours[nondominated(tour_lengths(instance, tours))]
     chosen = best_subset(tour_lengths(instance, tours), size, front.reference_point)
     points = tour_lengths(instance, tours[chosen])
-    return replace(front, tours=tours[chosen], points=points, found=len(tours))
+    found = hypervolume(points, front.reference_point)
+    return replace(front, tours=tours[chosen], points=points, hypervolume=found, found=len(tours))

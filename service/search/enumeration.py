@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from service.instance import Instance, least_steps
 from service.jit import compiled, inlined
+from service.pareto import OBJECTIVES
 from service.search.archive import ROUNDING, Archive, accepts, insert, make_archive
 from service.search.closing import closing_cost, is_open, opened_tours
 from service.search.costs import Costs, lengths, make_costs, travel_costs
+from service.search.several.enumeration import exact_tours_of_several
 
 Array = NDArray[np.float64]
 Cities = NDArray[np.int32]
@@ -47,6 +49,8 @@ def exact_tours(
         deadline: Time to stop, by time.monotonic(); None sets no limit.
         stop: Called at least every few ms; True ends the enumeration at once.
     """
+    if instance.objectives > OBJECTIVES:
+        return exact_tours_of_several(instance, deadline, stop)
     costs = make_costs(instance)
     archive = make_archive(len(costs.cities))
     complete = True

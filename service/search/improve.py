@@ -13,15 +13,17 @@ from numpy.typing import NDArray
 
 from service.front import Progress, ReportOf, SearchResult, Termination
 from service.instance import Instance, tour_lengths
-from service.pareto import nondominated
+from service.pareto import OBJECTIVES, nondominated
 from service.search.archive import MAX_POINTS
 from service.search.best_subset import best_subset
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
 from service.search.schedule import Search
+from service.search.several.schedule import SearchOfSeveral
 
 Array = NDArray[np.float64]
 
 REPORT_EVERY = 0.1  # seconds
+LONGEST_REPORTS = 10  # times as long as a report takes, the search goes on before the next
 
 
 def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a default
@@ -58,7 +60,7 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
         stop: Called every millisecond or two; True ends the search at once.
         report: Called about ten times a second with the progress, and with a function that copies
             the n best tours found so far, which is valid until the report returns.
-        reference_point: Shape (2,), of the hypervolume, in the instance's units; by default
+        reference_point: Shape (m,), of the hypervolume, in the instance's units; by default
             the instance's. The search works where this hypervolume grows fastest.
         capacity: The most tours that the search keeps, at least 16; the result has more only where
             it was given more.
@@ -69,7 +71,11 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
         return _enumerated(instance, tours, deadline, stop)
     if reference_point is None:
         reference_point = instance.reference_point
-    search = Search(instance, seed, reference_point, capacity, touched)
+    search: Search | SearchOfSeveral
+    if instance.objectives == OBJECTIVES:
+        search = Search(instance, seed, reference_point, capacity, touched)
+    else:
+        search = SearchOfSeveral(instance, seed, reference_point, capacity, touched)
     search.add(tours)
     terminated = _run(search, deadline, reserve, iterations, stop, report)
     if not search.size:
@@ -81,7 +87,7 @@ def improve(  # noqa: PLR0913  all but the first two are keyword-only and have a
 
 
 def _run(
-    search: Search,
+    search: Search | SearchOfSeveral,
     deadline: float | None,
     reserve: Callable[[int], float],
     iterations: int | None,
@@ -90,6 +96,7 @@ def _run(
 ) -> Termination:
     """Run a search until it converges, or its deadline, its iterations or `stop` end it."""
     began = reported = time.monotonic()
+    pause = REPORT_EVERY
     spent = 0
     for done in search.run():
         spent += done
@@ -100,11 +107,12 @@ def _run(
         if left <= reserve(search.size) or (iterations is not None and spent >= iterations):
             return "time_limit"
         # A report takes time; shortly before the deadline it could break it.
-        due = now - reported >= REPORT_EVERY and left > REPORT_EVERY
+        due = now - reported >= pause and left > pause
         if report is not None and due and search.allowed:
-            reported = now
             progress = Progress(now - began, search.hypervolume, search.size)
             report(progress, partial(_best_found, search))
+            reported = time.monotonic()
+            pause = max(REPORT_EVERY, LONGEST_REPORTS * (reported - now))
     return "converged"
 
 
@@ -123,7 +131,7 @@ def _enumerated(
     return _front(instance, every, "cancelled" if cancelled else "time_limit")
 
 
-def _best_found(search: Search, size: int) -> SearchResult:
+def _best_found(search: Search | SearchOfSeveral, size: int) -> SearchResult:
     """Return the best subset of a size of the front that a search has found so far."""
     points = search.points()
     indices = best_subset(points, size, search.reference_point)

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance, tour_lengths
-from service.pareto import hypervolume
 from service.search.archive import (
     MAX_POINTS,
     accepts,
@@ -35,6 +34,7 @@ from service.search.closing import closed_tours, opened_tours
 from service.search.costs import lengths, make_costs, scaled_reference
 from service.search.descents import Descents
 from service.search.enumeration import enumerate_tours
+from service.search.hypervolume import hypervolume
 from service.search.pareto_local_search import (
     LARGE,
     STEPS,

@@ -95,7 +95,9 @@ def _repaired(actor: OnnxActor, instance: Instance) -> NDArray[np.integer]:
     angles = fan(PREFERENCES)
     repairs = repairs_worth(actor.info.inputs, instance.n)
     return plan(
-        actor, instance, PlanOptions(angles=angles, size=len(angles), repairs=repairs)
+        actor,
+        instance,
+        PlanOptions(directions=from_angles(angles), size=len(angles), repairs=repairs),
     ).tours
 
 

@@ -26,7 +26,7 @@ from service.front import PlanOptions
 from service.instance import Instance, tour_lengths
 from service.pareto import hypervolume
 from service.planner import plan
-from service.preferences import fan, from_angles
+from service.preferences import fan, from_angles, spread
 from service.search.warm_up import warm_up
 from tests.benchmarks.instances import check_tours
 from tests.benchmarks.provenance import load
@@ -103,7 +103,9 @@ def planned(
     # The time of the network comes on top of the seconds of search.
     repairs = repairs_worth("matrices", instance.n) if repaired else 0
     tours = constructor.tours(instance, from_angles(fan(TOURS)), repairs)
-    demand = PlanOptions(angles=fan(TOURS), size=TOURS, time_limit=seconds, initial_tours=tours)
+    demand = PlanOptions(
+        directions=spread(TOURS), size=TOURS, time_limit=seconds, initial_tours=tours
+    )
     return plan(Nothing(), instance, demand).tours
 
 

@@ -22,7 +22,7 @@ from service.construction.repairs import repairs_worth
 from service.front import Front, PlanOptions
 from service.instance import Instance
 from service.planner import plan
-from service.preferences import fan
+from service.preferences import spread
 from service.search.warm_up import warm_up
 from tests.benchmarks.beside import Nothing
 from tests.benchmarks.printed import LITERATURE_CORNERS
@@ -72,7 +72,7 @@ def uniform(n: int, seed: int) -> Instance:
 def measured(actor: OnnxActor, method: Method, instance: Instance) -> dict[str, float]:
     """Hypervolume in per cent, and seconds of the processor."""
     corner = np.full(2, float(LITERATURE_CORNERS[instance.n]))
-    demand = PlanOptions(angles=fan(TOURS), size=TOURS, reference_point=corner)
+    demand = PlanOptions(directions=spread(TOURS), size=TOURS, reference_point=corner)
     began = time.process_time()
     front = method(actor, instance, demand)
     seconds = time.process_time() - began

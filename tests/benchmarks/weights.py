@@ -26,7 +26,7 @@ from service.front import PlanOptions
 from service.instance import Instance, tour_lengths
 from service.pareto import nondominated
 from service.planner import plan
-from service.preferences import fan
+from service.preferences import spread
 from service.search.warm_up import warm_up
 from tests.benchmarks.instances import check_tours
 from tests.benchmarks.rivals import ortools_routing
@@ -91,7 +91,7 @@ def measured(find: Find, instance: Instance, seed: int) -> dict[str, Any]:
 
 
 def _planned(actor: OnnxActor, limit: float, instance: Instance, seed: int) -> NDArray[np.integer]:
-    options = PlanOptions(angles=fan(100), fewer=True, size=100, time_limit=limit, seed=seed)
+    options = PlanOptions(directions=spread(100), fewer=True, size=100, time_limit=limit, seed=seed)
     return plan(actor, instance, options).tours
 
 

@@ -15,7 +15,7 @@ from service.errors import Cancelled
 from service.front import PlanOptions
 from service.instance import Instance
 from service.planner import plan
-from service.preferences import fan, from_angles
+from service.preferences import fan, from_angles, spread
 from service.search.warm_up import warm_up
 from service.settings import Settings
 
@@ -49,7 +49,7 @@ def cities(n: int) -> Instance:
 def test_all_angles_that_were_asked_for_are_honoured() -> None:
     constructor = Counted()
     angles = np.array([3.0, 80.0])
-    assert len(construct(constructor, cities(20), angles)) == 2
+    assert len(construct(constructor, cities(20), from_angles(angles))) == 2
     np.testing.assert_array_equal(constructor.calls, [from_angles(angles)])
 
 
@@ -58,7 +58,7 @@ def test_within_a_time_only_preferences_and_repairs_that_fit_are_made(
     within: float, n: int, repairs: int
 ) -> None:
     constructor, estimate = Counted(), CallEstimate("coordinates")
-    tours = construct(constructor, cities(n), fan(100), repairs, within=within)
+    tours = construct(constructor, cities(n), spread(100), repairs, within=within)
     if not constructor.calls:
         assert estimate.fitting(n, 0.25 * within) == 0
         assert tours.shape == (0, n)
@@ -76,7 +76,7 @@ def test_repairs_never_exceed_a_limit_though_all_angles_are_honoured(
     limit: float, n: int, repairs: int
 ) -> None:
     constructor, estimate = Counted(), CallEstimate("coordinates")
-    assert len(construct(constructor, cities(n), fan(50), repairs, limit=limit)) == 50
+    assert len(construct(constructor, cities(n), spread(50), repairs, limit=limit)) == 50
     made = constructor.repairs
     assert made <= repairs
     assert made == 0 or estimate.seconds(n, 50, made) <= limit
@@ -92,14 +92,14 @@ def test_a_call_with_repairs_that_takes_too_long_is_ended_and_made_without() -> 
             return super().tours(instance, preferences, repairs)
 
     constructor = SlowRepairs()
-    assert len(construct(constructor, cities(20), fan(5), 3, limit=0.2)) == 5
+    assert len(construct(constructor, cities(20), spread(5), 3, limit=0.2)) == 5
     assert (len(constructor.calls), constructor.repairs) == (2, 0)
 
 
 def test_a_call_that_takes_longer_than_its_time_is_ended_and_brings_nothing() -> None:
     constructor = Counted(seconds=60)
     before = constructor.estimate.seconds(10, 5)
-    assert construct(constructor, cities(10), fan(5), within=0.1).shape == (0, 10)
+    assert construct(constructor, cities(10), spread(5), within=0.1).shape == (0, 10)
     assert len(constructor.calls) == 1
     assert constructor.estimate.seconds(10, 5) > before
 
@@ -110,7 +110,7 @@ def test_a_call_that_somebody_else_ends_is_cancelled() -> None:
             raise Cancelled
 
     with pytest.raises(Cancelled):
-        construct(Ended(), cities(10), fan(5), within=10.0)
+        construct(Ended(), cities(10), spread(5), within=10.0)
 
 
 def test_the_released_network_is_ended_in_time() -> None:
@@ -118,14 +118,16 @@ def test_the_released_network_is_ended_in_time() -> None:
     actor.load()
     for _ in range(30):  # it is taken for much faster than it is
         actor.estimate.correct(1000, 100, 1e-6)
-    assert construct(actor, cities(1000), fan(100), within=0.05).shape == (0, 1000)
+    assert construct(actor, cities(1000), spread(100), within=0.05).shape == (0, 1000)
 
 
 def test_a_plan_is_over_in_time_though_the_network_is_slow() -> None:
     warm_up()
     constructor = Counted(seconds=60)
     front = plan(
-        constructor, cities(60), PlanOptions(angles=fan(100), size=10, fewer=True, time_limit=0.3)
+        constructor,
+        cities(60),
+        PlanOptions(directions=spread(100), size=10, fewer=True, time_limit=0.3),
     )
     assert (len(constructor.calls), front.constructed) == (1, 0)
     assert len(front.tours) == 10
@@ -134,7 +136,7 @@ def test_a_plan_is_over_in_time_though_the_network_is_slow() -> None:
 
 def test_preferences_that_were_asked_for_exceed_the_limit_by_one_call_at_most() -> None:
     constructor = Counted(seconds=0.2)
-    options = PlanOptions(angles=fan(7), size=10, time_limit=0.1)
+    options = PlanOptions(directions=spread(7), size=10, time_limit=0.1)
     front = plan(constructor, cities(60), options)
     assert (len(constructor.calls), front.constructed) == (1, 7)
     assert front.terminated == "time_limit"
@@ -142,7 +144,9 @@ def test_preferences_that_were_asked_for_exceed_the_limit_by_one_call_at_most() 
 
 def test_preferences_that_were_asked_for_are_given_up_where_their_call_hardly_ends() -> None:
     constructor = Counted(seconds=600)
-    front = plan(constructor, cities(60), PlanOptions(angles=fan(7), size=10, time_limit=0.1))
+    front = plan(
+        constructor, cities(60), PlanOptions(directions=spread(7), size=10, time_limit=0.1)
+    )
     assert (len(constructor.calls), front.constructed) == (1, 0)
     assert len(front.tours)
 
@@ -153,12 +157,12 @@ def test_a_call_ends_whose_time_was_over_before_it_began() -> None:
             time.sleep(0.2)  # the time is over, and nothing runs yet that could be ended
             return super().tours(*args)
 
-    assert construct(Late(seconds=600), cities(10), fan(5), within=0.1).shape == (0, 10)
+    assert construct(Late(seconds=600), cities(10), spread(5), within=0.1).shape == (0, 10)
 
 
 def test_without_a_limit_all_repairs_are_made() -> None:
     constructor = Counted()
-    plan(constructor, cities(60), PlanOptions(angles=fan(7), size=10, repairs=150))
+    plan(constructor, cities(60), PlanOptions(directions=spread(7), size=10, repairs=150))
     assert (len(constructor.calls), constructor.repairs) == (1, 150)
 
 
@@ -168,4 +172,4 @@ def test_repairs_of_the_released_network_end_when_it_is_told_to_stop() -> None:
     timer = Timer(0.2, actor.terminate)
     timer.start()
     with pytest.raises(Cancelled):
-        construct(actor, cities(30), fan(100), 10**6)  # hours
+        construct(actor, cities(30), spread(100), 10**6)  # hours

@@ -25,6 +25,7 @@ from service.front import PlanOptions
 from service.instance import Instance
 from service.kinds.robots import robot_fleet
 from service.planner import plan
+from service.preferences import spread
 from service.requests.coverage import parse_coverage_request
 from service.requests.fleet import parse_fleet_request
 from service.roads.client import RoadClient, RoadCosts
@@ -120,7 +121,7 @@ def test_time_against_distance_of_the_same_stops_leaves_little_to_choose(
             await client.close()
 
     instance = Instance(matrices=np.stack(asyncio.run(ask())))
-    options = PlanOptions(angles=np.array([45.0]), size=100, time_limit=2.0, seed=1)
+    options = PlanOptions(directions=spread(1), size=100, time_limit=2.0, seed=1)
     points = plan(Shuffler(), instance, options).points
     # The guide gives these: the fastest tour is nearly the shortest.
     assert len(points) == pytest.approx(10, abs=5)

@@ -20,25 +20,25 @@ KINDS = ("coordinates", "symmetric", "asymmetric")
 ENDS = ("no", "start", "end", "both")  # which ends of an open route are fixed
 
 
-def small_integers(kind: str, n: int, seed: int) -> Instance:
+def small_integers(kind: str, n: int, seed: int, objectives: int = 2) -> Instance:
     """An instance of small whole numbers, so that ties and coincident cities are common."""
     rng = np.random.default_rng(seed)
     if kind == "coordinates":
-        return Instance(coordinates=rng.integers(0, 6, (n, 4)).astype(float))
-    matrices = rng.integers(0, 9, (2, n, n)).astype(float)
+        return Instance(coordinates=rng.integers(0, 6, (n, 2 * objectives)).astype(float))
+    matrices = rng.integers(0, 9, (objectives, n, n)).astype(float)
     if kind == "symmetric":
         matrices += matrices.transpose(0, 2, 1)
     return Instance(matrices=matrices)
 
 
-def uniform(n: int, seed: int = 0) -> Instance:
+def uniform(n: int, seed: int = 0, objectives: int = 2) -> Instance:
     """Coordinates drawn uniformly from the unit squares."""
-    return Instance(coordinates=np.random.default_rng(seed).random((n, 4)))
+    return Instance(coordinates=np.random.default_rng(seed).random((n, 2 * objectives)))
 
 
-def random_matrices(n: int, seed: int, symmetric: bool) -> Instance:
+def random_matrices(n: int, seed: int, symmetric: bool, objectives: int = 2) -> Instance:
     """Matrices of uniform costs."""
-    matrices = np.random.default_rng(seed).random((2, n, n))
+    matrices = np.random.default_rng(seed).random((objectives, n, n))
     if symmetric:
         matrices += matrices.transpose(0, 2, 1)
     return Instance(matrices=matrices)

@@ -19,6 +19,7 @@ from service.jobs.workers.worker_pool import WorkerPool
 from service.kinds.front_document import FrontDocument
 from service.kinds.kind import Report
 from service.kinds.tour_document import encode_front
+from service.preferences import spread
 from service.requests.stops import Plane, Stops
 from service.requests.task import Task
 
@@ -93,6 +94,7 @@ def document(terminated: str | None, gained: float | None = None) -> FrontDocume
         found=1,
         scale=np.ones(2),
         reference_point=np.array([3.0, 3.0]),
+        hypervolume=4 / 9,
         terminated=terminated,
         timings={"construction": 1.0},
         gained=gained,
@@ -104,7 +106,7 @@ def task(deed: str = "", seconds: float = 1.0) -> Task:
     """Return a task whose actor says what the runner does; without a time limit it is brief."""
     cities = np.random.default_rng(0).random((3, 4))
     planes = Plane(cities[:, :2]), Plane(cities[:, 2:])
-    options = PlanOptions(angles=np.array([45.0]), size=1, time_limit=seconds)
+    options = PlanOptions(directions=spread(1), size=1, time_limit=seconds)
     return Task(subject=Stops(np.full((3, 2), np.nan), planes), options=options, actor=deed)
 
 

@@ -9,6 +9,7 @@ from service.errors import Refusal
 from service.front import Front, PlanOptions, SearchResult
 from service.instance import Instance, tour_lengths
 from service.pareto import balances, nondominated
+from service.preferences import spread
 from service.replanning.earlier_tours import EarlierTours, few_enough, touched_cities
 from service.replanning.insertion import completed
 from service.replanning.kept_legs import kept_shares, with_most_kept_at
@@ -81,7 +82,7 @@ def test_a_share_that_no_tour_keeps_is_refused_with_the_most_that_one_does() -> 
     rng = np.random.default_rng(3)
     instance = Instance(coordinates=rng.random((9, 4)))
     earlier = EarlierTours(np.array([[0, 4, 2, 5, 1, 3]]), min_kept=1.0)
-    options = PlanOptions(angles=np.zeros(1), fewer=True, size=9, time_limit=0.2)
+    options = PlanOptions(directions=spread(1), fewer=True, size=9, time_limit=0.2)
     with pytest.raises(Refusal, match="at least 1 of the driven") as refused:
         replan(Shuffler(), instance, options, earlier)
     assert refused.value.code == "too-different"
@@ -201,7 +202,7 @@ def test_of_equal_lengths_the_tour_most_like_the_driven_one_is_returned() -> Non
     line = np.repeat(np.arange(12.0)[:, np.newaxis] * 0, 4, axis=1)
     instance = Instance(coordinates=line, closed=False, start=0)
     driven = np.array([0, *np.random.default_rng(1).permutation(np.arange(1, 12))])
-    options = PlanOptions(angles=np.zeros(1), fewer=True, size=9, time_limit=0.2)
+    options = PlanOptions(directions=spread(1), fewer=True, size=9, time_limit=0.2)
     front = replan(Shuffler(), instance, options, EarlierTours(driven[np.newaxis]))
     assert front.kept is not None
     assert front.kept.tolist() == [1.0]

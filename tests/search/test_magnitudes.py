@@ -13,7 +13,7 @@ from service.errors import InvalidInstance
 from service.front import Front, PlanOptions
 from service.instance import Instance
 from service.planner import plan
-from service.preferences import fan
+from service.preferences import fan, from_angles
 from service.search.best_subset import best_subset
 from service.search.bound.hypervolume import hypervolume_bound
 from service.search.improve import improve
@@ -103,7 +103,7 @@ def test_costs_of_any_magnitude_are_planned(
 ) -> None:
     instance = drawn(seed, n, powers, spread, kind)
     options = PlanOptions(
-        angles=fan(3),
+        directions=from_angles(fan(3)),
         size=4,
         time_limit=0.02,
         bound=True,

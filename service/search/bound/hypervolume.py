@@ -12,11 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.instance import Instance, tour_lengths
-from service.pareto import hypervolume
+from service.pareto import OBJECTIVES
 from service.search.bound.assignment import augment, make_assignment, price_bound
 from service.search.bound.one_tree import ascend, make_ascent
+from service.search.bound.several import bound_of_several
 from service.search.costs import Costs, make_costs, scaled_reference
 from service.search.enumeration import MAX_ENUMERATED, exact_tours
+from service.search.hypervolume import hypervolume
 from service.search.pareto_local_search import bisection_order
 
 Array = NDArray[np.float64]
@@ -41,7 +43,7 @@ def hypervolume_bound(
 
     Args:
         instance: The instance.
-        reference_point: Shape (2,), positive, in the instance's own units.
+        reference_point: Shape (m,), positive, in the instance's own units.
         deadline: Time to stop, by time.monotonic(); None sets no limit.
         stop: Called at least every few ms; True ends the tightening at once.
     """
@@ -49,6 +51,8 @@ def hypervolume_bound(
         tours, complete = exact_tours(instance, deadline, stop)
         if complete:
             return hypervolume(tour_lengths(instance, tours), reference_point)
+    if instance.objectives > OBJECTIVES:
+        return bound_of_several(instance, reference_point, deadline, stop)
     share = np.linspace(0.0, 1.0, WEIGHTS)
     scale = np.ldexp(instance.scale, instance.shifts)
     weights = np.stack([share, 1 - share], axis=1) / scale

@@ -1,0 +1,96 @@
+"""The same bound of three and four objectives: half-spaces cut the box instead of half-planes."""
+
+import math
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, HalfspaceIntersection
+
+from service.instance import Instance
+from service.preferences import lattice, spread_out
+from service.search.bound.assignment import augment, make_assignment, price_bound
+from service.search.bound.one_tree import ascend, make_ascent
+from service.search.costs import Costs, scaled_reference
+from service.search.several.costs import make_objective_costs, weighted_costs
+
+Array = NDArray[np.float64]
+
+PARTS = {3: 6, 4: 4}  # of 1, that the weights share: 28 and 35 weights
+LEAST_SHARE = 1e-3  # of a weight, so that every half-space is cut by each axis
+STEPS = 200  # of the subgradient ascent at each weight
+BLOCK = 1_000_000  # costs computed between two checks of the deadline
+SLACK = 1e-9  # share by which bounds are loosened, far above what rounding can do to them
+THINNEST = 1e-6  # share of the box's diagonal that is left, below which one half-space alone counts
+
+
+def bound_of_several(
+    instance: Instance, reference_point: Array, deadline: float | None, stop: Callable[[], bool]
+) -> float:
+    """Return an upper bound on the hypervolume of any front of the instance, 0 to 1."""
+    shares = lattice(instance.objectives, PARTS[instance.objectives]).clip(LEAST_SHARE)
+    weights = shares[spread_out(shares)] / np.ldexp(instance.scale, instance.shifts)
+    weights /= weights.sum(axis=1, keepdims=True)
+    costs = make_objective_costs(instance)
+    lowest = np.zeros(len(weights))
+    for k, value in _bounds([weighted_costs(costs, each) for each in weights], weights):
+        lowest[k] = max(lowest[k], value * (1 - SLACK))
+        if stop() or (deadline is not None and time.monotonic() >= deadline):
+            break
+    return volume_above(weights * scaled_reference(instance, reference_point), lowest)
+
+
+def _bounds(costs: list[Costs], weights: Array) -> Iterator[tuple[int, float]]:
+    """Yield pairs of a weight's index and a lower bound under that weight, ever better."""
+    one_tree = costs[0].symmetric
+    penalties: list[Array] = []
+    for k, weighted in enumerate(costs):
+        if not one_tree:
+            yield from ((k, value) for value in _assignment_bounds(weighted))
+            continue
+        distances = np.linalg.norm(weights[:k] - weights[k], axis=1)
+        start = penalties[int(distances.argmin())] if k else np.zeros(len(weighted.cities))
+        ascent = make_ascent(start)
+        shares = (1 - np.arange(STEPS) / STEPS) ** 2
+        block = max(1, BLOCK // len(start) ** 2)
+        for begin in range(0, STEPS, block):
+            ascend(weighted, 1.0, 0.0, ascent, shares[begin : begin + block])
+            yield k, float(ascent.best_bound[0])
+        penalties.append(ascent.best_penalties)
+
+
+def _assignment_bounds(costs: Costs) -> Iterator[float]:
+    n = len(costs.cities)
+    assignment = make_assignment(n)
+    for city in range(n):
+        augment(costs, 1.0, 0.0, assignment, city)
+        if city == n - 1 or city % max(1, BLOCK // n**2) == 0:
+            yield price_bound(costs, 1.0, 0.0, assignment.prices)
+
+
+def volume_above(weights: Array, lowest: Array) -> float:
+    """Return the volume of the points p of the unit cube with weights @ p >= lowest, or a bit more.
+
+    Weights, shape (k, m), are positive; lowest has shape (k,).
+    """
+    sums = weights.sum(axis=1)
+    room = (sums - lowest) / sums  # on the diagonal, from the corner (1, ..., 1)
+    if room.min() <= 0:
+        return 0.0
+    corners = (room * sums) ** weights.shape[1] / weights.prod(axis=1)
+    least = float(corners.min()) / math.factorial(weights.shape[1])
+    if room.min() < THINNEST:
+        return min(1.0, least * (1 + SLACK))
+    identity = np.eye(weights.shape[1])
+    ones = np.ones((weights.shape[1], 1))
+    half_spaces = np.concatenate(
+        (
+            np.concatenate((-weights, lowest[:, np.newaxis]), axis=1) / sums[:, np.newaxis],
+            np.concatenate((identity, -ones), axis=1),
+            np.concatenate((-identity, 0 * ones), axis=1),
+        )
+    )
+    inside = np.full(weights.shape[1], 1 - min(1.0, float(room.min())) / 2)
+    corners = HalfspaceIntersection(half_spaces, inside).intersections
+    return min(1.0, float(ConvexHull(corners).volume) * (1 + SLACK))

@@ -1,0 +1,94 @@
+"""The exact front of a few cities under three or four objectives: all tours are compared."""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.instance import Instance
+from service.jit import compiled
+from service.search.archive import ROUNDING
+from service.search.closing import opened_tours
+from service.search.several.archive import BlockArchive, insert, make_archive, rows_of
+from service.search.several.costs import ObjectiveCosts, make_objective_costs, sum_lengths
+
+Cities = NDArray[np.int32]
+
+BLOCK = 500  # tours between two checks of the deadline, a fraction of a ms
+ANY = -1  # no fixed end
+
+
+def exact_tours_of_several(
+    instance: Instance, deadline: float | None, stop: Callable[[], bool]
+) -> tuple[Cities, bool]:
+    """Return a tour for every point of the front of up to nine cities, and True.
+
+    Where time runs out first, return those found so far, one at least, and False.
+    """
+    costs = make_objective_costs(instance)
+    n = len(costs.cities)
+    archive = make_archive(n, instance.objectives)
+    order = np.arange(n, dtype=np.int32)
+    ends = np.array([ANY if end is None else 1 + end for end in (instance.start, instance.end)])
+    complete, left = True, True
+    while left:
+        left = insert_some(costs, archive, order, ends, BLOCK)
+        late = stop() or (deadline is not None and time.monotonic() >= deadline)
+        if left and late and archive.counts[0] > 0:
+            complete = False
+            break
+    rows = rows_of(archive)
+    distinct = _distinct(archive.points[rows], 1 + ROUNDING * n)
+    return opened_tours(instance, archive.tours[rows[distinct]]), complete
+
+
+def _distinct(points: NDArray[np.float64], slack: float) -> NDArray[np.bool_]:
+    """Return which points more than rounding keeps from being dominated by another."""
+    distinct = np.ones(len(points), np.bool_)
+    for k, point in enumerate(points):
+        at_least = (points <= point * slack).all(axis=1)
+        distinct[k] = np.count_nonzero(at_least & distinct) == 1  # itself
+    return distinct
+
+
+@compiled
+def insert_some(
+    costs: ObjectiveCosts,
+    archive: BlockArchive,
+    order: Cities,
+    ends: NDArray[np.int64],
+    count: int,
+) -> bool:
+    """Offer tours from an order of the cities on, in lexical order; return whether some are left.
+
+    City 0 stays first. `ends` are the cities at the second place and the last, ANY where free.
+    """
+    last = len(order) - 1
+    for _ in range(count):
+        if (ends[0] == ANY or order[1] == ends[0]) and (ends[1] == ANY or order[last] == ends[1]):
+            sum_lengths(costs, order, archive.lengths)
+            insert(archive, archive.lengths, order)
+        if not next_order(order):
+            return False
+    return True
+
+
+@compiled
+def next_order(order: Cities) -> bool:
+    """Change an order to the next, but for its first city; return False after the last one."""
+    last = len(order) - 1
+    k = last - 1
+    while k >= 1 and order[k] >= order[k + 1]:
+        k -= 1
+    if k < 1:
+        return False
+    j = last
+    while order[j] <= order[k]:
+        j -= 1
+    order[k], order[j] = order[j], order[k]
+    left, right = k + 1, last
+    while left < right:
+        order[left], order[right] = order[right], order[left]
+        left, right = left + 1, right - 1
+    return True

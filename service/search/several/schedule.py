@@ -1,0 +1,269 @@
+"""The schedule of a search for three or four objectives: which weight, and from which tours.
+
+First every weight gets a tour by descent, from the best one known under it. Then each in turn has
+its tour improved by iterated local search, and the front near to it is searched from its points.
+Up to some hundred cities every tour on the way is offered to the archive.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.instance import Instance, tour_lengths
+from service.search.archive import MAX_POINTS
+from service.search.archive import make_archive as make_sorted_archive
+from service.search.candidates import Scalarization
+from service.search.closing import closed_tours, opened_tours
+from service.search.hypervolume import hypervolume
+from service.search.local_search import least_gain
+from service.search.pareto_local_search import LARGE, SearchState, WeightedCandidates
+from service.search.several.archive import (
+    accepts,
+    best_row,
+    insert,
+    make_archive,
+    rows_of,
+)
+from service.search.several.costs import (
+    make_objective_costs,
+    sum_lengths,
+    weighted_costs,
+)
+from service.search.several.local_search import (
+    StateOfSeveral,
+    iterate,
+    offer,
+    search_from_points,
+)
+from service.search.several.weights import WeightedSums, search_weights
+from service.search.starts.constructed_tour import GREEDY, constructed_tour
+from service.search.three_opt.choice import LocalSearch, TwoOptSearch, choose_local_searches
+from service.search.working_tour import enqueue_cities, make_working_tour
+
+Array = NDArray[np.float64]
+
+CONSTRUCTIONS = 17  # weights for which a tour is constructed as well
+BLOCK = 300  # iterations between two checks of the deadline, some milliseconds
+LONG_BLOCK = 50  # the same by three-opt
+DESCENT_BLOCK = 2_000  # cities from the queue between two checks of the deadline
+OFFERS = 50  # of a large tour on the way of a descent, in each sweep along it
+STEPS = 10  # of the iterated local search from each point
+PATIENCE = 1_000  # iterations per city without a new tour, after which the search has converged
+# Iterations under each weight as shares of n, by the round: of its best tour, and from points.
+ROUNDS = ((0.25, 0.0), (0.5, 0.5), (0.5, 1.0))
+
+
+class SearchOfSeveral:
+    """A search for the front of an instance of at least eight cities and three or four objectives.
+
+    It depends on the seed and on what it has found, never on the clock: stopped after the same
+    number of iterations, it has found the same.
+
+    Args:
+        instance: The instance.
+        seed: Of all random choices.
+        reference_point: Shape (m,), positive, in the instance's units.
+        capacity: The most tours that the archive holds.
+        touched: If the tours that are added are those of an earlier front: the cities of the
+            instance at which they may have become worse. Then no tour is constructed.
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        seed: int,
+        reference_point: Array,
+        capacity: int = MAX_POINTS,
+        touched: NDArray[np.integer] | None = None,
+    ) -> None:
+        self.instance = instance
+        self.reference_point = reference_point
+        self._touched = None if touched is None else closed_tours(instance, touched[np.newaxis])[0]
+        self._costs = make_objective_costs(instance)
+        self._n = len(self._costs.cities)
+        self._sums = WeightedSums(self._costs, search_weights(instance))
+        self._weights = self._sums.weights
+        self._archive = make_archive(self._n, instance.objectives, capacity)
+        self._state = StateOfSeveral(
+            self._costs,
+            self._archive,
+            make_working_tour(self._n),
+            np.random.default_rng(seed).integers(1, 2**63 - 1, 1),
+        )
+        self._descent, self._local_search = choose_local_searches(
+            self._state_of_two(), touched is not None
+        )
+        self._lengths = np.empty(instance.objectives)
+
+    def _state_of_two(self) -> SearchState:
+        """Return the state of a search for two objectives, for its local searches.
+
+        What they offer, under two costs, goes to an archive of its own that nobody reads.
+        """
+        n = self._n
+        return SearchState(
+            weighted_costs(self._costs, self._weights[0]),
+            WeightedCandidates(
+                np.zeros((0, 2)), np.zeros((0, n, 0), np.int32), np.zeros((0, n, 0))
+            ),
+            make_sorted_archive(n, capacity=0),
+            self._state.working,
+            self._state.random,
+        )
+
+    @property
+    def hypervolume(self) -> float:
+        """The hypervolume of the front found so far, 0 to 1."""
+        return hypervolume(self.points(), self.reference_point)
+
+    @property
+    def allowed(self) -> bool:
+        """Whether the tours found so far have no forbidden leg: either none of them has, or all."""
+        first = self.tours(np.arange(min(1, self.size)))
+        return len(first) > 0 and bool(np.isfinite(tour_lengths(self.instance, first)).all())
+
+    @property
+    def size(self) -> int:
+        """The number of points of the front found so far."""
+        return int(self._archive.counts[0])
+
+    def tours(self, indices: NDArray[np.intp] | None = None) -> NDArray[np.int32]:
+        """Return the tours of the front, or those at indices, by ascending first length."""
+        rows = rows_of(self._archive)
+        tours = self._archive.tours[rows if indices is None else rows[indices]]
+        return opened_tours(self.instance, tours)
+
+    def points(self) -> Array:
+        """Return the points of the front, shape (p, m), in the instance's units."""
+        return np.ldexp(self._archive.points[rows_of(self._archive)], -self.instance.shifts)
+
+    def not_covered(self, tours: NDArray[np.integer]) -> NDArray[np.integer]:
+        """Return the tours that the front neither dominates nor equals.
+
+        Of tours that were added there are some only where a full archive had to drop them.
+        """
+        missing = []
+        for k, tour in enumerate(closed_tours(self.instance, tours)):
+            sum_lengths(self._costs, tour, self._lengths)
+            if accepts(self._archive, self._lengths):
+                missing.append(k)
+        return tours[missing]
+
+    def add(self, tours: NDArray[np.integer]) -> None:
+        """Add tours, shape (k, n), to the front."""
+        for tour in closed_tours(self.instance, tours):
+            sum_lengths(self._costs, tour, self._lengths)
+            insert(self._archive, self._lengths, tour)
+
+    def construct(self) -> None:
+        """Add a nearest-neighbour tour under the first weight, at most O(n^2)."""
+        self.add(opened_tours(self.instance, self._constructed(0)[np.newaxis]))
+
+    def run(self) -> Iterator[int]:
+        """Search, and yield about every millisecond the number of iterations done since.
+
+        Ends when the search has converged.
+        """
+        for k in range(len(self._weights)):
+            yield from self._descend(k, k < CONSTRUCTIONS and self._touched is None)
+        rounds = iter(ROUNDS)
+        share, quiet = next(rounds), 0
+        while quiet < PATIENCE * self._n:
+            for k in range(len(self._weights)):
+                inserted = self._archive.counts[2]
+                for done in self._take_turn(k, *share):
+                    quiet += done
+                    yield done
+                quiet = quiet if self._archive.counts[2] == inserted else 0
+            share = next(rounds, share)
+
+    def _take_turn(self, k: int, own: float, gaps: float) -> Iterator[int]:
+        """Improve the best tour under weight k, and search from points of the front near to it."""
+        for _ in self._sums.rank(k):
+            yield 0
+        scalarization = self._sums.scalarization(k)
+        if own:
+            yield from self._improve_best(k, scalarization, max(1, int(own * self._n)))
+        if gaps:
+            yield from self._search_near(k, scalarization, max(STEPS, int(gaps * self._n)))
+
+    def _improve_best(self, k: int, scalarization: Scalarization, steps: int) -> Iterator[int]:
+        """Run iterated local search from the best tour known under weight k."""
+        self._load_best(k, scalarization, self._local_search)
+        if isinstance(self._local_search, TwoOptSearch):
+            for done in range(0, steps, BLOCK):
+                block = min(steps - done, BLOCK)
+                iterate(self._state, scalarization, block)
+                yield block
+            return
+        for done in range(0, steps, LONG_BLOCK):
+            block = min(steps - done, LONG_BLOCK)
+            self._local_search.iterate(scalarization, block)
+            offer(self._state, self._local_search.working)
+            yield block * self._local_search.effort
+
+    def _search_near(self, k: int, scalarization: Scalarization, steps: int) -> Iterator[int]:
+        """Run iterated local search by two-opt under weight k from points of the front."""
+        weights, least = self._weights[k], self._least(k)
+        for done in range(0, steps, BLOCK):
+            block = min(steps - done, BLOCK)
+            rounds = max(1, block // STEPS)
+            search_from_points(self._state, scalarization, weights, least, rounds, STEPS)
+            yield block
+
+    def _descend(self, k: int, construct: bool) -> Iterator[int]:
+        """Descend to a local optimum under weight k from the best tour known."""
+        for _ in self._sums.rank(k):
+            yield 0
+        scalarization = self._sums.scalarization(k)
+        local_search = self._descent
+        constructed = self._load_best(k, scalarization, local_search, construct)
+        working = local_search.working
+        enqueue_cities(working, working.tour if self._touched is None else self._touched)
+        threshold = least_gain(scalarization, working.length[0])
+        offering = self._n >= LARGE and not constructed
+        block = 1 + self._n // OFFERS if offering else DESCENT_BLOCK
+        while local_search.descend(scalarization, threshold, block) == 0:
+            if offering:
+                offer(self._state, working)
+            yield 0
+        offer(self._state, working)
+        yield 1
+
+    def _load_best(
+        self,
+        k: int,
+        scalarization: Scalarization,
+        local_search: LocalSearch,
+        construct: bool = False,
+    ) -> bool:
+        """Load the best tour known under weight k; a constructed one where that is better.
+
+        Returns whether it was constructed.
+        """
+        row = best_row(self._archive, self._weights[k])
+        least = np.inf
+        if row >= 0:
+            least = self._least(k)
+            local_search.load(self._archive.tours[row], least, 0.0)
+        if not construct and row >= 0:
+            return False
+        tour = self._constructed(k, scalarization)
+        sum_lengths(self._costs, tour, self._lengths)
+        value = float(self._lengths @ self._weights[k])
+        if value < least:
+            local_search.load(tour, value, 0.0)
+        return value < least
+
+    def _least(self, k: int) -> float:
+        """Return the least weighted sum under weight k of the tours found so far."""
+        row = best_row(self._archive, self._weights[k])
+        return float(self._archive.points[row] @ self._weights[k])
+
+    def _constructed(self, k: int, scalarization: Scalarization | None = None) -> NDArray[np.int32]:
+        """Return a tour that is constructed under weight k; without candidates by neighbours."""
+        greedy = scalarization is not None and self._n >= GREEDY and self._costs.symmetric
+        if scalarization is None:
+            scalarization = self._sums.scalarization(k)
+        return constructed_tour(self.instance, scalarization, greedy)
