@@ -128,7 +128,7 @@ function ended() {
 
 function show(state) {
   if (state.answer) {
-    if (state.answer.objectives) objectives = namesIn(state.answer);
+    if (state.answer.objectives || state.answer.scale?.length > 2) objectives = namesIn(state.answer);
     result.name(objectives, way?.names ?? input.ids);
     result.show(way?.replanned ? { ...state, answer: way.answer(state.answer) } : state);
     answered(state.answer);

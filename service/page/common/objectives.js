@@ -1,14 +1,15 @@
-/** Names and units of the two objectives. */
+/** Names and units of the objectives: two, three or four. */
 
-export const UNNAMED = [
-  { name: "length 1", unit: "" },
-  { name: "length 2", unit: "" },
-];
+/** The name of an objective that has none. */
+export const unnamed = (axis) => ({ name: `length ${axis + 1}`, unit: "" });
 
-/** The names in a request or an answer; UNNAMED if it has none. */
-export function namesIn({ objectives }) {
-  const named = objectives?.length === 2 && objectives.every((each) => each?.name && typeof each.name === "string");
-  return named ? objectives.map(({ name, unit }) => ({ name, unit: typeof unit === "string" ? unit : "" })) : UNNAMED;
+export const UNNAMED = [unnamed(0), unnamed(1)];
+
+/** The names in a request or an answer; where it has none, UNNAMED, or as many as its scale has numbers. */
+export function namesIn({ objectives, scale }) {
+  const named = objectives?.length >= 2 && objectives.every((each) => each?.name && typeof each.name === "string");
+  if (!named) return scale?.length > 2 ? scale.map((_, axis) => unnamed(axis)) : UNNAMED;
+  return objectives.map(({ name, unit }) => ({ name, unit: typeof unit === "string" ? unit : "" }));
 }
 
 export const titled = ({ name }) => name[0].toUpperCase() + name.slice(1);

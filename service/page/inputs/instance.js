@@ -5,10 +5,12 @@ import { rounded } from "./distances.js";
 import { describedFleet, describedRobots } from "../fleet/fleet_request.js";
 import { formOf, kindOf } from "../common/kinds.js";
 import { counted } from "../common/numbers.js";
-import { UNNAMED, namesIn } from "../common/objectives.js";
+import { UNNAMED, namesIn, unnamed } from "../common/objectives.js";
 import { nameOf } from "./names.js";
 import { Problem } from "../planning/service.js";
 
+const COUNTS = { 2: "Two", 3: "Three", 4: "Four" };
+const PLANE = 2; // numbers of a place
 // Two matrices of more fill the longest body that a service takes, and the browser's memory.
 const MOST_ROUNDED = 1500;
 
@@ -17,7 +19,7 @@ export function described(asked) {
   const { grid, matrices, places } = asked;
   const { onGrid, movers } = kindOf(asked);
   if (!onGrid && movers) return describedFleet(asked);
-  if (!onGrid && matrices) return `Two matrices of ${counted(matrices[0]?.length ?? 0, "stop", "stops")}.`;
+  if (!onGrid && matrices) return `${COUNTS[matrices.length] ?? matrices.length} matrices of ${counted(matrices[0]?.length ?? 0, "stop", "stops")}.`;
   if (!onGrid) return formOf(asked) ? "" : "The link only names a front: the places of its stops are not known.";
   const where = places ? `${places.length} places` : "places laid out by the spacing";
   const map = `grid of ${grid.length} by ${grid[0]?.length ?? 0} cells; ${where}.`;
@@ -44,10 +46,20 @@ export function requestFor({ rounded: whole, ids, names, ...body }) {
   return { path, body: (ids || names) && form && form !== "stops" ? long(short, ids, names) : short };
 }
 
+/** A request whose rows have more than two planes, as stops under objectives with a plane each; any other as it is. */
+export function inPlanes(request) {
+  const { coordinates, names, ids, ...others } = request;
+  const columns = coordinates?.[0]?.length ?? 0;
+  if (formOf(request) !== "coordinates" || columns <= 2 * PLANE) return request;
+  const planes = Array.from({ length: columns / PLANE }, (_, axis) => coordinates.map((row) => row.slice(PLANE * axis, PLANE * (axis + 1))));
+  const objectives = planes.map((plane, axis) => ({ name: (names?.[axis] ?? unnamed(axis)).name, coordinates: plane }));
+  return { ...others, stops: coordinates.map((_, city) => ({ id: nameOf(ids, city) })), objectives };
+}
+
 /** The long form of a request, in which stops have ids and objectives have names. */
 function long({ coordinates, matrices, ...others }, ids, names = UNNAMED) {
   const cities = (coordinates ?? matrices[0]).length;
-  const sources = [0, 1].map((axis) =>
+  const sources = names.map((_, axis) =>
     matrices ? { matrix: matrices[axis] } : { coordinates: coordinates.map((row) => row.slice(2 * axis, 2 * axis + 2)) },
   );
   return {

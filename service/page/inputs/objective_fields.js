@@ -1,8 +1,9 @@
-/** The fields of both objectives: names and units, and for stops how each is measured. */
+/** The fields of the objectives: names and units, and for stops how each is measured. */
 
 import { namesIn } from "../common/objectives.js";
 
 const SOURCES = { great_circle: "Straight lines, m", road_time: "Time by road, s", road_distance: "Way by road, m" };
+const NTH = ["First", "Second", "Third", "Fourth"];
 const OWN = "own"; // costs that came with the stops
 
 export class ObjectiveFields {
@@ -19,7 +20,7 @@ export class ObjectiveFields {
     });
   }
 
-  /** Shows two objectives; those of a request for stops have sources, others only names and units. */
+  /** Shows the objectives; those of a request for stops have sources, others only names and units. */
   show(objectives, sourced) {
     this.#own = objectives;
     this.#shown = sourced ? namesIn({ objectives }) : objectives;
@@ -36,7 +37,7 @@ export class ObjectiveFields {
 
 function line({ name, unit }, axis, objective) {
   const made = Object.assign(document.createElement("div"), { className: "objective" });
-  const which = axis ? "Second objective" : "First objective";
+  const which = `${NTH[axis]} objective`;
   made.append(labelled(which, input(axis, "name", name)), labelled("Unit", input(axis, "unit", unit), `Unit of the ${which.toLowerCase()}`));
   if (objective) made.append(labelled("Measured by", source(axis, objective), `What the ${which.toLowerCase()} is measured by`));
   return made;

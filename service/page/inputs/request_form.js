@@ -1,8 +1,8 @@
-/** The form, put together: stops as a table and as text, both objectives, and the settings. */
+/** The form, put together: stops as a table and as text, the objectives, and the settings. */
 
 import { isCity, textOf } from "./cities.js";
 import { Fields } from "./fields.js";
-import { askedFor, described, requestFor } from "./instance.js";
+import { askedFor, described, inPlanes, requestFor } from "./instance.js";
 import { RequestText } from "../fleet/request_text.js";
 import { nameOf } from "./names.js";
 import { ObjectiveFields } from "./objective_fields.js";
@@ -11,7 +11,7 @@ import { StopsTable } from "./table.js";
 import { TypedRows } from "./typed_rows.js";
 import { counted } from "../common/numbers.js";
 import { formOf, kindOf } from "../common/kinds.js";
-import { UNNAMED, namesIn } from "../common/objectives.js";
+import { UNNAMED, namesIn, unnamed } from "../common/objectives.js";
 
 const element = (id) => document.getElementById(id);
 const COLUMNS = { coordinates: ["x₁", "y₁", "x₂", "y₂"], stops: ["Longitude", "Latitude"] };
@@ -50,10 +50,11 @@ export class RequestForm {
   }
 
   /** Takes a request into the form, and shows its stops under their objectives. */
-  open(wanted, names = UNNAMED) {
+  open(opened, names = UNNAMED) {
+    const wanted = inPlanes(opened);
     const [kind, form] = [kindOf(wanted), formOf(wanted)];
     this.#brought = this.#fields.take(wanted, kind);
-    this.#objectives = wanted.names ?? names;
+    this.#objectives = wanted.names ?? (wanted.matrices?.length > 2 ? wanted.matrices.map((_, axis) => unnamed(axis)) : names);
     element("typed").hidden = form !== "coordinates";
     element("named").hidden = Boolean(kind.movers) || !(kind.onGrid || form);
     this.#text.show(kind.movers ? wanted : null);
@@ -243,7 +244,7 @@ export class RequestForm {
 
   #showObjectives() {
     const { stops, objectives } = this.#brought;
-    const sourced = Boolean(stops && Array.isArray(objectives) && objectives.length === 2);
+    const sourced = Boolean(stops && Array.isArray(objectives) && objectives.length >= 2);
     this.#objectiveFields.show(sourced ? objectives : this.#objectives, sourced);
   }
 }

@@ -10,7 +10,8 @@ export function choiceOf(front, tour, objectives, { one }) {
 }
 
 function sentence(front, tour, objectives, one) {
-  if (front.length < 2) return `This ${one} is the best under both objectives.`;
+  if (front.length < 2) return `This ${one} is the best under ${objectives.length > 2 ? "all" : "both"} objectives.`;
+  if (objectives.length > 2) return ofSeveral(front, tour, objectives);
   const [first, second] = objectives.map(({ name }) => name);
   const least = front[0];
   const gain = step(least, tour, 1, objectives, "less");
@@ -18,6 +19,17 @@ function sentence(front, tour, objectives, one) {
   const cost = step(least, tour, 0, objectives, "more");
   const most = tour.lengths[1] === front.at(-1).lengths[1] ? `: the least ${second} there is` : "";
   return `${cost} than the least, for ${gain}${most}.`;
+}
+
+/** How much more than the least of the front a tour has of each of three or four objectives. */
+function ofSeveral(front, tour, objectives) {
+  const said = objectives.map(({ name }, axis) => {
+    const least = front.reduce((best, each) => (each.lengths[axis] < best.lengths[axis] ? each : best));
+    return tour.lengths[axis] === least.lengths[axis] ? `the least ${name} there is` : step(least, tour, axis, objectives, "more");
+  });
+  const more = said.some((each) => !each.startsWith("the least")) ? " than the least of each" : "";
+  const sentence = `${said.slice(0, -1).join(", ")} and ${said.at(-1)}${more}.`;
+  return sentence[0].toUpperCase() + sentence.slice(1);
 }
 
 /** How much more or less of an objective one tour has than another: in per cent, and in its unit. */

@@ -4,10 +4,7 @@ import { difference, length } from "../common/numbers.js";
 import { withUnit } from "../common/objectives.js";
 
 export function compare(table, objectives, selected, pinned) {
-  const rows = [
-    [withUnit(objectives[0]), (item) => item.lengths[0]],
-    [withUnit(objectives[1]), (item) => item.lengths[1]],
-  ];
+  const rows = objectives.map((objective, axis) => [withUnit(objective), (item) => item.lengths[axis]]);
   table.classList.toggle("alone", !pinned);
   table.tBodies[0].replaceChildren(
     ...rows.map(([name, value]) => {

@@ -1,7 +1,7 @@
 /** Write a request as a curl command, and a front as CSV. */
 
 import { kindNamed } from "../common/kinds.js";
-import { UNNAMED } from "../common/objectives.js";
+import { unnamed } from "../common/objectives.js";
 
 /** The same request as a shell command. */
 export function curl({ path, body }) {
@@ -12,13 +12,14 @@ export function curl({ path, body }) {
 /** A front as CSV: a tour on each line, or a route of a plan, with these names of objectives, and the answer's ids where it has them. */
 export function csv({ kind, front }, objectives) {
   const { movers } = kindNamed({ kind });
-  const titles = objectives === UNNAMED ? ["length_1", "length_2"] : objectives.map(({ name, unit }) => (unit ? `${name} (${unit})` : name));
+  const titles = objectives.every(({ name }, axis) => name === unnamed(axis).name) ? objectives.map((_, axis) => `length_${axis + 1}`) : objectives.map(({ name, unit }) => (unit ? `${name} (${unit})` : name));
   if (movers) return csvOfPlans(front, titles, movers);
   const rows = front.map(({ angle, lengths, tour, stops }) => {
     const places = stops?.map((id) => quoted(id, /[ "]/)) ?? tour;
-    return [angle, ...lengths, places.join(" ")];
+    return [...(angle === undefined ? [] : [angle]), ...lengths, places.join(" ")];
   });
-  return [["angle", ...titles, "tour"], ...rows].map(line).join("");
+  const angle = titles.length === 2 ? ["angle"] : [];
+  return [[...angle, ...titles, "tour"], ...rows].map(line).join("");
 }
 
 /** A route on each line, after the members of its plan. */

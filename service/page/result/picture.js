@@ -35,10 +35,11 @@ export async function pngOf(svg) {
 
 function chart(front, selected, objectives) {
   const scales = [0, 1].map((axis) => scaleOf(front.map(({ lengths }) => lengths[axis]), axis));
-  const place = ({ lengths }) => lengths.map((value, axis) => scales[axis].at(value));
+  const place = ({ lengths }) => scales.map((scale, axis) => scale.at(lengths[axis]));
   const places = front.map(place);
-  const steps = places.map(([x, y], at) => (at ? `H${x}V${y}` : `M${x} ${y}`)).join("");
-  const axes = objectives.map((objective, axis) => axisOf(scales[axis], axis, withUnit(objective))).join("");
+  // The plane of the first two of several objectives has no staircase: tours above it may be better under the others.
+  const steps = objectives.length > 2 ? "" : places.map(([x, y], at) => (at ? `H${x}V${y}` : `M${x} ${y}`)).join("");
+  const axes = scales.map((scale, axis) => axisOf(scale, axis, withUnit(objectives[axis]))).join("");
   const dots = places.map((at) => dot(at, 2.5, "improved")).join("");
   return `${axes}<path d="${steps}" fill="none" stroke="${colour("improved")}" stroke-width="1.5"/>${dots}${dot(place(selected), 6, "selected")}`;
 }

@@ -13,6 +13,7 @@ import { counted, length } from "../common/numbers.js";
 import { UNNAMED } from "../common/objectives.js";
 import { BalanceSlider } from "../chart/slider.js";
 import { RoutedWay, pathOfWays } from "../map/ways/routed_way.js";
+import { SeveralObjectives } from "./several.js";
 import { nearest } from "./tours.js";
 
 const MIDDLE = 0.5; // the middle balance
@@ -24,6 +25,7 @@ export class Result {
   #chart;
   #growth;
   #slider;
+  #several;
   #planView = new PlanView();
   #kind = kindOf({}); // of the front
   #front = [];
@@ -46,6 +48,7 @@ export class Result {
     const onPreview = (index) => this.#preview(index);
     const told = { onSelect, onPreview, onBudget: (index) => this.#choose(index) };
     this.#chart = new FrontChart(element("front-chart"), element("front-labels"), told);
+    this.#several = new SeveralObjectives({ onSelect: (index) => this.#select(index), onPreview });
     this.#growth = new Growth(element("growth"), element("growth-help"));
     this.#slider = new BalanceSlider(element("balance"), element("balance-shown"), onSelect);
     element("pin").addEventListener("click", () => this.#pin());
@@ -58,9 +61,10 @@ export class Result {
     this.#objectives = objectives;
     this.#ids = ids;
     this.#maps.name(objectives, ids);
+    this.#planView.name(objectives);
+    if (objectives.length > 2) return;
     this.#chart.name(objectives);
     this.#slider.name(objectives);
-    this.#planView.name(objectives);
     objectives.forEach((objective, plane) => {
       element(`less-${plane + 1}`).textContent = `less ${objective.name}`;
     });
@@ -83,6 +87,7 @@ export class Result {
     this.#legend("improved", false);
     this.#growth.show([]);
     this.#slider.show([], this.#kind.noun);
+    this.#several.hide();
     this.#drawPin();
     this.#draw();
     showFigures(element("figures"), null, null);
@@ -95,18 +100,30 @@ export class Result {
     this.#id = ["done", "cancelled"].includes(stage) ? answer.id : null;
     this.#previewed = null;
     this.#closed = answer.closed !== false;
+    this.#growth.show(growth);
+    if (this.#objectives.length > 2) this.#several.show(answer.front, this.#objectives, this.#kind.noun);
+    else this.#showBoth(alone, answer);
+    this.#maps.place(answer.places, answer.uncovered);
+    element("uncovered").textContent = unreached(answer.uncovered);
+    element("tour-title").textContent = this.#kind.movers ? "Selected plan" : "Tour";
+    if (this.#front.length) this.#select(this.#wanted);
+    showFigures(element("figures"), alone, answer);
+  }
+
+  /** Shows a front of two objectives on its chart. */
+  #showBoth(alone, answer) {
     // Until the search has found something, the best front so far is the network's.
     const improved = answer.front === alone?.front ? [] : answer.front;
     this.#chart.show(alone?.front ?? [], improved, this.#kind.noun);
     this.#legend("alone", alone !== null);
     this.#legend("improved", improved.length > 0);
-    this.#growth.show(growth);
     this.#slider.show(answer.front, this.#kind.noun);
-    this.#maps.place(answer.places, answer.uncovered);
-    element("uncovered").textContent = unreached(answer.uncovered);
-    element("tour-title").textContent = this.#kind.movers ? "Selected plan" : "Tour";
-    if (this.#front.length) this.#select(this.#chart.budget.index ?? nearest(this.#front, this.#balance));
-    showFigures(element("figures"), alone, answer);
+  }
+
+  /** The tour to select in a front that is shown. */
+  get #wanted() {
+    if (this.#objectives.length > 2) return this.#several.middle;
+    return this.#chart.budget.index ?? nearest(this.#front, this.#balance);
   }
 
   /** The tour that is shown. */
@@ -176,7 +193,7 @@ export class Result {
   #select(index) {
     this.#selected = this.#front[index];
     this.#previewed = null;
-    this.#slider.select(index);
+    if (this.#objectives.length === 2) this.#slider.select(index);
     this.#drawSoon();
   }
 
@@ -203,7 +220,7 @@ export class Result {
   #drawPin() {
     element("pin").textContent = this.#pinned ? "Unpin" : "Pin to compare";
     this.#legend("pinned", this.#pinned !== null);
-    this.#chart.mark("pinned", this.#pinned?.lengths ?? null);
+    this.#mark("pinned", this.#pinned);
     this.#legend("before", this.#before !== null);
     const dashed = this.#pinned ?? this.#before;
     this.#maps.draw("pinned", dashed, dashed?.closed ?? this.#closed);
@@ -213,9 +230,9 @@ export class Result {
     const shown = this.#previewed ?? this.#selected;
     element("pin").disabled = !this.#selected;
     this.#legend("selected", shown !== null);
-    this.#chart.mark("selected", this.#selected?.lengths ?? null);
+    this.#mark("selected", this.#selected);
     element("budget").textContent = this.#chart.budget.said;
-    this.#chart.mark("previewed", this.#previewed?.lengths ?? null);
+    this.#mark("previewed", this.#previewed);
     this.#maps.draw("selected", shown, this.#closed);
     this.#planView.show(this.#kind.movers ? shown : null, this.#kind.movers);
     compare(element("comparison"), this.#objectives, shown, this.#pinned);
@@ -234,6 +251,12 @@ export class Result {
     const item = this.#selected;
     if (!item || !this.#id || !this.#maps.driven) return this.#routed?.forget();
     this.#routed?.want(pathOfWays(this.#id, this.#kind, item, this.#front.indexOf(item)), this.#maps.waysOf(item, this.#closed));
+  }
+
+  /** Marks a tour on the chart that is shown; null removes the mark. */
+  #mark(name, item) {
+    const chart = this.#objectives.length > 2 ? this.#several : this.#chart;
+    chart.mark(name, item?.lengths ?? null);
   }
 
   /** Says what a colour on the chart means, while it is there. */

@@ -1,0 +1,180 @@
+"""Three objectives on the page: limits on each, the plane of two, and what is said of a tour."""
+
+import json
+import re
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Locator, Page, expect
+
+from tests.helpers.browsing import (
+    copied,
+    needs_chromium,
+    open_files,
+    open_page,
+    saved,
+    wait_until_planned,
+)
+
+pytestmark = needs_chromium
+
+N = 14
+
+
+def request() -> str:
+    """Stops in Helsinki under distance, and two matrices."""
+    rng = np.random.default_rng(2)
+    stops = [
+        {"id": f"#{1001 + k}", "location": [24.9 + x / 20, 60.15 + y / 30]}
+        for k, (x, y) in enumerate(rng.random((N, 2)).tolist())
+    ]
+    objectives = [
+        {"name": "way", "from": "great_circle"},
+        {"name": "people met", "unit": "people", "matrix": (9 * rng.random((N, N))).tolist()},
+        {"name": "climb", "unit": "m", "matrix": (30 * rng.random((N, N))).tolist()},
+    ]
+    return json.dumps({"stops": stops, "objectives": objectives, "time_limit": 0.3})
+
+
+@pytest.fixture(scope="module")
+def planned(browser: Browser, released: str) -> Iterator[Page]:
+    """The page with a front of three objectives."""
+    with open_page(browser, released) as page:
+        wait_until_planned(page)
+        open_files(page, {"three.json": request()})
+        page.get_by_role("button", name="Plan", exact=True).click()
+        wait_until_planned(page)
+        yield page
+
+
+@pytest.fixture
+def page(planned: Page) -> Page:
+    """The same without limits."""
+    for name in ("Way", "People met", "Climb"):
+        limit(planned, name).press("Escape")
+    return planned
+
+
+def limit(page: Page, name: str) -> Locator:
+    return page.get_by_role("slider", name=name, exact=True)
+
+
+def front_of(page: Page) -> np.ndarray:
+    """The lengths of all tours, from what the page saves."""
+    return np.array([tour["lengths"] for tour in json.loads(saved(page, "json"))["front"]])
+
+
+def shown(page: Page) -> list[float]:
+    """The lengths of the tour that is shown."""
+    cells = page.locator("#comparison tbody td:nth-child(2)").all_inner_texts()
+    return [float(text.replace(",", "")) for text in cells]
+
+
+def test_three_objectives_are_asked_for_shown_and_named(page: Page) -> None:
+    names = ["First objective", "Second objective", "Third objective"]
+    for name, value in zip(names, ["way", "people met", "climb"], strict=True):
+        expect(page.get_by_label(name, exact=True)).to_have_value(value)
+    expect(page.locator("#several")).to_be_visible()
+    for hidden in (".plot", "#balance", "#budget"):
+        expect(page.locator(hidden)).to_be_hidden()
+    label = page.locator("#scatter").get_attribute("aria-label") or ""
+    assert re.match(r"A front of \d+ tours: way from .* to .*, people met from", label)
+    rows = page.locator("#comparison tbody th").all_inner_texts()
+    assert rows == ["Way, m", "People met, people", "Climb, m"]
+
+
+def test_without_limits_the_tour_in_the_middle_is_shown(page: Page) -> None:
+    lengths = front_of(page)
+    least, most = lengths.min(axis=0), lengths.max(axis=0)
+    middle = lengths[((lengths - least) / (most - least)).sum(axis=1).argmin()]
+    assert shown(page) == pytest.approx(middle, rel=1e-5)
+    expect(page.locator("#caps-said")).to_contain_text("No limits")
+
+
+def test_limits_leave_the_best_of_what_they_allow(page: Page) -> None:
+    lengths = front_of(page)
+    limit(page, "Way").press("Home")
+    shortest = lengths[lengths[:, 0].argmin()]
+    assert shown(page) == pytest.approx(shortest, rel=1e-5)
+    for _ in range(3):
+        limit(page, "Way").press("PageUp")
+    said = limit(page, "Way").get_attribute("aria-valuetext") or ""
+    assert said.startswith("at most ")
+    expect(page.locator("#caps-said")).to_contain_text(" are within the limits.")
+    most = float(limit(page, "Way").input_value())
+    limit(page, "Climb").press("Home")
+    least = lengths[lengths[:, 0] <= most + 1e-9, 2].min()
+    assert shown(page)[2] == pytest.approx(least, rel=1e-5)
+    assert shown(page)[0] <= most + 1e-5 * most
+
+
+def test_a_limit_stops_where_the_others_leave_nothing(page: Page) -> None:
+    limit(page, "Way").press("Home")
+    limit(page, "Climb").press("Home")
+    limit(page, "People met").press("Home")
+    lengths = front_of(page)
+    assert shown(page)[0] == pytest.approx(lengths[:, 0].min(), rel=1e-5)
+
+
+def test_a_dot_that_is_clicked_is_selected_and_lifts_limits_that_it_breaks(page: Page) -> None:
+    limit(page, "Way").press("Home")
+    beyond = page.locator("#scatter circle.beyond").first
+    assert page.locator("#scatter circle.beyond").count() > 0
+    beyond.dispatch_event("pointermove")
+    box = beyond.bounding_box()
+    assert box is not None
+    before = shown(page)
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.move(0, 0)
+    expect(page.locator("#caps-said")).to_contain_text("No limits")
+    assert shown(page) != before
+
+
+def test_the_objectives_across_up_and_of_the_colour_are_chosen(page: Page) -> None:
+    across, up, colour = (
+        page.get_by_label(name, exact=True) for name in ("Across", "Up", "Colour")
+    )
+    places = page.locator("#scatter circle").first.get_attribute("cx")
+    across.select_option("Climb")
+    expect(colour).to_have_value("0")
+    expect(up).to_have_value("1")
+    expect(page.locator("#scatter svg")).to_contain_text("Climb, m")
+    assert page.locator("#scatter circle").first.get_attribute("cx") != places
+    across.select_option("Way")
+
+
+def test_a_tour_is_said_beside_the_least_of_each(page: Page) -> None:
+    limit(page, "Way").press("Home")
+    choice = page.locator("#choice")
+    expect(choice).to_have_text(
+        re.compile(r"^The least way there is, .*more people met.* and .*more climb.*of each\.$")
+    )
+
+
+def test_two_tours_are_compared(page: Page) -> None:
+    limit(page, "Way").press("Home")
+    page.get_by_role("button", name="Pin to compare").click()
+    limit(page, "Way").press("End")
+    limit(page, "Climb").press("Home")
+    differences = page.locator("#comparison tbody td:nth-child(4)").all_inner_texts()
+    assert differences[0].startswith("+")
+    assert differences[2].startswith("\N{MINUS SIGN}")
+    page.get_by_role("button", name="Unpin").click()
+
+
+def test_what_is_taken_along_has_all_three(page: Page) -> None:
+    lines = saved(page, "csv").decode().splitlines()
+    assert lines[0] == "way (m),people met (people),climb (m),tour"
+    assert len(lines) == 1 + len(front_of(page))
+    assert "choose(knee=True)" in copied(page, "as Python")
+    svg = saved(page, "svg").decode()
+    assert ">Way, m<" in svg
+    assert ">People met, people<" in svg
+
+
+def test_the_next_front_of_two_has_its_own_chart(page: Page) -> None:
+    page.get_by_label("Example", exact=True).select_option(index=1)
+    wait_until_planned(page)
+    expect(page.locator("#several")).to_be_hidden()
+    expect(page.locator("#balance")).to_be_visible()
