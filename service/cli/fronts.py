@@ -16,7 +16,7 @@ from service.cli.backends import Backend
 from service.cli.data import print_csv, print_data
 from service.cli.errors import UsageError, exit_on_error
 from service.cli.inputs import Ids
-from service.cli.options import OutputFormat, Ways
+from service.cli.options import OutputFormat, Ways, ways_of
 from service.cli.output import (
     ROBOTS,
     VEHICLES,
@@ -27,16 +27,17 @@ from service.cli.output import (
     front_summary,
     ids_of,
     labels_of,
+    named_points,
     named_tours,
     plans_as_rows,
     plans_as_table,
     stops_of,
-    three_tours,
     tour_as_json,
     tour_summary,
     uncovered_summary,
 )
 from service.cli.terminal_chart import LABELS, draw_front
+from service.instance import OBJECTIVES
 
 _MORE_TOURS = "--table prints every tour, --csv its cities too"
 _MORE_PLANS = "--csv prints every route"
@@ -70,9 +71,9 @@ def run_front(build_plan: BuildPlan, backend: Backend, output: OutputFormat) -> 
 
 def run_tour(build_plan: BuildPlan, backend: Backend, choice: Ways, as_json: bool = False) -> None:
     """Plan a front and print one of its tours."""
-    ways = vars(choice)
     with exit_on_error():
         with _usage_errors():
+            ways = ways_of(choice)
             the_way(ways)
         plan, ids = build_plan()
         front = backend.front(plan, Console(stderr=True))
@@ -130,13 +131,13 @@ def _draw(front: Any, plan: Plan, path: Path, noun: str) -> None:
     if plan.path != "/coverage" or (noun == "tours" and front.paths is None):
         return plot_front(front, path, noun)
     names = [each.name for each in front.objectives or ()] or LABELS
-    return plot_map(front, plan, path, three_tours(front.lengths, names))
+    return plot_map(front, plan, path, named_points(front.lengths, names))
 
 
 def print_chart(front: FrontOfAnyKind, console: Console) -> None:
-    """Print a chart of a front on a console."""
+    """Print a chart of a front on a console, under its first two objectives."""
     point = "•" if console.encoding.startswith("utf") else "o"
-    chart = draw_front(front.lengths, point, labels_of(front))
+    chart = draw_front(front.lengths[:, :OBJECTIVES], point, labels_of(front)[:OBJECTIVES])
     console.print(chart, highlight=False, markup=False)
 
 

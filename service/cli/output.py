@@ -24,6 +24,7 @@ from service.cli.data import csv_text
 from service.cli.inputs import Ids, ids_in
 from service.cli.terminal_chart import LABELS
 from service.errors.printable import printable
+from service.instance import OBJECTIVES
 
 Rows = list[tuple[object, ...]]
 FrontOfPlans = FleetFront | RobotFront
@@ -74,8 +75,10 @@ ROBOTS = Movers(
 
 
 def labels_of(front: FrontOfAnyKind) -> tuple[str, ...]:
-    """Return the labels of both lengths: the name of the objective, with its unit if it has one."""
-    return LABELS if front.objectives is None else tuple(map(printable, _names(front)))
+    """Return the labels of all lengths: the name of the objective, with its unit if it has one."""
+    if front.objectives is None:
+        return LABELS[: front.lengths.shape[1]]
+    return tuple(map(printable, _names(front)))
 
 
 def _names(front: FrontOfAnyKind) -> list[str]:
@@ -101,13 +104,15 @@ def front_as_rows(front: Front, ids: Ids | None = None) -> Rows:
 
     As in CSV, an id is quoted if it has a space or a quotation mark in it.
     """
-    columns = ("length_1", "length_2") if front.objectives is None else _names(front)
-    found = zip(front.angles, front.lengths, front.tours, strict=True)
+    numbered = [f"length_{number + 1}" for number in range(front.lengths.shape[1])]
+    columns = numbered if front.objectives is None else _names(front)
+    flat = front.lengths.shape[1] == OBJECTIVES
+    angles = front.angles[:, np.newaxis].tolist() if flat else [[]] * len(front.angles)
     rows = [
-        (float(angle), *lengths.tolist(), csv_text([stops_of(tour, ids)], delimiter=" "))
-        for angle, lengths, tour in found
+        (*angle, *lengths.tolist(), csv_text([stops_of(tour, ids)], delimiter=" "))
+        for angle, lengths, tour in zip(angles, front.lengths, front.tours, strict=True)
     ]
-    return [("angle", *columns, "tour"), *rows]
+    return [(*(("angle",) if flat else ()), *columns, "tour"), *rows]
 
 
 def plans_as_rows(front: FrontOfPlans, movers: Movers) -> Rows:
@@ -127,16 +132,17 @@ def plans_as_rows(front: FrontOfPlans, movers: Movers) -> Rows:
 def front_as_table(front: Front) -> Table:
     """Return a table with a row for each tour, without its cities."""
     rows = [_cells(front, index) for index in range(len(front.lengths))]
-    return _table(("balance", "angle", *labels_of(front)), rows)
+    return _table((*_positions(front), *labels_of(front)), rows)
 
 
 def named_tours(front: Front) -> Table:
-    """Return a table of three tours of a front: both ends and the knee."""
+    """Return a table of some tours of a front: the least under each objective, and the knee."""
     named = front.objectives
-    names = LABELS if named is None else [printable(each.name) for each in named]
-    found = three_tours(front.lengths, names).items()
+    labels = LABELS[: front.lengths.shape[1]]
+    names = labels if named is None else [printable(each.name) for each in named]
+    found = named_points(front.lengths, names).items()
     table = _table(
-        ("tour", "balance", "angle", *labels_of(front)),
+        ("tour", *_positions(front), *labels_of(front)),
         [(escape(name), *_cells(front, index)) for name, index in found],
     )
     table.columns[0].justify = "left"
@@ -172,29 +178,39 @@ def _table(headings: Iterable[str], rows: Iterable[Iterable[str]]) -> Table:
     return table
 
 
+def _positions(front: Front) -> tuple[str, ...]:
+    """Return the headings of what says where a tour of two objectives stands between them."""
+    return ("balance", "angle") if front.lengths.shape[1] == OBJECTIVES else ()
+
+
 def _cells(front: Front, index: int) -> tuple[str, ...]:
-    """Return the balance, the angle and both lengths of a tour."""
+    """Return all lengths of a tour; of two objectives after its balance and angle."""
     lengths = (f"{length:.6g}" for length in front.lengths[index])
+    if not _positions(front):
+        return tuple(lengths)
     return (f"{front.balances[index]:.3f}", f"{front.angles[index]:.2f}", *lengths)
 
 
-def three_tours(lengths: NDArray[np.float64], names: Sequence[str] = LABELS) -> dict[str, int]:
-    """Return the indexes and titles of three points: both ends and the knee. Points: (m, 2)."""
-    first, second = names
+def named_points(lengths: NDArray[np.float64], names: Sequence[str] = LABELS) -> dict[str, int]:
+    """Return the indexes and titles of the points with the least of each length, and of the knee.
+
+    The knee comes after the first. Points have shape (k, m).
+    """
     low, high = lengths.min(axis=0), lengths.max(axis=0)
-    box = np.where(high > low, high - low, 1.0)
-    return {
-        f"least {first}": int(np.lexsort((lengths[:, 1], lengths[:, 0]))[0]),
-        "knee": int(((lengths - low) / box).sum(axis=1).argmin()),
-        f"least {second}": int(np.lexsort((lengths[:, 0], lengths[:, 1]))[0]),
+    losses = (lengths - low) / np.where(high > low, high - low, 1.0)
+    least = {
+        f"least {name}": int(np.lexsort((losses.sum(axis=1), lengths[:, m]))[0])
+        for m, name in enumerate(names[: lengths.shape[1]])
     }
+    (title, first), *others = least.items()
+    return {title: first, "knee": int(losses.sum(axis=1).argmin()), **dict(others)}
 
 
 def tour_as_json(tour: Tour) -> str:
     """Return a tour as the service answers it, without the front's id."""
+    flat = len(tour.lengths) == OBJECTIVES
     members = {
-        "angle": tour.angle,
-        "balance": tour.balance,
+        **({"angle": tour.angle, "balance": tour.balance} if flat else {}),
         "lengths": tour.lengths.tolist(),
         "tour": tour.tour.tolist(),
     }
@@ -202,20 +218,22 @@ def tour_as_json(tour: Tour) -> str:
 
 
 def lengths_as_text(front: FrontOfAnyKind, lengths: NDArray[np.float64]) -> str:
-    """Return both lengths of a tour, with names and units if any, as the end of a sentence."""
-    first, second = (f"{length:.6g}" for length in lengths)
+    """Return all lengths of a tour, with names and units if any, as the end of a sentence."""
+    shown = [f"{length:.6g}" for length in lengths]
     if front.objectives is None:
-        return f"lengths {first} and {second}"
+        return f"lengths {', '.join(shown[:-1])} and {shown[-1]}"
     return ", ".join(
         printable(" ".join(filter(None, (each.name, length, each.unit))))
-        for each, length in zip(front.objectives, (first, second), strict=True)
+        for each, length in zip(front.objectives, shown, strict=True)
     )
 
 
 def tour_summary(front: Front, tour: Tour) -> str:
-    """Return a line about the balance, the angle and the lengths of a tour of a front."""
-    where = f"balance {tour.balance:.3f}, angle {tour.angle:.2f}"
-    return f"{where}, {lengths_as_text(front, tour.lengths)}"
+    """Return a line about a tour of a front: its lengths, of two after its balance and angle."""
+    lengths = lengths_as_text(front, tour.lengths)
+    if len(tour.lengths) > OBJECTIVES:
+        return lengths
+    return f"balance {tour.balance:.3f}, angle {tour.angle:.2f}, {lengths}"
 
 
 def front_summary(front: FrontOfAnyKind, noun: str = "tours") -> str:

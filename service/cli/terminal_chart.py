@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 WIDTH = 64  # columns that points are drawn in
 HEIGHT = 12  # lines of points; the chart has 15 lines
-LABELS = ("first length", "second length")
+LABELS = ("first length", "second length", "third length", "fourth length")
 
 
 def draw_front(
     lengths: NDArray[np.float64], point: str = "•", labels: Sequence[str] = LABELS
 ) -> str:
-    """Return a chart of points, shape (m, 2), with the first length to the right.
+    """Return a chart of points, shape (k, 2), with the first length to the right.
 
     It has at most 15 lines of at most 79 characters: the labels of both lengths are cut. Points
     that fall on the same character are drawn as one.

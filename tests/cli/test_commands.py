@@ -180,7 +180,7 @@ WRONG = [
     (["front", EXAMPLE, "--json", "--csv"], "as one of --json"),
     (["front", EXAMPLE, "--plot", "front.txt"], "--plot must end in one of"),
     (["front", EXAMPLE, "--plot", "none/front.png"], "in a directory that exists"),
-    (["tour", EXAMPLE], "one of angle, balance, first_at_most, second_at_most and knee"),
+    (["tour", EXAMPLE], "second_at_most, weights, at_most and knee is wanted, got none"),
     (["tour", EXAMPLE, "--angle", "3", "--knee"], "is wanted, got angle and knee"),
     (["tour", EXAMPLE, "--balance", "1.1"], "Invalid value for '--balance'"),
     (["tour", EXAMPLE, "--time-limit", "0", "--first-at-most", "1"], "first length up to 1: the"),

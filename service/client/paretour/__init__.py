@@ -10,6 +10,7 @@ AsyncClient is the same for asynchronous programs. Both send the requests of `ca
 events of `events`. They only need the address of a service.
 """
 
+from paretour.actors import Actor
 from paretour.asynchronous import AsyncClient, AsyncJob
 from paretour.choice import Choice
 from paretour.errors import Refused
@@ -30,7 +31,6 @@ from paretour.requests import Plan, coverage_plan, fleet_plan, front_plan, repla
 from paretour.ros_maps import read_ros_map
 from paretour.sync import Client, Job
 from paretour.values import (
-    Actor,
     Front,
     Objective,
     Path,

@@ -12,6 +12,7 @@ from inspect import Signature, signature
 from typing import Any, Literal, TypeVar, Unpack, cast
 
 import httpx
+from paretour.actors import Actor, parse_actor
 from paretour.bodies import ACCEPTED
 from paretour.choice import Choice, parameters
 from paretour.errors import RETRY_STATUSES, Refused, refused, retry_after
@@ -36,10 +37,8 @@ from paretour.requests import (
 )
 from paretour.values import (
     FINAL_STATUSES,
-    Actor,
     Front,
     Tour,
-    parse_actor,
     parse_front,
     parse_tour,
 )

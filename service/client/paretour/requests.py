@@ -20,7 +20,7 @@ from paretour.members import (
 from paretour.values import Front
 
 _DEFAULT_TIME_LIMIT = 1.0  # seconds, the default of the service
-_OBJECTIVES = 2
+_OBJECTIVES = (2, 3, 4)
 _BOUND_SECONDS = 5.0  # seconds: the most that the service takes to prove a bound
 
 
@@ -67,8 +67,8 @@ class Plan:
 def front_plan(request: FrontRequest) -> Plan:
     """Return the request to POST /front, with matrices that are arrays as a NumPy file.
 
-    The file holds `matrices`, which may be two DataFrames, or the matrices of both objectives, if
-    these are arrays of numbers. Arrays of objects are sent as JSON, with null for None.
+    The file holds `matrices`, which may be DataFrames, or the matrices of all objectives, if these
+    are arrays of numbers. Arrays of objects are sent as JSON, with null for None.
     """
     members: dict[str, Any] = without_frames(request)
     objectives: Sequence[Mapping[str, Any]] = members.get("objectives", ())
@@ -84,12 +84,12 @@ def front_plan(request: FrontRequest) -> Plan:
 
 
 def _fit_a_file(matrices: Any) -> bool:
-    """Return whether matrices are two arrays of the same shape, which a file needs."""
-    if not isinstance(matrices, list) or len(matrices) != _OBJECTIVES:
+    """Return whether matrices are arrays of the same shape, which a file needs."""
+    if not isinstance(matrices, list) or len(matrices) not in _OBJECTIVES:
         return False
     if not all(map(_is_array, matrices)):
         return False
-    return matrices[0].ndim == 2 and matrices[0].shape == matrices[1].shape
+    return matrices[0].ndim == 2 and len({each.shape for each in matrices}) == 1
 
 
 def _is_array(matrices: Any) -> bool:

@@ -6,14 +6,13 @@ from typing import Any, Self, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
-from paretour.choice import Choice, choose
+from paretour.choice import Choice, choose, losses
 from paretour.expect import (
     Members,
     Read,
     anything,
     count,
     each,
-    flag,
     floats,
     indexes,
     members,
@@ -25,7 +24,8 @@ from paretour.expect import (
 T = TypeVar("T")
 Array = NDArray[np.float64]
 FINAL_STATUSES = ("done", "cancelled", "failed")
-PAIR = 2  # numbers of a tour or plan, one for each objective
+PAIR = 2  # numbers: of a cell, a point or a length under two objectives
+MOST = 4  # objectives
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,12 +107,13 @@ class Tour:
 
     Attributes:
         front: The id of the front.
-        angle: The direction of its lengths in objective space, in degrees.
-        balance: 0 at the least first length of the front, 1 at the least second.
-        lengths: Its length under each objective, shape (2,).
+        angle: The direction of its lengths in objective space, in degrees; NaN of more than two
+            objectives.
+        balance: 0 at the least first length of the front, 1 at the least second; NaN of more.
+        lengths: Its length under each objective, shape (m,).
         tour: Its cities, or over a map its places, in order, shape (n,).
-        arrivals: Both its lengths up to each city, and back at the first if it is closed, shape (n
-            + 1, 2); None if the request did not ask for them.
+        arrivals: All its lengths up to each city, and back at the first if it is closed, shape (n
+            + 1, m); None if the request did not ask for them.
         path: Its path over a map, if the request asked for paths.
         stops: The ids of its stops in order, if the request had ids.
         kept: The share of the driven tour's remaining legs that it keeps, if it was replanned.
@@ -131,15 +132,15 @@ class Tour:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StoredFront:
-    """A front of any kind, in order of the first length of its m tours or plans.
+    """A front of any kind, in order of the first length of its k tours or plans.
 
     Attributes:
         id: The id under which the service stores the front.
         status: The status of its job: queued, running, done, cancelled or failed.
-        lengths: The lengths of each tour or plan, shape (m, 2).
+        lengths: The lengths of each tour or plan, shape (k, m).
         points: The number of nondominated ones found; the front is a subset of these.
         hypervolume: The share of the box at the reference point that the points found dominate.
-        reference_point: The reference point of the hypervolume, shape (2,); None while it is not
+        reference_point: The reference point of the hypervolume, shape (m,); None while it is not
             known.
         terminated: Why the search ended: `converged`, `time_limit` or `cancelled`, or a word of a
             later service; None while it runs. `converged` proves that nothing is better only up to
@@ -162,19 +163,21 @@ class Front(StoredFront):
     """The tours of a front, in order of their first length.
 
     Attributes:
-        tours: The cities of each tour in order, shape (m, n).
-        angles: The direction of the lengths of each tour, in degrees, shape (m,).
-        balances: 0 at the least first length of the tours, 1 at the least second, shape (m,).
+        tours: The cities of each tour in order, shape (k, n).
+        angles: The direction of the lengths of each tour, in degrees, shape (k,); NaN of more than
+            two objectives.
+        balances: 0 at the least first length of the tours, 1 at the least second, shape (k,); NaN
+            of more than two objectives.
         hypervolume_bound: The most that any front can have, if a bound was asked for.
-        scale: The length that is 1 in scaled objectives, shape (2,); None while it is not known.
+        scale: The length that is 1 in scaled objectives, shape (m,); None while it is not known.
         actor: The name of the network; None where it built no tours.
         places: Over a map, the row and column of each city, shape (n, 2).
         paths: Over a map, the path of each tour, if the request asked for paths.
         stops: The ids of the stops of each tour in order, if the request had ids.
-        objectives: Both objectives, if the request named them.
-        kept: The share of the driven tour's remaining legs that each tour keeps, shape (m,), if it
+        objectives: The objectives, if the request named them.
+        kept: The share of the driven tour's remaining legs that each tour keeps, shape (k,), if it
             was replanned.
-        arrivals: Both lengths of each tour up to each of its cities, if the request asked for them.
+        arrivals: All lengths of each tour up to each of its cities, if the request asked for them.
         uncovered: Over a map, the free cells that no path leads to.
     """
 
@@ -200,14 +203,20 @@ class Front(StoredFront):
         """
         return self.choose(angle)
 
+    @property
+    def losses(self) -> Array:
+        """The lengths of each tour in the front's own box, 0 at the least and 1 at the greatest."""
+        return losses(self.lengths)
+
     def choose(self, angle: float | None = None, **choice: Unpack[Choice]) -> Tour:
-        """Return one tour: at an angle in degrees, at a balance, within a budget, or the knee.
+        """Return one tour: at an angle or balance, by weights, within budgets, or the knee.
 
         Raises:
-            ValueError: Not exactly one way to choose is given, no tour is within the budget, or
-                the front is still empty.
+            ValueError: Not exactly one way to choose is given, it does not fit the objectives, no
+                tour is within the budgets, or the front is still empty.
         """
-        index = choose(self.lengths, self.angles, angle, choice)
+        names = [each.name for each in self.objectives or ()]
+        index = choose(self.lengths, self.angles, names, angle, choice)
         return Tour(
             front=self.id,
             angle=float(self.angles[index]),
@@ -219,49 +228,6 @@ class Front(StoredFront):
             stops=None if self.stops is None else self.stops[index],
             kept=None if self.kept is None else float(self.kept[index]),
         )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Actor:
-    """A network that the service has loaded.
-
-    Attributes:
-        name: The name to choose it by.
-        digest: The SHA-256 of its file.
-        inputs: The kind of instance that it reads: `coordinates` or `matrices`.
-        commit: The commit of the source that exported it.
-        sizes: The smallest and largest number of cities that it was trained on.
-        angles: The least and the greatest angle that it was trained on, in degrees.
-        config: The configuration of its training.
-        figures: Its hypervolumes, measured at export.
-        repairs: Whether it can repair its tours.
-    """
-
-    name: str
-    digest: str
-    inputs: str
-    commit: str
-    sizes: Any
-    angles: Any
-    config: Any
-    figures: Any
-    repairs: bool = False
-
-
-def parse_actor(value: Any, where: str) -> Actor:
-    """Read an actor."""
-    actor = members(value, where)
-    return Actor(
-        name=actor.read("name", text),
-        digest=actor.read("digest", text),
-        inputs=actor.read("inputs", text),
-        commit=actor.read("commit", text),
-        sizes=actor.read("sizes", anything),
-        angles=actor.read("angles", anything),
-        config=actor.read("config", anything),
-        figures=actor.read("figures", anything),
-        repairs=actor.maybe("repairs", flag) or False,
-    )
 
 
 def parse_front(document: Mapping[str, Any]) -> Front:
@@ -276,20 +242,21 @@ def parse_front(document: Mapping[str, Any]) -> Front:
     tour = indexes(cities, below=cities)
     actor = answer.maybe("actor", members)
     named = answer.maybe("stops", each(members, cities)) is not None
+    m = _objective_count(answer, items)
     return Front(
         **stored_members(answer, items),
         tours=_stacked([item.read("tour", tour) for item in items], (cities,), np.int64),
-        angles=_stacked([item.read("angle", number) for item in items]),
-        balances=_stacked([item.read("balance", number) for item in items]),
+        angles=_stacked([_of_two(item, "angle", m) for item in items]),
+        balances=_stacked([_of_two(item, "balance", m) for item in items]),
         hypervolume_bound=answer.maybe("hypervolume_bound", number),
-        scale=answer.maybe("scale", floats(PAIR)),
+        scale=answer.maybe("scale", floats(m)),
         actor=None if actor is None else actor.read("name", text),
         places=answer.maybe("places", indexes(cities, PAIR)),
         paths=of_all(items, "path", parse_path),
         stops=tuple(item.read("stops", each(text, cities)) for item in items) if named else None,
         objectives=objectives_of(answer),
         kept=None if (kept := of_all(items, "kept", number)) is None else _stacked(kept),
-        arrivals=of_all(items, "arrivals", floats(None, PAIR)),
+        arrivals=of_all(items, "arrivals", floats(None, m)),
         uncovered=answer.maybe("uncovered", parse_uncovered),
     )
 
@@ -298,17 +265,30 @@ def parse_tour(document: Mapping[str, Any]) -> Tour:
     """Return the tour in a JSON answer."""
     answer = members(document, "answer")
     tour = answer.read("tour", indexes(None))
+    m = _objective_count(answer, [answer])
     return Tour(
         front=answer.read("front", text),
-        angle=answer.read("angle", number),
-        balance=answer.read("balance", number),
-        lengths=answer.read("lengths", floats(PAIR)),
+        angle=_of_two(answer, "angle", m),
+        balance=_of_two(answer, "balance", m),
+        lengths=answer.read("lengths", floats(m)),
         tour=tour,
-        arrivals=answer.maybe("arrivals", floats(None, PAIR)),
+        arrivals=answer.maybe("arrivals", floats(None, m)),
         path=answer.maybe("path", parse_path),
         stops=answer.maybe("stops", each(text, len(tour))),
         kept=answer.maybe("kept", number),
     )
+
+
+def _objective_count(answer: Members, items: Sequence[Members]) -> int:
+    """Return the number of objectives: of lengths of the first item, or else of the scale."""
+    lengths = items[0].document.get("lengths") if items else answer.document.get("scale")
+    few = isinstance(lengths, list) and PAIR <= len(lengths) <= MOST
+    return len(lengths) if few else PAIR
+
+
+def _of_two(item: Members, name: str, objectives: int) -> float:
+    """Return a number that a tour has under two objectives; NaN under more."""
+    return item.read(name, number) if objectives == PAIR else np.nan
 
 
 def of_all(items: Sequence[Members], name: str, read: Read[T]) -> tuple[T, ...] | None:
@@ -339,13 +319,14 @@ def _parse_region(value: Any, where: str) -> UncoveredRegion:
 
 def stored_members(answer: Members, items: Sequence[Members]) -> dict[str, Any]:
     """Return the attributes that fronts of all kinds have, from an answer and its items."""
+    m = _objective_count(answer, items)
     return {
         "id": answer.read("id", text),
         "status": answer.read("status", text),
-        "lengths": _stacked([item.read("lengths", floats(PAIR)) for item in items], (PAIR,)),
+        "lengths": _stacked([item.read("lengths", floats(m)) for item in items], (m,)),
         "points": answer.read("points", count),
         "hypervolume": answer.read("hypervolume", number),
-        "reference_point": answer.maybe("reference_point", floats(PAIR)),
+        "reference_point": answer.maybe("reference_point", floats(m)),
         "terminated": answer.maybe("terminated", text),
         "document": answer.document,
     }
@@ -353,7 +334,7 @@ def stored_members(answer: Members, items: Sequence[Members]) -> dict[str, Any]:
 
 def objectives_of(answer: Members) -> tuple[Objective, ...] | None:
     """Return the objectives of an answer, where the request named them."""
-    return answer.maybe("objectives", each(_parse_objective, PAIR))
+    return answer.maybe("objectives", each(_parse_objective))
 
 
 def _parse_objective(value: Any, where: str) -> Objective:
